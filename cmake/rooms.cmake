@@ -1,0 +1,31 @@
+# samara_add_room(<room> [PUBLIC <target>...] [PRIVATE <target>...])
+# The library samara_<room> (alias samara::<room>) of src/<room>/*.cpp, header-only when there are
+# none, with the targets it may use.
+function(samara_add_room room)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;PRIVATE")
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${room}/*.cpp)
+  set(target samara_${room})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    set(public PUBLIC)
+    set(private PRIVATE)
+  else()
+    add_library(${target} INTERFACE)
+    set(public INTERFACE)
+    set(private INTERFACE)
+  endif()
+  add_library(samara::${room} ALIAS ${target})
+  target_include_directories(${target} ${public} ${PROJECT_SOURCE_DIR}/include
+                                                 ${PROJECT_BINARY_DIR}/include)
+  target_link_libraries(${target} ${public} ${arg_PUBLIC} ${private} ${arg_PRIVATE})
+endfunction()
+
+# The program `samara` of drivers/*.cpp: the only place that may use every room.
+function(samara_add_program)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/drivers/*.cpp)
+  if(sources)
+    add_executable(samara ${sources})
+    target_link_libraries(samara PRIVATE samara::io samara::analysis samara::system samara::model
+                                         samara::elements samara::math samara::petsc samara::base)
+  endif()
+endfunction()

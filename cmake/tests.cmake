@@ -1,0 +1,83 @@
+# One executable per folder of tests. Labels: unit, verification, program, tree.
+#   tests/<room>/*_test.cpp + main.cpp          -> test_<room>      (main.cpp names the module)
+#   tests/<room>/*_mpi_test.cpp + mpi_main.cpp  -> test_<room>_mpi  at 1, 2 and 3 ranks
+#   tests/verification/                         -> test_verification, the same way
+#   tests/drivers/*.sh, *.py                    -> the program as its users run it
+#   tests/layering/                             -> rules of the source tree
+set(samara_program ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/samara)
+
+# Debian's own interpreter, which has h5py and numpy, whatever else is first in PATH.
+set(SAMARA_PYTHON /usr/bin/python3 CACHE FILEPATH "Python with h5py, numpy and scipy")
+
+set(samara_test_environment
+    SAMARA_SOURCE_DIR=${PROJECT_SOURCE_DIR}
+    SAMARA_PROGRAM=${samara_program}
+    SAMARA_MPIEXEC=${MPIEXEC_EXECUTABLE}
+    SAMARA_PYTHON=${SAMARA_PYTHON}
+    OMP_NUM_THREADS=1
+    OPENBLAS_NUM_THREADS=1
+    OMPI_ALLOW_RUN_AS_ROOT=1
+    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    OMPI_MCA_rmaps_base_oversubscribe=1
+    OMPI_MCA_hwloc_base_binding_policy=none
+    PYTHONDONTWRITEBYTECODE=1)
+
+function(samara_add_boost_test target libraries)
+  add_executable(${target} ${ARGN})
+  target_link_libraries(${target} PRIVATE ${libraries} Boost::unit_test_framework)
+  target_compile_definitions(
+    ${target} PRIVATE BOOST_TEST_DYN_LINK SAMARA_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                      SAMARA_PROGRAM="${samara_program}")
+endfunction()
+
+function(samara_add_ctest name label)
+  add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  set_tests_properties(${name} PROPERTIES LABELS ${label}
+                                          ENVIRONMENT "${samara_test_environment}" TIMEOUT 600)
+endfunction()
+
+function(samara_add_tests folder label libraries)
+  set(directory ${PROJECT_SOURCE_DIR}/tests/${folder})
+  file(GLOB serial CONFIGURE_DEPENDS ${directory}/*_test.cpp)
+  file(GLOB parallel CONFIGURE_DEPENDS ${directory}/*_mpi_test.cpp)
+  file(GLOB main CONFIGURE_DEPENDS ${directory}/main.cpp)
+  file(GLOB mpi_main CONFIGURE_DEPENDS ${directory}/mpi_main.cpp)
+  list(REMOVE_ITEM serial ${parallel})
+  if(serial)
+    samara_add_boost_test(test_${folder} "${libraries}" ${serial} ${main})
+    samara_add_ctest(test_${folder} ${label} test_${folder})
+  endif()
+  if(parallel)
+    samara_add_boost_test(test_${folder}_mpi "${libraries}" ${parallel} ${mpi_main})
+    foreach(ranks 1 2 3)
+      set(name test_${folder}_mpi_${ranks})
+      samara_add_ctest(${name} ${label} ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
+                       $<TARGET_FILE:test_${folder}_mpi>)
+      set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks})
+    endforeach()
+  endif()
+endfunction()
+
+function(samara_add_scripts folder label prefix)
+  set(directory ${PROJECT_SOURCE_DIR}/tests/${folder})
+  file(GLOB scripts CONFIGURE_DEPENDS ${directory}/*.sh ${directory}/*.py)
+  foreach(script ${scripts})
+    get_filename_component(stem ${script} NAME_WE)
+    set(interpreter bash)
+    if(script MATCHES "[.]py$")
+      set(interpreter ${SAMARA_PYTHON})
+    endif()
+    samara_add_ctest(${prefix}${stem} ${label} ${interpreter} ${script})
+  endforeach()
+endfunction()
+
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+foreach(room base math petsc elements model system analysis)
+  samara_add_tests(${room} unit samara::${room})
+endforeach()
+samara_add_tests(io unit "samara::io;samara_external_files")
+samara_add_tests(verification verification "samara::io;samara_external_files")
+samara_add_scripts(layering tree "")
+if(TARGET samara)
+  samara_add_scripts(drivers program program_)
+endif()

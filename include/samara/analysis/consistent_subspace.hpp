@@ -1,0 +1,52 @@
+// The states that a linearized system can have (docs/theory.md, section 5).
+//
+// Strain and joint constraints tie positions to each other and to the internal loads of elastic
+// strains. Everything that moves is therefore a function of eta: the internal loads of the elastic
+// strains, and the positions in no constraint. Their number is the number of degrees of freedom d;
+// it is counted, not guessed from a rank.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "samara/analysis/periodic_solution.hpp"
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::analysis {
+
+class ConsistentSubspace {
+ public:
+  /// The subspace of the linearization about `solution`.
+  /// @throws InternalError where constraints and tied positions differ in number.
+  ConsistentSubspace(const system::PeriodicSystem& system, const PeriodicSolution& solution);
+
+  int degrees_of_freedom() const { return static_cast<int>(coordinates_.size()); }
+
+  /// The unknowns that are eta.
+  const std::vector<PetscInt>& coordinates() const { return coordinates_; }
+
+  /// eta of the columns of z, scaled: d x columns.
+  Eigen::MatrixXd coordinates_of(const Eigen::MatrixXd& z) const;
+
+  /// Unknowns whose values at a step's ends belong to the state: x, and internal loads in eta.
+  const std::vector<bool>& carried() const { return carried_; }
+
+  /// Basis of the consistent states at time t: n x 2 d, first eta = unit at eta_dot = 0, then
+  /// eta_dot = unit at eta = 0. `rate_step` [s]: over which the change of the constraints in time
+  /// is differenced.
+  Eigen::MatrixXd basis(double t, double rate_step) const;
+
+ private:
+  Eigen::MatrixXd positions(double t) const;
+
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  std::vector<PetscInt> coordinates_;
+  std::vector<double> scale_;           ///< eta = z / scale
+  std::vector<bool> carried_;
+  std::vector<PetscInt> constraints_;   ///< rows
+  std::vector<PetscInt> tied_;          ///< positions in constraint rows
+  bool fixed_constraints_ = false;
+};
+
+}  // namespace samara::analysis

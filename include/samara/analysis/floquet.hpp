@@ -1,0 +1,26 @@
+// The Floquet modes of a linearized periodic system (docs/theory.md, section 5).
+#pragma once
+
+#include "samara/analysis/mode.hpp"
+#include "samara/analysis/observer.hpp"
+#include "samara/analysis/options.hpp"
+#include "samara/analysis/periodic_solution.hpp"
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::analysis {
+
+struct Floquet {
+  ModeSet set;
+  int steps = 0;             ///< a revolution, as used
+  int sectors = 1;           ///< Q: integrated over T / Q
+  double step = 0.0;         ///< dt [s]
+};
+
+/// Integrates about `solution`, finds and identifies all modes. `system` is a serial copy on every
+/// rank of `comm`; the columns are dealt over the ranks, and the modes too. The mode shapes are
+/// on rank 0 of `comm` only.
+/// @throws InputError where the system has no period, ConvergenceError from the solvers
+Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                           const FloquetOptions& options, MPI_Comm comm, Observer& observer);
+
+}  // namespace samara::analysis

@@ -1,0 +1,19 @@
+// Harmonic balance by alternating frequency and time (docs/theory.md, section 4).
+#pragma once
+
+#include "samara/analysis/trim.hpp"
+
+namespace samara::analysis {
+
+/// Solves with exactly `harmonics` harmonics, from `start` where it is not null (its harmonics
+/// may be fewer). Options prefix `trim_`.
+/// @throws ConvergenceError
+Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
+                            const PeriodicSolution* start);
+
+/// The largest balance row of the residual of `solution`, in the middle between the samples of
+/// harmonic balance (`shift` 0.5) or at them (0). The constant `loads` hold neutral coordinates.
+double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                        const std::vector<HeldCoordinate>& loads, double shift);
+
+}  // namespace samara::analysis

@@ -1,0 +1,61 @@
+// What the analyses need of linear algebra: a scaled direct solver for many right-hand sides, the
+// dense product and the dense eigenproblem.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "samara/petsc/handle.hpp"
+
+namespace samara::analysis {
+
+/// Row and column factors that bring the largest entry of every row and column near one.
+struct Equilibration {
+  petsc::Handle<Vec> rows;
+  petsc::Handle<Vec> columns;
+};
+
+Equilibration equilibrate(Mat matrix);
+
+/// LU with fixed scaling. The scaling of the first matrix serves all later ones of its pattern.
+class DirectSolver {
+ public:
+  /// `prefix` of the KSP's options, e.g. "floquet_". `order_as_given`: the unknowns are numbered
+  /// so that elimination in their order fills in little.
+  DirectSolver(std::string prefix, bool order_as_given);
+
+  /// Factors `matrix`, which is scaled in place.
+  void factor(Mat matrix);
+
+  /// Solves for all columns of `right`, which is overwritten by the solution.
+  /// @throws ConvergenceError where the residual of a probing column is not small.
+  void solve(Eigen::MatrixXd& right);
+
+ private:
+  std::string prefix_;
+  bool order_as_given_;
+  petsc::Handle<KSP> solver_;
+  Equilibration scaling_;
+  Mat matrix_ = nullptr;
+  Eigen::Index probe_ = 0;
+};
+
+/// A B by BLAS.
+Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// The rows of a PETSc matrix on one rank as an Eigen sparse matrix.
+Eigen::SparseMatrix<double> to_sparse(Mat matrix);
+
+/// Eigenvalues and right eigenvectors (columns, 2-norm 1) of a dense real matrix by SLEPc.
+struct Eigenpairs {
+  std::vector<std::complex<double>> values;
+  Eigen::MatrixXcd vectors;
+  std::vector<double> residuals;  ///< |A v - lambda v| / |v|
+};
+
+Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& prefix);
+
+}  // namespace samara::analysis

@@ -1,0 +1,43 @@
+// A mode of a linearized system, identified (docs/theory.md, section 5).
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <string>
+#include <vector>
+
+namespace samara::analysis {
+
+/// Share of a mode's mean kinetic energy in a part.
+struct PartShare {
+  std::string part;
+  double share = 0.0;
+};
+
+struct Mode {
+  std::complex<double> multiplier;  ///< over the full period; 0 where the analysis has no period
+  std::complex<double> exponent;    ///< lambda + i k Omega with the dominant k [rad/s], Im >= 0
+  int harmonic = 0;                 ///< k, relative to the principal exponent
+  double damping_ratio = 0.0;       ///< -Re / |lambda|; 0 where |lambda| counts as zero
+  std::string label;
+  bool resolved = true;             ///< omega dt / 2 <= 0.7 and the residual is small
+  double residual = 0.0;            ///< |z(T) - mu z(0)| / |z(0)| of the mode, or of the eigenpair
+  std::vector<PartShare> parts;     ///< descending
+};
+
+struct ModeSet {
+  std::vector<Mode> modes;          ///< by identified frequency
+  int degrees_of_freedom = 0;
+  double rotor_speed = 0.0;         ///< Omega [rad/s]
+  /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
+  Eigen::MatrixXd participation;
+  int first_harmonic = 0;
+  /// Periodic mode shapes: per mode, size x samples, at `shape_times` [s].
+  std::vector<Eigen::MatrixXcd> shapes;
+  std::vector<double> shape_times;
+};
+
+/// Below this, relative to the rotor speed or 1 rad/s, an exponent counts as zero.
+inline constexpr double zero_exponent = 1e-6;
+
+}  // namespace samara::analysis

@@ -1,0 +1,40 @@
+// The periodic steady state of r(t, z, z_dot) = 0 (docs/theory.md, section 4; eq. (15)).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/analysis/observer.hpp"
+#include "samara/analysis/options.hpp"
+#include "samara/analysis/periodic_solution.hpp"
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::analysis {
+
+/// A coordinate that nothing restores: its mean was set to zero.
+struct HeldCoordinate {
+  std::string name;
+  std::string unit;
+  double load = 0.0;  ///< constant load that holds the mean; not small: no equilibrium there
+};
+
+struct Trim {
+  PeriodicSolution solution;
+  TrimMethod method = TrimMethod::harmonic_balance;
+  int newton_steps = 0;
+  std::string convergence;         ///< PETSc's reason in words
+  double residual = 0.0;           ///< largest balance row at the samples [N, N m]
+  double residual_between = 0.0;   ///< largest balance row between the samples [N, N m]
+  double load_level = 0.0;         ///< largest internal load of the solution [N, N m]
+  std::vector<HeldCoordinate> held;
+  /// Harmonics tried and the residual between the samples that each left (more than one: auto).
+  std::vector<std::pair<int, double>> history;
+};
+
+/// Solves for the periodic steady state from the undeformed system in its prescribed motion.
+/// Serial: every rank computes the same.
+/// @throws ConvergenceError with PETSc's reason and a hint.
+Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
+               Observer& observer);
+
+}  // namespace samara::analysis

@@ -1,0 +1,26 @@
+// Reads a case file (YAML, docs/case_file.md) into the turbine and the options of the analyses.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/analysis/options.hpp"
+#include "samara/model/definition.hpp"
+
+namespace samara::io {
+
+struct Case {
+  std::string path;
+  std::string text;  ///< the file as read, with what --set changed stated in comment lines on top
+  std::vector<std::string> settings;  ///< the --set arguments, as given
+  model::TurbineDefinition turbine;
+  analysis::TrimOptions trim;
+  analysis::FloquetOptions floquet;
+};
+
+/// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys before
+/// validation (`blades.elements=8`, `blades.sections.0.mass=10`).
+/// @throws InputError with every error found, one a line, `path:line:column: where: what`.
+Case read_case(const std::string& path, const std::vector<std::string>& settings);
+
+}  // namespace samara::io

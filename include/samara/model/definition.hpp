@@ -1,0 +1,109 @@
+// The turbine as its user states it: plain data, SI and radians, before any discretization.
+// Axes and signs are those of docs/case_file.md.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "samara/math/types.hpp"
+
+namespace samara::model {
+
+/// Properties of a beam section. Strain order: axial, shear2, shear3, torsion, bend2, bend3.
+struct SectionDefinition {
+  double at = 0.0;                          ///< fraction of the beam length, 0 (root) to 1 (tip)
+  Matrix6 stiffness = Matrix6::Zero();      ///< S of (4) [N, N m, N m^2]; rigid rows, columns are 0
+  std::array<bool, 6> rigid{};              ///< strain components that cannot strain
+  Matrix6 mass = Matrix6::Zero();           ///< I6 of (3) about the reference line [kg/m, kg, kg m]
+  double twist = 0.0;                       ///< structural twist [rad], about -b1 (toward feather)
+};
+
+struct BeamDefinition {
+  double length = 0.0;                      ///< arc length [m], > 0
+  std::vector<Vector3> reference_line;      ///< points in axes a [m]; empty = straight along b1
+  int elements = 4;                         ///< >= 1, evenly spaced in arc length
+  int order = 1;                            ///< Gauss points an element, 1 to 6
+  std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
+  Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component
+  double tip_mass = 0.0;                    ///< [kg], >= 0
+};
+
+enum class JointKind { free, locked };
+
+struct JointDefinition {
+  JointKind kind = JointKind::locked;
+  double stiffness = 0.0;  ///< [N m/rad]
+  double damping = 0.0;    ///< [N m s/rad]
+};
+
+struct NacelleDefinition {
+  double mass = 0.0;                         ///< [kg]
+  Vector3 center_of_mass = Vector3::Zero();  ///< from the tower top, nacelle axes y1 y2 y3 [m]
+  Vector3 inertia = Vector3::Zero();         ///< about its own centre, y1 y2 y3 [kg m^2]
+  JointDefinition yaw;
+};
+
+struct ShaftDefinition {
+  double speed = 0.0;           ///< Omega0 >= 0 [rad/s], about +s2
+  double overhang = 0.0;        ///< yaw axis to teeter pin or apex, along s2 [m]
+  double tilt = 0.0;            ///< > 0 raises the downwind end [rad]
+  double height = 0.0;          ///< tower top to shaft axis along y3 [m]
+  double azimuth = 0.0;         ///< of blade 1 at t = 0 [rad]
+  double mass = 0.0;            ///< [kg]
+  double center_of_mass = 0.0;  ///< along s2 from the yaw axis [m]
+  double inertia_axial = 0.0;   ///< [kg m^2]
+  double inertia_lateral = 0.0; ///< [kg m^2]
+};
+
+struct HubDefinition {
+  double mass = 0.0;                  ///< [kg]
+  double center_of_mass = 0.0;        ///< along s2 from the teeter pin [m]
+  Vector3 inertia = Vector3::Zero();  ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
+  double radius = 0.0;                ///< shaft axis to blade root [m]
+  JointDefinition teeter;             ///< locked = rigid hub
+  double undersling = 0.0;            ///< along s2 from teeter pin to rotor apex [m]
+};
+
+/// What differs on one blade.
+struct BladeDifference {
+  double pitch = 0.0;             ///< added to the pitch of all blades [rad]
+  double mass_factor = 1.0;       ///< times the section masses, > 0
+  double stiffness_factor = 1.0;  ///< times the section stiffnesses, > 0
+};
+
+struct BladesDefinition {
+  int count = 1;
+  double precone = 0.0;  ///< > 0 moves the tips toward +s2 [rad]
+  double pitch = 0.0;    ///< > 0 toward feather [rad]
+  BeamDefinition beam;
+  std::map<int, BladeDifference> each;  ///< by blade number from 1
+};
+
+struct TurbineDefinition {
+  std::string title;
+  double gravity = 9.80665;  ///< along -n3 [m/s^2]
+  bool has_tower = false;
+  bool has_nacelle = false;
+  BeamDefinition tower;
+  NacelleDefinition nacelle;
+  ShaftDefinition shaft;
+  HubDefinition hub;
+  BladesDefinition blades;
+};
+
+/// Interpolates the section at `fraction` (0 to 1) of the length: stiffness, mass and twist are
+/// linear between stations, constant outside the first and the last.
+SectionDefinition interpolate_section(const BeamDefinition& beam, double fraction);
+
+/// Returns what is wrong with a section, or an empty string: stiffness not symmetric, not finite or
+/// not positive definite on its elastic strains; mass not symmetric, not finite or not positive
+/// semi-definite, no mass per length, or a massless direction that an elastic strain can move.
+std::string find_section_fault(const SectionDefinition& section);
+
+/// Arc length [m] of the natural cubic spline through the points of a reference line, its parameter
+/// the chord length. 0 for fewer than two points, nan where two neighbours coincide.
+double compute_arc_length(const std::vector<Vector3>& reference_line);
+
+}  // namespace samara::model

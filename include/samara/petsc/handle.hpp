@@ -1,0 +1,93 @@
+// Owners of PETSc and SLEPc objects, and the check of their calls. The only place that destroys.
+#pragma once
+
+#include <petscksp.h>
+#include <petscmat.h>
+#include <petscsnes.h>
+#include <petscvec.h>
+#include <slepceps.h>
+
+#include <source_location>
+#include <type_traits>
+#include <utility>
+
+namespace samara::petsc {
+
+/// Throws an InternalError with place and PETSc's words where `code` is not zero.
+void check(PetscErrorCode code,
+           const std::source_location& where = std::source_location::current());
+
+/// Sole owner of a PETSc object (Vec, Mat, KSP, SNES, EPS, IS); moves, never copies.
+template <class Object>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(Object object) : object_(object) {}
+  Handle(Handle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { destroy(); }
+
+  Object get() const { return object_; }
+  explicit operator bool() const { return object_ != nullptr; }
+
+  /// For PETSc's create calls: destroys what is held and gives the place to fill.
+  Object* fill() {
+    destroy();
+    return &object_;
+  }
+
+ private:
+  void destroy() noexcept {
+    if (object_ == nullptr) return;
+    if constexpr (std::is_same_v<Object, Vec>) VecDestroy(&object_);
+    if constexpr (std::is_same_v<Object, Mat>) MatDestroy(&object_);
+    if constexpr (std::is_same_v<Object, KSP>) KSPDestroy(&object_);
+    if constexpr (std::is_same_v<Object, SNES>) SNESDestroy(&object_);
+    if constexpr (std::is_same_v<Object, EPS>) EPSDestroy(&object_);
+    if constexpr (std::is_same_v<Object, IS>) ISDestroy(&object_);
+    if constexpr (std::is_same_v<Object, VecScatter>) VecScatterDestroy(&object_);
+    object_ = nullptr;
+  }
+
+  Object object_ = nullptr;
+};
+
+/// A new sequential or distributed vector of zeros.
+Handle<Vec> make_vector(MPI_Comm comm, PetscInt local_size, PetscInt size);
+
+/// Read access to a vector's local values for the length of a scope.
+class ReadView {
+ public:
+  explicit ReadView(Vec vector) : vector_(vector) { check(VecGetArrayRead(vector_, &values_)); }
+  ~ReadView() { VecRestoreArrayRead(vector_, &values_); }
+  ReadView(const ReadView&) = delete;
+  ReadView& operator=(const ReadView&) = delete;
+  const PetscScalar* data() const { return values_; }
+  PetscScalar operator[](PetscInt i) const { return values_[i]; }
+
+ private:
+  Vec vector_;
+  const PetscScalar* values_ = nullptr;
+};
+
+/// Write access to a vector's local values for the length of a scope.
+class WriteView {
+ public:
+  explicit WriteView(Vec vector) : vector_(vector) { check(VecGetArray(vector_, &values_)); }
+  ~WriteView() { VecRestoreArray(vector_, &values_); }
+  WriteView(const WriteView&) = delete;
+  WriteView& operator=(const WriteView&) = delete;
+  PetscScalar* data() const { return values_; }
+  PetscScalar& operator[](PetscInt i) const { return values_[i]; }
+
+ private:
+  Vec vector_;
+  PetscScalar* values_ = nullptr;
+};
+
+}  // namespace samara::petsc

@@ -1,0 +1,105 @@
+// The line between turbines and analyses: one implicit periodic system r(t, z, z_dot) = 0 with
+// separate tangents K = dr/dz and M = dr/dz_dot (docs/theory.md, section 4; Lee, Hodges & Patil
+// (2002), eq. (10)-(12), (17)).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/petsc/handle.hpp"
+
+namespace samara::system {
+
+/// What an unknown is in the mechanics of the system.
+enum class UnknownRole {
+  position,  ///< displacement, rotation, joint coordinate
+  velocity,  ///< velocity, generalized speed
+  internal,  ///< force, moment, reaction
+};
+
+/// What a row says.
+enum class RowRole {
+  constraint,  ///< position level, without rates: strain, curvature, a locked joint
+  kinematic,   ///< velocity = rate of position
+  balance,     ///< force and moment
+};
+
+enum class Frame { fixed, rotating };
+
+struct Unknown {
+  std::string name;  ///< "blade 1 point 3 theta2"
+  std::string unit;
+  UnknownRole role = UnknownRole::position;
+};
+
+/// Unknowns that belong together, with their share of an energy: e = z_i^T weight z_i / 2.
+struct EnergyGroup {
+  enum class Kind { kinetic, strain };
+  Kind kind = Kind::kinetic;
+  std::string part;   ///< "tower", "nacelle", "hub", "blade"
+  std::string motion; ///< "fore-aft", "side-side", "torsion", "flap", "lead-lag", "yaw", ...
+  int blade = 0;      ///< from 1; 0 = no blade
+  Frame frame = Frame::fixed;
+  std::vector<PetscInt> unknowns;
+  std::vector<double> weight;  ///< row by row, unknowns x unknowns, symmetric
+};
+
+/// A coordinate whose mean nothing restores, and the row of the load that would hold it.
+struct NeutralCoordinate {
+  std::string name;  ///< "yaw"
+  PetscInt unknown = 0;
+  PetscInt row = 0;
+  std::string unit;  ///< of the load: "N m"
+};
+
+/// z~(t) = P z(t + T/Q): entry i of P z is sign[i] z[source[i]] (docs/theory.md, section 5).
+struct RotorSymmetry {
+  int sectors = 1;  ///< Q
+  std::vector<PetscInt> source;
+  std::vector<double> sign;
+};
+
+class PeriodicSystem {
+ public:
+  PeriodicSystem() = default;
+  PeriodicSystem(const PeriodicSystem&) = delete;
+  PeriodicSystem& operator=(const PeriodicSystem&) = delete;
+  virtual ~PeriodicSystem() = default;
+
+  virtual MPI_Comm comm() const = 0;
+  virtual PetscInt size() const = 0;
+
+  /// T [s]; 0 where nothing depends on time.
+  virtual double period() const = 0;
+
+  virtual const std::vector<Unknown>& unknowns() const = 0;
+  virtual const std::vector<RowRole>& rows() const = 0;
+
+  /// True where an unknown's rate appears in the residual: x of (11); false: y of (12).
+  virtual const std::vector<bool>& differential() const = 0;
+
+  /// True where the constraint rows do not depend on t other than through z.
+  virtual bool constraints_are_autonomous() const = 0;
+
+  virtual const RotorSymmetry& symmetry() const = 0;
+  virtual const std::vector<EnergyGroup>& energy_groups() const = 0;
+  virtual const std::vector<NeutralCoordinate>& neutral_coordinates() const = 0;
+
+  /// The start of every trim: the undeformed system in its prescribed motion.
+  virtual void reference_state(double t, Vec z) const = 0;
+
+  virtual petsc::Handle<Vec> make_state() const = 0;
+  /// Preallocated for K + shift M.
+  virtual petsc::Handle<Mat> make_jacobian() const = 0;
+  /// Preallocated for M alone.
+  virtual petsc::Handle<Mat> make_mass() const = 0;
+
+  /// r(t, z, z_dot). @throws DomainError where a rotation is out of range.
+  virtual void residual(double t, Vec z, Vec z_dot, Vec r) const = 0;
+
+  /// K + shift M into `jacobian`, and M into `mass` where it is not null.
+  virtual void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,
+                        Mat mass) const = 0;
+};
+
+}  // namespace samara::system

@@ -1,0 +1,48 @@
+// The turbine as a periodic system: assembles beams and rigid bodies into Vec and Mat.
+//
+// Rows, block by block. A Gauss point's block has the strain and curvature balance of the node
+// before it, its own kinematic rows and the force and moment balance of the node behind it; a beam
+// end has the strain and curvature of the last node, its kinematic rows and what its load must be
+// (Kane's rows at the tower top); the root reactions have the force and moment of the first node.
+#pragma once
+
+#include <memory>
+
+#include "samara/model/layout.hpp"
+#include "samara/model/turbine.hpp"
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::system {
+
+class TurbineSystem final : public PeriodicSystem {
+ public:
+  /// Assembles on any communicator: each rank holds a copy of the turbine and writes its own rows.
+  TurbineSystem(const model::Turbine& turbine, MPI_Comm comm);
+  ~TurbineSystem() override;
+
+  const model::Turbine& turbine() const;
+  const model::Layout& layout() const;
+
+  MPI_Comm comm() const override;
+  PetscInt size() const override;
+  double period() const override;
+  const std::vector<Unknown>& unknowns() const override;
+  const std::vector<RowRole>& rows() const override;
+  const std::vector<bool>& differential() const override;
+  bool constraints_are_autonomous() const override { return true; }
+  const RotorSymmetry& symmetry() const override;
+  const std::vector<EnergyGroup>& energy_groups() const override;
+  const std::vector<NeutralCoordinate>& neutral_coordinates() const override;
+  void reference_state(double t, Vec z) const override;
+  petsc::Handle<Vec> make_state() const override;
+  petsc::Handle<Mat> make_jacobian() const override;
+  petsc::Handle<Mat> make_mass() const override;
+  void residual(double t, Vec z, Vec z_dot, Vec r) const override;
+  void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian, Mat mass) const override;
+
+ private:
+  class Assembly;
+  std::unique_ptr<Assembly> assembly_;
+};
+
+}  // namespace samara::system

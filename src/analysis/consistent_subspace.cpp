@@ -1,0 +1,154 @@
+#include "samara/analysis/consistent_subspace.hpp"
+
+#include <Eigen/SparseLU>
+#include <string>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/base/error.hpp"
+
+namespace samara::analysis {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+struct Tangents {
+  Sparse K, M;
+};
+
+Tangents tangents_at(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                     double t) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Mat> jacobian = system.make_jacobian();
+  const petsc::Handle<Mat> mass = system.make_mass();
+  solution.evaluate(t, z.get(), z_dot.get());
+  system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+  return {to_sparse(jacobian.get()), to_sparse(mass.get())};
+}
+
+/// Picks rows and columns of a sparse matrix.
+Sparse part(const Sparse& whole, const std::vector<PetscInt>& rows,
+            const std::vector<PetscInt>& columns) {
+  std::vector<int> place(static_cast<std::size_t>(whole.rows()), -1);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    for (Sparse::InnerIterator it(whole, columns[j]); it; ++it)
+      if (place[static_cast<std::size_t>(it.row())] >= 0)
+        entries.emplace_back(place[static_cast<std::size_t>(it.row())], static_cast<int>(j),
+                             it.value());
+  Sparse picked(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+  picked.setFromTriplets(entries.begin(), entries.end());
+  return picked;
+}
+
+Eigen::MatrixXd solve(const Sparse& matrix, const Eigen::MatrixXd& right, const char* what) {
+  if (matrix.rows() == 0) return right;
+  Eigen::SparseLU<Sparse> lu;
+  lu.compute(matrix);
+  if (lu.info() != Eigen::Success)
+    throw InternalError(std::string("the ") + what + " do not determine the state");
+  return lu.solve(right);
+}
+
+}  // namespace
+
+ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
+                                       const PeriodicSolution& solution)
+    : system_(system), solution_(solution) {
+  const auto n = static_cast<std::size_t>(system.size());
+  const Tangents at_start = tangents_at(system, solution, 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    if (system.rows()[i] == system::RowRole::constraint)
+      constraints_.push_back(static_cast<PetscInt>(i));
+  carried_ = system.differential();
+  std::vector<PetscInt> free;
+  for (std::size_t j = 0; j < n; ++j) {
+    double largest = 0.0;
+    for (Sparse::InnerIterator it(at_start.K, static_cast<Eigen::Index>(j)); it; ++it)
+      if (system.rows()[static_cast<std::size_t>(it.row())] == system::RowRole::constraint)
+        largest = std::max(largest, std::abs(it.value()));
+    const auto column = static_cast<PetscInt>(j);
+    const system::UnknownRole role = system.unknowns()[j].role;
+    if (largest > 0.0 && role == system::UnknownRole::position) tied_.push_back(column);
+    if (largest == 0.0 && role == system::UnknownRole::position) free.push_back(column);
+    if (largest > 0.0 && role == system::UnknownRole::internal) {
+      coordinates_.push_back(column);
+      scale_.push_back(1.0 / largest);
+      carried_[j] = true;
+    }
+  }
+  for (const PetscInt column : free) {
+    coordinates_.push_back(column);
+    scale_.push_back(1.0);
+  }
+  if (tied_.size() != constraints_.size())
+    throw InternalError(std::to_string(constraints_.size()) + " constraints for " +
+                        std::to_string(tied_.size()) + " positions");
+  for (const PetscInt column : tied_) carried_[static_cast<std::size_t>(column)] = true;
+  fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
+}
+
+Eigen::MatrixXd ConsistentSubspace::coordinates_of(const Eigen::MatrixXd& z) const {
+  Eigen::MatrixXd eta(degrees_of_freedom(), z.cols());
+  for (std::size_t i = 0; i < coordinates_.size(); ++i)
+    eta.row(static_cast<Eigen::Index>(i)) = z.row(coordinates_[i]) / scale_[i];
+  return eta;
+}
+
+Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
+  const Tangents tangents = tangents_at(system_, solution_, t);
+  const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(system_.size(), d);
+  for (Eigen::Index i = 0; i < d; ++i)
+    z(coordinates_[static_cast<std::size_t>(i)], i) = scale_[static_cast<std::size_t>(i)];
+  const Eigen::MatrixXd strained = part(tangents.K, constraints_, coordinates_) *
+                                   Eigen::Map<const Eigen::VectorXd>(scale_.data(), d).asDiagonal();
+  const Eigen::MatrixXd tied =
+      solve(part(tangents.K, constraints_, tied_), -strained, "constraints");
+  for (std::size_t i = 0; i < tied_.size(); ++i)
+    z.row(tied_[i]) = tied.row(static_cast<Eigen::Index>(i));
+  return z;
+}
+
+Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
+  const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
+  const Eigen::Index n = system_.size();
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(n, 2 * d);
+  Eigen::MatrixXd z_dot = Eigen::MatrixXd::Zero(n, 2 * d);
+  const Eigen::MatrixXd Z = positions(t);
+  z.leftCols(d) = Z;
+  z_dot.rightCols(d) = Z;
+  if (!fixed_constraints_)
+    z_dot.leftCols(d) = (positions(t + rate_step) - positions(t - rate_step)) / (2.0 * rate_step);
+
+  std::vector<PetscInt> kinematic;
+  std::vector<PetscInt> velocities;
+  std::vector<PetscInt> position_unknowns;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+    const auto at = static_cast<PetscInt>(i);
+    if (system_.rows()[i] == system::RowRole::kinematic) kinematic.push_back(at);
+    if (system_.unknowns()[i].role == system::UnknownRole::velocity) velocities.push_back(at);
+    if (system_.unknowns()[i].role == system::UnknownRole::position)
+      position_unknowns.push_back(at);
+  }
+  if (kinematic.size() != velocities.size())
+    throw InternalError("kinematic rows and velocities differ in number");
+  const Tangents tangents = tangents_at(system_, solution_, t);
+  Eigen::MatrixXd p(static_cast<Eigen::Index>(position_unknowns.size()), 2 * d);
+  Eigen::MatrixXd p_dot(p.rows(), 2 * d);
+  for (std::size_t i = 0; i < position_unknowns.size(); ++i) {
+    p.row(static_cast<Eigen::Index>(i)) = z.row(position_unknowns[i]);
+    p_dot.row(static_cast<Eigen::Index>(i)) = z_dot.row(position_unknowns[i]);
+  }
+  const Eigen::MatrixXd right = part(tangents.K, kinematic, position_unknowns) * p +
+                                part(tangents.M, kinematic, position_unknowns) * p_dot;
+  const Eigen::MatrixXd v =
+      solve(part(tangents.K, kinematic, velocities), -right, "kinematic rows");
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    z.row(velocities[i]) = v.row(static_cast<Eigen::Index>(i));
+  return z;
+}
+
+}  // namespace samara::analysis

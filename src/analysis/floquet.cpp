@@ -1,0 +1,398 @@
+#include "samara/analysis/floquet.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "samara/analysis/consistent_subspace.hpp"
+#include "samara/analysis/identification.hpp"
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/monodromy.hpp"
+#include "samara/base/error.hpp"
+
+namespace samara::analysis {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Half the phase of a step beyond which a mode counts as unresolved.
+constexpr double largest_half_phase = 0.7;
+constexpr double largest_residual = 1e-6;
+/// Instants of the mode shapes a revolution, at the most.
+constexpr int shape_samples = 36;
+
+struct Ranks {
+  explicit Ranks(MPI_Comm communicator) : comm(communicator) {
+    MPI_Comm_rank(comm, &rank);
+    MPI_Comm_size(comm, &size);
+  }
+  MPI_Comm comm;
+  int rank = 0;
+  int size = 1;
+
+  void sum(double* values, std::size_t count) const {
+    if (size > 1)
+      MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm);
+  }
+  void sum_on(int target, Eigen::MatrixXd& values) const {
+    if (size == 1) return;
+    for (Eigen::Index j = 0; j < values.cols(); ++j)  // a column stays below MPI's count limit
+      MPI_Reduce(rank == target ? MPI_IN_PLACE : values.col(j).data(), values.col(j).data(),
+                 static_cast<int>(values.rows()), MPI_DOUBLE, MPI_SUM, target, comm);
+  }
+};
+
+class Analysis {
+ public:
+  Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution, int sectors,
+           int steps, const Ranks& ranks, Observer& observer)
+      : system_(system),
+        solution_(solution),
+        ranks_(ranks),
+        observer_(observer),
+        subspace_(system, solution),
+        kinetic_(kinetic_unknowns(system)),
+        energy_(system, kinetic_),
+        sectors_(sectors),
+        steps_(steps),
+        span_(steps / sectors),
+        dt_(system.period() / steps),
+        speed_(2.0 * std::numbers::pi / system.period()),
+        states_(2 * subspace_.degrees_of_freedom()),
+        stride_(std::max(1, (steps + shape_samples - 1) / shape_samples)) {}
+
+  Floquet run() {
+    integrate();
+    solve_eigenproblem();
+    identify();
+    collect_shapes();
+    return finish();
+  }
+
+ private:
+  // ---- the map over a sector -------------------------------------------------------------------
+
+  void integrate() {
+    const Eigen::Index d = subspace_.degrees_of_freedom();
+    Eigen::MatrixXd start = subspace_.basis(0.0, 0.5 * dt_);
+    start.rightCols(d) *= speed_;  // a rate of one per radian of rotor azimuth
+    for (Eigen::Index j = ranks_.rank; j < states_; j += ranks_.size) own_.push_back(j);
+    Eigen::MatrixXd z(start.rows(), static_cast<Eigen::Index>(own_.size()));
+    for (std::size_t j = 0; j < own_.size(); ++j)
+      z.col(static_cast<Eigen::Index>(j)) = start.col(own_[j]);
+    const auto nk = static_cast<Eigen::Index>(kinetic_.size());
+    history_.resize(nk * (span_ + 1), z.cols());
+    const Eigen::Index shapes = (span_ + stride_ - 1) / stride_;
+    shapes_.resize(z.rows() * shapes, z.cols());
+    first_.setZero(states_, states_);
+    last_.setZero(states_, states_);
+    StepPropagator propagator(system_, solution_, subspace_.carried(), dt_);
+    put_coordinates(z, first_, 0);
+    for (long k = 0; k <= span_; ++k) {
+      const Eigen::MatrixXd middle = propagator.advance(k, z);
+      for (Eigen::Index i = 0; i < nk; ++i)
+        history_.row(k * nk + i) = middle.row(kinetic_[static_cast<std::size_t>(i)]);
+      if (k < span_ && k % stride_ == 0)
+        shapes_.middleRows(k / stride_ * z.rows(), z.rows()) = middle;
+      if (k == 0) put_coordinates(z, first_, d);
+      if (k == span_ - 1) put_coordinates(z, last_, 0);
+      observer_.progress("floquet", k + 1, span_ + 1);
+    }
+    put_coordinates(z, last_, d);
+    ranks_.sum(first_.data(), static_cast<std::size_t>(first_.size()));
+    ranks_.sum(last_.data(), static_cast<std::size_t>(last_.size()));
+  }
+
+  void put_coordinates(const Eigen::MatrixXd& z, Eigen::MatrixXd& target, Eigen::Index row) const {
+    const Eigen::MatrixXd eta = subspace_.coordinates_of(z);
+    for (std::size_t j = 0; j < own_.size(); ++j)
+      target.block(row, own_[j], eta.rows(), 1) = eta.col(static_cast<Eigen::Index>(j));
+  }
+
+  /// P on eta: the coordinates are unknowns, and P renames and signs unknowns.
+  Eigen::MatrixXd turned(const Eigen::MatrixXd& pairs) const {
+    if (sectors_ == 1) return pairs;
+    const system::RotorSymmetry& symmetry = system_.symmetry();
+    const std::vector<PetscInt>& coordinates = subspace_.coordinates();
+    const auto d = static_cast<Eigen::Index>(coordinates.size());
+    Eigen::MatrixXd result(pairs.rows(), pairs.cols());
+    for (Eigen::Index i = 0; i < d; ++i) {
+      const auto unknown = static_cast<std::size_t>(coordinates[static_cast<std::size_t>(i)]);
+      const auto source =
+          std::find(coordinates.begin(), coordinates.end(), symmetry.source[unknown]) -
+          coordinates.begin();
+      result.row(i) = symmetry.sign[unknown] * pairs.row(source);
+      result.row(d + i) = symmetry.sign[unknown] * pairs.row(d + source);
+    }
+    return result;
+  }
+
+  /// Two consecutive states are a state and its rate, without ever asking for velocities: the
+  /// mean and the difference, in rotor angle, of eta.
+  Eigen::MatrixXd mean_and_rate(const Eigen::MatrixXd& pairs) const {
+    const Eigen::Index d = pairs.rows() / 2;
+    Eigen::MatrixXd result(pairs.rows(), pairs.cols());
+    result.topRows(d) = 0.5 * (pairs.topRows(d) + pairs.bottomRows(d));
+    result.bottomRows(d) = (pairs.bottomRows(d) - pairs.topRows(d)) / (dt_ * speed_);
+    return result;
+  }
+
+  void solve_eigenproblem() {
+    const Eigen::PartialPivLU<Eigen::MatrixXd> first(mean_and_rate(first_));
+    const Eigen::MatrixXd map = first.solve(mean_and_rate(turned(last_)));
+    const Eigenpairs pairs = dense_eigenpairs(map, "floquet_");
+    for (std::size_t i = 0; i < pairs.values.size(); ++i) {
+      if (pairs.values[i].imag() < 0.0) continue;  // its conjugate stands for it
+      multipliers_.push_back(pairs.values[i]);
+      vectors_.conservativeResize(states_, vectors_.cols() + 1);
+      vectors_.col(vectors_.cols() - 1) = pairs.vectors.col(static_cast<Eigen::Index>(i));
+    }
+    if (ranks_.size > 1) {  // one rank decides
+      int count = static_cast<int>(multipliers_.size());
+      MPI_Bcast(&count, 1, MPI_INT, 0, ranks_.comm);
+      multipliers_.resize(static_cast<std::size_t>(count));
+      vectors_.conservativeResize(states_, count);
+      MPI_Bcast(multipliers_.data(), 2 * count, MPI_DOUBLE, 0, ranks_.comm);
+      MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0,
+                ranks_.comm);
+    }
+    modes_.resize(multipliers_.size());
+    for (std::size_t i = 0; i < modes_.size(); ++i) {
+      const Complex principal = std::log(multipliers_[i]) * static_cast<double>(sectors_) /
+                                system_.period();
+      exponents_.push_back(principal);
+      modes_[i].multiplier = std::pow(multipliers_[i], sectors_);
+    }
+  }
+
+  // ---- identification --------------------------------------------------------------------------
+
+  /// Values of the given modes in rows of `data` (columns: own initial states), on rank `target`.
+  Eigen::MatrixXcd combine(const Eigen::MatrixXd& data, const std::vector<Eigen::Index>& modes,
+                           int target) const {
+    const auto count = static_cast<Eigen::Index>(modes.size());
+    Eigen::MatrixXd weights(static_cast<Eigen::Index>(own_.size()), 2 * count);
+    for (Eigen::Index m = 0; m < count; ++m)
+      for (std::size_t j = 0; j < own_.size(); ++j) {
+        const Complex value = vectors_(own_[j], modes[static_cast<std::size_t>(m)]);
+        weights(static_cast<Eigen::Index>(j), m) = value.real();
+        weights(static_cast<Eigen::Index>(j), count + m) = value.imag();
+      }
+    Eigen::MatrixXd values = multiply(data, weights);
+    ranks_.sum_on(target, values);
+    Eigen::MatrixXcd result;
+    if (ranks_.rank != target) return result;
+    result.resize(data.rows(), count);
+    result.real() = values.leftCols(count);
+    result.imag() = values.rightCols(count);
+    return result;
+  }
+
+  void identify() {
+    const auto count = static_cast<Eigen::Index>(modes_.size());
+    participation_.setZero(count, steps_);
+    part_shares_.setZero(static_cast<Eigen::Index>(energy_.part_names().size()), count);
+    Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(count);
+    Eigen::VectorXd residuals = Eigen::VectorXd::Zero(count);
+    for (int target = 0; target < ranks_.size; ++target) {
+      std::vector<Eigen::Index> modes;
+      for (Eigen::Index m = target; m < count; m += ranks_.size) modes.push_back(m);
+      const Eigen::MatrixXcd values = combine(history_, modes, target);
+      if (ranks_.rank != target) continue;
+      for (std::size_t m = 0; m < modes.size(); ++m) {
+        const auto at = static_cast<std::size_t>(modes[m]);
+        const auto nk = static_cast<Eigen::Index>(kinetic_.size());
+        const Eigen::Map<const Eigen::MatrixXcd> history(
+            values.col(static_cast<Eigen::Index>(m)).data(), nk, span_ + 1);
+        Mode mode;
+        Eigen::VectorXd participation;
+        energy_.identify(whole_period(history, exponents_[at], kinetic_, 1, span_), mode,
+                         participation);
+        harmonics(modes[m]) = mode.harmonic;
+        residuals(modes[m]) = closure(history, multipliers_[at]);
+        participation_.row(modes[m]) = participation;
+        for (std::size_t p = 0; p < mode.parts.size(); ++p)
+          part_shares_(static_cast<Eigen::Index>(p), modes[m]) = mode.parts[p].share;
+      }
+    }
+    ranks_.sum(harmonics.data(), static_cast<std::size_t>(count));
+    ranks_.sum(residuals.data(), static_cast<std::size_t>(count));
+    ranks_.sum(participation_.data(), static_cast<std::size_t>(participation_.size()));
+    ranks_.sum(part_shares_.data(), static_cast<std::size_t>(part_shares_.size()));
+    for (std::size_t m = 0; m < modes_.size(); ++m) {
+      modes_[m].harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
+      modes_[m].residual = residuals(static_cast<Eigen::Index>(m));
+    }
+  }
+
+  /// P^-1 on chosen unknowns: (P y)_i = sign_i y_source(i).
+  Eigen::MatrixXcd turned_back(const Eigen::MatrixXcd& values,
+                               const std::vector<PetscInt>& unknowns) const {
+    const system::RotorSymmetry& symmetry = system_.symmetry();
+    Eigen::MatrixXcd result(values.rows(), values.cols());
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      const auto unknown = static_cast<std::size_t>(unknowns[i]);
+      const auto source = std::lower_bound(unknowns.begin(), unknowns.end(),
+                                           symmetry.source[unknown]) -
+                          unknowns.begin();
+      result.row(source) = symmetry.sign[unknown] * values.row(static_cast<Eigen::Index>(i));
+    }
+    return result;
+  }
+
+  /// Z(t) exp(-lambda t) over the whole period from its first sector, where z(t + T/Q) =
+  /// mu P^-1 z(t) and exp(-lambda T/Q) mu = 1. Every `stride`-th step of `columns`.
+  Eigen::MatrixXcd whole_period(const Eigen::Ref<const Eigen::MatrixXcd>& sector, Complex exponent,
+                                const std::vector<PetscInt>& unknowns, long stride,
+                                Eigen::Index columns) const {
+    Eigen::MatrixXcd part(sector.rows(), columns);
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const double t = (static_cast<double>(k * stride) + 0.5) * dt_;
+      part.col(k) = sector.col(k) * std::exp(-exponent * t);
+    }
+    if (sectors_ == 1) return part;
+    Eigen::MatrixXcd whole(sector.rows(), columns * sectors_);
+    for (int q = 0; q < sectors_; ++q) {
+      whole.middleCols(q * columns, columns) = part;
+      if (q + 1 < sectors_) part = turned_back(part, unknowns);
+    }
+    return whole;
+  }
+
+  /// |P z(T/Q) - mu z(0)| / |z(0)| in the velocities at the first middle of a step.
+  double closure(const Eigen::Ref<const Eigen::MatrixXcd>& history, Complex multiplier) const {
+    const Eigen::MatrixXcd begin = history.col(0);
+    Eigen::MatrixXcd expected = multiplier * begin;
+    if (sectors_ > 1) expected = turned_back(expected, kinetic_);
+    const double size = begin.norm();
+    return size > 0.0 ? (history.col(span_) - expected).norm() / size : 0.0;
+  }
+
+  void collect_shapes() {
+    std::vector<Eigen::Index> modes(modes_.size());
+    std::iota(modes.begin(), modes.end(), 0);
+    const Eigen::MatrixXcd values = combine(shapes_, modes, 0);
+    if (ranks_.rank != 0) return;
+    std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
+    std::iota(all.begin(), all.end(), 0);
+    const Eigen::Index n = system_.size();
+    const Eigen::Index columns = shapes_.rows() / n;
+    for (std::size_t m = 0; m < modes_.size(); ++m) {
+      const Eigen::Map<const Eigen::MatrixXcd> sector(
+          values.col(static_cast<Eigen::Index>(m)).data(), n, columns);
+      mode_shapes_.push_back(whole_period(sector, exponents_[m], all, stride_, columns));
+    }
+  }
+
+  // ---- the result ------------------------------------------------------------------------------
+
+  /// Moves the dominant harmonic into the exponent and chooses the conjugate with Im >= 0.
+  void settle(std::size_t m) {
+    Mode& mode = modes_[m];
+    Complex exponent = exponents_[m];
+    exponent += Complex(0.0, mode.harmonic * speed_);
+    if (exponent.imag() < -zero_exponent * speed_) {
+      exponent = std::conj(exponent);
+      mode.harmonic = -mode.harmonic;
+      mode.multiplier = std::conj(mode.multiplier);
+      const auto row = static_cast<Eigen::Index>(m);
+      const Eigen::RowVectorXd shares = participation_.row(row);
+      const Eigen::Index half = steps_ / 2;
+      for (Eigen::Index i = 0; i < steps_; ++i) {
+        const Eigen::Index mirrored = half - (i - half);
+        participation_(row, i) = mirrored >= 0 && mirrored < steps_ ? shares(mirrored) : 0.0;
+      }
+      if (!mode_shapes_.empty()) mode_shapes_[m] = mode_shapes_[m].conjugate().eval();
+    }
+    mode.exponent = exponent;
+    const double size = std::abs(exponent);
+    mode.damping_ratio = size > zero_exponent * speed_ ? -exponent.real() / size : 0.0;
+    const double half_phase = 0.5 * std::abs(exponent.imag()) * dt_;
+    const bool fine = half_phase < 0.5 * std::numbers::pi &&
+                      std::tan(half_phase) <= largest_half_phase;
+    mode.resolved = fine && mode.residual <= largest_residual;
+    for (std::size_t p = 0; p < energy_.part_names().size(); ++p)
+      mode.parts.push_back({energy_.part_names()[p], part_shares_(static_cast<Eigen::Index>(p),
+                                                                  static_cast<Eigen::Index>(m))});
+    std::stable_sort(mode.parts.begin(), mode.parts.end(),
+                     [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
+  }
+
+  Floquet finish() {
+    for (std::size_t m = 0; m < modes_.size(); ++m) settle(m);
+    std::vector<std::size_t> order(modes_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+      return modes_[a].exponent.imag() < modes_[b].exponent.imag();
+    });
+    Floquet result;
+    result.steps = steps_;
+    result.sectors = sectors_;
+    result.step = dt_;
+    result.set.degrees_of_freedom = subspace_.degrees_of_freedom();
+    result.set.rotor_speed = speed_;
+    result.set.first_harmonic = -steps_ / 2;
+    result.set.participation.resize(participation_.rows(), participation_.cols());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      result.set.modes.push_back(modes_[order[i]]);
+      result.set.participation.row(static_cast<Eigen::Index>(i)) =
+          participation_.row(static_cast<Eigen::Index>(order[i]));
+      if (!mode_shapes_.empty())
+        result.set.shapes.push_back(std::move(mode_shapes_[order[i]]));
+    }
+    const Eigen::Index columns = shapes_.rows() / system_.size();
+    for (int q = 0; q < sectors_; ++q)
+      for (Eigen::Index k = 0; k < columns; ++k)
+        result.set.shape_times.push_back(
+            (static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
+    if (!result.set.shapes.empty()) label_modes(system_, result.set);
+    return result;
+  }
+
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  Ranks ranks_;
+  Observer& observer_;
+  ConsistentSubspace subspace_;
+  std::vector<PetscInt> kinetic_;
+  HarmonicEnergy energy_;
+  int sectors_;
+  int steps_;
+  long span_;
+  double dt_;
+  double speed_;
+  Eigen::Index states_;
+  long stride_;
+  std::vector<Eigen::Index> own_;     ///< initial states of this rank
+  Eigen::MatrixXd history_;           ///< kinetic unknowns, step after step, x own states
+  Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th step x own states
+  Eigen::MatrixXd first_, last_;      ///< eta at the first two and the last two instants
+  std::vector<Complex> multipliers_;  ///< of the sector
+  std::vector<Complex> exponents_;    ///< principal
+  Eigen::MatrixXcd vectors_;
+  std::vector<Mode> modes_;
+  Eigen::MatrixXd participation_;
+  Eigen::MatrixXd part_shares_;
+  std::vector<Eigen::MatrixXcd> mode_shapes_;
+};
+
+}  // namespace
+
+Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                           const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
+  if (system.period() == 0.0)
+    throw InputError("floquet: the rotor stands still; hint: use samara modes");
+  const int repeats = system.symmetry().sectors;
+  if (options.period == FloquetPeriod::blade && repeats < 2)
+    throw InputError("floquet.period: blade needs two or more identical blades; hint: auto");
+  const int sectors = options.period == FloquetPeriod::full ? 1 : repeats;
+  const int steps = (options.steps + sectors - 1) / sectors * sectors;
+  if (steps != options.steps)
+    observer.note("floquet: " + std::to_string(steps) + " steps a revolution, a multiple of the " +
+                  std::to_string(sectors) + " blades");
+  return Analysis(system, solution, sectors, steps, Ranks(comm), observer).run();
+}
+
+}  // namespace samara::analysis

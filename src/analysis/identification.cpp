@@ -1,0 +1,206 @@
+#include "samara/analysis/identification.hpp"
+
+#include <unsupported/Eigen/FFT>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace samara::analysis {
+namespace {
+
+using system::EnergyGroup;
+
+/// Energies closer than this, relative, are a tie.
+constexpr double tie = 1e-6;
+
+/// Share of the energy that must be strain for a mode to be called elastic.
+constexpr double elastic_share = 0.15;
+
+/// Correlation of two blades beyond which they move alike or opposite.
+constexpr double clear_correlation = 0.8;
+
+Eigen::MatrixXd weight_of(const EnergyGroup& group) {
+  const auto n = static_cast<Eigen::Index>(group.unknowns.size());
+  return Eigen::Map<const Eigen::MatrixXd>(group.weight.data(), n, n);
+}
+
+double mean_energy(const EnergyGroup& group, const Eigen::MatrixXcd& shape) {
+  const Eigen::MatrixXd weight = weight_of(group);
+  double energy = 0.0;
+  for (Eigen::Index a = 0; a < weight.rows(); ++a)
+    for (Eigen::Index b = 0; b < weight.cols(); ++b) {
+      if (weight(a, b) == 0.0) continue;
+      const auto row = group.unknowns[static_cast<std::size_t>(a)];
+      const auto column = group.unknowns[static_cast<std::size_t>(b)];
+      energy += 0.5 * weight(a, b) * std::real(shape.row(row).dot(shape.row(column)));
+    }
+  return energy;
+}
+
+/// Correlation of the strains of one motion in blades 1 and 2: 1 alike, -1 opposite.
+double blade_correlation(const std::vector<EnergyGroup>& groups, const std::string& motion,
+                         const Eigen::MatrixXcd& shape) {
+  std::vector<const EnergyGroup*> first;
+  std::vector<const EnergyGroup*> second;
+  for (const EnergyGroup& group : groups) {
+    if (group.kind != EnergyGroup::Kind::strain || group.motion != motion) continue;
+    if (group.blade == 1) first.push_back(&group);
+    if (group.blade == 2) second.push_back(&group);
+  }
+  double both = 0.0;
+  double one = 0.0;
+  double other = 0.0;
+  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
+    const Eigen::RowVectorXcd a = shape.row(first[i]->unknowns[0]);
+    const Eigen::RowVectorXcd b = shape.row(second[i]->unknowns[0]);
+    both += first[i]->weight[0] * std::real(a.dot(b));
+    one += first[i]->weight[0] * a.squaredNorm();
+    other += first[i]->weight[0] * b.squaredNorm();
+  }
+  const double size = std::sqrt(one * other);
+  return size > 0.0 ? both / size : 0.0;
+}
+
+/// The joint that turns most: the free position of the largest mean square.
+std::string moving_joint(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
+  std::string name;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < system.rows().size(); ++i) {
+    const system::Unknown& unknown = system.unknowns()[i];
+    const bool joint = unknown.name.ends_with(" angle");
+    const double size = shape.row(static_cast<Eigen::Index>(i)).squaredNorm();
+    if (!joint || size <= largest) continue;
+    largest = size;
+    name = unknown.name.substr(0, unknown.name.size() - std::string(" angle").size());
+  }
+  return name;
+}
+
+std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
+  std::map<std::string, double> strain;
+  double kinetic = 0.0;
+  int blades = 0;
+  for (const EnergyGroup& group : system.energy_groups()) {
+    blades = std::max(blades, group.blade);
+    const double energy = mean_energy(group, shape);
+    if (group.kind == EnergyGroup::Kind::kinetic)
+      kinetic += energy;
+    else
+      strain[group.part + "/" + group.motion] += energy;
+  }
+  double strained = 0.0;
+  std::string largest;
+  for (const auto& [name, energy] : strain) {
+    strained += energy;
+    if (largest.empty() || energy > strain[largest]) largest = name;
+  }
+  const std::string joint = moving_joint(system, shape);
+  if (strained < elastic_share * (strained + kinetic) && !joint.empty()) return joint;
+  if (largest.empty()) return joint.empty() ? "mode" : joint;
+  const std::string part = largest.substr(0, largest.find('/'));
+  const std::string motion = largest.substr(largest.find('/') + 1);
+  if (part == "joint") return motion;
+  if (part != "blade" || blades != 2) return part + " " + motion;
+  const double alike = blade_correlation(system.energy_groups(), motion, shape);
+  if (alike > clear_correlation) return "blade " + motion + " symmetric";
+  if (alike < -clear_correlation) return "blade " + motion + " antisymmetric";
+  return "blade " + motion;
+}
+
+}  // namespace
+
+std::vector<PetscInt> kinetic_unknowns(const system::PeriodicSystem& system) {
+  std::vector<PetscInt> unknowns;
+  for (const EnergyGroup& group : system.energy_groups())
+    if (group.kind == EnergyGroup::Kind::kinetic)
+      unknowns.insert(unknowns.end(), group.unknowns.begin(), group.unknowns.end());
+  std::sort(unknowns.begin(), unknowns.end());
+  unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
+  return unknowns;
+}
+
+HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system,
+                               const std::vector<PetscInt>& unknowns) {
+  for (const EnergyGroup& group : system.energy_groups()) {
+    if (group.kind != EnergyGroup::Kind::kinetic) continue;
+    auto found = std::find(parts_.begin(), parts_.end(), group.part);
+    if (found == parts_.end()) found = parts_.insert(parts_.end(), group.part);
+    Group own;
+    own.part = static_cast<std::size_t>(found - parts_.begin());
+    own.weight = weight_of(group);
+    for (const PetscInt unknown : group.unknowns)
+      own.rows.push_back(std::lower_bound(unknowns.begin(), unknowns.end(), unknown) -
+                         unknowns.begin());
+    groups_.push_back(own);
+  }
+}
+
+void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
+                              Eigen::VectorXd& participation) const {
+  const Eigen::Index samples = history.cols();
+  Eigen::FFT<double> transform;
+  const Eigen::MatrixXcd by_time = history.transpose();
+  Eigen::MatrixXcd spectrum(samples, history.rows());
+  Eigen::VectorXcd column(samples);
+  for (Eigen::Index i = 0; i < history.rows(); ++i) {
+    const Eigen::VectorXcd signal = by_time.col(i);
+    transform.fwd(column, signal);
+    spectrum.col(i) = column / static_cast<double>(samples);
+  }
+  Eigen::MatrixXd energy =
+      Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(parts_.size()));
+  for (const Group& group : groups_) {
+    const auto part = static_cast<Eigen::Index>(group.part);
+    for (Eigen::Index a = 0; a < group.weight.rows(); ++a)
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        const double weight = group.weight(a, b) * (a == b ? 0.5 : 1.0);
+        if (weight == 0.0) continue;
+        const auto row = group.rows[static_cast<std::size_t>(a)];
+        const auto other = group.rows[static_cast<std::size_t>(b)];
+        energy.col(part) += weight * (spectrum.col(row).real().cwiseProduct(spectrum.col(other).real()) +
+                                      spectrum.col(row).imag().cwiseProduct(spectrum.col(other).imag()));
+      }
+  }
+  const double total = energy.sum();
+  const Eigen::Index half = samples / 2;
+  const auto place = [samples](Eigen::Index k) { return k >= 0 ? k : k + samples; };
+  participation.resize(samples);
+  for (Eigen::Index i = 0; i < samples; ++i)
+    participation(i) = total > 0.0 ? energy.row(place(i - half)).sum() / total : 0.0;
+  mode.parts.clear();
+  Eigen::Index dominant = 0;
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const auto column_index = static_cast<Eigen::Index>(p);
+    mode.parts.push_back({parts_[p], total > 0.0 ? energy.col(column_index).sum() / total : 0.0});
+    if (energy.col(column_index).sum() > energy.col(dominant).sum()) dominant = column_index;
+  }
+  mode.harmonic = 0;
+  if (parts_.empty() || !(total > 0.0)) return;
+  double best = 0.0;
+  for (Eigen::Index k = -half; k < samples - half; ++k)
+    best = std::max(best, energy(place(k), dominant));
+  // Among ties the smallest k >= 0, else the largest negative one.
+  Eigen::Index chosen = samples;
+  for (Eigen::Index k = 0; k < samples - half && chosen == samples; ++k)
+    if (energy(place(k), dominant) >= best * (1.0 - tie)) chosen = k;
+  for (Eigen::Index k = -1; k >= -half && chosen == samples; --k)
+    if (energy(place(k), dominant) >= best * (1.0 - tie)) chosen = k;
+  mode.harmonic = static_cast<int>(chosen);
+}
+
+void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
+  std::map<std::string, int> count;
+  std::vector<std::string> stems;
+  for (const Eigen::MatrixXcd& shape : set.shapes) stems.push_back(stem_of(system, shape));
+  for (const std::string& stem : stems) ++count[stem];
+  std::map<std::string, int> number;
+  for (std::size_t i = 0; i < set.modes.size(); ++i) {
+    const std::string& stem = stems[i];
+    set.modes[i].label =
+        count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
+  }
+}
+
+}  // namespace samara::analysis

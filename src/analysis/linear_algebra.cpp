@@ -1,0 +1,191 @@
+#include "samara/analysis/linear_algebra.hpp"
+
+#include <petscblaslapack.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "samara/base/error.hpp"
+
+namespace samara::analysis {
+namespace {
+
+constexpr double largest_solve_residual = 1e-8;
+
+void multiply_by_inverse_root(Vec factors, const std::vector<double>& largest) {
+  const petsc::WriteView view(factors);
+  for (std::size_t i = 0; i < largest.size(); ++i)
+    if (largest[i] > 0.0) view[static_cast<PetscInt>(i)] /= std::sqrt(largest[i]);
+}
+
+}  // namespace
+
+Equilibration equilibrate(Mat matrix) {
+  Equilibration scaling;
+  petsc::check(MatCreateVecs(matrix, scaling.columns.fill(), scaling.rows.fill()));
+  petsc::check(VecSet(scaling.rows.get(), 1.0));
+  petsc::check(VecSet(scaling.columns.get(), 1.0));
+  Eigen::SparseMatrix<double> work = to_sparse(matrix);
+  constexpr int sweeps = 6;  // Ruiz (2001): halves the logarithm of the spread each time
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    std::vector<double> row_largest(static_cast<std::size_t>(work.rows()), 0.0);
+    std::vector<double> column_largest(static_cast<std::size_t>(work.cols()), 0.0);
+    for (Eigen::Index j = 0; j < work.outerSize(); ++j) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(work, j); it; ++it) {
+        double& row = row_largest[static_cast<std::size_t>(it.row())];
+        double& column = column_largest[static_cast<std::size_t>(j)];
+        row = std::max(row, std::abs(it.value()));
+        column = std::max(column, std::abs(it.value()));
+      }
+    }
+    for (Eigen::Index j = 0; j < work.outerSize(); ++j)
+      for (Eigen::SparseMatrix<double>::InnerIterator it(work, j); it; ++it)
+        it.valueRef() /= std::sqrt(row_largest[static_cast<std::size_t>(it.row())] *
+                                   column_largest[static_cast<std::size_t>(j)]);
+    multiply_by_inverse_root(scaling.rows.get(), row_largest);
+    multiply_by_inverse_root(scaling.columns.get(), column_largest);
+  }
+  return scaling;
+}
+
+DirectSolver::DirectSolver(std::string prefix, bool order_as_given)
+    : prefix_(std::move(prefix)), order_as_given_(order_as_given) {}
+
+void DirectSolver::factor(Mat matrix) {
+  if (!solver_) {
+    scaling_ = equilibrate(matrix);
+    petsc::check(KSPCreate(PETSC_COMM_SELF, solver_.fill()));
+    petsc::check(KSPSetOptionsPrefix(solver_.get(), prefix_.c_str()));
+    petsc::check(KSPSetType(solver_.get(), KSPPREONLY));
+    PC preconditioner = nullptr;
+    petsc::check(KSPGetPC(solver_.get(), &preconditioner));
+    petsc::check(PCSetType(preconditioner, PCLU));
+    if (order_as_given_)
+      petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
+    petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
+    petsc::check(KSPSetFromOptions(solver_.get()));
+  }
+  petsc::check(MatDiagonalScale(matrix, scaling_.rows.get(), scaling_.columns.get()));
+  petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
+  petsc::check(KSPSetUp(solver_.get()));
+  matrix_ = matrix;
+}
+
+void DirectSolver::solve(Eigen::MatrixXd& right) {
+  if (right.cols() == 0) return;
+  const petsc::ReadView rows(scaling_.rows.get());
+  const petsc::ReadView columns(scaling_.columns.get());
+  const Eigen::Map<const Eigen::VectorXd> row_factors(rows.data(), right.rows());
+  const Eigen::Map<const Eigen::VectorXd> column_factors(columns.data(), right.rows());
+  right.array().colwise() *= row_factors.array();
+  Eigen::MatrixXd solution(right.rows(), right.cols());
+  petsc::Handle<Mat> B;
+  petsc::Handle<Mat> X;
+  const auto n = static_cast<PetscInt>(right.rows());
+  const auto m = static_cast<PetscInt>(right.cols());
+  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, m, right.data(), B.fill()));
+  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, m, solution.data(), X.fill()));
+  petsc::check(KSPMatSolve(solver_.get(), B.get(), X.get()));
+  // One column after the other is probed, a new one each time.
+  probe_ = (probe_ + 1) % right.cols();
+  Eigen::VectorXd probe = solution.col(probe_);
+  Eigen::VectorXd product(right.rows());
+  petsc::Handle<Vec> x;
+  petsc::Handle<Vec> y;
+  petsc::check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, probe.data(), x.fill()));
+  petsc::check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, product.data(), y.fill()));
+  petsc::check(MatMult(matrix_, x.get(), y.get()));
+  const double size = right.col(probe_).norm();
+  const double residual = (product - right.col(probe_)).norm();
+  if (!(residual <= largest_solve_residual * (size + probe.norm() * 1e-6))) {
+    std::ostringstream text;
+    text << "linear solve (" << prefix_ << "): residual " << residual << " for a right-hand side of "
+         << size << " and a solution of " << probe.norm() << "; hint: -" << prefix_ << "pc_factor_mat_solver_type mumps";
+    throw ConvergenceError(text.str());
+  }
+  right = solution.array().colwise() * column_factors.array();
+}
+
+Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd c(a.rows(), b.cols());
+  if (c.size() == 0) return c;
+  const auto m = static_cast<PetscBLASInt>(a.rows());
+  const auto n = static_cast<PetscBLASInt>(b.cols());
+  const auto k = static_cast<PetscBLASInt>(a.cols());
+  const PetscScalar one = 1.0;
+  const PetscScalar zero = 0.0;
+  if (k == 0) return Eigen::MatrixXd::Zero(a.rows(), b.cols());
+  BLASgemm_("N", "N", &m, &n, &k, &one, a.data(), &m, b.data(), &k, &zero, c.data(), &m);
+  return c;
+}
+
+Eigen::SparseMatrix<double> to_sparse(Mat matrix) {
+  PetscInt rows = 0;
+  PetscInt columns = 0;
+  petsc::check(MatGetSize(matrix, &rows, &columns));
+  std::vector<Eigen::Triplet<double>> entries;
+  for (PetscInt i = 0; i < rows; ++i) {
+    PetscInt count = 0;
+    const PetscInt* at = nullptr;
+    const PetscScalar* values = nullptr;
+    petsc::check(MatGetRow(matrix, i, &count, &at, &values));
+    for (PetscInt c = 0; c < count; ++c)
+      if (values[c] != 0.0) entries.emplace_back(i, at[c], values[c]);
+    petsc::check(MatRestoreRow(matrix, i, &count, &at, &values));
+  }
+  Eigen::SparseMatrix<double> sparse(rows, columns);
+  sparse.setFromTriplets(entries.begin(), entries.end());
+  return sparse;
+}
+
+Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& prefix) {
+  const auto n = static_cast<PetscInt>(matrix.rows());
+  Eigenpairs pairs;
+  pairs.vectors.resize(n, n);
+  if (n == 0) return pairs;
+  Eigen::MatrixXd copy = matrix;
+  petsc::Handle<Mat> dense;
+  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, copy.data(), dense.fill()));
+  petsc::Handle<EPS> solver;
+  petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
+  petsc::check(EPSSetOptionsPrefix(solver.get(), prefix.c_str()));
+  petsc::check(EPSSetOperators(solver.get(), dense.get(), nullptr));
+  petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
+  petsc::check(EPSSetType(solver.get(), EPSLAPACK));
+  petsc::check(EPSSetDimensions(solver.get(), n, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc::check(EPSSetFromOptions(solver.get()));
+  petsc::check(EPSSolve(solver.get()));
+  PetscInt converged = 0;
+  petsc::check(EPSGetConverged(solver.get(), &converged));
+  if (converged < n) {
+    EPSConvergedReason reason = EPS_CONVERGED_ITERATING;
+    petsc::check(EPSGetConvergedReason(solver.get(), &reason));
+    throw ConvergenceError("eigenproblem (" + prefix + "): " + std::to_string(converged) + " of " +
+                           std::to_string(n) + " eigenvalues converged (" +
+                           EPSConvergedReasons[reason] + "); hint: -" + prefix + "eps_type lapack");
+  }
+  const petsc::Handle<Vec> re = petsc::make_vector(PETSC_COMM_SELF, n, n);
+  const petsc::Handle<Vec> im = petsc::make_vector(PETSC_COMM_SELF, n, n);
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscScalar value_re = 0.0;
+    PetscScalar value_im = 0.0;
+    petsc::check(EPSGetEigenpair(solver.get(), i, &value_re, &value_im, re.get(), im.get()));
+    pairs.values.emplace_back(value_re, value_im);
+    const petsc::ReadView a(re.get());
+    const petsc::ReadView b(im.get());
+    for (PetscInt j = 0; j < n; ++j)
+      pairs.vectors(j, i) = std::complex<double>(a[j], value_im == 0.0 ? 0.0 : b[j]);
+  }
+  const Eigen::MatrixXd product_re = multiply(matrix, pairs.vectors.real());
+  const Eigen::MatrixXd product_im = multiply(matrix, pairs.vectors.imag());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::complex<double> value = pairs.values[static_cast<std::size_t>(i)];
+    Eigen::VectorXcd defect = -value * pairs.vectors.col(i);
+    defect.real() += product_re.col(i);
+    defect.imag() += product_im.col(i);
+    pairs.residuals.push_back(defect.norm() / pairs.vectors.col(i).norm());
+  }
+  return pairs;
+}
+
+}  // namespace samara::analysis

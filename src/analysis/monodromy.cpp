@@ -1,0 +1,80 @@
+#include "samara/analysis/monodromy.hpp"
+
+#include <utility>
+
+namespace samara::analysis {
+
+StepPropagator::StepPropagator(const system::PeriodicSystem& system,
+                               const PeriodicSolution& solution, std::vector<bool> carried,
+                               double step)
+    : system_(system),
+      solution_(solution),
+      carried_(std::move(carried)),
+      step_(step),
+      fixed_constraints_(solution.is_constant() && system.constraints_are_autonomous()),
+      z_(system.make_state()),
+      z_dot_(system.make_state()),
+      jacobian_(system.make_jacobian()),
+      mass_(system.make_mass()),
+      solver_("floquet_", true) {
+  if (!fixed_constraints_) end_jacobian_ = system.make_jacobian();
+}
+
+void StepPropagator::replace_constraints(long k) {
+  const double t = static_cast<double>(k + 1) * step_;
+  solution_.evaluate(t, z_.get(), z_dot_.get());
+  system_.tangents(t, z_.get(), z_dot_.get(), 0.0, end_jacobian_.get(), nullptr);
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<PetscInt> row_columns;
+  std::vector<PetscScalar> row_values;
+  for (PetscInt i = 0; i < system_.size(); ++i) {
+    if (system_.rows()[static_cast<std::size_t>(i)] != system::RowRole::constraint) continue;
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    petsc::check(MatGetRow(end_jacobian_.get(), i, &count, &columns, &values));
+    row_columns.assign(columns, columns + count);
+    row_values.assign(values, values + count);
+    petsc::check(MatRestoreRow(end_jacobian_.get(), i, &count, &columns, &values));
+    for (std::size_t c = 0; c < row_columns.size(); ++c)
+      if (row_values[c] != 0.0) entries.emplace_back(i, row_columns[c], row_values[c]);
+    petsc::check(MatSetValues(jacobian_.get(), 1, &i, static_cast<PetscInt>(row_columns.size()),
+                              row_columns.data(), row_values.data(), INSERT_VALUES));
+  }
+  petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
+  petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
+  constraint_rows_.resize(system_.size(), system_.size());
+  constraint_rows_.setFromTriplets(entries.begin(), entries.end());
+}
+
+Eigen::MatrixXd StepPropagator::advance(long k, Eigen::MatrixXd& z) {
+  const double t = (static_cast<double>(k) + 0.5) * step_;
+  const double shift = 2.0 / step_;
+  solution_.evaluate(t, z_.get(), z_dot_.get());
+  system_.tangents(t, z_.get(), z_dot_.get(), shift, jacobian_.get(), mass_.get());
+  if (!fixed_constraints_) replace_constraints(k);
+  solver_.factor(jacobian_.get());
+
+  // With z_f = 2 z_m - z_i: (2/dt M + K) z_m = 2/dt M z_i, and D_f z_m = D_f z_i / 2.
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(z.rows(), z.cols());
+  for (PetscInt i = 0; i < system_.size(); ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    petsc::check(MatGetRow(mass_.get(), i, &count, &columns, &values));
+    for (PetscInt c = 0; c < count; ++c)
+      if (values[c] != 0.0) middle.row(i) += (shift * values[c]) * z.row(columns[c]);
+    petsc::check(MatRestoreRow(mass_.get(), i, &count, &columns, &values));
+  }
+  if (!fixed_constraints_) middle += 0.5 * (constraint_rows_ * z);
+  solver_.solve(middle);
+  for (Eigen::Index i = 0; i < z.rows(); ++i) {
+    if (carried_[static_cast<std::size_t>(i)])
+      z.row(i) = 2.0 * middle.row(i) - z.row(i);
+    else
+      z.row(i).setZero();
+  }
+  return middle;
+}
+
+}  // namespace samara::analysis

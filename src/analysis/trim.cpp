@@ -1,0 +1,62 @@
+#include "samara/analysis/trim.hpp"
+
+#include <sstream>
+
+#include "samara/analysis/harmonic_balance.hpp"
+#include "samara/base/error.hpp"
+
+namespace samara::analysis {
+namespace {
+
+constexpr int most_harmonics = 60;
+
+/// Relative to the largest internal load: below it a constant is the solution.
+constexpr double rounding = 1e-11;
+
+double allowed_residual(const Trim& trim, double relative) {
+  return relative * std::max(trim.load_level, 1.0);
+}
+
+/// With Q identical blades the tower sees multiples of Q. Leaving out the multiple next above H
+/// while the blades keep H leaves its load unbalanced: H + 1 must not be a multiple of Q.
+bool is_closed(int harmonics, int sectors) {
+  return sectors < 2 || (harmonics + 1) % sectors != 0;
+}
+
+Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& options,
+                     Trim constant, Observer& observer) {
+  std::vector<std::pair<int, double>> history = constant.history;
+  for (int harmonics = 1; harmonics <= most_harmonics; ++harmonics) {
+    if (!is_closed(harmonics, system.symmetry().sectors)) continue;
+    Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, nullptr);
+    history.emplace_back(harmonics, trim.residual_between);
+    trim.history = history;
+    std::ostringstream text;
+    text << "trim: " << harmonics << " harmonics, residual between the samples "
+         << trim.residual_between;
+    observer.note(text.str());
+    if (trim.residual_between <= allowed_residual(trim, options.auto_tolerance)) return trim;
+  }
+  throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(most_harmonics) +
+                         " and the residual between the samples is still too large; hint: give "
+                         "trim.harmonics or a larger trim.auto_tolerance");
+}
+
+}  // namespace
+
+Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
+               Observer& observer) {
+  // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
+  Trim constant = solve_harmonic_balance(system, 0, options.tolerance, nullptr);
+  const bool exact = constant.residual_between <= allowed_residual(constant, rounding) &&
+                     constant.residual <= allowed_residual(constant, rounding);
+  if (exact || system.period() == 0.0) return constant;
+  if (options.automatic) return raise_harmonics(system, options, std::move(constant), observer);
+  if (!is_closed(options.harmonics, system.symmetry().sectors))
+    observer.note("trim: " + std::to_string(options.harmonics) + " harmonics leave harmonic " +
+                  std::to_string(options.harmonics + 1) +
+                  " of the fixed frame unbalanced; one more or one less is better");
+  return solve_harmonic_balance(system, options.harmonics, options.tolerance, nullptr);
+}
+
+}  // namespace samara::analysis

@@ -1,0 +1,577 @@
+#include "samara/io/case.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <system_error>
+
+#include "samara/base/error.hpp"
+
+#include "yaml_reader.hpp"
+#include "yaml_settings.hpp"
+#include "yaml_tree.hpp"
+
+namespace samara::io {
+namespace {
+
+using model::JointKind;
+
+constexpr int schema_version = 1;
+constexpr std::size_t max_file_size = 16u << 20;
+constexpr int max_elements = 100000;
+constexpr int max_order = 6;
+constexpr int max_blades = 100;
+constexpr int max_harmonics = 200;
+constexpr int min_steps = 4;
+constexpr int max_steps = 10000000;
+
+/// `length` beside `reference_line` must agree to this, relative.
+constexpr double length_tolerance = 1e-3;
+
+constexpr double to_radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+/// Reads an angle key in degrees into radians.
+void read_angle(MapReader& map, std::string_view key, double& angle, const NumberRule& rule) {
+  double degrees = 0.0;
+  if (map.read(key, degrees, rule)) angle = to_radians(degrees);
+}
+
+void read_vector(MapReader& map, std::string_view key, Vector3& vector, const NumberRule& rule) {
+  map.read(key, std::span<double>(vector.data(), 3), rule);
+}
+
+enum class JointWord { free, locked, prescribed };
+
+/// Reads stiffness, damping and the word of a joint. False: no usable word was given.
+bool read_joint(MapReader& map, model::JointDefinition& joint, const YamlNode* word) {
+  map.read("stiffness", joint.stiffness, non_negative);
+  map.read("damping", joint.damping, non_negative);
+  JointWord kind = JointWord::locked;
+  if (!map.read("joint", kind,
+                {{"free", JointWord::free},
+                 {"locked", JointWord::locked},
+                 {"prescribed", JointWord::prescribed}})) {
+    return false;
+  }
+  if (kind == JointWord::prescribed) {
+    map.refuse(*word, "joint", "\"prescribed\" is not available yet; use free or locked");
+    return false;
+  }
+  joint.kind = kind == JointWord::free ? JointKind::free : JointKind::locked;
+  return true;
+}
+
+bool is_rigid(const YamlNode& node) {
+  return node.kind == YamlNode::Kind::scalar && node.text == "rigid";
+}
+
+void read_stiffness_map(const YamlNode& node, const std::string& where,
+                        model::SectionDefinition& section, ErrorList& errors) {
+  constexpr std::array<const char*, 6> keys = {"EA", "GA2", "GA3", "GJ", "EI2", "EI3"};
+  constexpr NumberRule rule{"a number > 0 or rigid", positive.low, positive.high, true};
+  MapReader map(node, where, errors);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const YamlNode* entry = map.require(keys[i], "a number > 0 or rigid");
+    if (entry == nullptr) continue;
+    section.rigid[i] = is_rigid(*entry);
+    const auto k = static_cast<Eigen::Index>(i);
+    if (!section.rigid[i]) {
+      read_number(*entry, map.where(keys[i]), rule, section.stiffness(k, k), errors);
+    }
+  }
+  map.finish();
+}
+
+/// Reads 6 rows of 6; on the diagonal the word `rigid` is accepted where `rigid` is given.
+void read_matrix(const YamlNode& node, const std::string& where, Matrix6& matrix,
+                 std::array<bool, 6>* rigid, ErrorList& errors) {
+  if (node.kind != YamlNode::Kind::list || node.children.size() != 6) {
+    errors.add(node.place, where, "expected a list of 6 rows of 6 numbers, " + describe(node));
+    return;
+  }
+  constexpr NumberRule number_or_rigid{"a finite number or rigid"};
+  const std::size_t errors_before = errors.size();
+  for (std::size_t i = 0; i < 6; ++i) {
+    const YamlNode& row = node.children[i];
+    const std::string row_where = join_path(where, i);
+    if (row.kind != YamlNode::Kind::list || row.children.size() != 6) {
+      errors.add(row.place, row_where, "expected a list of 6 numbers, " + describe(row));
+      continue;
+    }
+    for (std::size_t j = 0; j < 6; ++j) {
+      if (i == j && rigid != nullptr && is_rigid(row.children[j])) {
+        (*rigid)[i] = true;
+        continue;
+      }
+      const NumberRule& rule = i == j && rigid != nullptr ? number_or_rigid : any_number;
+      read_number(row.children[j], join_path(row_where, j), rule,
+                  matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)), errors);
+    }
+  }
+  if (errors.size() > errors_before) matrix.setZero();
+}
+
+/// Takes out what rounding in print left of asymmetry; what is more was refused before.
+Matrix6 symmetrize(const Matrix6& matrix) { return 0.5 * (matrix + matrix.transpose()); }
+
+void read_stiffness(MapReader& map, model::SectionDefinition& section) {
+  const YamlNode* entries = map.find("stiffness");
+  const YamlNode* matrix = map.find("stiffness_matrix");
+  if (entries != nullptr && matrix != nullptr) {
+    map.refuse(*matrix, "stiffness_matrix", "given together with stiffness; leave one of them out");
+  } else if (entries != nullptr) {
+    read_stiffness_map(*entries, map.where("stiffness"), section, map.errors());
+  } else if (matrix != nullptr) {
+    read_matrix(*matrix, map.where("stiffness_matrix"), section.stiffness, &section.rigid,
+                map.errors());
+  } else {
+    map.require("stiffness", "or \"stiffness_matrix\"");
+  }
+}
+
+/// I6 of a section with its mass centre at c = (0, c2, c3) and its inertia about the reference
+/// line: P = m (V + Omega x c), H = I Omega + m c x V, (3).
+Matrix6 build_section_mass(double mass, const Vector3& inertia, double c2, double c3) {
+  Matrix3 skew_c;
+  skew_c << 0.0, -c3, c2, c3, 0.0, 0.0, -c2, 0.0, 0.0;
+  Matrix6 matrix = Matrix6::Zero();
+  matrix.topLeftCorner<3, 3>() = mass * Matrix3::Identity();
+  matrix.topRightCorner<3, 3>() = -mass * skew_c;
+  matrix.bottomLeftCorner<3, 3>() = mass * skew_c;
+  matrix.bottomRightCorner<3, 3>() = inertia.asDiagonal();
+  return matrix;
+}
+
+void read_mass(MapReader& map, model::SectionDefinition& section) {
+  const YamlNode* matrix = map.find("mass_matrix");
+  double mass = 0.0;
+  Vector3 inertia = Vector3::Zero();
+  std::array<double, 2> center = {0.0, 0.0};
+  if (matrix == nullptr) {
+    map.require("mass", "per length, or \"mass_matrix\"");
+    map.require("inertia", "per length, or \"mass_matrix\"");
+  }
+  map.read("mass", mass, positive);
+  read_vector(map, "inertia", inertia, non_negative);
+  map.read("mass_center", std::span<double>(center), any_number);
+  if (matrix == nullptr) {
+    section.mass = build_section_mass(mass, inertia, center[0], center[1]);
+    return;
+  }
+  for (const char* key : {"mass", "inertia", "mass_center"}) {
+    if (const YamlNode* entry = map.node().find(key)) {
+      map.refuse(*entry, key, "given together with mass_matrix; leave one of them out");
+    }
+  }
+  read_matrix(*matrix, map.where("mass_matrix"), section.mass, nullptr, map.errors());
+}
+
+/// Reads one section. `at` is compulsory where there are several.
+model::SectionDefinition read_section(const YamlNode& node, const std::string& where,
+                                      bool is_single, ErrorList& errors) {
+  const std::size_t errors_before = errors.size();
+  model::SectionDefinition section;
+  MapReader map(node, where, errors);
+  if (!is_single) map.require("at", "the fraction of the length, from 0 to 1");
+  map.read("at", section.at, fraction_of_one);
+  read_mass(map, section);
+  read_stiffness(map, section);
+  read_angle(map, "twist_deg", section.twist, any_number);
+  map.finish();
+  if (errors.size() > errors_before) return section;
+
+  const std::string fault = model::find_section_fault(section);
+  if (!fault.empty()) errors.add(find_blame(node), where, fault);
+  section.stiffness = symmetrize(section.stiffness);
+  section.mass = symmetrize(section.mass);
+  return section;
+}
+
+void read_sections(MapReader& map, std::vector<model::SectionDefinition>& sections) {
+  ErrorList& errors = map.errors();
+  const YamlNode* list = map.require("sections", "a list; one entry is a uniform beam");
+  if (list == nullptr) return;
+  if (list->kind != YamlNode::Kind::list || list->children.empty()) {
+    map.refuse(*list, "sections",
+               "expected a list of sections (each starts with \"- \"), " + describe(*list));
+    return;
+  }
+  for (std::size_t i = 0; i < list->children.size(); ++i) {
+    const YamlNode& node = list->children[i];
+    const std::string where = join_path(map.where("sections"), i);
+    const std::size_t errors_before = errors.size();
+    sections.push_back(read_section(node, where, list->children.size() == 1, errors));
+    if (i == 0 || errors.size() > errors_before) continue;
+
+    const YamlNode* at = node.find("at");
+    if (at != nullptr && !(sections[i].at > sections[i - 1].at)) {
+      errors.add(at->place, join_path(where, "at"),
+                 "expected more than the section before has, " + describe(*at));
+    }
+    if (sections[i].rigid != sections[0].rigid) {
+      errors.add(find_blame(node), where,
+                 "a strain that is rigid in one section must be rigid in all sections of the beam");
+    }
+  }
+}
+
+void read_damping(MapReader& map, Vector6& damping) {
+  const YamlNode* entry = map.find("damping");
+  if (entry == nullptr) return;
+  if (entry->kind == YamlNode::Kind::list) {
+    read_numbers(*entry, map.where("damping"), non_negative, std::span<double>(damping.data(), 6),
+                 map.errors());
+    return;
+  }
+  constexpr NumberRule rule{"a number >= 0 or a list of 6", non_negative.low};
+  double mu = 0.0;
+  if (read_number(*entry, map.where("damping"), rule, mu, map.errors())) damping.setConstant(mu);
+}
+
+/// Reads the points of a reference line as the file states them. False: there is none to use.
+bool read_points(MapReader& map, const YamlNode& node, std::vector<Vector3>& points) {
+  const std::string where = map.where("reference_line");
+  const std::size_t errors_before = map.errors().size();
+  if (node.kind != YamlNode::Kind::list || node.children.size() < 2) {
+    map.refuse(node, "reference_line",
+               "expected a list of at least 2 points of 3 numbers, " + describe(node));
+    return false;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    Vector3 point = Vector3::Zero();
+    const std::string point_where = join_path(where, i);
+    if (read_numbers(node.children[i], point_where, any_number, std::span<double>(point.data(), 3),
+                     map.errors())) {
+      if (i == 0 && !point.isZero(0.0)) {
+        map.errors().add(find_blame(node.children[i]), point_where,
+                         "the first point must be [0, 0, 0], the root of the beam");
+      }
+      if (!points.empty() && point == points.back()) {
+        map.errors().add(find_blame(node.children[i]), point_where,
+                         "the same point as the one before");
+      }
+    }
+    points.push_back(point);
+  }
+  return map.errors().size() == errors_before;
+}
+
+/// Reads `length` or `reference_line`; `to_a` maps the file's components to the beam's axes a.
+void read_length(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam) {
+  const YamlNode* line = map.find("reference_line");
+  if (line == nullptr) map.require("length", "or \"reference_line\"");
+  const bool has_length = map.read("length", beam.length, positive);
+  std::vector<Vector3> points;
+  if (line == nullptr || !read_points(map, *line, points)) return;
+
+  for (const Vector3& point : points) beam.reference_line.emplace_back(to_a * point);
+  const double stated = beam.length;
+  beam.length = model::compute_arc_length(beam.reference_line);
+  if (!std::isfinite(beam.length)) {
+    map.refuse(*line, "reference_line", "the points are too far apart");
+  } else if (has_length && std::abs(stated - beam.length) > length_tolerance * beam.length) {
+    const YamlNode& entry = *map.node().find("length");
+    map.refuse(entry, "length",
+               "the arc length of reference_line is " + std::to_string(beam.length) + ", " +
+                   describe(entry) + "; leave length out");
+  }
+}
+
+/// Reads the keys that the tower and the blades have in common.
+void read_beam(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam) {
+  read_length(map, to_a, beam);
+  map.read("elements", beam.elements, 1, max_elements);
+  map.read("order", beam.order, 1, max_order);
+  read_sections(map, beam.sections);
+  read_damping(map, beam.damping);
+  map.read("tip_mass", beam.tip_mass, non_negative);
+}
+
+void read_tower(const YamlNode& node, model::TurbineDefinition& turbine, ErrorList& errors) {
+  turbine.has_tower = true;
+  // The file states the tower in n1 n2 n3, the beam's axes are a = (n3, n1, n2).
+  Matrix3 to_a;
+  to_a << 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
+  MapReader map(node, "tower", errors);
+  read_beam(map, to_a, turbine.tower);
+  map.finish();
+}
+
+void read_nacelle(const YamlNode& node, model::TurbineDefinition& turbine, ErrorList& errors) {
+  turbine.has_nacelle = true;
+  model::NacelleDefinition& nacelle = turbine.nacelle;
+  MapReader map(node, "nacelle", errors);
+  map.read("mass", nacelle.mass, non_negative);
+  read_vector(map, "center_of_mass", nacelle.center_of_mass, any_number);
+  read_vector(map, "inertia", nacelle.inertia, non_negative);
+  if (const YamlNode* entry = map.find("yaw")) {
+    MapReader yaw(*entry, map.where("yaw"), errors);
+    const YamlNode* word = yaw.require("joint", "free or locked");
+    read_joint(yaw, nacelle.yaw, word);
+    yaw.finish();
+  }
+  map.finish();
+}
+
+void read_speed(MapReader& map, double& speed) {
+  constexpr NumberRule rule = non_negative;
+  const YamlNode* rpm = map.node().find("speed_rpm");
+  double revolutions = 0.0;
+  const bool has_speed = map.read("speed", speed, rule);
+  const bool has_rpm = map.read("speed_rpm", revolutions, rule);
+  if (has_rpm) speed = revolutions * 2.0 * std::numbers::pi / 60.0;
+  if (has_speed && has_rpm) {
+    map.refuse(*rpm, "speed_rpm", "given together with speed; leave one of them out");
+  }
+}
+
+void read_torsion(const YamlNode& node, const std::string& where, ErrorList& errors) {
+  MapReader map(node, where, errors);
+  const YamlNode* word = map.require("joint", "locked");
+  model::JointDefinition torsion;
+  if (read_joint(map, torsion, word) && torsion.kind == JointKind::free) {
+    map.refuse(*word, "joint", "\"free\" is not available yet; use locked");
+  }
+  map.finish();
+}
+
+void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& errors) {
+  MapReader map(node, "shaft", errors);
+  read_speed(map, shaft.speed);
+  map.read("overhang", shaft.overhang, any_number);
+  read_angle(map, "tilt_deg", shaft.tilt, quarter_turn);
+  map.read("height", shaft.height, any_number);
+  read_angle(map, "azimuth_deg", shaft.azimuth, any_number);
+  map.read("mass", shaft.mass, non_negative);
+  map.read("center_of_mass", shaft.center_of_mass, any_number);
+  if (const YamlNode* entry = map.find("inertia")) {
+    MapReader inertia(*entry, map.where("inertia"), errors);
+    inertia.read("axial", shaft.inertia_axial, non_negative);
+    inertia.read("lateral", shaft.inertia_lateral, non_negative);
+    inertia.finish();
+  }
+  if (const YamlNode* entry = map.find("torsion")) {
+    read_torsion(*entry, map.where("torsion"), errors);
+  }
+  map.finish();
+}
+
+void read_teeter(const YamlNode& node, const std::string& where, model::HubDefinition& hub,
+                 ErrorList& errors) {
+  MapReader map(node, where, errors);
+  const YamlNode* word = node.find("joint");
+  if (word == nullptr) hub.teeter.kind = JointKind::free;
+  read_joint(map, hub.teeter, word);
+  map.read("undersling", hub.undersling, any_number);
+  double delta3 = 0.0;
+  if (map.read("delta3_deg", delta3, half_turn) && delta3 != 0.0) {
+    const YamlNode& entry = *node.find("delta3_deg");
+    map.refuse(entry, "delta3_deg", "delta-3 is not available yet; only 0, " + describe(entry));
+  }
+  map.finish();
+}
+
+void read_hub(const YamlNode& node, model::HubDefinition& hub, ErrorList& errors) {
+  MapReader map(node, "hub", errors);
+  map.read("mass", hub.mass, non_negative);
+  map.read("center_of_mass", hub.center_of_mass, any_number);
+  read_vector(map, "inertia", hub.inertia, non_negative);
+  map.read("radius", hub.radius, non_negative);
+  if (const YamlNode* entry = map.find("teeter")) {
+    read_teeter(*entry, map.where("teeter"), hub, errors);
+  }
+  map.finish();
+}
+
+void read_each(const YamlNode& node, const std::string& where, model::BladesDefinition& blades,
+               ErrorList& errors) {
+  MapReader map(node, where, errors);
+  for (int number = 1; number <= blades.count; ++number) {
+    const std::string key = std::to_string(number);
+    const YamlNode* entry = map.find(key);
+    if (entry == nullptr) continue;
+    MapReader blade(*entry, map.where(key), errors);
+    model::BladeDifference& difference = blades.each[number];
+    read_angle(blade, "pitch_deg", difference.pitch, half_turn);
+    blade.read("mass_factor", difference.mass_factor, positive);
+    blade.read("stiffness_factor", difference.stiffness_factor, positive);
+    blade.finish();
+  }
+  if (node.kind != YamlNode::Kind::map) return;
+  for (const YamlNode& entry : node.children) {
+    const bool is_known =
+        std::any_of(blades.each.begin(), blades.each.end(),
+                    [&](const auto& known) { return entry.key == std::to_string(known.first); });
+    if (!is_known) {
+      errors.add(entry.place, where,
+                 "expected a blade number from 1 to " + std::to_string(blades.count) + ", got \"" +
+                     entry.key + "\"");
+    }
+  }
+}
+
+void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorList& errors) {
+  MapReader map(node, "blades", errors);
+  map.read("count", blades.count, 1, max_blades);
+  read_angle(map, "precone_deg", blades.precone, quarter_turn);
+  read_angle(map, "pitch_deg", blades.pitch, half_turn);
+  read_beam(map, Matrix3::Identity(), blades.beam);
+  if (const YamlNode* entry = map.find("each")) {
+    read_each(*entry, map.where("each"), blades, errors);
+  }
+  map.finish();
+}
+
+void read_trim(const YamlNode& node, analysis::TrimOptions& trim, ErrorList& errors) {
+  MapReader map(node, "trim", errors);
+  map.read("method", trim.method,
+           {{"harmonic_balance", analysis::TrimMethod::harmonic_balance},
+            {"shooting", analysis::TrimMethod::shooting}});
+  const YamlNode* harmonics = map.find("harmonics");
+  if (harmonics != nullptr && harmonics->text == "auto") {
+    trim.automatic = true;
+  } else {
+    map.read("harmonics", trim.harmonics, 0, max_harmonics);
+  }
+  map.read("tolerance", trim.tolerance, positive);
+  map.read("steps", trim.steps, min_steps, max_steps);
+  map.finish();
+}
+
+void read_floquet(const YamlNode& node, analysis::FloquetOptions& floquet, ErrorList& errors) {
+  MapReader map(node, "floquet", errors);
+  map.read("steps", floquet.steps, min_steps, max_steps);
+  map.read("period", floquet.period,
+           {{"auto", analysis::FloquetPeriod::automatic},
+            {"full", analysis::FloquetPeriod::full},
+            {"blade", analysis::FloquetPeriod::blade}});
+  int time_order = 2;
+  map.read("time_order", time_order, 1, max_order);
+  if (time_order != 2) {
+    const YamlNode& entry = *map.node().find("time_order");
+    map.refuse(entry, "time_order", "only 2 is available, " + describe(entry));
+  }
+  map.finish();
+}
+
+/// Refuses what only shows in two blocks together.
+void check_teeter(const YamlNode& root, const model::TurbineDefinition& turbine,
+                  ErrorList& errors) {
+  if (turbine.hub.teeter.kind != JointKind::free || turbine.blades.count <= 2) return;
+  const YamlNode& teeter = *root.find("hub")->find("teeter");
+  const YamlNode& count = *root.find("blades")->find("count");
+  const YamlNode* joint = teeter.find("joint");
+  Place place = joint != nullptr ? joint->place : teeter.place;
+  if (place.setting < count.place.setting) place = count.place;
+  errors.add(place, "hub.teeter",
+             "a teeter hinge carries two blades, blades.count is " +
+                 std::to_string(turbine.blades.count) + "; use joint: locked, or leave teeter out");
+}
+
+void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
+  model::TurbineDefinition& turbine = result.turbine;
+  MapReader map(root, "", errors);
+  map.find("samara");
+  if (const YamlNode* title = map.find("title")) {
+    if (title->kind != YamlNode::Kind::scalar) {
+      map.refuse(*title, "title", "expected a text, " + describe(*title));
+    }
+    turbine.title = title->text;
+  }
+  map.read("gravity", turbine.gravity, non_negative);
+  if (const YamlNode* node = map.find("tower")) read_tower(*node, turbine, errors);
+  if (const YamlNode* node = map.find("nacelle")) read_nacelle(*node, turbine, errors);
+  if (const YamlNode* node = map.find("shaft")) read_shaft(*node, turbine.shaft, errors);
+  if (const YamlNode* node = map.find("hub")) read_hub(*node, turbine.hub, errors);
+  if (const YamlNode* node = map.require("blades")) read_blades(*node, turbine.blades, errors);
+  if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
+  if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);
+  map.finish();
+  check_teeter(root, turbine, errors);
+}
+
+/// Adds an error where `samara` is not the version this program reads. False: a newer version, of
+/// which no other error would mean anything.
+bool check_version(const YamlNode& root, ErrorList& errors) {
+  if (root.kind != YamlNode::Kind::map) return true;
+  const YamlNode* version = root.find("samara");
+  const std::string current = std::to_string(schema_version);
+  if (version == nullptr) {
+    errors.add(
+        root.place, "",
+        "missing key \"samara\" (the version of the case file: write `samara: " + current + "`)");
+    return true;
+  }
+  const std::string& text = version->text;
+  const bool is_number = version->kind == YamlNode::Kind::scalar && !version->quoted &&
+                         !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+  if (is_number && text == current) return true;
+  if (is_number && text.find_first_not_of('0') != text.npos) {
+    errors.add(version->place, "samara",
+               "version " + text + " of the case file is newer than this program, which reads " +
+                   current + "; use a newer samara");
+    return false;
+  }
+  errors.add(version->place, "samara",
+             "expected the version of the case file, " + current + ", " + describe(*version));
+  return true;
+}
+
+std::string read_file(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    const std::string with_suffix = path + ".yaml";
+    const bool exists = fs::exists(with_suffix, error);
+    throw InputError(path + ": no such file" +
+                     (exists ? "; did you mean \"" + with_suffix + "\"?" : ""));
+  }
+  if (fs::is_directory(status)) throw InputError(path + ": a directory, expected a case file");
+
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened for reading");
+  std::string text;
+  std::array<char, 65536> buffer;
+  while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0) {
+    text.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > max_file_size) {
+      throw InputError(path + ": more than 16 MB, too large for a case file");
+    }
+  }
+  if (stream.bad()) throw InputError(path + ": cannot be read");
+  return text;
+}
+
+}  // namespace
+
+Case read_case(const std::string& path, const std::vector<std::string>& settings) {
+  Case result;
+  result.path = path;
+  result.settings = settings;
+  const std::string text = read_file(path);
+  for (const std::string& setting : settings) result.text += "# --set " + setting + "\n";
+  result.text += text;
+
+  ErrorList errors(path, settings);
+  YamlNode root;
+  try {
+    root = parse_yaml(text);
+  } catch (const YamlError& error) {
+    errors.add(error.place, "", error.what());
+    errors.throw_if_any();
+  }
+  if (root.kind == YamlNode::Kind::empty) {
+    throw InputError(path + ": the file is empty, expected a case (docs/case_file.md)");
+  }
+  if (root.kind == YamlNode::Kind::map) apply_settings(settings, root, errors);
+  if (check_version(root, errors)) read_turbine(root, result, errors);
+  errors.throw_if_any();
+  return result;
+}
+
+}  // namespace samara::io

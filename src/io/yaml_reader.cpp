@@ -1,0 +1,342 @@
+#include "yaml_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <system_error>
+
+#include "samara/base/error.hpp"
+
+namespace samara::io {
+namespace {
+
+constexpr std::size_t max_errors_shown = 100;
+constexpr std::size_t max_text_shown = 40;
+
+char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// Quotes a text of the user: shortened, and without line breaks that would break our lines.
+std::string quote(std::string_view text) {
+  std::string shown = "\"";
+  for (const char c : text.substr(0, max_text_shown)) shown += c == '\n' || c == '\r' ? ' ' : c;
+  if (text.size() > max_text_shown) {
+    while (!shown.empty() && (static_cast<unsigned char>(shown.back()) & 0x80) != 0) {
+      shown.pop_back();
+    }
+    shown += "...";
+  }
+  return shown + "\"";
+}
+
+/// A number as YAML 1.2 writes it; its own words for infinity and nan too, to refuse them by name.
+std::optional<double> parse_number(std::string_view text) {
+  std::string_view digits = text;
+  bool negative = false;
+  if (!digits.empty() && (digits.front() == '+' || digits.front() == '-')) {
+    negative = digits.front() == '-';
+    digits.remove_prefix(1);
+  }
+  std::string word;
+  for (const char c : digits) word += to_lower(c);
+  double value = 0.0;
+  if (word == ".inf" || word == "inf" || word == "infinity") {
+    value = std::numeric_limits<double>::infinity();
+  } else if (word == ".nan" || word == "nan") {
+    value = std::numeric_limits<double>::quiet_NaN();
+  } else {
+    if (digits.empty() || digits.front() == '+' || digits.front() == '-') return std::nullopt;
+    const char* end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, value);
+    if (stop != end || error == std::errc::invalid_argument) return std::nullopt;
+    if (error == std::errc::result_out_of_range) {
+      value = std::numeric_limits<double>::infinity();
+    }
+  }
+  return negative ? -value : value;
+}
+
+std::optional<double> parse_number(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::scalar || node.quoted) return std::nullopt;
+  return parse_number(node.text);
+}
+
+/// Says how to write the number that a text was meant to be, or nothing.
+std::string suggest_number(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::scalar) return {};
+  if (node.quoted && parse_number(node.text)) return " in quotes; leave the quotes out";
+  std::string mended = node.text;
+  std::replace(mended.begin(), mended.end(), ',', '.');
+  if (mended != node.text && parse_number(mended)) return "; did you mean " + mended + "?";
+  mended = node.text;
+  for (char& c : mended) c = c == 'd' || c == 'D' ? 'e' : c;
+  if (mended != node.text && parse_number(mended)) return "; did you mean " + mended + "?";
+  return {};
+}
+
+/// Edits (insert, remove, replace, swap neighbours; case does not count) from one word to another.
+std::size_t compute_edit_distance(std::string_view a, std::string_view b) {
+  const std::size_t width = b.size() + 1;
+  std::vector<std::size_t> table((a.size() + 1) * width);
+  const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& {
+    return table[i * width + j];
+  };
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        at(i, j) = i + j;
+        continue;
+      }
+      const auto same = [&](std::size_t p, std::size_t q) {
+        return to_lower(a[p - 1]) == to_lower(b[q - 1]);
+      };
+      at(i, j) =
+          std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, at(i - 1, j - 1) + (same(i, j) ? 0u : 1u)});
+      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) {
+        at(i, j) = std::min(at(i, j), at(i - 2, j - 2) + 1);
+      }
+    }
+  }
+  return at(a.size(), b.size());
+}
+
+std::string list_words(const std::vector<std::string>& words, const char* last_link) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) list += i + 1 == words.size() ? last_link : ", ";
+    list += words[i];
+  }
+  return list;
+}
+
+/// `blades.sections[0].mass` as --set writes it: `blades.sections.0.mass`.
+std::string to_setting_path(const std::string& where) {
+  std::string path;
+  for (const char c : where) {
+    if (c == '[') path += '.';
+    if (c != '[' && c != ']') path += c;
+  }
+  return path;
+}
+
+}  // namespace
+
+void ErrorList::add(const Place& place, const std::string& where, const std::string& what) {
+  std::string message;
+  std::string subject = where;
+  if (place.setting >= 0) {
+    const std::string& setting = settings_[static_cast<std::size_t>(place.setting)];
+    message = "--set " + setting + ": ";
+    if (to_setting_path(where) == setting.substr(0, setting.find('='))) subject.clear();
+  } else {
+    message = path_ + ":";
+    if (place.line > 0) {
+      message += std::to_string(place.line) + ":" + std::to_string(place.column) + ":";
+    }
+    message += " ";
+  }
+  if (!subject.empty()) message += subject + ": ";
+  errors_.push_back({place, message + what});
+}
+
+void ErrorList::throw_if_any() const {
+  if (errors_.empty()) return;
+  std::vector<Error> sorted = errors_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Error& a, const Error& b) {
+    return std::pair(a.place.setting, std::pair(a.place.line, a.place.column)) <
+           std::pair(b.place.setting, std::pair(b.place.line, b.place.column));
+  });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(sorted.size(), max_errors_shown); ++i) {
+    text += (i > 0 ? "\n" : "") + sorted[i].message;
+  }
+  if (sorted.size() > max_errors_shown) {
+    text +=
+        "\n" + path_ + ": and " + std::to_string(sorted.size() - max_errors_shown) + " more errors";
+  }
+  throw InputError(text);
+}
+
+std::string join_path(const std::string& where, std::string_view key) {
+  return where.empty() ? std::string(key) : where + "." + std::string(key);
+}
+
+std::string join_path(const std::string& where, std::size_t index) {
+  return where + "[" + std::to_string(index) + "]";
+}
+
+std::string describe(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::empty:
+      return "got nothing";
+    case YamlNode::Kind::list:
+      return "got a list of " + std::to_string(node.children.size());
+    case YamlNode::Kind::map:
+      return "got a mapping";
+    case YamlNode::Kind::scalar:
+      break;
+  }
+  return "got " + (parse_number(node) ? node.text : quote(node.text));
+}
+
+Place find_blame(const YamlNode& node) {
+  Place blame = node.place;
+  for (const YamlNode& child : node.children) {
+    const Place place = find_blame(child);
+    if (place.setting > blame.setting) blame = place;
+  }
+  return blame;
+}
+
+std::string find_similar(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = compute_edit_distance(word, candidate);
+    if (distance < best_distance && distance < candidate.size()) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  if (!best.empty()) return best;
+  for (const std::string& candidate : candidates) {
+    if (!word.empty() && candidate.starts_with(std::string(word) + "_")) return candidate;
+  }
+  return {};
+}
+
+bool read_number(const YamlNode& node, const std::string& where, const NumberRule& rule,
+                 double& value, ErrorList& errors) {
+  const std::optional<double> number = parse_number(node);
+  const bool accepted = number && std::isfinite(*number) &&
+                        (rule.open ? *number > rule.low && *number < rule.high
+                                   : *number >= rule.low && *number <= rule.high);
+  if (!accepted) {
+    errors.add(
+        node.place, where,
+        std::string("expected ") + rule.words + ", " + describe(node) + suggest_number(node));
+    return false;
+  }
+  value = *number;
+  return true;
+}
+
+bool read_numbers(const YamlNode& node, const std::string& where, const NumberRule& rule,
+                  std::span<double> values, ErrorList& errors) {
+  if (node.kind != YamlNode::Kind::list || node.children.size() != values.size()) {
+    errors.add(
+        node.place, where,
+        "expected a list of " + std::to_string(values.size()) + " numbers, " + describe(node));
+    return false;
+  }
+  bool accepted = true;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    accepted &= read_number(node.children[i], join_path(where, i), rule, values[i], errors);
+  }
+  return accepted;
+}
+
+MapReader::MapReader(const YamlNode& node, std::string where, ErrorList& errors)
+    : node_(node), where_(std::move(where)), errors_(errors) {
+  if (node_.kind != YamlNode::Kind::map) {
+    const char* hint =
+        node_.kind == YamlNode::Kind::empty ? "; leave the key out, or write {}" : "";
+    errors_.add(node_.place, where_, "expected keys with values, " + describe(node_) + hint);
+    return;
+  }
+  for (std::size_t i = 0; i < node_.children.size(); ++i) {
+    const YamlNode& entry = node_.children[i];
+    const YamlNode* first = node_.find(entry.key);
+    if (first == &entry) continue;
+    std::string what = "duplicate key " + quote(entry.key);
+    if (!where_.empty()) what += " in " + where_;
+    if (first->place.line > 0) what += ", first given in line " + std::to_string(first->place.line);
+    errors_.add(entry.place, "", what);
+  }
+}
+
+const YamlNode* MapReader::find(std::string_view key) {
+  known_.emplace_back(key);
+  return node_.find(key);
+}
+
+const YamlNode* MapReader::require(std::string_view key, std::string_view hint) {
+  const YamlNode* entry = find(key);
+  if (entry == nullptr && node_.kind == YamlNode::Kind::map) {
+    missing_.push_back({std::string(key), std::string(hint)});
+  }
+  return entry;
+}
+
+bool MapReader::read(std::string_view key, double& value, const NumberRule& rule) {
+  const YamlNode* entry = find(key);
+  return entry != nullptr && read_number(*entry, where(key), rule, value, errors_);
+}
+
+bool MapReader::read(std::string_view key, int& value, int low, int high) {
+  const YamlNode* entry = find(key);
+  if (entry == nullptr) return false;
+  int number = 0;
+  const char* begin = entry->text.data();
+  const char* end = begin + entry->text.size();
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  const bool is_integer = entry->kind == YamlNode::Kind::scalar && !entry->quoted && stop == end &&
+                          error == std::errc() && begin != end;
+  if (!is_integer || number < low || number > high) {
+    refuse(*entry, key,
+           "expected an integer from " + std::to_string(low) + " to " + std::to_string(high) +
+               ", " + describe(*entry));
+    return false;
+  }
+  value = number;
+  return true;
+}
+
+bool MapReader::read(std::string_view key, std::span<double> values, const NumberRule& rule) {
+  const YamlNode* entry = find(key);
+  return entry != nullptr && read_numbers(*entry, where(key), rule, values, errors_);
+}
+
+void MapReader::refuse(const YamlNode& entry, std::string_view key, const std::string& what) const {
+  errors_.add(entry.place, where(key), what);
+}
+
+void MapReader::refuse_word(const YamlNode& entry, std::string_view key,
+                            const std::vector<std::string>& words) const {
+  std::string what = "expected " + list_words(words, " or ") + ", " + describe(entry);
+  const std::string similar = find_similar(entry.text, words);
+  if (!similar.empty()) what += "; did you mean \"" + similar + "\"?";
+  refuse(entry, key, what);
+}
+
+std::string MapReader::report_unknown(const YamlNode& entry) const {
+  std::string what = "unknown key " + quote(entry.key);
+  if (!where_.empty() && entry.place.setting < 0) what += " in " + where_;
+  const std::string similar = find_similar(entry.key, known_);
+  if (!similar.empty()) {
+    what += "; did you mean \"" + similar + "\"?";
+  } else {
+    what += "; known keys: " + list_words(known_, ", ");
+  }
+  errors_.add(entry.place, "", what);
+  return similar;
+}
+
+void MapReader::finish() {
+  std::vector<std::string> meant;
+  for (const YamlNode& entry : node_.children) {
+    if (node_.kind != YamlNode::Kind::map || node_.find(entry.key) != &entry) continue;
+    if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
+      meant.push_back(report_unknown(entry));
+    }
+  }
+  for (const Missing& missing : missing_) {
+    if (std::find(meant.begin(), meant.end(), missing.key) != meant.end()) continue;
+    std::string what = "missing key \"" + missing.key + "\"";
+    if (!missing.hint.empty()) what += " (" + missing.hint + ")";
+    errors_.add(node_.place, where_, what);
+  }
+}
+
+}  // namespace samara::io

@@ -1,0 +1,16 @@
+// The --set arguments of the command line: `key.path=value`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "yaml_reader.hpp"
+#include "yaml_tree.hpp"
+
+namespace samara::io {
+
+/// Replaces or adds keys in the tree, in the order given. The path is dotted, items of lists are
+/// numbered from 0; another spelling of the key goes (`speed_rpm` replaces `speed`).
+void apply_settings(const std::vector<std::string>& settings, YamlNode& root, ErrorList& errors);
+
+}  // namespace samara::io

@@ -1,0 +1,230 @@
+#include "samara/model/definition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+
+#include "samara/base/error.hpp"
+
+namespace samara::model {
+namespace {
+
+/// Two entries of a printed symmetric matrix may differ by this much, relative to the larger.
+constexpr double symmetry_tolerance = 1e-6;
+
+/// Eigenvalues of a matrix scaled to a unit diagonal count as zero below this.
+constexpr double mass_null_tolerance = 1e-10;
+constexpr double stiffness_null_tolerance = 1e-12;
+
+/// A unit null vector moves a component when its share of it is above this.
+constexpr double component_tolerance = 1e-6;
+
+/// Writes the place of an entry as a reader of the case file counts: from 1.
+std::string describe_entry(int row, int column) {
+  return "(" + std::to_string(row + 1) + ", " + std::to_string(column + 1) + ")";
+}
+
+/// Returns what keeps a matrix from being finite and symmetric, or an empty string.
+std::string find_symmetry_fault(const Matrix6& matrix, const std::string& name) {
+  if (!matrix.allFinite()) return "the " + name + " matrix has an entry that is not finite";
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const double larger = std::max(std::abs(matrix(i, j)), std::abs(matrix(j, i)));
+      if (std::abs(matrix(i, j) - matrix(j, i)) > symmetry_tolerance * larger) {
+        return "the " + name + " matrix is not symmetric: entries " + describe_entry(i, j) +
+               " and " + describe_entry(j, i) + " differ";
+      }
+    }
+  }
+  return {};
+}
+
+/// Scales a symmetric matrix to a unit diagonal: units and magnitudes drop out of the definiteness
+/// test. Rows with a zero diagonal stay as they are.
+Matrix6 scale_to_unit_diagonal(const Matrix6& matrix) {
+  Vector6 scale = Vector6::Ones();
+  for (int i = 0; i < 6; ++i) {
+    if (matrix(i, i) > 0.0) scale(i) = 1.0 / std::sqrt(matrix(i, i));
+  }
+  const Matrix6 symmetric = 0.5 * (matrix + matrix.transpose());
+  return scale.asDiagonal() * symmetric * scale.asDiagonal();
+}
+
+std::string find_stiffness_fault(const SectionDefinition& section) {
+  std::string fault = find_symmetry_fault(section.stiffness, "stiffness");
+  if (!fault.empty()) return fault;
+
+  Matrix6 elastic = section.stiffness;
+  for (int i = 0; i < 6; ++i) {
+    const bool rigid = section.rigid[static_cast<std::size_t>(i)];
+    if (rigid) {
+      if (!section.stiffness.row(i).isZero(0.0) || !section.stiffness.col(i).isZero(0.0)) {
+        return "the row and column of a rigid strain must be 0 in the stiffness matrix (row " +
+               std::to_string(i + 1) + ")";
+      }
+      elastic(i, i) = 1.0;
+    } else if (!(section.stiffness(i, i) > 0.0)) {
+      return "the stiffness matrix is not positive definite: entry " + describe_entry(i, i) +
+             " must be > 0 (or rigid)";
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scale_to_unit_diagonal(elastic),
+                                                      Eigen::EigenvaluesOnly);
+  if (!(solver.eigenvalues()(0) > stiffness_null_tolerance)) {
+    return "the stiffness matrix is not positive definite: its coupling terms are too large for "
+           "its diagonal";
+  }
+  return {};
+}
+
+/// Returns which elastic strain moves a rotation that has no inertia, or an empty string.
+/// V and Omega of a section follow from u and theta: torsion turns a section about b1 at will,
+/// while a rotation about b2 or b3 is the slope of the reference line unless shear sets it free.
+std::string find_massless_fault(const SectionDefinition& section, const Vector6& null_share) {
+  if (null_share.head<3>().maxCoeff() > component_tolerance) {
+    return "the mass matrix is singular for a motion with translation: a point mass beside the "
+           "reference line needs an inertia about its own centre";
+  }
+  struct Tie {
+    int rotation;
+    std::size_t strain;
+    const char* axis;
+    const char* stiffness;
+  };
+  constexpr Tie ties[] = {{3, 3, "b1", "GJ"}, {4, 2, "b2", "GA3"}, {5, 1, "b3", "GA2"}};
+  for (const Tie& tie : ties) {
+    if (null_share(tie.rotation) > component_tolerance && !section.rigid[tie.strain]) {
+      return std::string("the section has no inertia about ") + tie.axis +
+             ": give it one, or make " + tie.stiffness + " rigid";
+    }
+  }
+  return {};
+}
+
+std::string find_mass_fault(const SectionDefinition& section) {
+  std::string fault = find_symmetry_fault(section.mass, "mass");
+  if (!fault.empty()) return fault;
+
+  for (int i = 0; i < 6; ++i) {
+    if (i < 3 && !(section.mass(i, i) > 0.0)) {
+      return "the section has no mass per length: entry " + describe_entry(i, i) +
+             " of the mass matrix must be > 0";
+    }
+    if (section.mass(i, i) < 0.0) {
+      return "the mass matrix is not positive semi-definite: entry " + describe_entry(i, i) +
+             " is negative";
+    }
+    if (section.mass(i, i) == 0.0 && !section.mass.row(i).isZero(0.0)) {
+      return "the mass matrix is not positive semi-definite: entry " + describe_entry(i, i) +
+             " is 0 but its row is not";
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scale_to_unit_diagonal(section.mass));
+  if (solver.eigenvalues()(0) < -mass_null_tolerance) {
+    return "the mass matrix is not positive semi-definite: the inertia about the reference line is "
+           "too small for the offset of the mass centre";
+  }
+  Vector6 null_share = Vector6::Zero();
+  for (int k = 0; k < 6 && solver.eigenvalues()(k) <= mass_null_tolerance; ++k) {
+    null_share += solver.eigenvectors().col(k).cwiseAbs2();
+  }
+  return find_massless_fault(section, null_share.cwiseSqrt());
+}
+
+/// Second derivatives at the points of the natural cubic spline through `points` over the
+/// parameters `t` (Thomas' algorithm).
+std::vector<Vector3> compute_spline_curvatures(const std::vector<Vector3>& points,
+                                               const std::vector<double>& t) {
+  const std::size_t n = points.size();
+  std::vector<Vector3> curvature(n, Vector3::Zero());
+  std::vector<double> upper(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double before = t[i] - t[i - 1];
+    const double after = t[i + 1] - t[i];
+    const Vector3 slope_change =
+        (points[i + 1] - points[i]) / after - (points[i] - points[i - 1]) / before;
+    const double pivot = 2.0 * (before + after) - before * upper[i - 1];
+    upper[i] = after / pivot;
+    curvature[i] = (6.0 * slope_change - before * curvature[i - 1]) / pivot;
+  }
+  for (std::size_t i = n - 1; i-- > 1;) curvature[i] -= upper[i] * curvature[i + 1];
+  return curvature;
+}
+
+}  // namespace
+
+SectionDefinition interpolate_section(const BeamDefinition& beam, double fraction) {
+  const std::vector<SectionDefinition>& sections = beam.sections;
+  if (sections.empty()) throw InternalError("interpolate_section: the beam has no section");
+
+  const auto next = std::find_if(sections.begin(), sections.end(),
+                                 [&](const auto& section) { return section.at >= fraction; });
+  SectionDefinition result;
+  if (next == sections.begin()) {
+    result = sections.front();
+  } else if (next == sections.end()) {
+    result = sections.back();
+  } else if (next->at == fraction) {
+    result = *next;
+  } else {
+    const SectionDefinition& left = *std::prev(next);
+    const SectionDefinition& right = *next;
+    const double weight = (fraction - left.at) / (right.at - left.at);
+    result.stiffness = (1.0 - weight) * left.stiffness + weight * right.stiffness;
+    result.mass = (1.0 - weight) * left.mass + weight * right.mass;
+    result.twist = (1.0 - weight) * left.twist + weight * right.twist;
+    for (int i = 0; i < 6; ++i) {
+      const std::size_t k = static_cast<std::size_t>(i);
+      result.rigid[k] = left.rigid[k] || right.rigid[k];
+      if (result.rigid[k]) {
+        result.stiffness.row(i).setZero();
+        result.stiffness.col(i).setZero();
+      }
+    }
+  }
+  result.at = fraction;
+  return result;
+}
+
+std::string find_section_fault(const SectionDefinition& section) {
+  if (!std::isfinite(section.twist)) return "the twist is not finite";
+  std::string fault = find_stiffness_fault(section);
+  if (fault.empty()) fault = find_mass_fault(section);
+  return fault;
+}
+
+double compute_arc_length(const std::vector<Vector3>& reference_line) {
+  if (reference_line.size() < 2) return 0.0;
+  std::vector<double> t(1, 0.0);
+  for (std::size_t i = 1; i < reference_line.size(); ++i) {
+    t.push_back(t.back() + (reference_line[i] - reference_line[i - 1]).norm());
+    if (!(t[i] > t[i - 1])) return std::numeric_limits<double>::quiet_NaN();
+  }
+  const std::vector<Vector3> curvature = compute_spline_curvatures(reference_line, t);
+
+  // Gauss rule of 5 points on (0, 1): exact to rounding for the mild curves of blades and towers.
+  constexpr double place[] = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155,
+                              0.953089922969332};
+  constexpr double share[] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                              0.23931433524968324, 0.11846344252809454};
+  double length = 0.0;
+  for (std::size_t i = 1; i < reference_line.size(); ++i) {
+    const double h = t[i] - t[i - 1];
+    const Vector3 chord = (reference_line[i] - reference_line[i - 1]) / h;
+    for (int j = 0; j < 5; ++j) {
+      const double b = place[j];
+      const double a = 1.0 - b;
+      const Vector3 tangent =
+          chord +
+          h / 6.0 * ((3.0 * b * b - 1.0) * curvature[i] - (3.0 * a * a - 1.0) * curvature[i - 1]);
+      length += share[j] * h * tangent.norm();
+    }
+  }
+  return length;
+}
+
+}  // namespace samara::model

@@ -1,0 +1,96 @@
+#include "samara/model/turbine.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "samara/math/rotation.hpp"
+
+namespace samara::model {
+namespace {
+
+elements::Hinge hinge_of(const JointDefinition& joint) {
+  return {joint.kind == JointKind::free, joint.stiffness, joint.damping};
+}
+
+elements::RigidChain chain_of(const TurbineDefinition& definition) {
+  elements::RigidChain chain;
+  const NacelleDefinition& nacelle = definition.nacelle;
+  const ShaftDefinition& shaft = definition.shaft;
+  const HubDefinition& hub = definition.hub;
+  chain.gravity = definition.gravity;
+  if (definition.has_nacelle) {
+    chain.yaw = hinge_of(nacelle.yaw);
+    chain.nacelle.mass = nacelle.mass;
+    chain.nacelle.center = nacelle.center_of_mass;
+    chain.nacelle.inertia = nacelle.inertia.asDiagonal();
+  }
+  chain.shaft.mass = shaft.mass;
+  chain.shaft.center = Vector3(0.0, shaft.center_of_mass, 0.0);
+  chain.shaft.inertia =
+      Vector3(shaft.inertia_lateral, shaft.inertia_axial, shaft.inertia_lateral).asDiagonal();
+  chain.hub.mass = hub.mass;
+  chain.hub.center = Vector3(0.0, hub.center_of_mass, 0.0);
+  chain.hub.inertia = hub.inertia.asDiagonal();
+  chain.teeter = hinge_of(hub.teeter);
+  chain.height = shaft.height;
+  chain.tilt = shaft.tilt;
+  chain.overhang = shaft.overhang;
+  chain.undersling = hub.undersling;
+  return chain;
+}
+
+/// Blade axes: b1 root to tip, b3 = s2 and b2 = b3 x b1 at zero cone and pitch; azimuth turns about
+/// h2, cone moves b1 toward h2, pitch turns b2 (the leading edge) upwind, about -b1.
+BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
+  const double azimuth = 2.0 * std::numbers::pi * k / blades.count;
+  const auto found = blades.each.find(k + 1);
+  const double pitch = blades.pitch + (found == blades.each.end() ? 0.0 : found->second.pitch);
+  Matrix3 upright;  // columns b1 b2 b3 = h3 h1 h2
+  upright << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  const Matrix3 turned = math::turn_about<double>(Vector3::UnitY(), azimuth) * upright;
+  const Matrix3 cone = math::turn_about<double>(-Vector3::UnitY(), blades.precone);
+  const Matrix3 feather = math::turn_about<double>(-Vector3::UnitX(), pitch);
+  BladeRoot root;
+  root.C_Ha = turned * cone * feather;
+  root.position = radius * root.C_Ha.col(0);
+  return root;
+}
+
+int elastic_strains(const Beam& beam) {
+  int count = 0;
+  for (const elements::BeamPoint& point : beam.points)
+    for (int i = 0; i < 6; ++i)
+      if (point.compliance(i, i) > 0.0) ++count;
+  return count;
+}
+
+bool differs(const BladeDifference& d) {
+  return d.pitch != 0.0 || d.mass_factor != 1.0 || d.stiffness_factor != 1.0;
+}
+
+}  // namespace
+
+Turbine build_turbine(const TurbineDefinition& definition) {
+  Turbine turbine;
+  turbine.has_tower = definition.has_tower;
+  if (definition.has_tower) turbine.tower = build_beam("tower", definition.tower);
+  const BladesDefinition& blades = definition.blades;
+  for (int k = 0; k < blades.count; ++k) {
+    const auto found = blades.each.find(k + 1);
+    const BladeDifference d = found == blades.each.end() ? BladeDifference{} : found->second;
+    if (differs(d)) turbine.identical_blades = false;
+    turbine.blades.push_back(build_beam("blade " + std::to_string(k + 1), blades.beam,
+                                        d.mass_factor, d.stiffness_factor));
+    turbine.roots.push_back(root_of(blades, definition.hub.radius, k));
+  }
+  turbine.chain = chain_of(definition);
+  turbine.speed = definition.shaft.speed;
+  turbine.azimuth = definition.shaft.azimuth;
+  turbine.degrees_of_freedom = definition.has_tower ? elastic_strains(turbine.tower) : 0;
+  for (const Beam& blade : turbine.blades) turbine.degrees_of_freedom += elastic_strains(blade);
+  if (turbine.chain.yaw.free) ++turbine.degrees_of_freedom;
+  if (turbine.chain.teeter.free) ++turbine.degrees_of_freedom;
+  return turbine;
+}
+
+}  // namespace samara::model

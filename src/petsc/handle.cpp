@@ -1,0 +1,27 @@
+#include "samara/petsc/handle.hpp"
+
+#include <string>
+
+#include "samara/base/error.hpp"
+
+namespace samara::petsc {
+
+void check(PetscErrorCode code, const std::source_location& where) {
+  if (code == 0) return;
+  const char* text = nullptr;
+  PetscErrorMessage(code, &text, nullptr);
+  throw InternalError(std::string("PETSc: ") + (text != nullptr ? text : "unknown error") +
+                      " (code " + std::to_string(code) + ") at " + where.file_name() + ":" +
+                      std::to_string(where.line()));
+}
+
+Handle<Vec> make_vector(MPI_Comm comm, PetscInt local_size, PetscInt size) {
+  Handle<Vec> vector;
+  check(VecCreate(comm, vector.fill()));
+  check(VecSetSizes(vector.get(), local_size, size));
+  check(VecSetType(vector.get(), VECSTANDARD));
+  check(VecSet(vector.get(), 0.0));
+  return vector;
+}
+
+}  // namespace samara::petsc

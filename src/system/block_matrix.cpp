@@ -1,0 +1,61 @@
+#include "block_matrix.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "samara/base/error.hpp"
+
+namespace samara::system {
+
+BlockMatrix::BlockMatrix(std::vector<std::vector<int>> columns) : columns_(std::move(columns)) {
+  std::size_t count = 0;
+  for (const std::vector<int>& row : columns_) {
+    start_.push_back(count);
+    count += row.size();
+  }
+  values_.assign(count * block * block, 0.0);
+}
+
+void BlockMatrix::clear() { std::fill(values_.begin(), values_.end(), 0.0); }
+
+BlockMatrix::Block BlockMatrix::at(int i, int j) {
+  const std::vector<int>& row = columns_[static_cast<std::size_t>(i)];
+  const auto found = std::lower_bound(row.begin(), row.end(), j);
+  if (found == row.end() || *found != j)
+    throw InternalError("no block (" + std::to_string(i) + ", " + std::to_string(j) +
+                        ") in the pattern");
+  return Block(values_.data() + offset(i, static_cast<int>(found - row.begin())));
+}
+
+void BlockMatrix::copy_to(Mat matrix) const {
+  PetscBool serial = PETSC_FALSE;
+  petsc::check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQBAIJ, &serial));
+  if (serial) {
+    PetscScalar* target = nullptr;
+    petsc::check(MatSeqBAIJGetArray(matrix, &target));
+    std::copy(values_.begin(), values_.end(), target);
+    petsc::check(MatSeqBAIJRestoreArray(matrix, &target));
+    petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+    return;
+  }
+  PetscInt first = 0;
+  PetscInt last = 0;
+  petsc::check(MatGetOwnershipRange(matrix, &first, &last));
+  for (PetscInt i = first / block; i < last / block; ++i) {
+    const auto row = static_cast<int>(i);
+    const std::vector<int>& columns = columns_[static_cast<std::size_t>(row)];
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+      const PetscInt j = columns[n];
+      // MatSetValuesBlocked reads rows; the blocks here are columns.
+      const Eigen::Matrix<double, block, block, Eigen::RowMajor> values =
+          Eigen::Map<const Eigen::Matrix<double, block, block>>(
+              values_.data() + offset(row, static_cast<int>(n)));
+      petsc::check(MatSetValuesBlocked(matrix, 1, &i, 1, &j, values.data(), INSERT_VALUES));
+    }
+  }
+  petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+}
+
+}  // namespace samara::system

@@ -1,0 +1,43 @@
+// A sparse matrix of dense 18 x 18 blocks that elements add to, and its copy into PETSc.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "samara/petsc/handle.hpp"
+
+namespace samara::system {
+
+class BlockMatrix {
+ public:
+  static constexpr int block = 18;
+  using Block = Eigen::Map<Eigen::Matrix<double, block, block>>;  // column-major, as BAIJ
+
+  /// `columns[i]`: block columns of block row i, ascending.
+  explicit BlockMatrix(std::vector<std::vector<int>> columns);
+
+  int rows() const { return static_cast<int>(columns_.size()); }
+  const std::vector<std::vector<int>>& columns() const { return columns_; }
+  void clear();
+
+  /// The block at (i, j). @throws InternalError where the pattern has none.
+  Block at(int i, int j);
+
+  /// Writes the rows that `matrix` (BAIJ or MPIBAIJ, this pattern) owns.
+  void copy_to(Mat matrix) const;
+
+  /// All values, block after block.
+  const std::vector<double>& values() const { return values_; }
+  std::vector<double>& values() { return values_; }
+  /// Position in values() of the first entry of block (i, columns()[i][n]).
+  std::size_t offset(int i, int n) const {
+    return (start_[static_cast<std::size_t>(i)] + static_cast<std::size_t>(n)) * block * block;
+  }
+
+ private:
+  std::vector<std::vector<int>> columns_;
+  std::vector<std::size_t> start_;
+  std::vector<double> values_;
+};
+
+}  // namespace samara::system

@@ -1,0 +1,219 @@
+#include "turbine_description.hpp"
+
+#include <array>
+#include <string>
+
+namespace samara::system {
+namespace {
+
+constexpr int block = model::Layout::block;
+
+struct NamedUnknown {
+  const char* name;
+  const char* unit;
+};
+
+constexpr std::array<NamedUnknown, block> point_unknowns{
+    {{"u1", "m"},         {"u2", "m"},         {"u3", "m"},        {"theta1", "rad"},
+     {"theta2", "rad"},   {"theta3", "rad"},   {"V1", "m/s"},      {"V2", "m/s"},
+     {"V3", "m/s"},       {"Omega1", "rad/s"}, {"Omega2", "rad/s"}, {"Omega3", "rad/s"},
+     {"F1", "N"},         {"F2", "N"},         {"F3", "N"},        {"M1", "N m"},
+     {"M2", "N m"},       {"M3", "N m"}}};
+
+UnknownRole role_at(int i) {
+  return i < 6 ? UnknownRole::position : i < 12 ? UnknownRole::velocity : UnknownRole::internal;
+}
+
+RowRole row_role_at(int i) {
+  return i < 6 ? RowRole::constraint : i < 12 ? RowRole::kinematic : RowRole::balance;
+}
+
+class Describer {
+ public:
+  Describer(const model::Turbine& turbine, const model::Layout& layout)
+      : turbine_(turbine), layout_(layout) {
+    const auto n = static_cast<std::size_t>(layout.size());
+    result_.unknowns.resize(n);
+    result_.rows.assign(n, RowRole::constraint);
+  }
+
+  TurbineDescription run() {
+    for (std::size_t k = 0; k < turbine_.blades.size(); ++k) describe_blade(static_cast<int>(k));
+    if (turbine_.has_tower) describe_tower();
+    describe_joints();
+    describe_symmetry();
+    return std::move(result_);
+  }
+
+ private:
+  void name_block(int first, const std::string& place) {
+    for (int i = 0; i < block; ++i) {
+      const auto at = static_cast<std::size_t>(first + i);
+      const auto local = static_cast<std::size_t>(i);
+      result_.unknowns[at] = {place + " " + point_unknowns[local].name,
+                              point_unknowns[local].unit, role_at(i)};
+      result_.rows[at] = row_role_at(i);
+    }
+  }
+
+  void name_root(int first, const std::string& place) {
+    for (int i = 0; i < 6; ++i) {
+      const auto at = static_cast<std::size_t>(first + i);
+      const NamedUnknown& named = point_unknowns[static_cast<std::size_t>(12 + i)];
+      result_.unknowns[at] = {place + " root " + named.name, named.unit, UnknownRole::internal};
+      result_.rows[at] = RowRole::balance;
+    }
+  }
+
+  void describe_blade(int k) {
+    const model::Beam& beam = turbine_.blades[static_cast<std::size_t>(k)];
+    for (int p = 0; p < beam.point_count(); ++p) {
+      name_block(layout_.blade_point(k, p), beam.name + " point " + std::to_string(p + 1));
+      add_energies(beam, p, layout_.blade_point(k, p), "blade", k + 1, Frame::rotating,
+                   {"axial", "lead-lag shear", "flap shear", "torsion", "flap", "lead-lag"});
+    }
+    name_block(layout_.blade_tip(k), beam.name + " tip");
+    name_root(layout_.blade_root(k), beam.name);
+    if (beam.tip_mass > 0.0) {
+      EnergyGroup group{EnergyGroup::Kind::kinetic, "blade", "", k + 1, Frame::rotating, {}, {}};
+      for (int i = 0; i < 3; ++i) group.unknowns.push_back(layout_.blade_tip(k) + 6 + i);
+      group.weight = {beam.tip_mass, 0, 0, 0, beam.tip_mass, 0, 0, 0, beam.tip_mass};
+      result_.groups.push_back(group);
+    }
+  }
+
+  /// The tower's b2 is lateral (n1), its b3 downwind (n2): bending about b2 moves it along b3.
+  void describe_tower() {
+    const model::Beam& beam = turbine_.tower;
+    for (int p = 0; p < beam.point_count(); ++p) {
+      name_block(layout_.tower_point(p), "tower point " + std::to_string(p + 1));
+      add_energies(beam, p, layout_.tower_point(p), "tower", 0, Frame::fixed,
+                   {"axial", "lateral shear", "fore-aft shear", "torsion", "fore-aft", "lateral"});
+    }
+    name_block(layout_.tower_tip(), "tower top");
+    name_root(layout_.tower_root(), "tower");
+  }
+
+  void add_energies(const model::Beam& beam, int p, int first, const std::string& part, int blade,
+                    Frame frame, const std::array<const char*, 6>& motions) {
+    const elements::BeamPoint& point = beam.points[static_cast<std::size_t>(p)];
+    const double length = beam.point_length(p);
+    EnergyGroup kinetic{EnergyGroup::Kind::kinetic, part, "", blade, frame, {}, {}};
+    for (int i = 0; i < 6; ++i) kinetic.unknowns.push_back(first + 6 + i);
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) kinetic.weight.push_back(length * point.mass(i, j));
+    result_.groups.push_back(kinetic);
+    for (int i = 0; i < 6; ++i) {
+      if (point.compliance(i, i) <= 0.0) continue;
+      result_.groups.push_back({EnergyGroup::Kind::strain, part,
+                                motions[static_cast<std::size_t>(i)], blade, frame,
+                                {first + 12 + i}, {length * point.compliance(i, i)}});
+    }
+  }
+
+  void name_joint(int first, const std::string& name, bool free) {
+    const auto at = static_cast<std::size_t>(first);
+    result_.unknowns[at] = {name + " angle", "rad", UnknownRole::position};
+    result_.unknowns[at + 1] = {name + " speed", "rad/s", UnknownRole::velocity};
+    result_.rows[at] = free ? RowRole::kinematic : RowRole::constraint;
+    result_.rows[at + 1] = free ? RowRole::balance : RowRole::kinematic;
+  }
+
+  void describe_joints() {
+    const elements::RigidChain& chain = turbine_.chain;
+    name_joint(layout_.yaw(), "yaw", chain.yaw.free);
+    name_joint(layout_.teeter(), "teeter", chain.teeter.free);
+    name_joint(layout_.shaft_torsion(), "shaft torsion", false);
+    for (int i = layout_.padding(); i < layout_.size(); ++i) {
+      result_.unknowns[static_cast<std::size_t>(i)] = {"padding", "", UnknownRole::position};
+      result_.rows[static_cast<std::size_t>(i)] = RowRole::constraint;
+    }
+    if (chain.yaw.free && chain.yaw.stiffness == 0.0)
+      result_.neutral.push_back({"yaw", layout_.yaw(), layout_.yaw() + 1, "N m"});
+    if (chain.teeter.free && chain.teeter.stiffness == 0.0 && turbine_.speed == 0.0)
+      result_.neutral.push_back({"teeter", layout_.teeter(), layout_.teeter() + 1, "N m"});
+    add_rigid_energies();
+  }
+
+  void add_rigid_energies() {
+    const elements::RigidChain& chain = turbine_.chain;
+    const auto moment_about = [](const elements::RigidBody& body, const Vector3& shift) {
+      const Vector3 r = body.center + shift;
+      return Matrix3(body.inertia +
+                     body.mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose()));
+    };
+    if (turbine_.has_tower) {
+      // Nacelle, shaft and hub as one body about the tower top, at zero yaw; V = (U8 U6 U7).
+      const Vector3 bearing(0.0, 0.0, chain.height);
+      const Matrix3 inertia =
+          moment_about(chain.nacelle, Vector3::Zero()) + moment_about(chain.shaft, bearing) +
+          moment_about(chain.hub, bearing + Vector3(0.0, chain.overhang, 0.0));
+      const double mass = chain.nacelle.mass + chain.shaft.mass + chain.hub.mass;
+      EnergyGroup group{EnergyGroup::Kind::kinetic, "nacelle", "", 0, Frame::fixed, {}, {}};
+      const int top = layout_.tower_tip();
+      group.unknowns = {top + 6, top + 7, top + 8, top + 10, top + 11, layout_.yaw() + 1};
+      Matrix6 weight = Matrix6::Zero();
+      weight.topLeftCorner<3, 3>() = mass * Matrix3::Identity();
+      weight.bottomRightCorner<3, 3>() = inertia;
+      group.weight.assign(weight.data(), weight.data() + weight.size());
+      result_.groups.push_back(group);
+    }
+    if (chain.teeter.free) {
+      const Vector3 e = chain.teeter_axis;
+      const double inertia = e.dot(moment_about(chain.hub, Vector3::Zero()) * e);
+      if (inertia > 0.0)
+        result_.groups.push_back({EnergyGroup::Kind::kinetic, "hub", "teeter", 0, Frame::rotating,
+                                  {layout_.teeter() + 1}, {inertia}});
+    }
+    if (chain.yaw.free && chain.yaw.stiffness > 0.0)
+      result_.groups.push_back({EnergyGroup::Kind::strain, "joint", "yaw", 0, Frame::fixed,
+                                {layout_.yaw()}, {chain.yaw.stiffness}});
+    if (chain.teeter.free && chain.teeter.stiffness > 0.0)
+      result_.groups.push_back({EnergyGroup::Kind::strain, "joint", "teeter", 0, Frame::rotating,
+                                {layout_.teeter()}, {chain.teeter.stiffness}});
+  }
+
+  bool rotor_repeats() const {
+    const elements::RigidChain& chain = turbine_.chain;
+    const auto blades = turbine_.blades.size();
+    if (blades < 2 || !turbine_.identical_blades) return false;
+    if (blades == 2) return true;
+    return !chain.teeter.free && chain.hub.inertia(0, 0) == chain.hub.inertia(2, 2);
+  }
+
+  void describe_symmetry() {
+    RotorSymmetry& symmetry = result_.symmetry;
+    const int n = layout_.size();
+    for (int i = 0; i < n; ++i) symmetry.source.push_back(i);
+    symmetry.sign.assign(static_cast<std::size_t>(n), 1.0);
+    if (!rotor_repeats()) return;
+    const int count = static_cast<int>(turbine_.blades.size());
+    symmetry.sectors = count;
+    const int blade_size = block * (turbine_.blades.front().point_count() + 1);
+    for (int k = 0; k < count; ++k) {
+      const int before = (k + count - 1) % count;  // blade k + 1 of P z is blade k of z
+      for (int i = 0; i < blade_size; ++i)
+        symmetry.source[static_cast<std::size_t>(layout_.blade_tip(k) + i)] =
+            layout_.blade_tip(before) + i;
+      for (int i = 0; i < 6; ++i)
+        symmetry.source[static_cast<std::size_t>(layout_.blade_root(k) + i)] =
+            layout_.blade_root(before) + i;
+    }
+    if (count == 2) {  // the hinge axis turns with the shaft: half a turn reverses it
+      symmetry.sign[static_cast<std::size_t>(layout_.teeter())] = -1.0;
+      symmetry.sign[static_cast<std::size_t>(layout_.teeter()) + 1] = -1.0;
+    }
+  }
+
+  const model::Turbine& turbine_;
+  const model::Layout& layout_;
+  TurbineDescription result_;
+};
+
+}  // namespace
+
+TurbineDescription describe(const model::Turbine& turbine, const model::Layout& layout) {
+  return Describer(turbine, layout).run();
+}
+
+}  // namespace samara::system

@@ -1,0 +1,850 @@
+#include "samara/io/case.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+#include <unistd.h>
+
+#include "samara/base/error.hpp"
+
+namespace {
+
+using namespace samara;
+using namespace samara::io;
+using samara::analysis::FloquetPeriod;
+using samara::analysis::TrimMethod;
+using samara::model::JointKind;
+
+namespace fs = std::filesystem;
+using Strings = std::vector<std::string>;
+
+const std::string lee2002 = std::string(SAMARA_SOURCE_DIR) + "/inputs/lee2002/";
+
+constexpr double rounding = 1e-14;
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// A folder of this process that goes with the test.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("samara_case_test_" + std::to_string(::getpid()));
+  Folder() { fs::create_directories(path); }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  std::string write(const std::string& text) const {
+    const std::string file = path / "case.yaml";
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
+  }
+};
+
+/// Eight lines; tests append from line 9.
+const std::string minimal = R"(samara: 1
+blades:
+  count: 2
+  length: 10
+  sections:
+    - mass: 5
+      inertia: [1, 0.5, 0.5]
+      stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: 1e6, EI2: 2e6, EI3: 3e6}
+)";
+
+const std::string tower = R"(tower:
+  length: 30
+  sections:
+    - mass: 5
+      inertia: [1, 0.5, 0.5]
+      stiffness: {EA: 1, GA2: 1, GA3: 1, GJ: 1, EI2: 1, EI3: 1}
+)";
+
+std::string replace(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t place = text.find(from);
+  BOOST_REQUIRE(place != std::string::npos);
+  return text.replace(place, from.size(), to);
+}
+
+Case read_text(const std::string& text, const Strings& settings = {}) {
+  const Folder folder;
+  return read_case(folder.write(text), settings);
+}
+
+/// The lines of the error, without the folder of the file.
+Strings read_errors(const std::string& text, const Strings& settings = {}) {
+  const Folder folder;
+  const std::string file = folder.write(text);
+  Strings lines;
+  try {
+    read_case(file, settings);
+  } catch (const InputError& error) {
+    std::string rest = error.what();
+    while (!rest.empty()) {
+      std::string line = rest.substr(0, rest.find('\n'));
+      rest.erase(0, line.size() + 1);
+      if (line.starts_with(file)) line.replace(0, file.size(), "case.yaml");
+      lines.push_back(line);
+    }
+  }
+  return lines;
+}
+
+void check_errors(const std::string& text, const Strings& settings, const Strings& expected) {
+  const Strings errors = read_errors(text, settings);
+  BOOST_TEST(errors == expected, boost::test_tools::per_element());
+}
+
+void check_error(const std::string& text, const std::string& expected) {
+  check_errors(text, {}, {expected});
+}
+
+void check_setting_error(const std::string& setting, const std::string& expected) {
+  check_errors(minimal, {setting}, {"--set " + setting + ": " + expected});
+}
+
+/// The only error starts so: for messages whose end is a parser's or a list of keys.
+void check_error_start(const std::string& text, const std::string& start) {
+  const Strings errors = read_errors(text);
+  BOOST_REQUIRE(errors.size() == 1u);
+  BOOST_TEST(errors[0].substr(0, start.size()) == start);
+}
+
+/// What read_case says about a path that holds no case.
+std::string read_path_error(const std::string& path) {
+  try {
+    read_case(path, {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(reading)
+
+BOOST_AUTO_TEST_CASE(baseline_is_the_turbine_of_the_paper) {
+  const Case result = read_case(lee2002 + "baseline.yaml", {});
+  const model::TurbineDefinition& turbine = result.turbine;
+  BOOST_TEST(turbine.title.find("Lee, Hodges and Patil (2002)") != std::string::npos);
+  BOOST_TEST(turbine.gravity == 0.0);
+
+  BOOST_TEST(turbine.has_tower);
+  BOOST_TEST(turbine.tower.length == 27.0);
+  BOOST_TEST(turbine.tower.reference_line.empty());
+  BOOST_TEST(turbine.tower.elements == 4);
+  BOOST_TEST(turbine.tower.order == 1);
+  BOOST_REQUIRE(turbine.tower.sections.size() == 1u);
+  const model::SectionDefinition& section = turbine.tower.sections[0];
+  BOOST_TEST((section.rigid == std::array<bool, 6>{true, true, true, false, false, false}));
+  const Matrix6 stiffness = Vector6(0, 0, 0, 1e9, 1e9, 1e9).asDiagonal();
+  BOOST_TEST((section.stiffness == stiffness));
+  const Matrix6 mass = Vector6(67.5772, 67.5772, 67.5772, 5, 0.0001, 4.9999).asDiagonal();
+  BOOST_TEST((section.mass == mass));
+  BOOST_TEST(section.twist == 0.0);
+  BOOST_TEST(turbine.tower.damping.isZero(0.0));
+
+  BOOST_TEST(turbine.has_nacelle);
+  BOOST_TEST(turbine.nacelle.mass == 6900.0);
+  BOOST_TEST((turbine.nacelle.inertia == Vector3(0, 0, 16599)));
+  BOOST_TEST((turbine.nacelle.yaw.kind == JointKind::free));
+  BOOST_TEST(turbine.shaft.speed == 6.02);
+  BOOST_TEST(turbine.shaft.overhang == 2.388);
+  BOOST_TEST((turbine.hub.inertia == Vector3(50, 5, 50)));
+  BOOST_TEST(turbine.hub.radius == 1.8);
+  BOOST_TEST((turbine.hub.teeter.kind == JointKind::free));
+
+  BOOST_TEST(turbine.blades.count == 2);
+  BOOST_TEST(turbine.blades.beam.length == 8.42);
+  BOOST_TEST(turbine.blades.beam.elements == 4);
+  BOOST_TEST(turbine.blades.beam.sections.at(0).stiffness(4, 4) == 1e7);
+  BOOST_TEST((turbine.blades.beam.sections.at(0).mass == mass));
+  BOOST_TEST(turbine.blades.each.empty());
+
+  BOOST_TEST((result.trim.method == TrimMethod::harmonic_balance));
+  BOOST_TEST(result.trim.harmonics == 4);
+  BOOST_TEST(!result.trim.automatic);
+  BOOST_TEST(result.trim.tolerance == 1e-10);
+  BOOST_TEST(result.floquet.steps == 500);
+  BOOST_TEST((result.floquet.period == FloquetPeriod::automatic));
+}
+
+BOOST_AUTO_TEST_CASE(the_other_cases_of_the_paper_differ_in_the_tower_only) {
+  const auto rigidity = [](const std::string& name) {
+    return read_case(lee2002 + name, {}).turbine.tower.sections.at(0).stiffness(3, 3);
+  };
+  BOOST_TEST(rigidity("ratio10.yaml") == 1e8);
+  BOOST_TEST(rigidity("ratio1000.yaml") == 1e10);
+  const Case rigid = read_case(lee2002 + "rigid_tower.yaml", {});
+  BOOST_TEST(!rigid.turbine.has_tower);
+  BOOST_TEST(rigid.turbine.has_nacelle);
+  BOOST_TEST(rigid.turbine.blades.beam.sections.at(0).stiffness(3, 3) == 1e7);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_left_out_is_absent) {
+  const model::TurbineDefinition turbine = read_text(minimal).turbine;
+  BOOST_TEST(!turbine.has_tower);
+  BOOST_TEST(!turbine.has_nacelle);
+  BOOST_TEST(turbine.gravity == 9.80665);
+  BOOST_TEST(turbine.shaft.speed == 0.0);
+  BOOST_TEST((turbine.hub.teeter.kind == JointKind::locked));
+  BOOST_TEST((turbine.nacelle.yaw.kind == JointKind::locked));
+}
+
+BOOST_AUTO_TEST_CASE(a_tower_without_a_nacelle_is_legal) {
+  const model::TurbineDefinition turbine = read_text(minimal + tower).turbine;
+  BOOST_TEST(turbine.has_tower);
+  BOOST_TEST(!turbine.has_nacelle);
+}
+
+BOOST_AUTO_TEST_CASE(degrees_and_rpm_become_radians) {
+  const model::TurbineDefinition turbine =
+      read_text(minimal +
+                "  precone_deg: -2.5\n  pitch_deg: 30\nshaft: {speed_rpm: 30, tilt_deg: 5, "
+                "azimuth_deg: 90}\n")
+          .turbine;
+  const auto near = boost::test_tools::tolerance(rounding);
+  BOOST_TEST(turbine.shaft.speed == std::numbers::pi, near);
+  BOOST_TEST(turbine.shaft.tilt == 5 * degree, near);
+  BOOST_TEST(turbine.shaft.azimuth == 90 * degree, near);
+  BOOST_TEST(turbine.blades.precone == -2.5 * degree, near);
+  BOOST_TEST(turbine.blades.pitch == 30 * degree, near);
+}
+
+BOOST_AUTO_TEST_CASE(a_teeter_map_without_a_joint_is_a_free_hinge) {
+  const model::HubDefinition hub =
+      read_text(minimal + "hub: {teeter: {undersling: 0.3, stiffness: 4, delta3_deg: 0}}\n")
+          .turbine.hub;
+  BOOST_TEST((hub.teeter.kind == JointKind::free));
+  BOOST_TEST(hub.teeter.stiffness == 4.0);
+  BOOST_TEST(hub.undersling == 0.3);
+}
+
+BOOST_AUTO_TEST_CASE(a_mass_center_couples_forces_and_rotations) {
+  const double m = 5, c2 = 0.1, c3 = -0.2;
+  const Matrix6 mass =
+      read_text(replace(minimal, "mass: 5", "mass: 5\n      mass_center: [0.1, -0.2]"))
+          .turbine.blades.beam.sections.at(0)
+          .mass;
+  // P = m (V + Omega x c): Omega about b1 moves c by (0, -c3, c2), about b2 by (c3, 0, 0).
+  Matrix6 expected = Vector6(m, m, m, 1, 0.5, 0.5).asDiagonal();
+  expected(1, 3) = expected(3, 1) = -m * c3;
+  expected(2, 3) = expected(3, 2) = m * c2;
+  expected(0, 4) = expected(4, 0) = m * c3;
+  expected(0, 5) = expected(5, 0) = -m * c2;
+  BOOST_TEST((mass - expected).norm() <= rounding * expected.norm());
+}
+
+BOOST_AUTO_TEST_CASE(matrices_may_be_rigid_on_the_diagonal) {
+  const std::string text = R"(samara: 1
+blades:
+  length: 10
+  sections:
+    - stiffness_matrix:
+        - [rigid, 0, 0, 0, 0, 0]
+        - [0, rigid, 0, 0, 0, 0]
+        - [0, 0, 8, 0, 0, 0]
+        - [0, 0, 0, 4, 1, 0]
+        - [0, 0, 0, 1, 5, 0]
+        - [0, 0, 0, 0, 0, 6]
+      mass_matrix: [[2, 0, 0, 0, 0, 0], [0, 2, 0, 0, 0, 0], [0, 0, 2, 0, 0, 0],
+                    [0, 0, 0, 3, 0, 0], [0, 0, 0, 0, 1, 0.1], [0, 0, 0, 0, 0.1, 2]]
+      twist_deg: 10
+)";
+  const model::SectionDefinition section = read_text(text).turbine.blades.beam.sections.at(0);
+  BOOST_TEST((section.rigid == std::array<bool, 6>{true, true, false, false, false, false}));
+  BOOST_TEST(section.stiffness(3, 4) == 1.0);
+  BOOST_TEST(section.stiffness(0, 0) == 0.0);
+  BOOST_TEST(section.mass(4, 5) == 0.1);
+  BOOST_TEST(section.twist == 10 * degree, boost::test_tools::tolerance(rounding));
+}
+
+BOOST_AUTO_TEST_CASE(sections_damping_and_single_blades_are_read) {
+  const std::string text = R"(samara: 1
+blades:
+  count: 3
+  length: 10
+  damping: [0, 0, 0, 0.1, 0.2, 0.3]
+  sections:
+    - &root
+      at: 0
+      mass: 5
+      inertia: [1, 0.5, 0.5]
+      stiffness: {EA: 1, GA2: 1, GA3: 1, GJ: 1, EI2: 1, EI3: 1}
+    - {<<: *root, at: 1, mass: 2}
+  each:
+    2: {pitch_deg: 0.5, mass_factor: 1.01}
+tower:
+  length: 30
+  damping: 0.01
+  sections: [*root]
+)";
+  const model::TurbineDefinition turbine = read_text(text).turbine;
+  const model::BeamDefinition& blade = turbine.blades.beam;
+  BOOST_REQUIRE(blade.sections.size() == 2u);
+  BOOST_TEST(blade.sections[1].at == 1.0);
+  BOOST_TEST(blade.sections[1].mass(0, 0) == 2.0);
+  BOOST_TEST(blade.sections[1].mass(3, 3) == 1.0);
+  BOOST_TEST((blade.damping == Vector6(0, 0, 0, 0.1, 0.2, 0.3)));
+  BOOST_TEST((turbine.tower.damping == Vector6::Constant(0.01)));
+  BOOST_REQUIRE(turbine.blades.each.size() == 1u);
+  BOOST_TEST(turbine.blades.each.at(2).mass_factor == 1.01);
+  BOOST_TEST(turbine.blades.each.at(2).stiffness_factor == 1.0);
+  BOOST_TEST(turbine.blades.each.at(2).pitch == 0.5 * degree,
+             boost::test_tools::tolerance(rounding));
+}
+
+BOOST_AUTO_TEST_CASE(options_of_the_analyses_are_read) {
+  const Case result = read_text(minimal +
+                                "trim: {method: shooting, harmonics: auto, tolerance: 1e-8, steps: "
+                                "50}\nfloquet: {steps: 100, period: blade, time_order: 2}\n");
+  BOOST_TEST((result.trim.method == TrimMethod::shooting));
+  BOOST_TEST(result.trim.automatic);
+  BOOST_TEST(result.trim.tolerance == 1e-8);
+  BOOST_TEST(result.trim.steps == 50);
+  BOOST_TEST(result.floquet.steps == 100);
+  BOOST_TEST((result.floquet.period == FloquetPeriod::blade));
+}
+
+BOOST_AUTO_TEST_CASE(a_tower_line_is_stated_in_n1_n2_n3_and_kept_in_the_beams_axes) {
+  const model::BeamDefinition beam =
+      read_text(minimal +
+                replace(tower, "length: 30", "reference_line: [[0, 0, 0], [1, 2, 10], [2, 4, 20]]"))
+          .turbine.tower;
+  BOOST_REQUIRE(beam.reference_line.size() == 3u);
+  BOOST_TEST((beam.reference_line[1] == Vector3(10, 1, 2)));  // a = (n3, n1, n2)
+  BOOST_TEST(beam.length == std::sqrt(420.0), boost::test_tools::tolerance(rounding));
+}
+
+BOOST_AUTO_TEST_CASE(a_blade_line_is_stated_in_blade_axes) {
+  const model::BeamDefinition beam =
+      read_text(replace(minimal, "length: 10",
+                        "length: 10\n  reference_line: [[0, 0, 0], [5, 0, 0], [10, 0, 0]]"))
+          .turbine.blades.beam;
+  BOOST_TEST((beam.reference_line.at(1) == Vector3(5, 0, 0)));
+  BOOST_TEST(beam.length == 10.0, boost::test_tools::tolerance(rounding));
+}
+
+BOOST_AUTO_TEST_CASE(byte_order_mark_and_windows_line_ends_are_accepted) {
+  std::string text = "\xef\xbb\xbf" + minimal;
+  for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) {
+    text.replace(i, 1, "\r\n");
+  }
+  BOOST_TEST(read_text(text).turbine.blades.count == 2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(files)
+
+BOOST_AUTO_TEST_CASE(a_path_that_holds_no_case_is_named) {
+  const Folder folder;
+  const std::string missing = folder.path / "missing.yaml";
+  BOOST_TEST(read_path_error(missing) == missing + ": no such file");
+  BOOST_TEST(read_path_error(folder.path) ==
+             folder.path.string() + ": a directory, expected a case file");
+  const std::string file = folder.write(minimal);
+  const std::string stem = file.substr(0, file.size() - 5);
+  BOOST_TEST(read_path_error(stem) == stem + ": no such file; did you mean \"" + file + "\"?");
+}
+
+BOOST_AUTO_TEST_CASE(a_file_without_keys_is_refused) {
+  for (const char* text : {"", "\n\n", "# only a comment\n", "---\n", "~\n"}) {
+    check_error_start(text, "case.yaml: the file is empty");
+  }
+  check_error("just words\n", "case.yaml:1:1: expected keys with values, got \"just words\"");
+  check_error("- 1\n- 2\n", "case.yaml:1:1: expected keys with values, got a list of 2");
+}
+
+BOOST_AUTO_TEST_CASE(bytes_that_are_no_text_are_refused_at_their_place) {
+  check_error("samara: 1\ntitle: \x8a\xff\n",
+              "case.yaml:2:8: a byte that is not UTF-8: this is not a text file");
+  check_error(std::string("samara: 1\nab\0c: 1\n", 18),
+              "case.yaml:2:3: a control character: this is not a text file");
+  // 0x04 ends the file for yaml-cpp: what follows would be lost silently.
+  check_error(minimal + "\x04gravity: wrong\n",
+              "case.yaml:9:1: a control character: this is not a text file");
+}
+
+BOOST_AUTO_TEST_CASE(yaml_errors_have_their_place) {
+  check_error_start(minimal + "title: a: b\n", "case.yaml:9:9: not valid YAML: illegal map value");
+  check_error_start(minimal + "hub: {radius: 1\n", "case.yaml:10:1: not valid YAML:");
+  check_error_start(minimal + "title: *nothing\n", "case.yaml:9:8: not valid YAML:");
+  check_error_start("samara: 1\nblades:\n\tcount: 2\n", "case.yaml:3:7: not valid YAML:");
+  check_error(minimal + "? [1, 2]\n: 3\n", "case.yaml:9:3: a key must be a plain word");
+  check_error(minimal + "---\n" + minimal,
+              "case.yaml: more than one YAML document (\"---\") in the file");
+}
+
+BOOST_AUTO_TEST_CASE(hostile_yaml_is_refused_without_harm) {
+  for (const char* opening : {"[", "{a: ", "- ", "? "}) {
+    std::string text;
+    for (int i = 0; i < 20000; ++i) text += opening;
+    check_error_start(text, "case.yaml:");
+  }
+  std::string bomb = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
+  for (int i = 1; i < 30; ++i) {
+    const std::string n = std::to_string(i);
+    const std::string alias = "*a" + std::to_string(i - 1);
+    bomb += "a" + n + ": &a" + n + " [" + alias + ", " + alias + ", " + alias + "]\n";
+  }
+  check_error_start(bomb, "case.yaml:10:15: the aliases expand to too many values");
+  check_error(minimal + "hub: &hub {radius: *hub}\n",
+              "case.yaml:9:20: an alias that refers to itself");
+}
+
+BOOST_AUTO_TEST_CASE(the_version_is_compulsory_and_checked) {
+  check_error(replace(minimal, "samara: 1\n", ""),
+              "case.yaml:1:1: missing key \"samara\" (the version of the case file: write `samara: "
+              "1`)");
+  check_error(replace(minimal, "samara: 1", "samara: one"),
+              "case.yaml:1:1: samara: expected the version of the case file, 1, got \"one\"");
+  check_error(replace(minimal, "samara: 1", "samara: 0"),
+              "case.yaml:1:1: samara: expected the version of the case file, 1, got 0");
+}
+
+BOOST_AUTO_TEST_CASE(a_newer_version_hides_the_errors_that_follow_from_it) {
+  check_error(replace(minimal, "samara: 1", "new_key: 3\nsamara: 2"),
+              "case.yaml:2:1: samara: version 2 of the case file is newer than this program, which "
+              "reads 1; use a newer samara");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(keys)
+
+BOOST_AUTO_TEST_CASE(all_errors_come_at_once_in_the_order_of_the_file) {
+  check_errors(minimal + "shaft:\n  speed: fast\n  tilt_deg: 95\ngravity: -1\nbaldes: 2\n", {},
+               {"case.yaml:10:3: shaft.speed: expected a number >= 0, got \"fast\"",
+                "case.yaml:11:3: shaft.tilt_deg: expected an angle between -90 and 90 degrees, got "
+                "95",
+                "case.yaml:12:1: gravity: expected a number >= 0, got -1",
+                "case.yaml:13:1: unknown key \"baldes\"; did you mean \"blades\"?"});
+}
+
+BOOST_AUTO_TEST_CASE(unknown_keys_come_with_a_suggestion) {
+  check_error(replace(minimal, "mass: 5", "mass: 5\n      twsit_deg: 3"),
+              "case.yaml:7:7: unknown key \"twsit_deg\" in blades.sections[0]; did you mean "
+              "\"twist_deg\"?");
+  check_error(minimal + "shaft: {tilt: 3}\n",
+              "case.yaml:9:9: unknown key \"tilt\" in shaft; did you mean \"tilt_deg\"?");
+  check_error(replace(minimal, "EA: rigid", "ea: rigid"),
+              "case.yaml:8:19: unknown key \"ea\" in blades.sections[0].stiffness; did you mean "
+              "\"EA\"?");
+  check_error_start(minimal + "hub: {colour: 1}\n",
+                    "case.yaml:9:7: unknown key \"colour\" in hub; known keys: mass, ");
+}
+
+BOOST_AUTO_TEST_CASE(duplicate_keys_are_refused_where_they_stand) {
+  check_error(minimal + "shaft:\n  speed: 6\n  overhang: 1\n  speed: 7\n",
+              "case.yaml:12:3: duplicate key \"speed\" in shaft, first given in line 10");
+  check_error(minimal + "gravity: 0\n\"gravity\": 0\n",
+              "case.yaml:10:1: duplicate key \"gravity\", first given in line 9");
+}
+
+BOOST_AUTO_TEST_CASE(two_spellings_of_one_thing_are_refused) {
+  check_error(minimal + "shaft:\n  speed_rpm: 60\n  speed: 6\n",
+              "case.yaml:10:3: shaft.speed_rpm: given together with speed; leave one of them out");
+  const std::string matrix =
+      "      mass_matrix: [[5, 0, 0, 0, 0, 0], [0, 5, 0, 0, 0, 0], [0, 0, 5, 0, 0, 0],\n"
+      "                    [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]\n";
+  check_errors(
+      minimal + matrix, {},
+      {"case.yaml:6:7: blades.sections[0].mass: given together with mass_matrix; leave one "
+       "of them out",
+       "case.yaml:7:7: blades.sections[0].inertia: given together with mass_matrix; leave "
+       "one of them out"});
+  check_error(minimal + "      stiffness_matrix: []\n",
+              "case.yaml:9:7: blades.sections[0].stiffness_matrix: given together with stiffness; "
+              "leave one of them out");
+}
+
+BOOST_AUTO_TEST_CASE(missing_keys_are_named) {
+  check_error("samara: 1\n", "case.yaml:1:1: missing key \"blades\"");
+  check_errors("samara: 1\nblades:\n  count: 2\n", {},
+               {"case.yaml:2:1: blades: missing key \"length\" (or \"reference_line\")",
+                "case.yaml:2:1: blades: missing key \"sections\" (a list; one entry is a uniform "
+                "beam)"});
+  check_error(replace(minimal, ", EI3: 3e6", ""),
+              "case.yaml:8:7: blades.sections[0].stiffness: missing key \"EI3\" (a number > 0 or "
+              "rigid)");
+  check_error(replace(minimal, "      inertia: [1, 0.5, 0.5]\n", ""),
+              "case.yaml:6:7: blades.sections[0]: missing key \"inertia\" (per length, or "
+              "\"mass_matrix\")");
+  check_error(replace(minimal,
+                      "      stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: 1e6, EI2: "
+                      "2e6, EI3: 3e6}\n",
+                      ""),
+              "case.yaml:6:7: blades.sections[0]: missing key \"stiffness\" (or "
+              "\"stiffness_matrix\")");
+}
+
+BOOST_AUTO_TEST_CASE(blocks_need_keys) {
+  check_error(
+      minimal + "nacelle:\n",
+      "case.yaml:9:1: nacelle: expected keys with values, got nothing; leave the key out, or "
+      "write {}");
+  check_error(minimal + "hub: 3\n", "case.yaml:9:1: hub: expected keys with values, got 3");
+  check_error(minimal + "hub: [1, 2]\n",
+              "case.yaml:9:1: hub: expected keys with values, got a list of 2");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(values)
+
+BOOST_AUTO_TEST_CASE(numbers_must_be_finite_numbers) {
+  const std::string place = "case.yaml:9:9: shaft.overhang: expected a finite number, got ";
+  const auto check = [&](const std::string& value, const std::string& shown) {
+    check_error(minimal + "shaft: {overhang: " + value + "}\n", place + shown);
+  };
+  check(".nan", ".nan");
+  check("nan", "nan");
+  check("-.inf", "-.inf");
+  check("1e999", "1e999");
+  check("true", "\"true\"");
+  check("[1]", "a list of 1");
+  check("{}", "a mapping");
+  check("", "nothing");
+  check("~", "nothing");
+  check("0x10", "\"0x10\"");
+  check("+-1", "\"+-1\"");
+  check("\"2.4\"", "\"2.4\" in quotes; leave the quotes out");
+  check("1d3", "\"1d3\"; did you mean 1e3?");
+  check_error(minimal + "gravity: 9,81\n",
+              "case.yaml:9:1: gravity: expected a number >= 0, got \"9,81\"; did you mean 9.81?");
+}
+
+BOOST_AUTO_TEST_CASE(numbers_may_be_written_as_yaml_writes_them) {
+  for (const char* text : {"2.5", "+2.5", "25e-1", "2.5E0", "0.25e+1", "02.50"}) {
+    BOOST_TEST(read_text(minimal + "shaft: {overhang: " + text + "}\n").turbine.shaft.overhang ==
+               2.5);
+  }
+  BOOST_TEST(read_text(minimal + "shaft: {overhang: -.5}\n").turbine.shaft.overhang == -0.5);
+}
+
+BOOST_AUTO_TEST_CASE(integers_must_be_integers_in_their_range) {
+  for (const char* value : {"4.5", "0", "-3", "99999999999"}) {
+    check_error(replace(minimal, "length: 10", std::string("length: 10\n  elements: ") + value),
+                std::string("case.yaml:5:3: blades.elements: expected an integer from 1 to 100000, "
+                            "got ") +
+                    value);
+  }
+  for (const char* value : {"4 elements", "true", "four"}) {
+    check_error(replace(minimal, "length: 10", std::string("length: 10\n  elements: ") + value),
+                std::string("case.yaml:5:3: blades.elements: expected an integer from 1 to 100000, "
+                            "got \"") +
+                    value + "\"");
+  }
+  check_error(replace(minimal, "count: 2", "count: 0"),
+              "case.yaml:3:3: blades.count: expected an integer from 1 to 100, got 0");
+  check_error(replace(minimal, "count: 2", "count: -1"),
+              "case.yaml:3:3: blades.count: expected an integer from 1 to 100, got -1");
+  check_error(replace(minimal, "count: 2", "order: 7"),
+              "case.yaml:3:3: blades.order: expected an integer from 1 to 6, got 7");
+  check_error(minimal + "floquet: {steps: 3}\n",
+              "case.yaml:9:11: floquet.steps: expected an integer from 4 to 10000000, got 3");
+  check_error(minimal + "trim: {harmonics: 201}\n",
+              "case.yaml:9:8: trim.harmonics: expected an integer from 0 to 200, got 201");
+}
+
+BOOST_AUTO_TEST_CASE(lists_must_have_their_length) {
+  check_error(minimal + "hub:\n  inertia: [1, 2]\n",
+              "case.yaml:10:3: hub.inertia: expected a list of 3 numbers, got a list of 2");
+  check_error(minimal + "hub:\n  inertia: 5\n",
+              "case.yaml:10:3: hub.inertia: expected a list of 3 numbers, got 5");
+  check_error(minimal + "hub:\n  inertia: [1,\n    two,\n    3]\n",
+              "case.yaml:11:5: hub.inertia[1]: expected a number >= 0, got \"two\"");
+  check_error(replace(minimal, "length: 10", "length: 10\n  damping: [0, 0, 0]"),
+              "case.yaml:5:3: blades.damping: expected a list of 6 numbers, got a list of 3");
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_negative_is_refused) {
+  const auto check = [](const std::string& block, const std::string& where,
+                        const std::string& rule) {
+    const Strings errors = read_errors(minimal + block);
+    BOOST_REQUIRE(errors.size() == 1u);
+    BOOST_TEST(errors[0].find(where + ": expected a number " + rule + ", got -1") !=
+               std::string::npos);
+  };
+  check("nacelle: {mass: -1}\n", "nacelle.mass", ">= 0");
+  check("nacelle: {inertia: [0, 0, -1]}\n", "nacelle.inertia[2]", ">= 0");
+  check("nacelle: {yaw: {joint: free, damping: -1}}\n", "nacelle.yaw.damping", ">= 0");
+  check("shaft: {speed: -1}\n", "shaft.speed", ">= 0");
+  check("shaft: {speed_rpm: -1}\n", "shaft.speed_rpm", ">= 0");
+  check("shaft: {inertia: {axial: -1}}\n", "shaft.inertia.axial", ">= 0");
+  check("hub: {radius: -1}\n", "hub.radius", ">= 0");
+  check("hub: {teeter: {stiffness: -1}}\n", "hub.teeter.stiffness", ">= 0");
+  check("  tip_mass: -1\n", "blades.tip_mass", ">= 0");
+  check("  damping: -1\n", "blades.damping", ">= 0 or a list of 6");
+  check("  each: {1: {mass_factor: -1}}\n", "blades.each.1.mass_factor", "> 0");
+  check("trim: {tolerance: -1}\n", "trim.tolerance", "> 0");
+  check_error(replace(minimal, "length: 10", "length: 0"),
+              "case.yaml:4:3: blades.length: expected a number > 0, got 0");
+}
+
+BOOST_AUTO_TEST_CASE(words_must_be_known) {
+  check_error(minimal + "trim: {method: harmonic-balance}\n",
+              "case.yaml:9:8: trim.method: expected harmonic_balance or shooting, got "
+              "\"harmonic-balance\"; did you mean \"harmonic_balance\"?");
+  check_error(minimal + "floquet: {period: half}\n",
+              "case.yaml:9:11: floquet.period: expected auto, full or blade, got \"half\"");
+  check_error(minimal + "title: [a, b]\n",
+              "case.yaml:9:1: title: expected a text, got a list of 2");
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
+  check_error(minimal + "nacelle:\n  yaw: {joint: prescribed}\n",
+              "case.yaml:10:9: nacelle.yaw.joint: \"prescribed\" is not available yet; use free or "
+              "locked");
+  check_error(minimal + "hub:\n  teeter: {joint: prescribed}\n",
+              "case.yaml:10:12: hub.teeter.joint: \"prescribed\" is not available yet; use free or "
+              "locked");
+  check_error(
+      minimal + "hub:\n  teeter: {delta3_deg: 5}\n",
+      "case.yaml:10:12: hub.teeter.delta3_deg: delta-3 is not available yet; only 0, got 5");
+  check_error(minimal + "shaft:\n  torsion: {joint: free, stiffness: 1e6}\n",
+              "case.yaml:10:13: shaft.torsion.joint: \"free\" is not available yet; use locked");
+  check_error(minimal + "floquet:\n  time_order: 4\n",
+              "case.yaml:10:3: floquet.time_order: only 2 is available, got 4");
+}
+
+BOOST_AUTO_TEST_CASE(a_yaw_block_must_state_its_joint) {
+  check_error(minimal + "nacelle:\n  yaw: {stiffness: 3}\n",
+              "case.yaml:10:3: nacelle.yaw: missing key \"joint\" (free or locked)");
+  check_error_start(minimal + "nacelle:\n  yaw: {joint: open}\n",
+                    "case.yaml:10:9: nacelle.yaw.joint: expected free, locked or prescribed");
+}
+
+BOOST_AUTO_TEST_CASE(a_teeter_hinge_is_for_two_blades) {
+  const std::string three = replace(minimal, "count: 2", "count: 3");
+  check_error(three + "hub:\n  teeter: {joint: free}\n",
+              "case.yaml:10:12: hub.teeter: a teeter hinge carries two blades, blades.count is 3; "
+              "use joint: locked, or leave teeter out");
+  BOOST_TEST(read_text(three + "hub: {teeter: {joint: locked}}\n").turbine.blades.count == 3);
+  const std::string one = replace(minimal, "count: 2", "count: 1");
+  BOOST_TEST(read_text(one + "hub: {teeter: {joint: free}}\n").turbine.blades.count == 1);
+}
+
+BOOST_AUTO_TEST_CASE(only_blades_that_exist_can_differ) {
+  check_error(minimal + "  each:\n    3: {pitch_deg: 1}\n",
+              "case.yaml:10:5: blades.each: expected a blade number from 1 to 2, got \"3\"");
+  check_error(
+      minimal + "  each:\n    1: {pitch: 1}\n",
+      "case.yaml:10:9: unknown key \"pitch\" in blades.each.1; did you mean \"pitch_deg\"?");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(sections)
+
+namespace {
+const std::string end_sections = R"(samara: 1
+blades:
+  length: 10
+  sections:
+    - {at: 0, mass: 5, inertia: [1, 1, 1],
+       stiffness: {EA: 1, GA2: 1, GA3: 1, GJ: 1, EI2: 1, EI3: 1}}
+    - {at: 1, mass: 5, inertia: [1, 1, 1],
+       stiffness: {EA: 1, GA2: 1, GA3: 1, GJ: 1, EI2: 1, EI3: 1}}
+)";
+}
+
+BOOST_AUTO_TEST_CASE(mass_per_length_must_be_positive) {
+  for (const char* mass : {"0", "-1", "rigid"}) {
+    const Strings errors = read_errors(replace(minimal, "mass: 5", std::string("mass: ") + mass));
+    BOOST_REQUIRE(errors.size() == 1u);
+    BOOST_TEST(errors[0].starts_with(
+        "case.yaml:6:7: blades.sections[0].mass: expected a number > 0, got "));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(stiffness_must_be_positive_or_rigid) {
+  check_error(
+      replace(minimal, "GJ: 1e6", "GJ: 0"),
+      "case.yaml:8:54: blades.sections[0].stiffness.GJ: expected a number > 0 or rigid, got "
+      "0");
+  check_error(
+      replace(minimal, "GJ: 1e6", "GJ: stiff"),
+      "case.yaml:8:54: blades.sections[0].stiffness.GJ: expected a number > 0 or rigid, got "
+      "\"stiff\"");
+}
+
+BOOST_AUTO_TEST_CASE(a_faulty_section_is_reported_at_its_line) {
+  check_error(
+      replace(minimal, "inertia: [1, 0.5, 0.5]", "inertia: [0, 0, 0]"),
+      "case.yaml:6:7: blades.sections[0]: the section has no inertia about b1: give it one, "
+      "or make GJ rigid");
+  const std::string stiffness =
+      minimal.substr(0, minimal.find("      stiffness")) +
+      "      stiffness_matrix: [[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0],\n"
+      "                         [0, 0, 0, 1, 2, 0], [0, 0, 0, 2, 1, 0], [0, 0, 0, 0, 0, 1]]\n";
+  check_error(
+      stiffness,
+      "case.yaml:6:7: blades.sections[0]: the stiffness matrix is not positive definite: its "
+      "coupling terms are too large for its diagonal");
+  check_error(
+      replace(stiffness, "[0, 0, 0, 1, 2, 0]", "[0, 0, 0, 1, 0, 0]"),
+      "case.yaml:6:7: blades.sections[0]: the stiffness matrix is not symmetric: entries (5, "
+      "4) and (4, 5) differ");
+  check_error(
+      replace(stiffness, "[0, 0, 0, 1, 2, 0]", "[0, 0, 0, rigid, 2, 0]"),
+      "case.yaml:6:7: blades.sections[0]: the row and column of a rigid strain must be 0 in "
+      "the stiffness matrix (row 4)");
+  check_error(
+      replace(stiffness, "[0, 0, 0, 1, 2, 0]", "[0, 0, 0, 1, rigid, 0]"),
+      "case.yaml:9:39: blades.sections[0].stiffness_matrix[3][4]: expected a finite number, "
+      "got \"rigid\"");
+  check_error(
+      replace(stiffness, "[0, 0, 0, 1, 2, 0]", "[0, 0, 0, 1, 2]"),
+      "case.yaml:9:26: blades.sections[0].stiffness_matrix[3]: expected a list of 6 numbers, "
+      "got a list of 5");
+}
+
+BOOST_AUTO_TEST_CASE(an_inertia_too_small_for_its_mass_center_is_refused) {
+  check_error(
+      replace(minimal, "mass: 5", "mass: 5\n      mass_center: [1, 0]"),
+      "case.yaml:6:7: blades.sections[0]: the mass matrix is not positive semi-definite: the "
+      "inertia about the reference line is too small for the offset of the mass centre");
+}
+
+BOOST_AUTO_TEST_CASE(stations_must_rise_from_0_to_1) {
+  BOOST_TEST(read_text(end_sections).turbine.blades.beam.sections.size() == 2u);
+  check_error(
+      replace(end_sections, "at: 1", "at: 0"),
+      "case.yaml:7:8: blades.sections[1].at: expected more than the section before has, got "
+      "0");
+  check_error(replace(end_sections, "at: 1", "at: 1.1"),
+              "case.yaml:7:8: blades.sections[1].at: expected a number from 0 to 1, got 1.1");
+  check_error(replace(end_sections, "at: 1, ", ""),
+              "case.yaml:7:7: blades.sections[1]: missing key \"at\" (the fraction of the length, "
+              "from 0 to 1)");
+}
+
+BOOST_AUTO_TEST_CASE(a_strain_is_rigid_everywhere_or_nowhere) {
+  check_error(replace(end_sections, "EA: 1", "EA: rigid"),
+              "case.yaml:7:7: blades.sections[1]: a strain that is rigid in one section must be "
+              "rigid in all sections of the beam");
+}
+
+BOOST_AUTO_TEST_CASE(sections_must_be_a_list_that_is_not_empty) {
+  const std::string start = "samara: 1\nblades:\n  length: 10\n  sections: ";
+  check_error(start + "[]\n",
+              "case.yaml:4:3: blades.sections: expected a list of sections (each starts with \"- "
+              "\"), got a list of 0");
+  check_error(start + "{mass: 3}\n",
+              "case.yaml:4:3: blades.sections: expected a list of sections (each starts with \"- "
+              "\"), got a mapping");
+}
+
+BOOST_AUTO_TEST_CASE(reference_lines_are_checked) {
+  const auto check = [](const std::string& line, const std::string& expected) {
+    check_error(replace(minimal, "length: 10", "reference_line: " + line), expected);
+  };
+  const std::string where = "blades.reference_line";
+  check("[[0, 0, 0]]", "case.yaml:4:3: " + where +
+                           ": expected a list of at least 2 points of 3 numbers, got a list of 1");
+  check("[[0, 0, 0], [1, 0]]",
+        "case.yaml:4:31: " + where + "[1]: expected a list of 3 numbers, got a list of 2");
+  check(
+      "[[1, 0, 0], [2, 0, 0]]",
+      "case.yaml:4:20: " + where + "[0]: the first point must be [0, 0, 0], the root of the beam");
+  check("[[0, 0, 0], [2, 0, 0], [2, 0, 0]]",
+        "case.yaml:4:42: " + where + "[2]: the same point as the one before");
+  check("[[0, 0, 0], [9, 0, 0]]\n  length: 10",
+        "case.yaml:5:3: blades.length: the arc length of reference_line is 9.000000, got 10; leave "
+        "length out");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(settings)
+
+BOOST_AUTO_TEST_CASE(settings_replace_and_add_keys) {
+  const Case result = read_text(
+      minimal, {"blades.elements=8", "blades.sections.0.mass=10", "blades.each.2.pitch_deg=90",
+                "shaft.speed=3", "hub.inertia=[1, 2, 3]", "hub.inertia.1=7",
+                "hub.teeter={joint: locked}", "blades.elements=9", "title=a = b"});
+  BOOST_TEST(result.turbine.blades.beam.elements == 9);
+  BOOST_TEST(result.turbine.blades.beam.sections.at(0).mass(0, 0) == 10.0);
+  BOOST_TEST(result.turbine.blades.each.at(2).pitch == 90 * degree,
+             boost::test_tools::tolerance(rounding));
+  BOOST_TEST(result.turbine.shaft.speed == 3.0);
+  BOOST_TEST((result.turbine.hub.inertia == Vector3(1, 7, 3)));
+  BOOST_TEST((result.turbine.hub.teeter.kind == JointKind::locked));
+  BOOST_TEST(result.turbine.title == "a = b");
+}
+
+BOOST_AUTO_TEST_CASE(a_setting_replaces_the_other_spelling) {
+  const std::string text = minimal + "shaft: {speed: 6}\n";
+  BOOST_TEST(read_text(text, {"shaft.speed_rpm=30"}).turbine.shaft.speed == std::numbers::pi,
+             boost::test_tools::tolerance(rounding));
+  const std::string matrix =
+      "[[rigid,0,0,0,0,0],[0,rigid,0,0,0,0],[0,0,rigid,0,0,0],[0,0,0,1,0,0],[0,0,0,0,2,0],"
+      "[0,0,0,0,0,3]]";
+  const Case result = read_text(text, {"blades.sections.0.stiffness_matrix=" + matrix});
+  BOOST_TEST(result.turbine.blades.beam.sections.at(0).stiffness(5, 5) == 3.0);
+}
+
+BOOST_AUTO_TEST_CASE(the_text_of_a_case_states_its_settings_above_the_file) {
+  const Strings settings = {"blades.elements=8", "gravity=0"};
+  const Case result = read_text(minimal, settings);
+  BOOST_TEST(result.text == "# --set blades.elements=8\n# --set gravity=0\n" + minimal);
+  BOOST_TEST(result.settings == settings, boost::test_tools::per_element());
+  BOOST_TEST(read_text(minimal).text == minimal);
+}
+
+BOOST_AUTO_TEST_CASE(errors_of_settings_name_the_setting) {
+  check_setting_error("shaft.speed=fast", "expected a number >= 0, got \"fast\"");
+  check_setting_error("blades.elments=8", "unknown key \"elments\"; did you mean \"elements\"?");
+  check_setting_error("blads.elements=8", "unknown key \"blads\"; did you mean \"blades\"?");
+  check_setting_error("hub.inertia=[1, 2, three]",
+                      "hub.inertia[2]: expected a number >= 0, got \"three\"");
+  check_setting_error("blades.sections.0.mass=-1", "expected a number > 0, got -1");
+  check_setting_error("gravity=", "expected a number >= 0, got nothing");
+  check_setting_error("gravity=[1",
+                      "not valid YAML: end of sequence flow not found (a \"[\" is not "
+                      "closed, or a comma is missing)");
+}
+
+BOOST_AUTO_TEST_CASE(a_setting_that_makes_a_section_faulty_is_blamed) {
+  check_setting_error(
+      "blades.sections.0.inertia.0=0",
+      "blades.sections[0]: the section has no inertia about b1: give it one, or make "
+      "GJ rigid");
+  check_errors(minimal + "hub: {teeter: {}}\n", {"blades.count=3"},
+               {"--set blades.count=3: hub.teeter: a teeter hinge carries two blades, blades.count "
+                "is 3; use joint: locked, or leave teeter out"});
+}
+
+BOOST_AUTO_TEST_CASE(malformed_settings_are_refused) {
+  const std::string form = "expected key=value in one line, e.g. blades.elements=8";
+  for (const char* setting :
+       {"blades.elements", "=8", "blades..elements=8", ".gravity=1", "gravity.=1", ""}) {
+    check_setting_error(setting, form);
+  }
+  // A line break would let a setting leave its comment line in the text of the case.
+  BOOST_TEST(!read_errors(minimal, {"title=a\nsamara: 1"}).empty());
+}
+
+BOOST_AUTO_TEST_CASE(settings_cannot_enter_what_has_no_such_item) {
+  check_setting_error("blades.sections.1.mass=1",
+                      "blades.sections is a list with items 0 to 0, it has no item \"1\"");
+  check_setting_error("blades.sections.mass=1",
+                      "blades.sections is a list with items 0 to 0, it has no item \"mass\"");
+  check_setting_error("blades.count.x=1", "blades.count is a value, it has no key \"x\"");
+}
+
+BOOST_AUTO_TEST_CASE(errors_of_the_file_and_of_settings_come_together) {
+  check_errors(minimal + "gravity: down\n", {"nonsense", "shaft.speed=fast"},
+               {"case.yaml:9:1: gravity: expected a number >= 0, got \"down\"",
+                "--set nonsense: expected key=value in one line, e.g. blades.elements=8",
+                "--set shaft.speed=fast: expected a number >= 0, got \"fast\""});
+}
+
+BOOST_AUTO_TEST_SUITE_END()
