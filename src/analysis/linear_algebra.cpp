@@ -2,6 +2,7 @@
 
 #include <petscblaslapack.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -10,7 +11,8 @@
 namespace samara::analysis {
 namespace {
 
-constexpr double largest_solve_residual = 1e-8;
+/// Of |J x - b| to |x| + |b|, where J's rows and columns have entries of about one.
+constexpr double largest_solve_residual = 1e-11;
 
 void multiply_by_inverse_root(Vec factors, const std::vector<double>& largest) {
   const petsc::WriteView view(factors);
@@ -48,20 +50,64 @@ Equilibration equilibrate(Mat matrix) {
   return scaling;
 }
 
-DirectSolver::DirectSolver(std::string prefix, bool order_as_given)
-    : prefix_(std::move(prefix)), order_as_given_(order_as_given) {}
+Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, double rate) {
+  const Eigen::SparseMatrix<double> entries = to_sparse(matrix);
+  const auto n = static_cast<std::size_t>(entries.rows());
+  const auto role = [&system](Eigen::Index i) {
+    return system.unknowns()[static_cast<std::size_t>(i)].role;
+  };
+  std::vector<double> inertia(n, 0.0);  // largest term of a balance row that is no internal load
+  for (Eigen::Index j = 0; j < entries.outerSize(); ++j) {
+    if (role(j) == system::UnknownRole::internal) continue;
+    const double column = role(j) == system::UnknownRole::velocity ? rate : 1.0;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(entries, j); it; ++it) {
+      double& largest = inertia[static_cast<std::size_t>(it.row())];
+      largest = std::max(largest, std::abs(it.value()) * column);
+    }
+  }
+  std::vector<double> levels;
+  for (std::size_t i = 0; i < n; ++i)
+    if (system.rows()[i] == system::RowRole::balance && inertia[i] > 0.0)
+      levels.push_back(inertia[i]);
+  std::sort(levels.begin(), levels.end());
+  const double load = levels.empty() ? 1.0 : levels[levels.size() / 2];
+
+  Equilibration scaling;
+  petsc::check(MatCreateVecs(matrix, scaling.columns.fill(), scaling.rows.fill()));
+  std::vector<double> row_largest(n, 0.0);
+  {
+    const petsc::WriteView columns(scaling.columns.get());
+    for (Eigen::Index j = 0; j < entries.outerSize(); ++j) {
+      const double column = role(j) == system::UnknownRole::internal   ? load
+                            : role(j) == system::UnknownRole::velocity ? rate
+                                                                       : 1.0;
+      columns[static_cast<PetscInt>(j)] = column;
+      for (Eigen::SparseMatrix<double>::InnerIterator it(entries, j); it; ++it) {
+        double& largest = row_largest[static_cast<std::size_t>(it.row())];
+        largest = std::max(largest, std::abs(it.value()) * column);
+      }
+    }
+  }
+  const petsc::WriteView rows(scaling.rows.get());
+  for (std::size_t i = 0; i < n; ++i)
+    rows[static_cast<PetscInt>(i)] = row_largest[i] > 0.0 ? 1.0 / row_largest[i] : 1.0;
+  return scaling;
+}
+
+DirectSolver::DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale)
+    : prefix_(std::move(prefix)), scale_(std::move(scale)) {}
 
 void DirectSolver::factor(Mat matrix) {
   if (!solver_) {
-    scaling_ = equilibrate(matrix);
+    scaling_ = scale_(matrix);
     petsc::check(KSPCreate(PETSC_COMM_SELF, solver_.fill()));
     petsc::check(KSPSetOptionsPrefix(solver_.get(), prefix_.c_str()));
     petsc::check(KSPSetType(solver_.get(), KSPPREONLY));
     PC preconditioner = nullptr;
     petsc::check(KSPGetPC(solver_.get(), &preconditioner));
     petsc::check(PCSetType(preconditioner, PCLU));
-    if (order_as_given_)
-      petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
+    // Systems number their unknowns so that elimination in their order fills in little.
+    petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
     petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
     petsc::check(KSPSetFromOptions(solver_.get()));
   }
@@ -97,7 +143,7 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
   petsc::check(MatMult(matrix_, x.get(), y.get()));
   const double size = right.col(probe_).norm();
   const double residual = (product - right.col(probe_)).norm();
-  if (!(residual <= largest_solve_residual * (size + probe.norm() * 1e-6))) {
+  if (!(residual <= largest_solve_residual * (size + probe.norm()))) {
     std::ostringstream text;
     text << "linear solve (" << prefix_ << "): residual " << residual << " for a right-hand side of "
          << size << " and a solution of " << probe.norm() << "; hint: -" << prefix_ << "pc_factor_mat_solver_type mumps";

@@ -16,7 +16,9 @@ StepPropagator::StepPropagator(const system::PeriodicSystem& system,
       z_dot_(system.make_state()),
       jacobian_(system.make_jacobian()),
       mass_(system.make_mass()),
-      solver_("floquet_", true) {
+      solver_("floquet_", [&system, step](Mat matrix) {
+        return scale_by_role(system, matrix, 2.0 / step);
+      }) {
   if (!fixed_constraints_) end_jacobian_ = system.make_jacobian();
 }
 
@@ -56,24 +58,12 @@ Eigen::MatrixXd StepPropagator::advance(long k, Eigen::MatrixXd& z) {
   solver_.factor(jacobian_.get());
 
   // With z_f = 2 z_m - z_i: (2/dt M + K) z_m = 2/dt M z_i, and D_f z_m = D_f z_i / 2.
-  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(z.rows(), z.cols());
-  for (PetscInt i = 0; i < system_.size(); ++i) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    petsc::check(MatGetRow(mass_.get(), i, &count, &columns, &values));
-    for (PetscInt c = 0; c < count; ++c)
-      if (values[c] != 0.0) middle.row(i) += (shift * values[c]) * z.row(columns[c]);
-    petsc::check(MatRestoreRow(mass_.get(), i, &count, &columns, &values));
-  }
+  Eigen::MatrixXd middle = shift * (to_sparse(mass_.get()) * z);
   if (!fixed_constraints_) middle += 0.5 * (constraint_rows_ * z);
   solver_.solve(middle);
-  for (Eigen::Index i = 0; i < z.rows(); ++i) {
-    if (carried_[static_cast<std::size_t>(i)])
-      z.row(i) = 2.0 * middle.row(i) - z.row(i);
-    else
-      z.row(i).setZero();
-  }
+  for (Eigen::Index j = 0; j < z.cols(); ++j)
+    for (Eigen::Index i = 0; i < z.rows(); ++i)
+      z(i, j) = carried_[static_cast<std::size_t>(i)] ? 2.0 * middle(i, j) - z(i, j) : 0.0;
   return middle;
 }
 

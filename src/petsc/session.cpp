@@ -9,22 +9,32 @@
 namespace samara::petsc {
 namespace {
 
-/// Without a launcher there is nobody to talk to: the transports that Open MPI would look for cost
-/// more time than many a run.
-void prepare_single_process() {
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr ||
-      std::getenv("PMI_RANK") != nullptr || std::getenv("SLURM_PROCID") != nullptr)
+/// Open MPI looks for networks that a single machine does not need; that takes longer than many a
+/// run (0.38 s against 0.07 s). What the user sets in the environment stands.
+void prepare_transport() {
+  const auto set = [](const char* name, const char* value) { setenv(name, value, 0); };
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  const char* local_size = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+  if (size != nullptr) {
+    if (local_size == nullptr || std::string(size) != local_size) return;
+    set("OMPI_MCA_pml", "ob1");
+    set("OMPI_MCA_btl", "self,vader");
     return;
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  setenv("OMPI_MCA_btl", "self", 0);
-  setenv("OMPI_MCA_pml", "ob1", 0);
+  }
+  if (std::getenv("PMIX_RANK") != nullptr || std::getenv("PMI_RANK") != nullptr) return;
+  set("OMPI_MCA_ess_singleton_isolated", "1");
+  set("OMPI_MCA_orte_create_session_dirs", "0");  // or runs at the same time share one folder
+  set("OMPI_MCA_pml", "ob1");
+  set("OMPI_MCA_btl", "self");
+  set("OMPI_MCA_sharedfp", "^sm");  // it asks for the folder that is not made
 }
 
 }  // namespace
 
 Session::Session(const std::vector<std::string>& options) {
-  prepare_single_process();
-  std::vector<std::string> words{"samara"};
+  prepare_transport();
+  // A reader that leaves (samara ... | head) is no crash: signals stay with the system.
+  std::vector<std::string> words{"samara", "-no_signal_handler"};
   words.insert(words.end(), options.begin(), options.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
