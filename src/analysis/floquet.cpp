@@ -83,7 +83,7 @@ class Analysis {
     for (std::size_t j = 0; j < own_.size(); ++j)
       z.col(static_cast<Eigen::Index>(j)) = start.col(own_[j]);
     const auto nk = static_cast<Eigen::Index>(kinetic_.size());
-    history_.resize(nk * (span_ + 1), z.cols());
+    history_.resize(nk * span_, z.cols());
     const Eigen::Index shapes = (span_ + stride_ - 1) / stride_;
     shapes_.resize(z.rows() * shapes, z.cols());
     first_.setZero(states_, states_);
@@ -92,10 +92,13 @@ class Analysis {
     put_coordinates(z, first_, 0);
     for (long k = 0; k <= span_; ++k) {
       const Eigen::MatrixXd middle = propagator.advance(k, z);
-      for (Eigen::Index i = 0; i < nk; ++i)
-        history_.row(k * nk + i) = middle.row(kinetic_[static_cast<std::size_t>(i)]);
-      if (k < span_ && k % stride_ == 0)
-        shapes_.middleRows(k / stride_ * z.rows(), z.rows()) = middle;
+      if (k == span_) end_ = middle;
+      if (k < span_) {
+        for (Eigen::Index j = 0; j < z.cols(); ++j)
+          for (Eigen::Index i = 0; i < nk; ++i)
+            history_(k * nk + i, j) = middle(kinetic_[static_cast<std::size_t>(i)], j);
+        if (k % stride_ == 0) shapes_.middleRows(k / stride_ * z.rows(), z.rows()) = middle;
+      }
       if (k == 0) put_coordinates(z, first_, d);
       if (k == span_ - 1) put_coordinates(z, last_, 0);
       observer_.progress("floquet", k + 1, span_ + 1);
@@ -195,7 +198,7 @@ class Analysis {
     participation_.setZero(count, steps_);
     part_shares_.setZero(static_cast<Eigen::Index>(energy_.part_names().size()), count);
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(count);
-    Eigen::VectorXd residuals = Eigen::VectorXd::Zero(count);
+    Eigen::VectorXd energies = Eigen::VectorXd::Zero(count);
     for (int target = 0; target < ranks_.size; ++target) {
       std::vector<Eigen::Index> modes;
       for (Eigen::Index m = target; m < count; m += ranks_.size) modes.push_back(m);
@@ -205,25 +208,25 @@ class Analysis {
         const auto at = static_cast<std::size_t>(modes[m]);
         const auto nk = static_cast<Eigen::Index>(kinetic_.size());
         const Eigen::Map<const Eigen::MatrixXcd> history(
-            values.col(static_cast<Eigen::Index>(m)).data(), nk, span_ + 1);
+            values.col(static_cast<Eigen::Index>(m)).data(), nk, span_);
         Mode mode;
         Eigen::VectorXd participation;
         energy_.identify(whole_period(history, exponents_[at], kinetic_, 1, span_), mode,
                          participation);
         harmonics(modes[m]) = mode.harmonic;
-        residuals(modes[m]) = closure(history, multipliers_[at]);
+        energies(modes[m]) = mode.kinetic_energy;
         participation_.row(modes[m]) = participation;
         for (std::size_t p = 0; p < mode.parts.size(); ++p)
           part_shares_(static_cast<Eigen::Index>(p), modes[m]) = mode.parts[p].share;
       }
     }
     ranks_.sum(harmonics.data(), static_cast<std::size_t>(count));
-    ranks_.sum(residuals.data(), static_cast<std::size_t>(count));
+    ranks_.sum(energies.data(), static_cast<std::size_t>(count));
     ranks_.sum(participation_.data(), static_cast<std::size_t>(participation_.size()));
     ranks_.sum(part_shares_.data(), static_cast<std::size_t>(part_shares_.size()));
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       modes_[m].harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
-      modes_[m].residual = residuals(static_cast<Eigen::Index>(m));
+      modes_[m].kinetic_energy = energies(static_cast<Eigen::Index>(m));
     }
   }
 
@@ -261,29 +264,67 @@ class Analysis {
     return whole;
   }
 
-  /// |P z(T/Q) - mu z(0)| / |z(0)| in the velocities at the first middle of a step.
-  double closure(const Eigen::Ref<const Eigen::MatrixXcd>& history, Complex multiplier) const {
-    const Eigen::MatrixXcd begin = history.col(0);
+  /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega) and velocities, at the first middle
+  /// of a step and the one a sector later.
+  double closure(const Eigen::Ref<const Eigen::VectorXcd>& begin,
+                 const Eigen::Ref<const Eigen::VectorXcd>& end, Complex multiplier) const {
+    std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
+    std::iota(all.begin(), all.end(), 0);
     Eigen::MatrixXcd expected = multiplier * begin;
-    if (sectors_ > 1) expected = turned_back(expected, kinetic_);
-    const double size = begin.norm();
-    return size > 0.0 ? (history.col(span_) - expected).norm() / size : 0.0;
+    if (sectors_ > 1) expected = turned_back(expected, all);
+    double size = 0.0;
+    double defect = 0.0;
+    for (Eigen::Index i = 0; i < system_.size(); ++i) {
+      const system::UnknownRole role = system_.unknowns()[static_cast<std::size_t>(i)].role;
+      if (role == system::UnknownRole::internal) continue;
+      const double weight = role == system::UnknownRole::position ? speed_ * speed_ : 1.0;
+      size += weight * std::norm(begin(i));
+      defect += weight * std::norm(end(i) - expected(i, 0));
+    }
+    return size > 0.0 ? std::sqrt(defect / size) : 0.0;
   }
 
   void collect_shapes() {
     std::vector<Eigen::Index> modes(modes_.size());
     std::iota(modes.begin(), modes.end(), 0);
     const Eigen::MatrixXcd values = combine(shapes_, modes, 0);
-    if (ranks_.rank != 0) return;
-    std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
-    std::iota(all.begin(), all.end(), 0);
-    const Eigen::Index n = system_.size();
-    const Eigen::Index columns = shapes_.rows() / n;
-    for (std::size_t m = 0; m < modes_.size(); ++m) {
-      const Eigen::Map<const Eigen::MatrixXcd> sector(
-          values.col(static_cast<Eigen::Index>(m)).data(), n, columns);
-      mode_shapes_.push_back(whole_period(sector, exponents_[m], all, stride_, columns));
+    const Eigen::MatrixXcd ends = combine(end_, modes, 0);
+    Eigen::VectorXd residuals = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes.size()));
+    if (ranks_.rank == 0)
+      for (const Eigen::Index m : modes)
+        residuals(m) = closure(values.col(m).head(system_.size()), ends.col(m),
+                               multipliers_[static_cast<std::size_t>(m)]);
+    ranks_.sum(residuals.data(), modes.size());
+    for (const Eigen::Index m : modes) modes_[static_cast<std::size_t>(m)].residual = residuals(m);
+    if (ranks_.rank == 0) {
+      std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
+      std::iota(all.begin(), all.end(), 0);
+      const Eigen::Index n = system_.size();
+      const Eigen::Index columns = shapes_.rows() / n;
+      for (std::size_t m = 0; m < modes_.size(); ++m) {
+        const Eigen::Map<const Eigen::MatrixXcd> sector(
+            values.col(static_cast<Eigen::Index>(m)).data(), n, columns);
+        mode_shapes_.push_back(whole_period(sector, exponents_[m], all, stride_, columns));
+      }
     }
+    settle_rigid_body_modes();
+  }
+
+  /// A real growth or decay of the joints alone, and what counts as zero, is no oscillation: the
+  /// harmonics that the rotor sees of it are those of its own turning, and k stays 0.
+  void settle_rigid_body_modes() {
+    Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
+    if (ranks_.rank == 0) {
+      for (std::size_t m = 0; m < modes_.size(); ++m) {
+        const bool zero = std::abs(exponents_[m]) < zero_exponent * speed_;
+        const bool real = exponents_[m].imag() == 0.0 &&
+                          is_rigid_body(system_, mode_shapes_[m], modes_[m].kinetic_energy);
+        if (!zero && !real) harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
+      }
+    }
+    ranks_.sum(harmonics.data(), modes_.size());
+    for (std::size_t m = 0; m < modes_.size(); ++m)
+      modes_[m].harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
   }
 
   // ---- the result ------------------------------------------------------------------------------
@@ -347,7 +388,8 @@ class Analysis {
       for (Eigen::Index k = 0; k < columns; ++k)
         result.set.shape_times.push_back(
             (static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
-    if (!result.set.shapes.empty()) label_modes(system_, result.set);
+    label_modes(system_, result.set);
+    scale_shapes(system_, result.set);
     return result;
   }
 
@@ -368,6 +410,7 @@ class Analysis {
   std::vector<Eigen::Index> own_;     ///< initial states of this rank
   Eigen::MatrixXd history_;           ///< kinetic unknowns, step after step, x own states
   Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th step x own states
+  Eigen::MatrixXd end_;               ///< all unknowns in the middle of the step after the sector
   Eigen::MatrixXd first_, last_;      ///< eta at the first two and the last two instants
   std::vector<Complex> multipliers_;  ///< of the sector
   std::vector<Complex> exponents_;    ///< principal

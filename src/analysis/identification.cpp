@@ -26,7 +26,7 @@ Eigen::MatrixXd weight_of(const EnergyGroup& group) {
   return Eigen::Map<const Eigen::MatrixXd>(group.weight.data(), n, n);
 }
 
-double mean_energy(const EnergyGroup& group, const Eigen::MatrixXcd& shape) {
+double mean_strain_energy(const EnergyGroup& group, const Eigen::MatrixXcd& shape) {
   const Eigen::MatrixXd weight = weight_of(group);
   double energy = 0.0;
   for (Eigen::Index a = 0; a < weight.rows(); ++a)
@@ -36,7 +36,7 @@ double mean_energy(const EnergyGroup& group, const Eigen::MatrixXcd& shape) {
       const auto column = group.unknowns[static_cast<std::size_t>(b)];
       energy += 0.5 * weight(a, b) * std::real(shape.row(row).dot(shape.row(column)));
     }
-  return energy;
+  return energy / static_cast<double>(shape.cols());
 }
 
 /// Correlation of the strains of one motion in blades 1 and 2: 1 alike, -1 opposite.
@@ -78,27 +78,28 @@ std::string moving_joint(const system::PeriodicSystem& system, const Eigen::Matr
   return name;
 }
 
-std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
+/// Mean strain energy by "part/motion".
+std::map<std::string, double> strain_energies(const system::PeriodicSystem& system,
+                                              const Eigen::MatrixXcd& shape) {
   std::map<std::string, double> strain;
-  double kinetic = 0.0;
-  int blades = 0;
-  for (const EnergyGroup& group : system.energy_groups()) {
-    blades = std::max(blades, group.blade);
-    const double energy = mean_energy(group, shape);
-    if (group.kind == EnergyGroup::Kind::kinetic)
-      kinetic += energy;
-    else
-      strain[group.part + "/" + group.motion] += energy;
-  }
-  double strained = 0.0;
-  std::string largest;
-  for (const auto& [name, energy] : strain) {
-    strained += energy;
-    if (largest.empty() || energy > strain[largest]) largest = name;
-  }
+  for (const EnergyGroup& group : system.energy_groups())
+    if (group.kind == EnergyGroup::Kind::strain)
+      strain[group.part + "/" + group.motion] += mean_strain_energy(group, shape);
+  return strain;
+}
+
+std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
+                    double kinetic) {
+  const std::map<std::string, double> strain = strain_energies(system, shape);
+  const auto largest_entry =
+      std::max_element(strain.begin(), strain.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string joint = moving_joint(system, shape);
-  if (strained < elastic_share * (strained + kinetic) && !joint.empty()) return joint;
-  if (largest.empty()) return joint.empty() ? "mode" : joint;
+  if (!joint.empty() && is_rigid_body(system, shape, kinetic)) return joint;
+  if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
+  const std::string& largest = largest_entry->first;
+  int blades = 0;
+  for (const EnergyGroup& group : system.energy_groups()) blades = std::max(blades, group.blade);
   const std::string part = largest.substr(0, largest.find('/'));
   const std::string motion = largest.substr(largest.find('/') + 1);
   if (part == "joint") return motion;
@@ -110,6 +111,14 @@ std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd
 }
 
 }  // namespace
+
+bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
+                   double kinetic_energy) {
+  double strained = 0.0;
+  for (const auto& [name, energy] : strain_energies(system, shape))
+    if (!name.starts_with("joint/")) strained += energy;
+  return strained < elastic_share * (strained + kinetic_energy);
+}
 
 std::vector<PetscInt> kinetic_unknowns(const system::PeriodicSystem& system) {
   std::vector<PetscInt> unknowns;
@@ -163,9 +172,10 @@ void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
                                       spectrum.col(row).imag().cwiseProduct(spectrum.col(other).imag()));
       }
   }
-  const double total = energy.sum();
   const Eigen::Index half = samples / 2;
   const auto place = [samples](Eigen::Index k) { return k >= 0 ? k : k + samples; };
+  const double total = energy.sum();
+  mode.kinetic_energy = total;
   participation.resize(samples);
   for (Eigen::Index i = 0; i < samples; ++i)
     participation(i) = total > 0.0 ? energy.row(place(i - half)).sum() / total : 0.0;
@@ -190,10 +200,24 @@ void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
   mode.harmonic = static_cast<int>(chosen);
 }
 
+void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    Eigen::MatrixXcd& shape = set.shapes[m];
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < shape.rows(); ++i)
+      if (system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
+        largest = std::max(largest, shape.row(i).cwiseAbs().maxCoeff());
+    if (!(largest > 0.0)) continue;
+    shape /= largest;
+    set.modes[m].kinetic_energy /= largest * largest;
+  }
+}
+
 void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   std::map<std::string, int> count;
   std::vector<std::string> stems;
-  for (const Eigen::MatrixXcd& shape : set.shapes) stems.push_back(stem_of(system, shape));
+  for (std::size_t i = 0; i < set.shapes.size(); ++i)
+    stems.push_back(stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
   for (const std::string& stem : stems) ++count[stem];
   std::map<std::string, int> number;
   for (std::size_t i = 0; i < set.modes.size(); ++i) {

@@ -33,6 +33,13 @@ class HarmonicEnergy {
   std::vector<Group> groups_;
 };
 
+/// True where almost nothing strains: a rigid-body motion of the free joints.
+bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
+                   double kinetic_energy);
+
+/// Scales every shape so that its largest position is 1, and its kinetic energy with it.
+void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
+
 /// Names modes by where their strain energy is, or by the joint that moves where nothing strains,
 /// with symmetric or antisymmetric for two blades, numbered by frequency.
 void label_modes(const system::PeriodicSystem& system, ModeSet& set);

@@ -23,6 +23,7 @@ struct Mode {
   bool resolved = true;             ///< omega dt / 2 <= 0.7 and the residual is small
   double residual = 0.0;            ///< |z(T) - mu z(0)| / |z(0)| of the mode, or of the eigenpair
   std::vector<PartShare> parts;     ///< descending
+  double kinetic_energy = 0.0;      ///< mean, of the shape as it is scaled [J]
 };
 
 struct ModeSet {
@@ -32,7 +33,8 @@ struct ModeSet {
   /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
   Eigen::MatrixXd participation;
   int first_harmonic = 0;
-  /// Periodic mode shapes: per mode, size x samples, at `shape_times` [s].
+  /// Periodic mode shapes Z(t) exp(-lambda t): per mode, size x samples, at `shape_times` [s];
+  /// the largest position is 1 m or 1 rad.
   std::vector<Eigen::MatrixXcd> shapes;
   std::vector<double> shape_times;
 };

@@ -32,12 +32,13 @@ struct Unknown {
   UnknownRole role = UnknownRole::position;
 };
 
-/// Unknowns that belong together, with their share of an energy: e = z_i^T weight z_i / 2.
+/// Unknowns that belong together, with their share of an energy e = z^T weight z / 2. Kinetic:
+/// inertial velocities, components in the part's own frame. Strain: internal loads.
 struct EnergyGroup {
   enum class Kind { kinetic, strain };
   Kind kind = Kind::kinetic;
   std::string part;   ///< "tower", "nacelle", "hub", "blade"
-  std::string motion; ///< "fore-aft", "side-side", "torsion", "flap", "lead-lag", "yaw", ...
+  std::string motion; ///< "fore-aft", "lateral", "torsion", "flap", "lead-lag", "yaw", ...
   int blade = 0;      ///< from 1; 0 = no blade
   Frame frame = Frame::fixed;
   std::vector<PetscInt> unknowns;
