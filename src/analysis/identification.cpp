@@ -155,7 +155,10 @@ void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
   Eigen::VectorXcd column(samples);
   for (Eigen::Index i = 0; i < history.rows(); ++i) {
     const Eigen::VectorXcd signal = by_time.col(i);
-    transform.fwd(column, signal);
+    if (samples > 1)
+      transform.fwd(column, signal);
+    else
+      column = signal;
     spectrum.col(i) = column / static_cast<double>(samples);
   }
   Eigen::MatrixXd energy =

@@ -20,6 +20,14 @@ void multiply_by_inverse_root(Vec factors, const std::vector<double>& largest) {
     if (largest[i] > 0.0) view[static_cast<PetscInt>(i)] /= std::sqrt(largest[i]);
 }
 
+/// All eigenvalues are equal: their order is the caller's affair, and SLEPc's way of sorting (swaps
+/// in the Schur form) fails on the degenerate pairs of identical blades.
+PetscErrorCode keep_order(PetscScalar, PetscScalar, PetscScalar, PetscScalar, PetscInt* result,
+                          void*) noexcept {
+  *result = 0;
+  return 0;
+}
+
 }  // namespace
 
 Equilibration equilibrate(Mat matrix) {
@@ -199,6 +207,8 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
   petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
   petsc::check(EPSSetType(solver.get(), EPSLAPACK));
   petsc::check(EPSSetDimensions(solver.get(), n, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_WHICH_USER));
+  petsc::check(EPSSetEigenvalueComparison(solver.get(), keep_order, nullptr));
   petsc::check(EPSSetFromOptions(solver.get()));
   petsc::check(EPSSolve(solver.get()));
   PetscInt converged = 0;
