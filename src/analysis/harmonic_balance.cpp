@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <random>
 #include <sstream>
 
 #include "samara/analysis/linear_algebra.hpp"
@@ -86,20 +87,36 @@ class Balance {
     petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   }
 
-  /// An AIJ matrix with the pattern of the tangent: every entry of K becomes a block of harmonics.
+  /// An AIJ matrix with the pattern of the tangent: every entry of K and M that is not always zero,
+  /// found at a state where everything moves, becomes a block of harmonics.
   petsc::Handle<Mat> make_matrix() {
-    std::vector<PetscInt> counts(static_cast<std::size_t>(unknowns()));
-    for (Eigen::Index i = 0; i < size_; ++i) {
-      PetscInt count = 0;
-      petsc::check(MatGetRow(jacobian_.get(), static_cast<PetscInt>(i), &count, nullptr, nullptr));
-      for (int c = 0; c < width_; ++c)
-        counts[static_cast<std::size_t>(i * width_ + c)] = (count + 1) * width_;
-      petsc::check(
-          MatRestoreRow(jacobian_.get(), static_cast<PetscInt>(i), &count, nullptr, nullptr));
+    std::minstd_rand random(1);
+    std::uniform_real_distribution<double> uniform(-0.1, 0.1);
+    system_.reference_state(0.0, z_.get());
+    {
+      const petsc::WriteView z(z_.get());
+      const petsc::WriteView z_dot(z_dot_.get());
+      for (PetscInt i = 0; i < system_.size(); ++i) {
+        z[i] += uniform(random);
+        z_dot[i] = uniform(random);
+      }
     }
+    system_.tangents(0.37 * system_.period(), z_.get(), z_dot_.get(), 1.0 + uniform(random),
+                     jacobian_.get(), mass_.get());
+    const Eigen::SparseMatrix<double, Eigen::RowMajor> pattern = to_sparse(jacobian_.get());
+    std::vector<PetscInt> counts;
+    for (Eigen::Index i = 0; i < size_; ++i)
+      for (int c = 0; c < width_; ++c)
+        counts.push_back((static_cast<PetscInt>(pattern.row(i).nonZeros()) + 1) * width_);
     petsc::Handle<Mat> matrix;
     petsc::check(
         MatCreateSeqAIJ(PETSC_COMM_SELF, unknowns(), unknowns(), 0, counts.data(), matrix.fill()));
+    add_sample(jacobian_.get(), Eigen::MatrixXd::Zero(width_, width_), matrix.get());
+    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
+      petsc::check(MatSetValue(matrix.get(), neutral.row * width_, neutral.unknown * width_, 0.0,
+                               ADD_VALUES));
+    petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
     return matrix;
   }
 

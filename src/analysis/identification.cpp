@@ -219,8 +219,13 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
 void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   std::map<std::string, int> count;
   std::vector<std::string> stems;
-  for (std::size_t i = 0; i < set.shapes.size(); ++i)
-    stems.push_back(stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  for (std::size_t i = 0; i < set.shapes.size(); ++i) {
+    const std::string joint = moving_joint(system, set.shapes[i]);
+    const bool rests = std::abs(set.modes[i].exponent) < zero && !joint.empty();
+    stems.push_back(rests ? joint
+                          : stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
+  }
   for (const std::string& stem : stems) ++count[stem];
   std::map<std::string, int> number;
   for (std::size_t i = 0; i < set.modes.size(); ++i) {

@@ -1,13 +1,29 @@
 #include "samara/petsc/session.hpp"
 
+#include <array>
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <thread>
 
 #include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
 
 namespace samara::petsc {
 namespace {
+
+/// What a rank that failed waits for the others, who may be in the middle of a computation [s].
+constexpr double patience = 5.0;
+
+constexpr char own_option[] = "-no_signal_handler";
+
+/// A number of the environment that one of the launchers sets, or `otherwise`.
+int launcher_number(std::initializer_list<const char*> names, int otherwise) {
+  for (const char* name : names)
+    if (const char* value = std::getenv(name)) return std::atoi(value);
+  return otherwise;
+}
 
 /// Open MPI looks for networks that a single machine does not need; that takes longer than many a
 /// run (0.38 s against 0.07 s). What the user sets in the environment stands.
@@ -34,7 +50,7 @@ void prepare_transport() {
 Session::Session(const std::vector<std::string>& options) {
   prepare_transport();
   // A reader that leaves (samara ... | head) is no crash: signals stay with the system.
-  std::vector<std::string> words{"samara", "-no_signal_handler"};
+  std::vector<std::string> words{"samara", own_option};
   words.insert(words.end(), options.begin(), options.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -45,9 +61,11 @@ Session::Session(const std::vector<std::string>& options) {
     throw InternalError("PETSc and SLEPc do not start");
   // Errors come back as codes and become exceptions; the default handler would print a page.
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  if (size() > 1) MPI_Comm_dup(MPI_COMM_WORLD, &agreement_);
 }
 
 Session::~Session() {
+  if (agreement_ != MPI_COMM_NULL) MPI_Comm_free(&agreement_);
   PetscPopErrorHandler();
   SlepcFinalize();
 }
@@ -64,6 +82,43 @@ int Session::size() {
   return size;
 }
 
+bool Session::is_launched() {
+  return launcher_number({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_NTASKS"}, 1) > 1 &&
+         launcher_number({"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}, -1) >= 0;
+}
+
+int Session::launch_rank() {
+  return launcher_number({"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}, 0);
+}
+
+int Session::agree(int code, const std::string& message) const {
+  const int ticket = code == 0 ? 0 : size() - rank();  // largest on the first that failed
+  const std::array<int, 2> own{code, ticket};
+  std::array<int, 2> all = own;
+  if (size() > 1) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(own.data(), all.data(), 2, MPI_INT, MPI_MAX, agreement_, &request);
+    const auto start = std::chrono::steady_clock::now();
+    int done = 0;
+    if (code == 0) MPI_Wait(&request, MPI_STATUS_IGNORE);
+    while (code != 0 && done == 0) {
+      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+      const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
+      if (done == 0 && waited.count() > patience) {
+        std::fputs(message.c_str(), stderr);
+        std::fflush(stderr);
+        MPI_Abort(MPI_COMM_WORLD, code);
+      }
+      if (done == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  if (ticket > 0 && ticket == all[1]) {
+    std::fputs(message.c_str(), stderr);
+    std::fflush(stderr);
+  }
+  return all[0];
+}
+
 std::string Session::unused_options() {
   PetscInt count = 0;
   char** names = nullptr;
@@ -74,6 +129,16 @@ std::string Session::unused_options() {
     text += std::string(text.empty() ? "-" : " -") + names[i];
   check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   return text;
+}
+
+std::string Session::options() {
+  char* all = nullptr;
+  check(PetscOptionsGetAll(nullptr, &all));
+  std::string text(all);
+  PetscFree(all);
+  const std::size_t own = text.find(own_option);
+  if (own != std::string::npos) text.erase(own, sizeof own_option);  // and the blank behind it
+  return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 
 std::string library_versions() {

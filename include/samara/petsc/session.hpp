@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <mpi.h>
+
 namespace samara::petsc {
 
 /// One per process. Takes the arguments that belong to PETSc's options database.
@@ -17,8 +19,25 @@ class Session {
   static int rank();
   static int size();
 
+  /// True where a launcher (mpirun, srun) started this process as one of several; known before a
+  /// session starts, as is the rank that the process will have (0 without a launcher).
+  static bool is_launched();
+  static int launch_rank();
+
+  /// What every rank ends with: the largest of their exit codes. Every rank calls it at the same
+  /// points of its work; the first one that failed prints its message, whole lines, to stderr.
+  /// Where the others do not come within some seconds (they wait for this rank in a collective
+  /// call), the rank that failed prints its message and ends them all.
+  int agree(int code, const std::string& message) const;
+
   /// Options that no object asked for, in words; empty if none.
   static std::string unused_options();
+
+  /// All options in force: of the command line, of PETSC_OPTIONS and of .petscrc.
+  static std::string options();
+
+ private:
+  MPI_Comm agreement_ = MPI_COMM_NULL;  ///< apart from all communication of the analyses
 };
 
 /// Versions of PETSc, SLEPc and MPI in words.

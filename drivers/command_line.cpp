@@ -1,0 +1,239 @@
+#include "command_line.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <optional>
+#include <string_view>
+
+#include "samara/base/error.hpp"
+#include "samara/base/version.hpp"
+
+namespace samara::drivers {
+namespace {
+
+const std::vector<std::string> own_options{"--set", "--csv", "--help", "--version"};
+
+/// Number of letters to change, add, leave out or swap with the next to make one word of the other.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> next(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    next[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      next[j] = std::min({row[j] + 1, next[j - 1] + 1, row[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        next[j] = std::min(next[j], before[j - 2] + 1);
+    }
+    std::swap(before, row);
+    std::swap(row, next);
+  }
+  return row.back();
+}
+
+/// `; did you mean "..."?`, or nothing where no word resembles the given one.
+std::string suggest(const std::string& word, const std::vector<std::string>& words) {
+  const std::string* best = nullptr;
+  std::size_t least = 1 + word.size() / 3;
+  for (const std::string& candidate : words) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance > least || (best != nullptr && distance == least)) continue;
+    best = &candidate;
+    least = distance;
+  }
+  return best == nullptr ? "" : "; did you mean \"" + *best + "\"?";
+}
+
+std::vector<std::string> names_of(std::span<const Command> commands) {
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.push_back(command.name);
+  return names;
+}
+
+std::string join(const std::vector<std::string>& words, const std::string& between) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
+
+bool is_safe(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+         std::string_view("-_=./:,+@%").find(c) != std::string_view::npos;
+}
+
+/// `word` as a shell reads it back.
+std::string quote(const std::string& word) {
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_safe)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+bool is_number(const std::string& word) {
+  const std::size_t digit = word.find_first_not_of("+-.");
+  return digit != std::string::npos && std::isdigit(static_cast<unsigned char>(word[digit])) != 0;
+}
+
+/// PETSc's rule: what starts with a dash is an option, unless it is a negative number.
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && !is_number(word);
+}
+
+class Parser {
+ public:
+  Parser(const std::vector<std::string>& arguments, std::span<const Command> commands)
+      : arguments_(arguments), commands_(commands) {}
+
+  CommandLine run() {
+    line_.text = "samara";
+    for (const std::string& argument : arguments_) line_.text += " " + quote(argument);
+    while (next_ < arguments_.size()) take(arguments_[next_++]);
+    if (line_.request == Request::run) require_operands();
+    return line_;
+  }
+
+ private:
+  void take(const std::string& word) {
+    if (word.starts_with("--"))
+      take_own(word);
+    else if (word == "-h")
+      line_.request = Request::help;
+    else if (word == "-o")
+      set_once(line_.result_path, "-o", value_of("-o", "a path, e.g. -o result.h5", {}));
+    else if (is_option(word))
+      take_petsc(word);
+    else
+      take_operand(word);
+  }
+
+  void take_own(const std::string& word) {
+    const std::size_t equals = word.find('=');
+    const std::string name = word.substr(0, equals);
+    std::optional<std::string> value;
+    if (equals != std::string::npos) value = word.substr(equals + 1);
+    if (word == "--help")
+      line_.request = Request::help;
+    else if (word == "--version")
+      line_.request = Request::version;
+    else if (name == "--set")
+      line_.settings.push_back(value_of(name, "key=value, e.g. --set blades.elements=8", value));
+    else if (name == "--csv")
+      set_once(line_.csv_path, name, value_of(name, "a path, e.g. --csv modes.csv", value));
+    else
+      throw InputError("unknown option " + word + suggest(name, own_options) +
+                       "; hint: samara --help; options of PETSc have one dash");
+  }
+
+  std::string value_of(const std::string& name, const std::string& expected,
+                       const std::optional<std::string>& value) {
+    if (value && !value->empty()) return *value;
+    if (value || next_ == arguments_.size() || arguments_[next_].empty() ||
+        is_option(arguments_[next_]))
+      throw InputError(name + " needs " + expected);
+    return arguments_[next_++];
+  }
+
+  static void set_once(std::string& target, const std::string& name, const std::string& value) {
+    if (!target.empty()) throw InputError(name + " is given twice; leave one of them out");
+    target = value;
+  }
+
+  void take_petsc(const std::string& word) {
+    line_.petsc_options.push_back(word);
+    if (next_ == arguments_.size() || is_option(arguments_[next_])) return;
+    line_.petsc_options.push_back(arguments_[next_++]);
+  }
+
+  void take_operand(const std::string& word) {
+    if (line_.command == nullptr) {
+      const auto found = std::find_if(commands_.begin(), commands_.end(),
+                                      [&](const Command& c) { return c.name == word; });
+      if (found == commands_.end())
+        throw InputError("unknown command \"" + word + "\"" + suggest(word, names_of(commands_)) +
+                         "; the commands are " + join(names_of(commands_), ", ") +
+                         "; hint: samara --help");
+      line_.command = &*found;
+    } else if (line_.case_path.empty() && !word.empty()) {
+      line_.case_path = word;
+    } else {
+      throw InputError("unexpected argument \"" + word + "\": the case is " + line_.case_path +
+                       ", one a run; hint: samara " + line_.command->name + " --help");
+    }
+  }
+
+  void require_operands() const {
+    if (line_.command == nullptr)
+      throw InputError("missing command: " + join(names_of(commands_), ", ") +
+                       "; hint: samara --help");
+    if (line_.case_path.empty()) {
+      std::string hint = "samara " + line_.command->name + " --help shows an example";
+      for (std::size_t i = 1; i < line_.petsc_options.size(); ++i)
+        if (line_.petsc_options[i].find(".y") != std::string::npos)
+          hint = line_.petsc_options[i] + " was taken for the value of " +
+                 line_.petsc_options[i - 1] + ", the case comes before the options of PETSc";
+      throw InputError("missing case file: samara " + line_.command->name +
+                       " CASE.yaml; hint: " + hint);
+    }
+    if (!line_.csv_path.empty() && !line_.command->has_csv)
+      throw InputError("--csv: samara " + line_.command->name + " has no table to write");
+    if (!line_.csv_path.empty() && line_.csv_path == line_.result_path)
+      throw InputError("-o and --csv name the same file; give each its own");
+  }
+
+  const std::vector<std::string>& arguments_;
+  std::span<const Command> commands_;
+  std::size_t next_ = 0;
+  CommandLine line_;
+};
+
+constexpr char option_lines[] =
+    R"(options
+  --set key=value   replaces or adds a key of the case before it is checked; may be repeated
+  -o RESULT.h5      the result; without it the case's name with .h5, in the current folder.
+                    Only a file that samara wrote is ever overwritten
+  --csv FILE.csv    the table as comma-separated values, too
+  --help            this text; samara <command> --help shows an example
+  --version         versions of samara and of its libraries
+  -name [value]     anything else with one dash goes to PETSc and SLEPc
+)";
+
+std::string padded(const std::string& word, std::size_t width) {
+  return word + std::string(width - std::min(width, word.size()), ' ');
+}
+
+}  // namespace
+
+CommandLine parse_command_line(const std::vector<std::string>& arguments,
+                               std::span<const Command> commands) {
+  return Parser(arguments, commands).run();
+}
+
+std::string help_text(const CommandLine& line, std::span<const Command> commands) {
+  const std::string options = " CASE.yaml [options]";
+  if (line.command != nullptr) {
+    const Command& command = *line.command;
+    return "samara " + command.name + options + "\n\n" + command.description + "\nexample\n  samara " +
+           command.name + " " + command.example + "\n\n" + option_lines;
+  }
+  std::string text = "samara " + std::string(version) +
+                     ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" +
+                     "  samara <command>" + options + "\n  mpirun -n 4 samara <command>" + options +
+                     "\n\ncommands\n";
+  for (const Command& command : commands)
+    text += "  " + padded(command.name, 10) + command.summary + "\n";
+  return text + "\nexample\n  samara floquet inputs/lee2002/baseline.yaml --set shaft.speed=5\n\n" +
+         option_lines +
+         R"(
+exit codes
+  0  done
+  1  the environment failed, or samara has a defect
+  2  something you can mend: the case, an option, a path
+  3  an iteration did not converge
+
+The keys of a case are explained in docs/case_file.md.
+)";
+}
+
+}  // namespace samara::drivers

@@ -1,0 +1,45 @@
+// What the user typed, taken apart; and what the program says of itself.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "job.hpp"
+
+namespace samara::drivers {
+
+/// A sub-command.
+struct Command {
+  std::string name;
+  std::string summary;
+  std::string description;         ///< of its --help, whole lines
+  std::string example;             ///< the arguments of a command line that works
+  bool writes_result = true;       ///< also without -o
+  bool has_csv = true;
+  void (*require)(const io::Case&);  ///< refuses before anything is solved; may be null
+  void (*run)(const Job&);
+};
+
+enum class Request { run, help, version };
+
+struct CommandLine {
+  Request request = Request::run;
+  const Command* command = nullptr;  ///< null only for --help and --version of the program
+  std::string text;                  ///< as typed, quoted for a shell
+  std::string case_path;
+  std::vector<std::string> settings;
+  std::string result_path;  ///< empty: not given
+  std::string csv_path;     ///< empty: none wanted
+  std::vector<std::string> petsc_options;
+};
+
+/// Everything with one dash that is not -o, with its value, belongs to PETSc.
+/// @throws InputError with a suggestion
+CommandLine parse_command_line(const std::vector<std::string>& arguments,
+                               std::span<const Command> commands);
+
+/// The text of --help, of the program or of one command.
+std::string help_text(const CommandLine& line, std::span<const Command> commands);
+
+}  // namespace samara::drivers

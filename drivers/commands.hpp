@@ -1,0 +1,16 @@
+// The sub-commands, one file each.
+#pragma once
+
+#include "job.hpp"
+
+namespace samara::drivers {
+
+void run_check(const Job& job);
+void run_modes(const Job& job);
+void run_trim(const Job& job);
+void run_floquet(const Job& job);
+
+/// Floquet's theory needs a period.
+void require_speed(const io::Case& input);
+
+}  // namespace samara::drivers

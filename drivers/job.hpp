@@ -1,0 +1,26 @@
+// What a command works on, and how it delivers.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "samara/io/case.hpp"
+#include "samara/io/result_file.hpp"
+
+namespace samara::drivers {
+
+struct Job {
+  io::Case input;
+  std::string command_line;  ///< as typed
+  std::string result_path;   ///< empty: no result is wanted
+  std::string csv_path;      ///< empty: no table is wanted
+};
+
+/// Writes the files and prints the tables; the tables also where a file cannot be written, for they
+/// may have taken long. The first rank alone calls it.
+void deliver(const Job& job, const std::string& tables,
+             const std::function<void(io::ResultFile&)>& write_result,
+             const std::function<void(const std::string&)>& write_csv);
+
+}  // namespace samara::drivers

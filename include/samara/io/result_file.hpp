@@ -1,0 +1,89 @@
+// Results of a run in one HDF5 file, and its tables as comma-separated values. The names are those
+// of docs/case_file.md, "Results". Files are written under a temporary name in the same folder and
+// renamed when complete: a run that fails leaves what was there before.
+//
+// Serial: one rank writes.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "samara/analysis/floquet.hpp"
+#include "samara/analysis/mode.hpp"
+#include "samara/analysis/trim.hpp"
+#include "samara/io/case.hpp"
+#include "samara/system/turbine_system.hpp"
+
+namespace samara::io {
+
+/// Version of the names and shapes below, the attribute `samara_schema` of the root.
+inline constexpr int result_schema = 1;
+
+/// What a reader must know of a dataset: its attributes.
+struct Meaning {
+  std::string unit;  ///< "1" for a pure number
+  std::string frame;
+  std::string description;
+};
+
+/// How a result came about: attributes of the root.
+struct RunRecord {
+  std::string command_line;
+  std::string petsc_options;
+  std::string libraries;
+  int ranks = 1;
+};
+
+class ResultFile {
+ public:
+  /// Starts the file with /case and the attributes of the root.
+  ResultFile(const std::string& path, const Case& input, const RunRecord& record);
+  /// Removes the temporary file where publish() was not reached.
+  ~ResultFile();
+  ResultFile(const ResultFile&) = delete;
+  ResultFile& operator=(const ResultFile&) = delete;
+
+  /// /model: speed, period, unknowns.
+  void write_model(const system::TurbineSystem& system);
+  /// /trim
+  void write_trim(const analysis::Trim& trim);
+  /// /floquet
+  void write_floquet(const analysis::Floquet& floquet);
+  /// /modes: what /floquet has, without what belongs to a period.
+  void write_modes(const analysis::ModeSet& set);
+
+  /// One number or a list of them; the groups of `name` are made.
+  void write_value(const std::string& name, double value, const Meaning& meaning);
+  void write_values(const std::string& name, const std::vector<double>& values,
+                    const Meaning& meaning);
+
+  /// Gives the file its name. Nothing can be written afterwards.
+  void publish();
+
+ private:
+  class Storage;
+  std::unique_ptr<Storage> storage_;
+};
+
+/// @throws InputError where a result cannot be written at `path`: no such folder, no permission, or
+/// something there that is not a result of this program.
+void require_result_path(const std::string& path);
+
+/// The same for a table.
+void require_table_path(const std::string& path);
+
+/// True for an HDF5 file that has the schema attribute of a result.
+bool is_result(const std::string& path);
+
+/// One line a mode, all digits; the columns have the names and units of /floquet.
+void write_mode_table(const std::string& path, const analysis::ModeSet& set);
+
+/// One line an unknown: name, unit, mean, cos 1, sin 1, ...
+void write_trim_table(const std::string& path, const system::PeriodicSystem& system,
+                      const analysis::Trim& trim);
+
+/// Name and version of the HDF5 library.
+std::string file_library_version();
+
+}  // namespace samara::io

@@ -1,0 +1,145 @@
+#include "hdf5_file.hpp"
+
+#include <algorithm>
+
+#include "samara/base/error.hpp"
+
+namespace samara::io {
+namespace {
+
+/// The innermost record of HDF5's error stack: nearest to the cause.
+std::string reason() {
+  std::string text;
+  const auto take = [](unsigned, const H5E_error2_t* error, void* target) -> herr_t {
+    if (error->desc != nullptr) *static_cast<std::string*>(target) = error->desc;
+    return 1;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &text);
+  return text.empty() ? "unknown reason" : text;
+}
+
+}  // namespace
+
+void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Hdf5File::Hdf5File(const std::string& path) : path_(path) {
+  silence_hdf5();
+  file_ = {check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), H5Fclose};
+  text_type_ = {check(H5Tcopy(H5T_C_S1)), H5Tclose};
+  check(H5Tset_size(text_type_.get(), H5T_VARIABLE));
+  check(H5Tset_cset(text_type_.get(), H5T_CSET_UTF8));
+  scalar_space_ = {check(H5Screate(H5S_SCALAR)), H5Sclose};
+  link_ = {check(H5Pcreate(H5P_LINK_CREATE)), H5Pclose};
+  check(H5Pset_create_intermediate_group(link_.get(), 1));
+}
+
+hid_t Hdf5File::check(hid_t id) const {
+  if (id < 0) throw InternalError(path_ + ": cannot be written: " + reason());
+  return id;
+}
+
+Hdf5Id Hdf5File::make_dataset(const std::string& name, hid_t type, const Shape& shape,
+                              const Meaning& meaning) {
+  Hdf5Id own_space;
+  if (!shape.empty())
+    own_space = {check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)),
+                 H5Sclose};
+  const hid_t space = shape.empty() ? scalar_space_.get() : own_space.get();
+  Hdf5Id dataset(check(H5Dcreate2(file_.get(), name.c_str(), type, space, link_.get(), H5P_DEFAULT,
+                                  H5P_DEFAULT)),
+                 H5Dclose);
+  set_text(dataset.get(), "unit", meaning.unit);
+  set_text(dataset.get(), "frame", meaning.frame);
+  set_text(dataset.get(), "description", meaning.description);
+  return dataset;
+}
+
+void Hdf5File::write(const std::string& name, std::span<const double> values, const Shape& shape,
+                     const Meaning& meaning) {
+  const Hdf5Id dataset = make_dataset(name, H5T_IEEE_F64LE, shape, meaning);
+  if (values.empty()) return;
+  check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+}
+
+void Hdf5File::write(const std::string& name, std::span<const int> values,
+                     const Meaning& meaning) {
+  const Hdf5Id dataset = make_dataset(name, H5T_STD_I32LE, {values.size()}, meaning);
+  if (values.empty()) return;
+  check(H5Dwrite(dataset.get(), H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+}
+
+void Hdf5File::write(const std::string& name, const std::vector<std::string>& values,
+                     const Meaning& meaning) {
+  std::size_t width = 1;
+  for (const std::string& value : values) width = std::max(width, value.size());
+  std::string table;
+  for (const std::string& value : values) table += value + std::string(width - value.size(), '\0');
+  const Hdf5Id type(check(H5Tcopy(H5T_C_S1)), H5Tclose);
+  check(H5Tset_size(type.get(), width));
+  check(H5Tset_strpad(type.get(), H5T_STR_NULLPAD));
+  check(H5Tset_cset(type.get(), H5T_CSET_UTF8));
+  const Hdf5Id dataset = make_dataset(name, type.get(), {values.size()}, meaning);
+  if (values.empty()) return;
+  check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, table.data()));
+}
+
+void Hdf5File::write(const std::string& name, const std::string& text, const Meaning& meaning) {
+  const Hdf5Id dataset = make_dataset(name, text_type_.get(), {}, meaning);
+  const char* data = text.c_str();
+  check(H5Dwrite(dataset.get(), text_type_.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &data));
+}
+
+Hdf5Id Hdf5File::make_slices(const std::string& name, const Shape& shape,
+                             const Meaning& meaning) {
+  return make_dataset(name, H5T_IEEE_F32LE, shape, meaning);
+}
+
+void Hdf5File::write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values) {
+  const Hdf5Id space(check(H5Dget_space(dataset.get())), H5Sclose);
+  Shape count(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()))));
+  check(H5Sget_simple_extent_dims(space.get(), count.data(), nullptr));
+  Shape start(count.size(), 0);
+  start.front() = slice;
+  count.front() = 1;
+  check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                            nullptr));
+  const hsize_t size = values.size();
+  const Hdf5Id memory(check(H5Screate_simple(1, &size, nullptr)), H5Sclose);
+  check(H5Dwrite(dataset.get(), H5T_NATIVE_FLOAT, memory.get(), space.get(), H5P_DEFAULT,
+                 values.data()));
+}
+
+void Hdf5File::set_text(hid_t object, const std::string& name, const std::string& text) {
+  const Hdf5Id attribute(check(H5Acreate2(object, name.c_str(), text_type_.get(),
+                                          scalar_space_.get(), H5P_DEFAULT, H5P_DEFAULT)),
+                         H5Aclose);
+  const char* data = text.c_str();
+  check(H5Awrite(attribute.get(), text_type_.get(), &data));
+}
+
+void Hdf5File::set_attribute(const std::string& object, const std::string& name,
+                             const std::string& text) {
+  const Hdf5Id target(check(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT)), H5Oclose);
+  set_text(target.get(), name, text);
+}
+
+void Hdf5File::set_number(const std::string& object, const std::string& name, hid_t type,
+                          const void* value) {
+  const Hdf5Id target(check(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT)), H5Oclose);
+  const Hdf5Id attribute(check(H5Acreate2(target.get(), name.c_str(), type, scalar_space_.get(),
+                                          H5P_DEFAULT, H5P_DEFAULT)),
+                         H5Aclose);
+  check(H5Awrite(attribute.get(), type, value));
+}
+
+void Hdf5File::set_attribute(const std::string& object, const std::string& name, double value) {
+  set_number(object, name, H5T_NATIVE_DOUBLE, &value);
+}
+
+void Hdf5File::set_attribute(const std::string& object, const std::string& name, int value) {
+  set_number(object, name, H5T_NATIVE_INT, &value);
+}
+
+void Hdf5File::close() { check(file_.close()); }
+
+}  // namespace samara::io

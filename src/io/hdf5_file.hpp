@@ -1,0 +1,90 @@
+// A new HDF5 file: the C API behind an owner, and as much of it as results need.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+#include "samara/io/result_file.hpp"
+
+namespace samara::io {
+
+/// Sole owner of an HDF5 identifier.
+class Hdf5Id {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Hdf5Id() = default;
+  Hdf5Id(hid_t id, Close close) : id_(id), close_(close) {}
+  Hdf5Id(Hdf5Id&& other) noexcept
+      : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  Hdf5Id& operator=(Hdf5Id&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  Hdf5Id(const Hdf5Id&) = delete;
+  Hdf5Id& operator=(const Hdf5Id&) = delete;
+  ~Hdf5Id() { close(); }
+
+  hid_t get() const { return id_; }
+  explicit operator bool() const { return id_ >= 0; }
+  /// Negative where the library refuses, e.g. because the disk is full.
+  herr_t close() noexcept {
+    const hid_t id = std::exchange(id_, H5I_INVALID_HID);
+    return id >= 0 ? close_(id) : 0;
+  }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+  Close close_ = nullptr;
+};
+
+/// Errors come back as codes and not as pages on stderr. Call it before any other HDF5 function.
+void silence_hdf5();
+
+class Hdf5File {
+ public:
+  using Shape = std::vector<hsize_t>;
+
+  /// @throws InternalError as all members do: the environment failed
+  explicit Hdf5File(const std::string& path);
+
+  void write(const std::string& name, std::span<const double> values, const Shape& shape,
+             const Meaning& meaning);
+  void write(const std::string& name, std::span<const int> values, const Meaning& meaning);
+  void write(const std::string& name, const std::vector<std::string>& values,
+             const Meaning& meaning);
+  void write(const std::string& name, const std::string& text, const Meaning& meaning);
+
+  /// Makes a dataset of single precision, to be filled slice by slice along its first axis.
+  Hdf5Id make_slices(const std::string& name, const Shape& shape, const Meaning& meaning);
+  void write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values);
+
+  /// Attributes of a group or dataset that exists ("/" is the root).
+  void set_attribute(const std::string& object, const std::string& name, const std::string& text);
+  void set_attribute(const std::string& object, const std::string& name, double value);
+  void set_attribute(const std::string& object, const std::string& name, int value);
+
+  void close();
+
+ private:
+  hid_t check(hid_t id) const;
+  Hdf5Id make_dataset(const std::string& name, hid_t type, const Shape& shape,
+                      const Meaning& meaning);
+  void set_text(hid_t object, const std::string& name, const std::string& text);
+  void set_number(const std::string& object, const std::string& name, hid_t type,
+                  const void* value);
+
+  std::string path_;
+  Hdf5Id file_;
+  Hdf5Id text_type_;     ///< of any length
+  Hdf5Id scalar_space_;
+  Hdf5Id link_;          ///< makes the groups of a name
+};
+
+}  // namespace samara::io
