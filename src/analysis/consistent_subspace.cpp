@@ -87,6 +87,14 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
     throw InternalError(std::to_string(constraints_.size()) + " constraints for " +
                         std::to_string(tied_.size()) + " positions");
   for (const PetscInt column : tied_) carried_[static_cast<std::size_t>(column)] = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (system.rows()[i] == system::RowRole::kinematic)
+      kinematic_.push_back(static_cast<PetscInt>(i));
+    if (system.unknowns()[i].role == system::UnknownRole::velocity)
+      velocities_.push_back(static_cast<PetscInt>(i));
+  }
+  if (kinematic_.size() != velocities_.size())
+    throw InternalError("kinematic rows and velocities differ in number");
   fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
 }
 
@@ -123,18 +131,10 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
   if (!fixed_constraints_)
     z_dot.leftCols(d) = (positions(t + rate_step) - positions(t - rate_step)) / (2.0 * rate_step);
 
-  std::vector<PetscInt> kinematic;
-  std::vector<PetscInt> velocities;
   std::vector<PetscInt> position_unknowns;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    const auto at = static_cast<PetscInt>(i);
-    if (system_.rows()[i] == system::RowRole::kinematic) kinematic.push_back(at);
-    if (system_.unknowns()[i].role == system::UnknownRole::velocity) velocities.push_back(at);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i)
     if (system_.unknowns()[i].role == system::UnknownRole::position)
-      position_unknowns.push_back(at);
-  }
-  if (kinematic.size() != velocities.size())
-    throw InternalError("kinematic rows and velocities differ in number");
+      position_unknowns.push_back(static_cast<PetscInt>(i));
   const Tangents tangents = tangents_at(system_, solution_, t);
   Eigen::MatrixXd p(static_cast<Eigen::Index>(position_unknowns.size()), 2 * d);
   Eigen::MatrixXd p_dot(p.rows(), 2 * d);
@@ -142,13 +142,68 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
     p.row(static_cast<Eigen::Index>(i)) = z.row(position_unknowns[i]);
     p_dot.row(static_cast<Eigen::Index>(i)) = z_dot.row(position_unknowns[i]);
   }
-  const Eigen::MatrixXd right = part(tangents.K, kinematic, position_unknowns) * p +
-                                part(tangents.M, kinematic, position_unknowns) * p_dot;
+  const Eigen::MatrixXd right = part(tangents.K, kinematic_, position_unknowns) * p +
+                                part(tangents.M, kinematic_, position_unknowns) * p_dot;
   const Eigen::MatrixXd v =
-      solve(part(tangents.K, kinematic, velocities), -right, "kinematic rows");
-  for (std::size_t i = 0; i < velocities.size(); ++i)
-    z.row(velocities[i]) = v.row(static_cast<Eigen::Index>(i));
+      solve(part(tangents.K, kinematic_, velocities_), -right, "kinematic rows");
+  for (std::size_t i = 0; i < velocities_.size(); ++i)
+    z.row(velocities_[i]) = v.row(static_cast<Eigen::Index>(i));
   return z;
+}
+
+void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
+                                    const Eigen::VectorXd& eta_dot, Vec z) const {
+  constexpr int most_steps = 30;
+  constexpr double tolerance = 1e-13;
+  const auto n = static_cast<Eigen::Index>(system_.size());
+  const petsc::Handle<Vec> z_dot = system_.make_state();
+  const petsc::Handle<Vec> r = system_.make_state();
+  const petsc::Handle<Mat> jacobian = system_.make_jacobian();
+  const auto rows_of = [&r](const std::vector<PetscInt>& rows) {
+    const petsc::ReadView view(r.get());
+    Eigen::VectorXd values(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      values(static_cast<Eigen::Index>(i)) = view[rows[i]];
+    return values;
+  };
+  {
+    const petsc::WriteView view(z);
+    for (std::size_t i = 0; i < coordinates_.size(); ++i)
+      view[coordinates_[i]] = scale_[i] * eta(static_cast<Eigen::Index>(i));
+  }
+  Eigen::SparseMatrix<double> K;
+  for (int step = 0;; ++step) {
+    system_.residual(t, z, z_dot.get(), r.get());
+    system_.tangents(t, z, z_dot.get(), 0.0, jacobian.get(), nullptr);
+    K = to_sparse(jacobian.get());
+    const Eigen::VectorXd change =
+        solve(part(K, constraints_, tied_), -rows_of(constraints_), "constraints");
+    const petsc::WriteView view(z);
+    for (std::size_t i = 0; i < tied_.size(); ++i)
+      view[tied_[i]] += change(static_cast<Eigen::Index>(i));
+    if (change.size() == 0 || change.norm() < tolerance) break;
+    if (step == most_steps)
+      throw ConvergenceError("no consistent state: the constraints do not converge");
+  }
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(n, 1);
+  for (std::size_t i = 0; i < coordinates_.size(); ++i)
+    rates(coordinates_[i], 0) = scale_[i] * eta_dot(static_cast<Eigen::Index>(i));
+  const Eigen::MatrixXd strained =
+      part(K, constraints_, coordinates_) *
+      (Eigen::Map<const Eigen::VectorXd>(scale_.data(), eta_dot.size()).cwiseProduct(eta_dot));
+  const Eigen::MatrixXd tied = solve(part(K, constraints_, tied_), -strained, "constraints");
+  for (std::size_t i = 0; i < tied_.size(); ++i)
+    rates(tied_[i], 0) = tied(static_cast<Eigen::Index>(i), 0);
+  {
+    const petsc::WriteView view(z_dot.get());
+    Eigen::Map<Eigen::VectorXd>(view.data(), n) = rates.col(0);
+  }
+  system_.residual(t, z, z_dot.get(), r.get());
+  const Eigen::VectorXd change =
+      solve(part(K, kinematic_, velocities_), -rows_of(kinematic_), "kinematic rows");
+  const petsc::WriteView view(z);
+  for (std::size_t i = 0; i < velocities_.size(); ++i)
+    view[velocities_[i]] += change(static_cast<Eigen::Index>(i));
 }
 
 }  // namespace samara::analysis

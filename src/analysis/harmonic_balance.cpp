@@ -291,6 +291,17 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
   return largest;
 }
 
+void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
+  for (std::size_t i = 0; i < system.unknowns().size(); ++i)
+    if (system.unknowns()[i].role == system::UnknownRole::internal)
+      trim.load_level = std::max(trim.load_level, trim.solution.coefficients()
+                                                      .row(static_cast<Eigen::Index>(i))
+                                                      .cwiseAbs()
+                                                      .maxCoeff());
+  trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
+  trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
+}
+
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
                             const PeriodicSolution* start) {
   if (harmonics > 0 && system.period() == 0.0)
@@ -353,15 +364,7 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
     const system::NeutralCoordinate& neutral = system.neutral_coordinates()[n];
     trim.held.push_back({neutral.name, neutral.unit, loads[n]});
   }
-  for (std::size_t i = 0; i < system.unknowns().size(); ++i)
-    if (system.unknowns()[i].role == system::UnknownRole::internal)
-      trim.load_level =
-          std::max(trim.load_level, trim.solution.coefficients()
-                                        .row(static_cast<Eigen::Index>(i))
-                                        .cwiseAbs()
-                                        .maxCoeff());
-  trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
-  trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
+  finish_trim(system, trim);
   trim.history = {{harmonics, trim.residual_between}};
   return trim;
 }

@@ -4,28 +4,29 @@
 
 namespace samara::analysis {
 
-StepPropagator::StepPropagator(const system::PeriodicSystem& system,
-                               const PeriodicSolution& solution, std::vector<bool> carried,
-                               double step)
+LinearizedStep::LinearizedStep(const system::PeriodicSystem& system, std::vector<bool> carried,
+                               double step, bool fixed_constraints, const std::string& prefix)
     : system_(system),
-      solution_(solution),
       carried_(std::move(carried)),
       step_(step),
-      fixed_constraints_(solution.is_constant() && system.constraints_are_autonomous()),
-      z_(system.make_state()),
-      z_dot_(system.make_state()),
+      fixed_constraints_(fixed_constraints),
       jacobian_(system.make_jacobian()),
       mass_(system.make_mass()),
-      solver_("floquet_", [&system, step](Mat matrix) {
+      solver_(prefix, [&system, step](Mat matrix) {
         return scale_by_role(system, matrix, 2.0 / step);
       }) {
   if (!fixed_constraints_) end_jacobian_ = system.make_jacobian();
 }
 
-void StepPropagator::replace_constraints(long k) {
-  const double t = static_cast<double>(k + 1) * step_;
-  solution_.evaluate(t, z_.get(), z_dot_.get());
-  system_.tangents(t, z_.get(), z_dot_.get(), 0.0, end_jacobian_.get(), nullptr);
+void LinearizedStep::factor(double t_middle, Vec z_middle, Vec z_dot_middle, double t_end,
+                            Vec z_end, Vec z_dot_end) {
+  system_.tangents(t_middle, z_middle, z_dot_middle, 2.0 / step_, jacobian_.get(), mass_.get());
+  if (!fixed_constraints_) replace_constraints(t_end, z_end, z_dot_end);
+  solver_.factor(jacobian_.get());
+}
+
+void LinearizedStep::replace_constraints(double t_end, Vec z_end, Vec z_dot_end) {
+  system_.tangents(t_end, z_end, z_dot_end, 0.0, end_jacobian_.get(), nullptr);
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<PetscInt> row_columns;
   std::vector<PetscScalar> row_values;
@@ -49,22 +50,36 @@ void StepPropagator::replace_constraints(long k) {
   constraint_rows_.setFromTriplets(entries.begin(), entries.end());
 }
 
-Eigen::MatrixXd StepPropagator::advance(long k, Eigen::MatrixXd& z) {
-  const double t = (static_cast<double>(k) + 0.5) * step_;
-  const double shift = 2.0 / step_;
-  solution_.evaluate(t, z_.get(), z_dot_.get());
-  system_.tangents(t, z_.get(), z_dot_.get(), shift, jacobian_.get(), mass_.get());
-  if (!fixed_constraints_) replace_constraints(k);
-  solver_.factor(jacobian_.get());
-
+Eigen::MatrixXd LinearizedStep::advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load) {
   // With z_f = 2 z_m - z_i: (2/dt M + K) z_m = 2/dt M z_i, and D_f z_m = D_f z_i / 2.
-  Eigen::MatrixXd middle = shift * (to_sparse(mass_.get()) * z);
+  Eigen::MatrixXd middle = (2.0 / step_) * (to_sparse(mass_.get()) * z);
   if (!fixed_constraints_) middle += 0.5 * (constraint_rows_ * z);
+  if (load.size() > 0) middle += load;
   solver_.solve(middle);
   for (Eigen::Index j = 0; j < z.cols(); ++j)
-    for (Eigen::Index i = 0; i < z.rows(); ++i)
-      z(i, j) = carried_[static_cast<std::size_t>(i)] ? 2.0 * middle(i, j) - z(i, j) : 0.0;
+    for (Eigen::Index i = 0; i < z.rows(); ++i) z(i, j) = end_value(i, z(i, j), middle(i, j));
   return middle;
+}
+
+StepPropagator::StepPropagator(const system::PeriodicSystem& system,
+                               const PeriodicSolution& solution, std::vector<bool> carried,
+                               double step)
+    : solution_(solution),
+      step_(step),
+      z_(system.make_state()),
+      z_dot_(system.make_state()),
+      z_end_(system.make_state()),
+      z_dot_end_(system.make_state()),
+      linearized_(system, std::move(carried), step,
+                  solution.is_constant() && system.constraints_are_autonomous(), "floquet_") {}
+
+Eigen::MatrixXd StepPropagator::advance(long k, Eigen::MatrixXd& z) {
+  const double middle = (static_cast<double>(k) + 0.5) * step_;
+  const double end = static_cast<double>(k + 1) * step_;
+  solution_.evaluate(middle, z_.get(), z_dot_.get());
+  solution_.evaluate(end, z_end_.get(), z_dot_end_.get());
+  linearized_.factor(middle, z_.get(), z_dot_.get(), end, z_end_.get(), z_dot_end_.get());
+  return linearized_.advance(z);
 }
 
 }  // namespace samara::analysis

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "samara/analysis/harmonic_balance.hpp"
+#include "samara/analysis/shooting.hpp"
 #include "samara/base/error.hpp"
 
 namespace samara::analysis {
@@ -51,6 +52,8 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
   const bool exact = constant.residual_between <= allowed_residual(constant, rounding) &&
                      constant.residual <= allowed_residual(constant, rounding);
   if (exact || system.period() == 0.0) return constant;
+  if (options.method == TrimMethod::shooting)
+    return solve_shooting(system, options.steps, options.tolerance, observer);
   if (options.automatic) return raise_harmonics(system, options, std::move(constant), observer);
   if (!is_closed(options.harmonics, system.symmetry().sectors))
     observer.note("trim: " + std::to_string(options.harmonics) + " harmonics leave harmonic " +

@@ -36,6 +36,12 @@ class ConsistentSubspace {
   /// is differenced.
   Eigen::MatrixXd basis(double t, double rate_step) const;
 
+  /// The nonlinear state with the given eta and eta_dot: solves the constraint rows for the tied
+  /// positions and the kinematic rows for the velocities, from `z` as a start, into `z`.
+  /// @throws ConvergenceError
+  void find_state(double t, const Eigen::VectorXd& eta, const Eigen::VectorXd& eta_dot,
+                  Vec z) const;
+
  private:
   Eigen::MatrixXd positions(double t) const;
 
@@ -46,6 +52,8 @@ class ConsistentSubspace {
   std::vector<bool> carried_;
   std::vector<PetscInt> constraints_;   ///< rows
   std::vector<PetscInt> tied_;          ///< positions in constraint rows
+  std::vector<PetscInt> kinematic_;     ///< rows
+  std::vector<PetscInt> velocities_;    ///< unknowns
   bool fixed_constraints_ = false;
 };
 

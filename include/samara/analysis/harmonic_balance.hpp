@@ -16,4 +16,7 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
 double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                         const std::vector<HeldCoordinate>& loads, double shift);
 
+/// Fills in the residuals and the load level of a solved trim.
+void finish_trim(const system::PeriodicSystem& system, Trim& trim);
+
 }  // namespace samara::analysis

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "samara/analysis/consistent_subspace.hpp"
@@ -17,10 +18,47 @@
 
 namespace samara::analysis {
 
-/// Advances columns of states step by step.
+/// One step of the linearized system, factored.
+class LinearizedStep {
+ public:
+  /// `carried`: see ConsistentSubspace. `fixed_constraints`: the rows without rates never change,
+  /// and need no tangents of their own. `prefix`: of the solver's options.
+  LinearizedStep(const system::PeriodicSystem& system, std::vector<bool> carried, double step,
+                 bool fixed_constraints, const std::string& prefix);
+
+  /// Tangents at the middle, and of the rows without rates at the end (t_end, z_end).
+  void factor(double t_middle, Vec z_middle, Vec z_dot_middle, double t_end, Vec z_end,
+              Vec z_dot_end);
+
+  /// Columns of states from the step's start to its end; returns their values at the middle.
+  /// `load` (size x columns or empty) is added to the rows.
+  Eigen::MatrixXd advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load = {});
+
+  /// Solves J x = right for the values x at the middle, J = 2 M / dt + K.
+  void solve(Eigen::MatrixXd& right) { solver_.solve(right); }
+
+  /// The end of the step from its start and middle.
+  double end_value(Eigen::Index i, double start, double middle) const {
+    return carried_[static_cast<std::size_t>(i)] ? 2.0 * middle - start : 0.0;
+  }
+
+ private:
+  void replace_constraints(double t_end, Vec z_end, Vec z_dot_end);
+
+  const system::PeriodicSystem& system_;
+  std::vector<bool> carried_;
+  double step_;
+  bool fixed_constraints_;
+  petsc::Handle<Mat> jacobian_;
+  petsc::Handle<Mat> mass_;
+  petsc::Handle<Mat> end_jacobian_;
+  Eigen::SparseMatrix<double> constraint_rows_;
+  DirectSolver solver_;
+};
+
+/// Advances columns of states along a periodic solution.
 class StepPropagator {
  public:
-  /// `step` [s], `carried`: see ConsistentSubspace.
   StepPropagator(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                  std::vector<bool> carried, double step);
 
@@ -28,20 +66,10 @@ class StepPropagator {
   Eigen::MatrixXd advance(long k, Eigen::MatrixXd& z);
 
  private:
-  void replace_constraints(long k);
-
-  const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;
-  std::vector<bool> carried_;
   double step_;
-  bool fixed_constraints_;
-  petsc::Handle<Vec> z_;
-  petsc::Handle<Vec> z_dot_;
-  petsc::Handle<Mat> jacobian_;
-  petsc::Handle<Mat> mass_;
-  petsc::Handle<Mat> end_jacobian_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> constraint_rows_;
-  DirectSolver solver_;
+  petsc::Handle<Vec> z_, z_dot_, z_end_, z_dot_end_;
+  LinearizedStep linearized_;
 };
 
 }  // namespace samara::analysis
