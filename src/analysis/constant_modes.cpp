@@ -25,6 +25,9 @@ constexpr double constant_tolerance = 1e-9;
 constexpr double check_shift = 5.0;
 constexpr double largest_difference = 1e-6;
 
+/// Below this, relative to the shift, an exponent is zero: a double zero in double precision.
+constexpr double zero_to_shift = 1e-7;
+
 /// The pair of consecutive images that stands for a state: see find_spectrum.
 struct Spectrum {
   std::vector<Complex> exponents;
@@ -153,10 +156,12 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
     mode.exponent = spectrum.exponents[i];
-    mode.residual = distance(mode.exponent, check, zero_exponent * rate);
+    const double zero = std::max(zero_exponent * rate, zero_to_shift * sigma);
+    if (std::abs(mode.exponent) < zero) mode.exponent = 0.0;
+    mode.residual = mode.exponent == 0.0 ? 0.0 : distance(mode.exponent, check, zero);
     mode.resolved = mode.residual <= largest_difference;
     const double size = std::abs(mode.exponent);
-    mode.damping_ratio = size > zero_exponent * rate ? -mode.exponent.real() / size : 0.0;
+    mode.damping_ratio = size > 0.0 ? -mode.exponent.real() / size : 0.0;
     set.modes.push_back(mode);
     set.shapes.push_back(shape);
   }

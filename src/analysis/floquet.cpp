@@ -276,7 +276,8 @@ class Analysis {
     double defect = 0.0;
     for (Eigen::Index i = 0; i < system_.size(); ++i) {
       const system::UnknownRole role = system_.unknowns()[static_cast<std::size_t>(i)].role;
-      if (role == system::UnknownRole::internal) continue;
+      const bool state = system_.differential()[static_cast<std::size_t>(i)];
+      if (role == system::UnknownRole::internal || !state) continue;
       const double weight = role == system::UnknownRole::position ? speed_ * speed_ : 1.0;
       size += weight * std::norm(begin(i));
       defect += weight * std::norm(end(i) - expected(i, 0));

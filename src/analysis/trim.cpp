@@ -1,5 +1,6 @@
 #include "samara/analysis/trim.hpp"
 
+#include <optional>
 #include <sstream>
 
 #include "samara/analysis/harmonic_balance.hpp"
@@ -24,9 +25,20 @@ bool is_closed(int harmonics, int sectors) {
   return sectors < 2 || (harmonics + 1) % sectors != 0;
 }
 
+/// A constant is only tried: an unbalanced rotor may have none.
+std::optional<Trim> try_constant(const system::PeriodicSystem& system,
+                                 const TrimOptions& options) {
+  try {
+    return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
+  } catch (const ConvergenceError&) {
+    return std::nullopt;
+  }
+}
+
 Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& options,
-                     Trim constant, Observer& observer) {
-  std::vector<std::pair<int, double>> history = constant.history;
+                     const std::optional<Trim>& constant, Observer& observer) {
+  std::vector<std::pair<int, double>> history;
+  if (constant) history = constant->history;
   for (int harmonics = 1; harmonics <= most_harmonics; ++harmonics) {
     if (!is_closed(harmonics, system.symmetry().sectors)) continue;
     Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, nullptr);
@@ -47,14 +59,15 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
 
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer) {
+  if (system.period() == 0.0) return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
-  Trim constant = solve_harmonic_balance(system, 0, options.tolerance, nullptr);
-  const bool exact = constant.residual_between <= allowed_residual(constant, rounding) &&
-                     constant.residual <= allowed_residual(constant, rounding);
-  if (exact || system.period() == 0.0) return constant;
+  const std::optional<Trim> constant = try_constant(system, options);
+  if (constant && constant->residual_between <= allowed_residual(*constant, rounding) &&
+      constant->residual <= allowed_residual(*constant, rounding))
+    return *constant;
   if (options.method == TrimMethod::shooting)
     return solve_shooting(system, options.steps, options.tolerance, observer);
-  if (options.automatic) return raise_harmonics(system, options, std::move(constant), observer);
+  if (options.automatic) return raise_harmonics(system, options, constant, observer);
   if (!is_closed(options.harmonics, system.symmetry().sectors))
     observer.note("trim: " + std::to_string(options.harmonics) + " harmonics leave harmonic " +
                   std::to_string(options.harmonics + 1) +
