@@ -5,6 +5,8 @@ set(MPI_CXX_SKIP_MPICXX ON)
 find_package(MPI REQUIRED COMPONENTS C CXX)
 pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET petsc>=3.18)
 pkg_check_modules(SLEPC REQUIRED IMPORTED_TARGET slepc>=3.18)
+set(BLA_VENDOR Generic)  # Debian's alternative: OpenBLAS where it is installed
+find_package(BLAS REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(yaml-cpp 0.7 REQUIRED)
 # Not FindHDF5: it fails in a folder whose name has a space.
@@ -19,7 +21,7 @@ set_property(TARGET PkgConfig::PETSC PkgConfig::SLEPC PkgConfig::HDF5
 
 add_library(samara_external_petsc INTERFACE)
 target_link_libraries(samara_external_petsc
-                      INTERFACE PkgConfig::SLEPC PkgConfig::PETSC MPI::MPI_CXX)
+                      INTERFACE PkgConfig::SLEPC PkgConfig::PETSC MPI::MPI_CXX BLAS::BLAS)
 
 # What the file formats need: only the room io may name it.
 add_library(samara_external_files INTERFACE)

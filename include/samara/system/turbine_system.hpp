@@ -11,6 +11,7 @@
 #include "samara/model/layout.hpp"
 #include "samara/model/turbine.hpp"
 #include "samara/system/periodic_system.hpp"
+#include "samara/system/turbine_residual.hpp"
 
 namespace samara::system {
 
@@ -22,6 +23,8 @@ class TurbineSystem final : public PeriodicSystem {
 
   const model::Turbine& turbine() const;
   const model::Layout& layout() const;
+  /// The equations behind residual(), also at complex states.
+  const TurbineResidual& equations() const;
 
   MPI_Comm comm() const override;
   PetscInt size() const override;

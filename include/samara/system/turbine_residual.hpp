@@ -1,0 +1,250 @@
+// The residual of a whole turbine, templated on the scalar: beams in their places and the rigid
+// chain between them. Everything that assembles or checks a turbine builds on this.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "samara/base/error.hpp"
+#include "samara/elements/beam_tip.hpp"
+#include "samara/elements/rigid_chain.hpp"
+#include "samara/model/layout.hpp"
+#include "samara/model/turbine.hpp"
+
+namespace samara::system {
+
+/// A beam in its place: where its unknowns are and what carries it.
+struct PlacedBeam {
+  const model::Beam* beam = nullptr;
+  std::vector<int> points;  ///< first unknown of each point
+  int tip = 0;
+  int root = 0;             ///< first of F_hat_0, M_hat_0
+  bool on_hub = false;
+  Vector3 position = Vector3::Zero();  ///< root from the apex, in H
+  Matrix3 C_Ha = Matrix3::Identity();
+
+  /// v_a, omega_a, gravity of a blade root from the hub's motion: constant and linear.
+  Eigen::Matrix<double, 9, 9> root_from_hub() const;
+
+  /// Force and moment about the apex in H of a blade's root load.
+  Matrix6 hub_from_root() const;
+
+  /// First row of the strain and curvature balance of node n.
+  int strain_rows(int n) const {
+    return n < beam->point_count() ? points[static_cast<std::size_t>(n)] : tip;
+  }
+  /// First row of the force and moment balance of node n.
+  int force_rows(int n) const {
+    return n == 0 ? root : points[static_cast<std::size_t>(n - 1)] + 12;
+  }
+  /// Weights of point p in the balances of local node a: w N_a' and w L N_a.
+  std::array<double, 2> node_weights(int a, int p) const;
+};
+
+// Inputs of the rigid chain, in this order.
+inline constexpr int at_theta = 0;
+inline constexpr int at_top_velocity = 3;
+inline constexpr int at_yaw = 9;  // q_y, U1, q_h, U2
+inline constexpr int at_top_velocity_dot = 13;
+inline constexpr int at_yaw_speed_dot = 19;  // U1_dot, U2_dot, q_y_dot, q_h_dot
+inline constexpr int at_top_load = 23;
+inline constexpr int at_hub_load = 29;
+inline constexpr int chain_inputs = 35;
+inline constexpr int chain_motion_inputs = 13;  // on which the hub's motion depends
+
+class TurbineResidual {
+ public:
+  static constexpr int block = model::Layout::block;
+  template <class T>
+  using State = Eigen::Matrix<T, block, 1>;
+
+  explicit TurbineResidual(const model::Turbine& turbine);
+  TurbineResidual(const TurbineResidual&) = delete;
+  TurbineResidual& operator=(const TurbineResidual&) = delete;
+
+  const model::Turbine& turbine() const { return turbine_; }
+  const model::Layout& layout() const { return layout_; }
+  const std::vector<PlacedBeam>& beams() const { return beams_; }
+
+  /// r(t, z, z_dot), all of layout().size(). T: double, or std::complex<double> to differentiate
+  /// by a complex step. @throws DomainError where a rotation is out of range.
+  template <class T>
+  void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+                std::vector<T>& r) const;
+
+  template <class T>
+  static State<T> at(const std::vector<T>& z, int first) {
+    return Eigen::Map<const State<T>>(z.data() + first);
+  }
+
+  /// The chain's state with each input passed through `make(value, index)`.
+  template <class T, class Value, class Make>
+  elements::ChainState<T> chain_state(double t, const std::vector<Value>& z,
+                                      const std::vector<Value>& z_dot, Make make) const;
+
+  /// The motion of a beam's root and the gravity there.
+  template <class T>
+  elements::Attachment<T> attachment(const PlacedBeam& placed,
+                                     const elements::HubMotion<T>& hub) const;
+
+  /// @throws DomainError beyond 170 degrees, naming the place.
+  static void check_rotation(const Vector3& theta, const std::string& place);
+
+ private:
+  template <class T>
+  void add_point(const PlacedBeam& placed, int p, const elements::Attachment<T>& a,
+                 const std::vector<T>& z, const std::vector<T>& z_dot, std::vector<T>& r) const;
+  template <class T>
+  void add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a,
+                const std::vector<T>& z, const std::vector<T>& z_dot, std::vector<T>& r) const;
+  template <class T>
+  static void put_joint(int first, bool free, const T& kinematic, const T& balance,
+                        const std::vector<T>& z, std::vector<T>& r);
+
+  void place_beams();
+
+  model::Turbine turbine_;
+  model::Layout layout_;
+  std::vector<PlacedBeam> beams_;
+};
+
+template <class T, class Value, class Make>
+elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector<Value>& z,
+                                                     const std::vector<Value>& z_dot,
+                                                     Make make) const {
+  State<Value> top = State<Value>::Zero();
+  State<Value> top_dot = State<Value>::Zero();
+  if (turbine_.has_tower) {
+    top = at(z, layout_.tower_tip());
+    top_dot = at(z_dot, layout_.tower_tip());
+    check_rotation(Vector3(top.template segment<3>(3).real()), "tower top");
+  }
+  Vec6<Value> load = Vec6<Value>::Zero();
+  for (const PlacedBeam& placed : beams_)
+    if (placed.on_hub)
+      load += placed.hub_from_root().template cast<Value>() *
+              Eigen::Map<const Vec6<Value>>(z.data() + placed.root);
+  elements::ChainState<T> state;
+  for (int i = 0; i < 3; ++i) state.theta(i) = make(top(3 + i), at_theta + i);
+  for (int i = 0; i < 6; ++i) {
+    state.top_velocity(i) = make(top(6 + i), at_top_velocity + i);
+    state.top_velocity_dot(i) = make(top_dot(6 + i), at_top_velocity_dot + i);
+    state.top_load(i) = make(top(12 + i), at_top_load + i);
+    state.hub_load(i) = make(load(i), at_hub_load + i);
+  }
+  const auto yaw = static_cast<std::size_t>(layout_.yaw());
+  const auto teeter = static_cast<std::size_t>(layout_.teeter());
+  state.yaw = make(z[yaw], at_yaw);
+  state.yaw_speed = make(z[yaw + 1], at_yaw + 1);
+  state.teeter = make(z[teeter], at_yaw + 2);
+  state.teeter_speed = make(z[teeter + 1], at_yaw + 3);
+  state.yaw_speed_dot = make(z_dot[yaw + 1], at_yaw_speed_dot);
+  state.teeter_speed_dot = make(z_dot[teeter + 1], at_yaw_speed_dot + 1);
+  state.yaw_dot = make(z_dot[yaw], at_yaw_speed_dot + 2);
+  state.teeter_dot = make(z_dot[teeter], at_yaw_speed_dot + 3);
+  state.azimuth = turbine_.azimuth_at(t);
+  state.speed = turbine_.speed;
+  return state;
+}
+
+template <class T>
+elements::Attachment<T> TurbineResidual::attachment(const PlacedBeam& placed,
+                                                    const elements::HubMotion<T>& hub) const {
+  elements::Attachment<T> a;
+  if (!placed.on_hub) {
+    a.gravity(0) = T(-turbine_.chain.gravity);  // the tower's b1 is n3
+    return a;
+  }
+  Eigen::Matrix<T, 9, 1> motion;
+  motion << hub.velocity, hub.omega, hub.gravity;
+  const Eigen::Matrix<T, 9, 1> seen = placed.root_from_hub().template cast<T>() * motion;
+  a.v = seen.template segment<3>(0);
+  a.omega = seen.template segment<3>(3);
+  a.gravity = seen.template segment<3>(6);
+  return a;
+}
+
+template <class T>
+void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+                               std::vector<T>& r) const {
+  std::fill(r.begin(), r.end(), T(0));
+  const auto plain = [](const T& value, int) { return value; };
+  elements::HubMotion<T> hub;
+  const elements::ChainRows<T> rows =
+      elements::rigid_chain(turbine_.chain, chain_state<T>(t, z, z_dot, plain), hub);
+  for (const PlacedBeam& placed : beams_) {
+    const elements::Attachment<T> a = attachment(placed, hub);
+    for (int p = 0; p < placed.beam->point_count(); ++p) add_point(placed, p, a, z, z_dot, r);
+    add_ends(placed, a, z, z_dot, r);
+  }
+  const auto index = [](int i) { return static_cast<std::size_t>(i); };
+  if (turbine_.has_tower)
+    for (int i = 0; i < 6; ++i) r[index(layout_.tower_tip() + 12 + i)] = rows.top(i);
+  put_joint(layout_.yaw(), turbine_.chain.yaw.free, rows.yaw_kinematic, rows.yaw_balance, z, r);
+  put_joint(layout_.teeter(), turbine_.chain.teeter.free, rows.teeter_kinematic,
+            rows.teeter_balance, z, r);
+  for (int i = 0; i < 2; ++i)  // the shaft is rigid
+    r[index(layout_.shaft_torsion() + i)] = z[index(layout_.shaft_torsion() + i)];
+  for (int i = layout_.padding(); i < layout_.size(); ++i) r[index(i)] = z[index(i)];
+}
+
+template <class T>
+void TurbineResidual::put_joint(int first, bool free, const T& kinematic, const T& balance,
+                                const std::vector<T>& z, std::vector<T>& r) {
+  const auto at_joint = static_cast<std::size_t>(first);
+  r[at_joint] = free ? kinematic : z[at_joint];
+  r[at_joint + 1] = free ? balance : kinematic;
+}
+
+template <class T>
+void TurbineResidual::add_point(const PlacedBeam& placed, int p, const elements::Attachment<T>& a,
+                                const std::vector<T>& z, const std::vector<T>& z_dot,
+                                std::vector<T>& r) const {
+  using Rows = Eigen::Map<Vec3<T>>;
+  const model::Beam& beam = *placed.beam;
+  const int first = placed.points[static_cast<std::size_t>(p)];
+  const State<T> state = at(z, first);
+  check_rotation(Vector3(state.template segment<3>(3).real()),
+                 beam.name + " point " + std::to_string(p + 1));
+  const elements::PointTerms<T> terms = elements::beam_point_terms<T>(
+      beam.points[static_cast<std::size_t>(p)], state, at(z_dot, first), a);
+  Rows(r.data() + first + 6) += terms.velocity;
+  Rows(r.data() + first + 9) += terms.spin;
+  for (int node = 0; node <= beam.order; ++node) {
+    const int n = p / beam.order * beam.order + node;
+    const auto [slope, value] = placed.node_weights(node, p);
+    const T by_slope(slope);
+    const T by_value(value);
+    const int strain = placed.strain_rows(n);
+    const int force = placed.force_rows(n);
+    Rows(r.data() + strain) -= state.template segment<3>(0) * by_slope + terms.stretch * by_value;
+    Rows(r.data() + strain + 3) -= state.template segment<3>(3) * by_slope + terms.turn * by_value;
+    Rows(r.data() + force) += terms.force_flux * by_slope + terms.force_load * by_value;
+    Rows(r.data() + force + 3) += terms.moment_flux * by_slope + terms.moment_load * by_value;
+  }
+}
+
+/// The boundary quantities of a beam: reactions at the root, the loads and the motion at the tip.
+template <class T>
+void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a,
+                               const std::vector<T>& z, const std::vector<T>& z_dot,
+                               std::vector<T>& r) const {
+  using Rows = Eigen::Map<Vec3<T>>;
+  using LongRows = Eigen::Map<Vec6<T>>;
+  const int last = placed.beam->point_count();
+  const State<T> tip = at(z, placed.tip);
+  check_rotation(Vector3(tip.template segment<3>(3).real()), placed.beam->name + " tip");
+  LongRows(r.data() + placed.force_rows(0)) += Eigen::Map<const Vec6<T>>(z.data() + placed.root);
+  LongRows(r.data() + placed.strain_rows(last)) += tip.template head<6>();
+  LongRows(r.data() + placed.force_rows(last)) -= tip.template tail<6>();
+  const elements::TipTerms<T> terms = elements::beam_tip_terms<T>(
+      placed.beam->tip, placed.beam->tip_mass, tip, at(z_dot, placed.tip), a);
+  Rows(r.data() + placed.tip + 6) += terms.velocity;
+  Rows(r.data() + placed.tip + 9) += terms.spin;
+  if (!placed.on_hub) return;  // the tower top's loads are Kane's rows
+  Rows(r.data() + placed.tip + 12) += terms.force;
+  Rows(r.data() + placed.tip + 15) += terms.moment;
+}
+
+}  // namespace samara::system

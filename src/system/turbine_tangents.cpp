@@ -1,0 +1,308 @@
+#include "turbine_tangents.hpp"
+
+#include <array>
+#include <set>
+
+#include "samara/math/autodiff.hpp"
+
+namespace samara::system {
+namespace {
+
+using elements::Attachment;
+using elements::PointTerms;
+
+constexpr int block = model::Layout::block;
+using State = TurbineResidual::State<double>;
+
+// Independent quantities of a point or beam end: z (18), z_dot (18), attachment (9).
+constexpr int point_inputs = 2 * block + 9;
+using PointDual = math::Dual<point_inputs>;
+using PointDualState = Eigen::Matrix<PointDual, block, 1>;
+using ChainDual = math::Dual<chain_inputs>;
+using MotionJacobian = Eigen::Matrix<double, 9, chain_motion_inputs>;
+
+
+/// The block columns of every block row.
+class Pattern {
+ public:
+  explicit Pattern(const TurbineResidual& equations)
+      : equations_(equations), turbine_(equations.turbine()), layout_(equations.layout()) {}
+
+  std::vector<std::vector<int>> pattern() const {
+    std::vector<std::set<int>> found(static_cast<std::size_t>(layout_.blocks()));
+    const auto couple = [&found](int row, int column) {
+      found[static_cast<std::size_t>(row / block)].insert(column / block);
+    };
+    const int hub_first = layout_.yaw();
+    for (int i = hub_first; i < layout_.size(); i += block)
+      for (int j = hub_first; j < layout_.size(); j += block) couple(i, j);
+    for (int i = 0; i < layout_.size(); i += block) couple(i, i);
+    for (const PlacedBeam& placed : equations_.beams()) {
+      const model::Beam& beam = *placed.beam;
+      for (int p = 0; p < beam.point_count(); ++p) {
+        const int first = placed.points[static_cast<std::size_t>(p)];
+        for (int node = 0; node <= beam.order; ++node) {
+          const int n = p / beam.order * beam.order + node;
+          for (const int row : {placed.strain_rows(n), placed.force_rows(n)}) {
+            couple(row, first);
+            if (placed.on_hub) couple_to_motion(couple, row);
+          }
+        }
+      }
+      couple(placed.force_rows(0), placed.root);
+      couple(placed.force_rows(beam.point_count()), placed.tip);
+      if (placed.on_hub) couple_to_motion(couple, placed.tip);
+    }
+    if (turbine_.has_tower) {
+      for (int j = hub_first; j < layout_.size(); j += block) couple(layout_.tower_tip(), j);
+      couple(hub_first, layout_.tower_tip());
+      couple(layout_.yaw(), layout_.tower_tip());
+    }
+    std::vector<std::vector<int>> columns;
+    for (const std::set<int>& row : found) columns.emplace_back(row.begin(), row.end());
+    return columns;
+  }
+
+ private:
+  template <class Couple>
+  void couple_to_motion(const Couple& couple, int row) const {
+    couple(row, layout_.yaw());
+    couple(row, layout_.teeter() + 1);
+    if (turbine_.has_tower) couple(row, layout_.tower_tip());
+  }
+
+  const TurbineResidual& equations_;
+  const model::Turbine& turbine_;
+  const model::Layout& layout_;
+};
+
+}  // namespace
+
+/// Differentiates and adds into K and M.
+class TurbineTangents::Scatter {
+ public:
+  explicit Scatter(TurbineTangents& owner)
+      : equations_(owner.equations_),
+        turbine_(equations_.turbine()),
+        layout_(equations_.layout()),
+        K_(owner.K_),
+        M_(owner.M_) {}
+
+  void evaluate(double t, const std::vector<double>& z, const std::vector<double>& z_dot) {
+    const auto make = [](double value, int i) {
+      return math::independent<chain_inputs>(value, i);
+    };
+    elements::HubMotion<ChainDual> hub;
+    const elements::ChainRows<ChainDual> rows =
+        elements::rigid_chain(turbine_.chain, equations_.chain_state<ChainDual>(t, z, z_dot, make), hub);
+    elements::HubMotion<double> motion;
+    MotionJacobian motion_jacobian;
+    for (int i = 0; i < 3; ++i) {
+      motion.velocity(i) = hub.velocity(i).value();
+      motion.omega(i) = hub.omega(i).value();
+      motion.gravity(i) = hub.gravity(i).value();
+      motion_jacobian.row(i) = hub.velocity(i).derivatives().head<chain_motion_inputs>();
+      motion_jacobian.row(3 + i) = hub.omega(i).derivatives().head<chain_motion_inputs>();
+      motion_jacobian.row(6 + i) = hub.gravity(i).derivatives().head<chain_motion_inputs>();
+    }
+    for (const PlacedBeam& placed : equations_.beams()) {
+      const Attachment<double> a = equations_.attachment(placed, motion);
+      MotionJacobian root = MotionJacobian::Zero();
+      if (placed.on_hub) root = placed.root_from_hub() * motion_jacobian;
+      for (int p = 0; p < placed.beam->point_count(); ++p)
+        add_point_tangent(placed, p, a, root, z, z_dot);
+      add_end_tangents(placed, a, root, z, z_dot);
+    }
+    add_chain_tangents(rows);
+  }
+
+ private:
+  static void add(BlockMatrix& matrix, int i, int j, double value) {
+    matrix.at(i / block, j / block)(i % block, j % block) += value;
+  }
+
+  /// The unknown behind input i of the chain (motion inputs and rates), -1 where there is none.
+  int chain_unknown(int i) const {
+    const int top = turbine_.has_tower ? layout_.tower_tip() : -1000;
+    int unknown = -1;
+    if (i < at_top_velocity) {
+      unknown = top + 3 + i;
+    } else if (i < at_yaw) {
+      unknown = top + 6 + i - at_top_velocity;
+    } else if (i < at_top_velocity_dot) {
+      unknown = i < at_yaw + 2 ? layout_.yaw() + i - at_yaw : layout_.teeter() + i - at_yaw - 2;
+    } else if (i < at_yaw_speed_dot) {
+      unknown = top + 6 + i - at_top_velocity_dot;
+    } else if (i < at_top_load) {
+      const std::array<int, 4> rates{layout_.yaw() + 1, layout_.teeter() + 1, layout_.yaw(),
+                                     layout_.teeter()};
+      unknown = rates[static_cast<std::size_t>(i - at_yaw_speed_dot)];
+    } else if (i < at_hub_load) {
+      unknown = top + 12 + i - at_top_load;
+    }
+    return unknown < 0 ? -1 : unknown;
+  }
+
+  void add_motion(int row, const Eigen::Matrix<double, 3, chain_motion_inputs>& values) {
+    for (int c = 0; c < chain_motion_inputs; ++c) {
+      const int unknown = chain_unknown(c);
+      if (unknown < 0 || values.col(c).isZero(0.0)) continue;
+      BlockMatrix::Block target = K_.at(row / block, unknown / block);
+      target.block<3, 1>(row % block, unknown % block) += values.col(c);
+    }
+  }
+
+  static void fill_inputs(const State& z, const State& z_dot, const Attachment<double>& a,
+                          PointDualState& dual, PointDualState& dual_dot,
+                          Attachment<PointDual>& dual_a) {
+    for (int i = 0; i < block; ++i) {
+      dual(i) = math::independent<point_inputs>(z(i), i);
+      dual_dot(i) = math::independent<point_inputs>(z_dot(i), block + i);
+    }
+    for (int i = 0; i < 3; ++i) {
+      dual_a.v(i) = math::independent<point_inputs>(a.v(i), 2 * block + i);
+      dual_a.omega(i) = math::independent<point_inputs>(a.omega(i), 2 * block + 3 + i);
+      dual_a.gravity(i) = math::independent<point_inputs>(a.gravity(i), 2 * block + 6 + i);
+    }
+  }
+
+  using TermJacobian = Eigen::Matrix<double, 3, point_inputs>;
+
+  static TermJacobian jacobian_of(const Vec3<PointDual>& term) {
+    TermJacobian j;
+    for (int i = 0; i < 3; ++i) j.row(i) = term(i).derivatives();
+    return j;
+  }
+
+  /// Adds three rows that depend on the 18 unknowns from `first`, their rates and the attachment.
+  void add_term(int row, int first, const TermJacobian& term, const MotionJacobian& root,
+                bool on_hub) {
+    K_.at(row / block, first / block).block<3, block>(row % block, 0) +=
+        term.leftCols<block>();
+    M_.at(row / block, first / block).block<3, block>(row % block, 0) +=
+        term.middleCols<block>(block);
+    if (!on_hub) return;
+    const Eigen::Matrix<double, 3, chain_motion_inputs> carried = term.rightCols<9>() * root;
+    add_motion(row, carried);
+  }
+
+  void add_point_tangent(const PlacedBeam& placed, int p, const Attachment<double>& a,
+                         const MotionJacobian& root, const std::vector<double>& z,
+                         const std::vector<double>& z_dot) {
+    const model::Beam& beam = *placed.beam;
+    const int first = placed.points[static_cast<std::size_t>(p)];
+    PointDualState dual;
+    PointDualState dual_dot;
+    Attachment<PointDual> dual_a;
+    fill_inputs(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a, dual, dual_dot, dual_a);
+    const PointTerms<PointDual> terms = elements::beam_point_terms<PointDual>(
+        beam.points[static_cast<std::size_t>(p)], dual, dual_dot, dual_a);
+    const TermJacobian force_flux = jacobian_of(terms.force_flux);
+    const TermJacobian force_load = jacobian_of(terms.force_load);
+    const TermJacobian moment_flux = jacobian_of(terms.moment_flux);
+    const TermJacobian moment_load = jacobian_of(terms.moment_load);
+    TermJacobian u = TermJacobian::Zero();
+    TermJacobian theta = TermJacobian::Zero();
+    u.block<3, 3>(0, 0).setIdentity();
+    theta.block<3, 3>(0, 3).setIdentity();
+    const TermJacobian stretch = jacobian_of(terms.stretch);
+    const TermJacobian turn = jacobian_of(terms.turn);
+    add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub);
+    add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub);
+    for (int node = 0; node <= beam.order; ++node) {
+      const int n = p / beam.order * beam.order + node;
+      const auto [slope, value] = placed.node_weights(node, p);
+      const int strain = placed.strain_rows(n);
+      const int force = placed.force_rows(n);
+      const TermJacobian strain_rows_j = -slope * u - value * stretch;
+      const TermJacobian curvature_rows_j = -slope * theta - value * turn;
+      const TermJacobian force_rows_j = slope * force_flux + value * force_load;
+      const TermJacobian moment_rows_j = slope * moment_flux + value * moment_load;
+      add_term(strain, first, strain_rows_j, root, false);
+      add_term(strain + 3, first, curvature_rows_j, root, false);
+      add_term(force, first, force_rows_j, root, placed.on_hub);
+      add_term(force + 3, first, moment_rows_j, root, placed.on_hub);
+    }
+  }
+
+  void add_end_tangents(const PlacedBeam& placed, const Attachment<double>& a,
+                        const MotionJacobian& root, const std::vector<double>& z,
+                        const std::vector<double>& z_dot) {
+    const int last = placed.beam->point_count();
+    for (int i = 0; i < 6; ++i) {
+      add(K_, placed.force_rows(0) + i, placed.root + i, 1.0);
+      add(K_, placed.strain_rows(last) + i, placed.tip + i, 1.0);
+      add(K_, placed.force_rows(last) + i, placed.tip + 12 + i, -1.0);
+    }
+    PointDualState dual;
+    PointDualState dual_dot;
+    Attachment<PointDual> dual_a;
+    fill_inputs(TurbineResidual::at(z, placed.tip), TurbineResidual::at(z_dot, placed.tip), a, dual, dual_dot, dual_a);
+    const elements::TipTerms<PointDual> terms = elements::beam_tip_terms<PointDual>(
+        placed.beam->tip, placed.beam->tip_mass, dual, dual_dot, dual_a);
+    add_term(placed.tip + 6, placed.tip, jacobian_of(terms.velocity), root, placed.on_hub);
+    add_term(placed.tip + 9, placed.tip, jacobian_of(terms.spin), root, placed.on_hub);
+    if (!placed.on_hub) return;
+    add_term(placed.tip + 12, placed.tip, jacobian_of(terms.force), root, true);
+    add_term(placed.tip + 15, placed.tip, jacobian_of(terms.moment), root, true);
+  }
+
+  void add_chain_row(int row, const ChainDual& value) {
+    for (int i = 0; i < at_hub_load; ++i) {
+      const int unknown = chain_unknown(i);
+      const double d = value.derivatives()(i);
+      if (unknown < 0 || d == 0.0) continue;
+      add(i >= at_top_velocity_dot && i < at_top_load ? M_ : K_, row, unknown, d);
+    }
+    const Vector6 by_hub_load = value.derivatives().segment<6>(at_hub_load);
+    if (by_hub_load.isZero(0.0)) return;
+    for (const PlacedBeam& placed : equations_.beams()) {
+      if (!placed.on_hub) continue;
+      const Vector6 by_root = placed.hub_from_root().transpose() * by_hub_load;
+      for (int i = 0; i < 6; ++i) add(K_, row, placed.root + i, by_root(i));
+    }
+  }
+
+  void add_chain_tangents(const elements::ChainRows<ChainDual>& rows) {
+    if (turbine_.has_tower)
+      for (int i = 0; i < 6; ++i) add_chain_row(layout_.tower_tip() + 12 + i, rows.top(i));
+    add_joint_tangents(layout_.yaw(), turbine_.chain.yaw.free, rows.yaw_kinematic,
+                       rows.yaw_balance);
+    add_joint_tangents(layout_.teeter(), turbine_.chain.teeter.free, rows.teeter_kinematic,
+                       rows.teeter_balance);
+    add(K_, layout_.shaft_torsion(), layout_.shaft_torsion(), 1.0);
+    add(K_, layout_.shaft_torsion() + 1, layout_.shaft_torsion() + 1, 1.0);
+    for (int i = layout_.padding(); i < layout_.size(); ++i) add(K_, i, i, 1.0);
+  }
+
+  void add_joint_tangents(int first, bool free, const ChainDual& kinematic,
+                          const ChainDual& balance) {
+    if (free) {
+      add_chain_row(first, kinematic);
+      add_chain_row(first + 1, balance);
+    } else {
+      add(K_, first, first, 1.0);
+      add_chain_row(first + 1, kinematic);
+    }
+  }
+
+  const TurbineResidual& equations_;
+  const model::Turbine& turbine_;
+  const model::Layout& layout_;
+  BlockMatrix& K_;
+  BlockMatrix& M_;
+};
+
+TurbineTangents::TurbineTangents(const TurbineResidual& equations)
+    : equations_(equations),
+      K_(Pattern(equations).pattern()),
+      M_(K_.columns()) {}
+
+void TurbineTangents::evaluate(double t, const std::vector<double>& z,
+                               const std::vector<double>& z_dot) {
+  K_.clear();
+  M_.clear();
+  Scatter(*this).evaluate(t, z, z_dot);
+}
+
+}  // namespace samara::system
