@@ -1,11 +1,11 @@
 #include "samara/analysis/identification.hpp"
 
-#include <unsupported/Eigen/FFT>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+
+#include "samara/math/fourier.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -149,18 +149,10 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system,
 void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
                               Eigen::VectorXd& participation) const {
   const Eigen::Index samples = history.cols();
-  Eigen::FFT<double> transform;
-  const Eigen::MatrixXcd by_time = history.transpose();
-  Eigen::MatrixXcd spectrum(samples, history.rows());
-  Eigen::VectorXcd column(samples);
-  for (Eigen::Index i = 0; i < history.rows(); ++i) {
-    const Eigen::VectorXcd signal = by_time.col(i);
-    if (samples > 1)
-      transform.fwd(column, signal);
-    else
-      column = signal;
-    spectrum.col(i) = column / static_cast<double>(samples);
-  }
+  participation.setZero(samples);
+  if (history.rows() == 0) return;
+  math::FourierTransform transform(static_cast<int>(history.rows()), static_cast<int>(samples));
+  const Eigen::MatrixXcd spectrum = transform(history);
   Eigen::MatrixXd energy =
       Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(parts_.size()));
   for (const Group& group : groups_) {
@@ -179,7 +171,6 @@ void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
   const auto place = [samples](Eigen::Index k) { return k >= 0 ? k : k + samples; };
   const double total = energy.sum();
   mode.kinetic_energy = total;
-  participation.resize(samples);
   for (Eigen::Index i = 0; i < samples; ++i)
     participation(i) = total > 0.0 ? energy.row(place(i - half)).sum() / total : 0.0;
   mode.parts.clear();

@@ -39,6 +39,19 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   return chain;
 }
 
+/// A point mass at the tower's top is one at the nacelle's reference point.
+void add_top_mass(double mass, elements::RigidBody& nacelle) {
+  const double total = nacelle.mass + mass;
+  if (mass == 0.0) return;
+  const Vector3 center = nacelle.center * nacelle.mass / total;
+  const auto about = [](double m, const Vector3& r) {
+    return Matrix3(m * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose()));
+  };
+  nacelle.inertia += about(nacelle.mass, nacelle.center - center) + about(mass, center);
+  nacelle.mass = total;
+  nacelle.center = center;
+}
+
 /// Blade axes: b1 root to tip, b3 = s2 and b2 = b3 x b1 at zero cone and pitch; azimuth turns about
 /// h2, cone moves b1 toward h2, pitch turns b2 (the leading edge) upwind, about -b1.
 BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
@@ -84,6 +97,7 @@ Turbine build_turbine(const TurbineDefinition& definition) {
     turbine.roots.push_back(root_of(blades, definition.hub.radius, k));
   }
   turbine.chain = chain_of(definition);
+  if (definition.has_tower) add_top_mass(definition.tower.tip_mass, turbine.chain.nacelle);
   turbine.speed = definition.shaft.speed;
   turbine.azimuth = definition.shaft.azimuth;
   turbine.degrees_of_freedom = definition.has_tower ? elastic_strains(turbine.tower) : 0;
