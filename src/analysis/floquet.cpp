@@ -430,7 +430,12 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
   const int repeats = system.symmetry().sectors;
   if (options.period == FloquetPeriod::blade && repeats < 2)
-    throw InputError("floquet.period: blade needs two or more identical blades; hint: auto");
+    throw InputError("floquet.period: blade needs two or more identical blades" +
+                     (system.symmetry().broken_by.empty() ? "" : ": " + system.symmetry().broken_by) +
+                     "; hint: auto");
+  const std::string& broken_by = system.symmetry().broken_by;
+  if (options.period == FloquetPeriod::automatic && !broken_by.empty())
+    observer.note("floquet: full period, for " + broken_by);
   const int sectors = options.period == FloquetPeriod::full ? 1 : repeats;
   const int steps = (options.steps + sectors - 1) / sectors * sectors;
   if (steps != options.steps)

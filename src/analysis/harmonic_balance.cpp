@@ -64,27 +64,29 @@ class Balance {
     for (std::size_t n = 0; n < neutral.size(); ++n) result(0, neutral[n].row) += held[n];
   }
 
+  /// Entry (i, j) becomes the block sum_k w(t_k) [K_ij(t_k) b(t_k) + M_ij(t_k) b_dot(t_k)]^T: for
+  /// all entries at once the product of a matrix of the harmonics with the sampled tangents.
   void tangent(const PetscScalar* h, Mat matrix) {
     const PeriodicSolution solution(unpack(h), system_.period());
     const int samples = sample_count(harmonics_);
-    petsc::check(MatZeroEntries(matrix));
+    const Eigen::Index entries = pattern_.nonZeros();
+    Eigen::MatrixXd sampled = Eigen::MatrixXd::Zero(2 * samples, entries);
+    Eigen::MatrixXd harmonics(width_ * width_, 2 * samples);
     for (int k = 0; k < samples; ++k) {
       const double t = time_of(k);
       solution.evaluate(t, z_.get(), z_dot_.get());
       system_.tangents(t, z_.get(), z_dot_.get(), 0.0, jacobian_.get(), mass_.get());
-      const Eigen::VectorXd weights = projection(t);
-      add_sample(jacobian_.get(),
-                 weights * PeriodicSolution::basis(harmonics_, period(), t).transpose(), matrix);
-      if (harmonics_ > 0)
-        add_sample(mass_.get(),
-                   weights * PeriodicSolution::basis_rate(harmonics_, period(), t).transpose(),
-                   matrix);
+      sample_entries(jacobian_.get(), sampled.row(k));
+      sample_entries(mass_.get(), sampled.row(samples + k));
+      const Eigen::VectorXd w = projection(t);
+      const Eigen::MatrixXd by_value =
+          PeriodicSolution::basis(harmonics_, period(), t) * w.transpose();
+      const Eigen::MatrixXd by_rate =
+          PeriodicSolution::basis_rate(harmonics_, period(), t) * w.transpose();
+      harmonics.col(k) = Eigen::Map<const Eigen::VectorXd>(by_value.data(), by_value.size());
+      harmonics.col(samples + k) = Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
     }
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      petsc::check(MatSetValue(matrix, neutral.row * width_, neutral.unknown * width_, 1.0,
-                               ADD_VALUES));
-    petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
-    petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+    insert_blocks(multiply(harmonics, sampled), matrix);
   }
 
   /// An AIJ matrix with the pattern of the tangent: every entry of K and M that is not always zero,
@@ -103,20 +105,14 @@ class Balance {
     }
     system_.tangents(0.37 * system_.period(), z_.get(), z_dot_.get(), 1.0 + uniform(random),
                      jacobian_.get(), mass_.get());
-    const Eigen::SparseMatrix<double, Eigen::RowMajor> pattern = to_sparse(jacobian_.get());
+    pattern_ = to_sparse(jacobian_.get());
     std::vector<PetscInt> counts;
     for (Eigen::Index i = 0; i < size_; ++i)
       for (int c = 0; c < width_; ++c)
-        counts.push_back((static_cast<PetscInt>(pattern.row(i).nonZeros()) + 1) * width_);
+        counts.push_back((static_cast<PetscInt>(pattern_.row(i).nonZeros()) + 1) * width_);
     petsc::Handle<Mat> matrix;
     petsc::check(
         MatCreateSeqAIJ(PETSC_COMM_SELF, unknowns(), unknowns(), 0, counts.data(), matrix.fill()));
-    add_sample(jacobian_.get(), Eigen::MatrixXd::Zero(width_, width_), matrix.get());
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      petsc::check(MatSetValue(matrix.get(), neutral.row * width_, neutral.unknown * width_, 0.0,
-                               ADD_VALUES));
-    petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
-    petsc::check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
     return matrix;
   }
 
@@ -138,33 +134,61 @@ class Balance {
         [unknown](const system::NeutralCoordinate& n) { return n.unknown == unknown; });
   }
 
-  void add_sample(Mat sample, const Eigen::MatrixXd& harmonics, Mat matrix) const {
-    std::vector<PetscInt> row_numbers(static_cast<std::size_t>(width_));
-    std::vector<PetscInt> column_numbers;
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values;
+  /// The entries of a tangent in the order of the pattern.
+  void sample_entries(Mat sample, Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> out) const {
+    std::vector<Eigen::Index> place(static_cast<std::size_t>(size_), -1);
     for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i) {
+      const Eigen::Index first = pattern_.outerIndexPtr()[i];
+      const Eigen::Index last = pattern_.outerIndexPtr()[i + 1];
+      for (Eigen::Index e = first; e < last; ++e)
+        place[static_cast<std::size_t>(pattern_.innerIndexPtr()[e])] = e;
       PetscInt count = 0;
       const PetscInt* columns = nullptr;
-      const PetscScalar* entries = nullptr;
-      petsc::check(MatGetRow(sample, i, &count, &columns, &entries));
-      PetscInt used = 0;
-      column_numbers.clear();
-      values.resize(width_, count * width_);
+      const PetscScalar* values = nullptr;
+      petsc::check(MatGetRow(sample, i, &count, &columns, &values));
       for (PetscInt c = 0; c < count; ++c) {
-        if (entries[c] == 0.0) continue;
-        values.middleCols(used * width_, width_) = entries[c] * harmonics;
-        if (is_neutral(columns[c])) values.col(used * width_).setZero();
-        for (int h = 0; h < width_; ++h) column_numbers.push_back(columns[c] * width_ + h);
-        ++used;
+        const Eigen::Index e = place[static_cast<std::size_t>(columns[c])];
+        if (e >= 0)
+          out(e) = values[c];
+        else if (values[c] != 0.0)
+          throw InternalError("the tangents have an entry outside their pattern");
       }
-      petsc::check(MatRestoreRow(sample, i, &count, &columns, &entries));
-      if (used == 0) continue;
-      const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> block =
-          values.leftCols(used * width_);
-      for (int h = 0; h < width_; ++h) row_numbers[static_cast<std::size_t>(h)] = i * width_ + h;
-      petsc::check(MatSetValues(matrix, width_, row_numbers.data(), used * width_,
-                                column_numbers.data(), block.data(), ADD_VALUES));
+      petsc::check(MatRestoreRow(sample, i, &count, &columns, &values));
+      for (Eigen::Index e = first; e < last; ++e)
+        place[static_cast<std::size_t>(pattern_.innerIndexPtr()[e])] = -1;
     }
+  }
+
+  /// `blocks`: a column per entry of the pattern, its block of harmonics row by row.
+  void insert_blocks(const Eigen::MatrixXd& blocks, Mat matrix) const {
+    std::vector<PetscInt> columns;
+    std::vector<PetscScalar> values;
+    for (Eigen::Index i = 0; i < size_; ++i) {
+      const Eigen::Index first = pattern_.outerIndexPtr()[i];
+      const Eigen::Index last = pattern_.outerIndexPtr()[i + 1];
+      for (int row = 0; row < width_; ++row) {
+        columns.clear();
+        values.clear();
+        for (Eigen::Index e = first; e < last; ++e) {
+          const auto unknown = static_cast<PetscInt>(pattern_.innerIndexPtr()[e]);
+          for (int c = 0; c < width_; ++c) {
+            columns.push_back(unknown * width_ + c);
+            values.push_back(c == 0 && is_neutral(unknown) ? 0.0 : blocks(row * width_ + c, e));
+          }
+        }
+        const auto number = static_cast<PetscInt>(i * width_ + row);
+        petsc::check(MatSetValues(matrix, 1, &number, static_cast<PetscInt>(columns.size()),
+                                  columns.data(), values.data(), INSERT_VALUES));
+      }
+    }
+    // The load that holds a neutral coordinate stands in the place of its mean.
+    petsc::check(MatAssemblyBegin(matrix, MAT_FLUSH_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(matrix, MAT_FLUSH_ASSEMBLY));
+    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
+      petsc::check(MatSetValue(matrix, neutral.row * width_, neutral.unknown * width_, 1.0,
+                               INSERT_VALUES));
+    petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   }
 
   const system::PeriodicSystem& system_;
@@ -176,6 +200,7 @@ class Balance {
   petsc::Handle<Vec> r_;
   petsc::Handle<Mat> jacobian_;
   petsc::Handle<Mat> mass_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> pattern_;  ///< of K and M together
 };
 
 /// What SNES's callbacks see: the unknowns and rows are scaled by `scaling`.

@@ -61,8 +61,7 @@ void Hdf5File::write(const std::string& name, std::span<const double> values, co
   check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
 }
 
-void Hdf5File::write(const std::string& name, std::span<const int> values,
-                     const Meaning& meaning) {
+void Hdf5File::write(const std::string& name, std::span<const int> values, const Meaning& meaning) {
   const Hdf5Id dataset = make_dataset(name, H5T_STD_I32LE, {values.size()}, meaning);
   if (values.empty()) return;
   check(H5Dwrite(dataset.get(), H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
@@ -89,8 +88,7 @@ void Hdf5File::write(const std::string& name, const std::string& text, const Mea
   check(H5Dwrite(dataset.get(), text_type_.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &data));
 }
 
-Hdf5Id Hdf5File::make_slices(const std::string& name, const Shape& shape,
-                             const Meaning& meaning) {
+Hdf5Id Hdf5File::make_slices(const std::string& name, const Shape& shape, const Meaning& meaning) {
   return make_dataset(name, H5T_IEEE_F32LE, shape, meaning);
 }
 

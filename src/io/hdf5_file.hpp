@@ -19,7 +19,7 @@ class Hdf5Id {
   using Close = herr_t (*)(hid_t);
 
   Hdf5Id() = default;
-  Hdf5Id(hid_t id, Close close) : id_(id), close_(close) {}
+  Hdf5Id(hid_t id, Close closer) : id_(id), close_(closer) {}
   Hdf5Id(Hdf5Id&& other) noexcept
       : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
   Hdf5Id& operator=(Hdf5Id&& other) noexcept {
@@ -82,9 +82,9 @@ class Hdf5File {
 
   std::string path_;
   Hdf5Id file_;
-  Hdf5Id text_type_;     ///< of any length
+  Hdf5Id text_type_;  ///< of any length
   Hdf5Id scalar_space_;
-  Hdf5Id link_;          ///< makes the groups of a name
+  Hdf5Id link_;  ///< makes the groups of a name
 };
 
 }  // namespace samara::io

@@ -125,8 +125,7 @@ std::string Session::unused_options() {
   char** values = nullptr;
   check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
   std::string text;
-  for (PetscInt i = 0; i < count; ++i)
-    text += std::string(text.empty() ? "-" : " -") + names[i];
+  for (PetscInt i = 0; i < count; ++i) text += std::string(text.empty() ? "-" : " -") + names[i];
   check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   return text;
 }
@@ -150,7 +149,10 @@ std::string library_versions() {
   check(SlepcGetVersion(slepc, sizeof slepc));
   MPI_Get_library_version(mpi, &length);
   const std::string whole(mpi, static_cast<std::size_t>(length));
-  return std::string(petsc) + "\n" + slepc + "\n" + whole.substr(0, whole.find(','));
+  const auto line = [](const std::string& text) {
+    return text.substr(0, text.find_last_not_of(" \n") + 1);
+  };
+  return line(petsc) + "\n" + line(slepc) + "\n" + whole.substr(0, whole.find(','));
 }
 
 }  // namespace samara::petsc

@@ -173,12 +173,15 @@ class Describer {
                                 {layout_.teeter()}, {chain.teeter.stiffness}});
   }
 
-  bool rotor_repeats() const {
+  /// Why the rotor does not look the same after 1/B of a turn; empty where it does.
+  std::string symmetry_fault() const {
     const elements::RigidChain& chain = turbine_.chain;
     const auto blades = turbine_.blades.size();
-    if (blades < 2 || !turbine_.identical_blades) return false;
-    if (blades == 2) return true;
-    return !chain.teeter.free && chain.hub.inertia(0, 0) == chain.hub.inertia(2, 2);
+    if (!turbine_.identical_blades) return "the blades differ";
+    if (blades > 2 && chain.teeter.free) return "the hub teeters";
+    if (blades > 2 && chain.hub.inertia(0, 0) != chain.hub.inertia(2, 2))
+      return "hub.inertia differs about h1 and h3";
+    return "";
   }
 
   void describe_symmetry() {
@@ -186,8 +189,10 @@ class Describer {
     const int n = layout_.size();
     for (int i = 0; i < n; ++i) symmetry.source.push_back(i);
     symmetry.sign.assign(static_cast<std::size_t>(n), 1.0);
-    if (!rotor_repeats()) return;
     const int count = static_cast<int>(turbine_.blades.size());
+    if (count < 2) return;
+    symmetry.broken_by = symmetry_fault();
+    if (!symmetry.broken_by.empty()) return;
     symmetry.sectors = count;
     const int blade_size = block * (turbine_.blades.front().point_count() + 1);
     for (int k = 0; k < count; ++k) {

@@ -56,6 +56,7 @@ struct NeutralCoordinate {
 /// z~(t) = P z(t + T/Q): entry i of P z is sign[i] z[source[i]] (docs/theory.md, section 5).
 struct RotorSymmetry {
   int sectors = 1;  ///< Q
+  std::string broken_by;  ///< why a rotor of several blades does not repeat; empty if it does
   std::vector<PetscInt> source;
   std::vector<double> sign;
 };

@@ -1,0 +1,476 @@
+#include "samara/io/result_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "samara/base/error.hpp"
+#include "samara/base/version.hpp"
+
+#include "hdf5_file.hpp"
+#include "new_file.hpp"
+
+namespace samara::io {
+namespace {
+
+namespace fs = std::filesystem;
+using analysis::Mode;
+using analysis::ModeSet;
+
+constexpr char schema_attribute[] = "samara_schema";
+constexpr std::string_view mode_table_start = "number,label,";
+constexpr std::string_view trim_table_start = "name,unit,mean";
+
+/// Harmonics of the participation are kept as far as one mode has this share there.
+constexpr double smallest_share = 1e-9;
+
+constexpr char no_frame[] = "none";
+constexpr char mode_frame[] = "each part in its own: tower, nacelle fixed; blades, hub rotating";
+constexpr char unknown_frame[] =
+    "u, theta: axes of the beam's root; V, Omega, F, M: deformed section; root F, M: axes of the "
+    "root; tower top V, Omega: axes of the top; joints: about their axis";
+
+std::string now_in_utc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+const char* word_of(system::UnknownRole role) {
+  switch (role) {
+    case system::UnknownRole::position:
+      return "position";
+    case system::UnknownRole::velocity:
+      return "velocity";
+    case system::UnknownRole::internal:
+      return "internal";
+  }
+  return "";
+}
+
+double per_rev(const Mode& mode, double rotor_speed) { return mode.exponent.imag() / rotor_speed; }
+
+double hertz(const Mode& mode) { return mode.exponent.imag() / (2.0 * std::numbers::pi); }
+
+template <class Value>
+std::vector<double> collect(const ModeSet& set, const Value& value) {
+  std::vector<double> values;
+  for (const Mode& mode : set.modes) values.push_back(value(mode));
+  return values;
+}
+
+/// [mode, re/im]
+template <class Value>
+std::vector<double> collect_complex(const ModeSet& set, const Value& value) {
+  std::vector<double> values;
+  for (const Mode& mode : set.modes) {
+    values.push_back(value(mode).real());
+    values.push_back(value(mode).imag());
+  }
+  return values;
+}
+
+std::vector<std::string> part_names(const ModeSet& set) {
+  std::vector<std::string> names;
+  for (const Mode& mode : set.modes)
+    for (const analysis::PartShare& part : mode.parts)
+      if (std::find(names.begin(), names.end(), part.part) == names.end())
+        names.push_back(part.part);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> harmonic_names(int harmonics) {
+  std::vector<std::string> names{"mean"};
+  for (int k = 1; k <= harmonics; ++k) {
+    names.push_back("cos " + std::to_string(k));
+    names.push_back("sin " + std::to_string(k));
+  }
+  return names;
+}
+
+/// Writes what Floquet modes and constant modes have in common below `group`.
+void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set) {
+  const hsize_t count = set.modes.size();
+  file.write(group + "/exponents", collect_complex(set, [](const Mode& m) { return m.exponent; }),
+             {count, 2},
+             {"rad/s", mode_frame,
+              "lambda + i k Omega with the identified harmonic k; [mode, re/im], im >= 0"});
+  file.write(group + "/frequency_hz", collect(set, hertz), {count},
+             {"Hz", mode_frame, "imaginary part of the exponent over 2 pi"});
+  if (set.rotor_speed > 0.0)
+    file.write(group + "/frequency_per_rev",
+               collect(set, [&](const Mode& m) { return per_rev(m, set.rotor_speed); }), {count},
+               {"1/rev", mode_frame, "imaginary part of the exponent over the rotor speed"});
+  file.write(group + "/damping_ratio", collect(set, [](const Mode& m) { return m.damping_ratio; }),
+             {count},
+             {"1", no_frame, "- re / abs of the exponent; 0 where the exponent counts as zero"});
+  file.write(group + "/residual", collect(set, [](const Mode& m) { return m.residual; }), {count},
+             {"1", no_frame, "how well the mode closes: a relative norm"});
+  std::vector<std::string> labels;
+  std::vector<int> resolved;
+  for (const Mode& mode : set.modes) {
+    labels.push_back(mode.label + (mode.resolved ? "" : " (unresolved)"));
+    resolved.push_back(mode.resolved ? 1 : 0);
+  }
+  file.write(group + "/label", labels,
+             {"", no_frame, "the mode in words; (unresolved): not to be trusted"});
+  file.write(group + "/resolved", resolved,
+             {"1", no_frame, "1: resolved by the time step, with a small residual; 0: not"});
+  const std::vector<std::string> parts = part_names(set);
+  std::vector<double> shares(set.modes.size() * parts.size(), 0.0);
+  for (std::size_t m = 0; m < set.modes.size(); ++m)
+    for (const analysis::PartShare& part : set.modes[m].parts)
+      shares[m * parts.size() +
+             static_cast<std::size_t>(std::find(parts.begin(), parts.end(), part.part) -
+                                      parts.begin())] = part.share;
+  file.write(group + "/part", parts, {"", no_frame, "the parts of part_share"});
+  file.write(group + "/part_share", shares, {count, parts.size()},
+             {"1", mode_frame, "share of the mean kinetic energy; [mode, part]"});
+  file.set_attribute(group, "degrees_of_freedom", set.degrees_of_freedom);
+  file.set_attribute(group, "rotor_speed", set.rotor_speed);
+}
+
+void write_shapes(Hdf5File& file, const std::string& group, const ModeSet& set) {
+  if (set.shapes.empty()) return;
+  const auto size = static_cast<std::size_t>(set.shapes.front().rows());
+  const auto samples = static_cast<std::size_t>(set.shapes.front().cols());
+  const Hdf5Id dataset = file.make_slices(
+      group + "/modes", {set.shapes.size(), samples, size, 2},
+      {"of /model/unknowns/unit", unknown_frame,
+       "periodic mode shapes Z(t) exp(-lambda t), lambda without the harmonic, the largest "
+       "position 1; [mode, sample, unknown, re/im]"});
+  std::vector<float> slice(samples * size * 2);
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    // Columns of the matrix are samples: its memory has the order of the file.
+    const std::complex<double>* value = set.shapes[m].data();
+    for (std::size_t i = 0; i < samples * size; ++i) {
+      slice[2 * i] = static_cast<float>(value[i].real());
+      slice[2 * i + 1] = static_cast<float>(value[i].imag());
+    }
+    file.write_slice(dataset, m, slice);
+  }
+  file.write(group + "/mode_times", set.shape_times, {set.shape_times.size()},
+             {"s", no_frame, "times of the samples of modes"});
+}
+
+void write_participation(Hdf5File& file, const std::string& group, const ModeSet& set) {
+  const Eigen::Index columns = set.participation.cols();
+  if (columns == 0) return;
+  const Eigen::VectorXd largest = set.participation.colwise().maxCoeff();
+  Eigen::Index first = 0;
+  Eigen::Index last = columns;
+  while (first + 1 < last && largest(first) < smallest_share) ++first;
+  while (last - 1 > first && largest(last - 1) < smallest_share) --last;
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> kept =
+      set.participation.middleCols(first, last - first);
+  std::vector<int> harmonics;
+  for (Eigen::Index i = first; i < last; ++i)
+    harmonics.push_back(set.first_harmonic + static_cast<int>(i));
+  file.write(group + "/participation",
+             std::span<const double>(kept.data(), static_cast<std::size_t>(kept.size())),
+             {static_cast<hsize_t>(kept.rows()), static_cast<hsize_t>(kept.cols())},
+             {"1", mode_frame,
+              "share of the mean kinetic energy; [mode, harmonic], harmonics k in "
+              "participation_harmonic, beyond which no share reaches 1e-9"});
+  file.write(group + "/participation_harmonic", harmonics,
+             {"1", no_frame, "k of the columns of participation, in the count of harmonic"});
+}
+
+/// The folder that will hold `path`; "." for a bare name.
+fs::path folder_of(const std::string& path) {
+  const fs::path parent = fs::path(path).parent_path();
+  return parent.empty() ? fs::path(".") : parent;
+}
+
+/// Refuses a path where no file can be made. False: nothing is there yet.
+bool require_writable(const std::string& path) {
+  std::error_code error;
+  const fs::path folder = folder_of(path);
+  const fs::file_status above = fs::status(folder, error);
+  if (above.type() == fs::file_type::not_found)
+    throw InputError(path + ": there is no folder " + folder.string() + "; hint: make it first");
+  if (!fs::is_directory(above))
+    throw InputError(path + ": " + folder.string() + " is not a folder; hint: -o names a file");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(path + ": no permission to write in " + folder.string() +
+                     "; hint: -o names another place");
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status))
+    throw InputError(path + ": a folder; hint: give the name of a file in it");
+  if (!fs::exists(status)) return false;
+  if (!fs::is_regular_file(status)) throw InputError(path + ": not a plain file");
+  if (::access(path.c_str(), W_OK) != 0)
+    throw InputError(path + ": write-protected; hint: give another name");
+  return true;
+}
+
+bool has_hdf5_signature(const std::string& path) {
+  constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
+  std::array<char, 8> start{};
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(start.data(), start.size());
+  return stream && std::string_view(start.data(), start.size()) == signature;
+}
+
+/// The schema of a result; -1: an HDF5 file of someone else, -2: one that cannot be opened.
+int read_schema(const std::string& path) {
+  silence_hdf5();
+  const Hdf5Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file) return -2;
+  const Hdf5Id attribute(
+      H5Aopen_by_name(file.get(), "/", schema_attribute, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!attribute) return -1;
+  const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose);
+  const Hdf5Id space(H5Aget_space(attribute.get()), H5Sclose);
+  int schema = 0;
+  const bool is_one_integer =
+      H5Tget_class(type.get()) == H5T_INTEGER && H5Sget_simple_extent_npoints(space.get()) == 1;
+  if (!is_one_integer || H5Aread(attribute.get(), H5T_NATIVE_INT, &schema) < 0 || schema < 1)
+    return -1;
+  return schema;
+}
+
+class Table {
+ public:
+  explicit Table(const std::string& path) : file_(path) { text_.precision(17); }
+
+  std::ostringstream& text() { return text_; }
+
+  void publish() {
+    {
+      std::ofstream stream(file_.temporary(), std::ios::binary);
+      stream << text_.str() << std::flush;
+      if (!stream) throw InternalError(file_.path() + ": cannot be written");
+    }
+    file_.publish();
+  }
+
+ private:
+  NewFile file_;
+  std::ostringstream text_;
+};
+
+}  // namespace
+
+class ResultFile::Storage {
+ public:
+  explicit Storage(const std::string& path) : target(path), file(target.temporary()) {}
+  NewFile target;
+  Hdf5File file;  ///< is closed before the temporary file is removed
+};
+
+ResultFile::ResultFile(const std::string& path, const Case& input, const RunRecord& record)
+    : storage_(std::make_unique<Storage>(path)) {
+  Hdf5File& file = storage_->file;
+  file.set_attribute("/", schema_attribute, result_schema);
+  file.set_attribute("/", "program", std::string("samara ") + version);
+  file.set_attribute("/", "title", input.turbine.title);
+  file.set_attribute("/", "case_path", input.path);
+  file.set_attribute("/", "command_line", record.command_line);
+  file.set_attribute("/", "petsc_options", record.petsc_options);
+  file.set_attribute("/", "libraries", record.libraries);
+  file.set_attribute("/", "ranks", record.ranks);
+  file.set_attribute("/", "time", now_in_utc());
+  file.write("/case", input.text,
+             {"", no_frame, "the case as run; what --set changed in comments on top"});
+}
+
+ResultFile::~ResultFile() = default;
+
+void ResultFile::write_value(const std::string& name, double value, const Meaning& meaning) {
+  storage_->file.write(name, std::span<const double>(&value, 1), {}, meaning);
+}
+
+void ResultFile::write_values(const std::string& name, const std::vector<double>& values,
+                              const Meaning& meaning) {
+  storage_->file.write(name, values, {values.size()}, meaning);
+}
+
+void ResultFile::write_model(const system::TurbineSystem& system) {
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+  std::vector<std::string> roles;
+  for (const system::Unknown& unknown : system.unknowns()) {
+    names.push_back(unknown.name);
+    units.push_back(unknown.unit);
+    roles.emplace_back(word_of(unknown.role));
+  }
+  Hdf5File& file = storage_->file;
+  file.write("/model/unknowns/name", names, {"", no_frame, "the unknowns in their order"});
+  file.write("/model/unknowns/unit", units, {"", no_frame, "unit of each unknown"});
+  file.write("/model/unknowns/role", roles,
+             {"", no_frame, "position, velocity or internal (force, moment)"});
+  write_value("/model/rotor_speed", system.turbine().speed, {"rad/s", "about +s2", "Omega"});
+  write_value("/model/azimuth", system.turbine().azimuth,
+              {"rad", "about +s2", "of blade 1 at t = 0"});
+  write_value("/model/period", system.period(),
+              {"s", no_frame, "of one revolution; 0 where the rotor stands still"});
+  file.set_attribute("/model", "degrees_of_freedom", system.turbine().degrees_of_freedom);
+  file.set_attribute("/model", "unknowns", static_cast<int>(names.size()));
+  file.set_attribute("/model", "blades", static_cast<int>(system.turbine().blades.size()));
+  file.set_attribute("/model", "sectors", system.symmetry().sectors);
+}
+
+void ResultFile::write_trim(const analysis::Trim& trim) {
+  Hdf5File& file = storage_->file;
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coefficients =
+      trim.solution.coefficients();
+  file.write(
+      "/trim/harmonics",
+      std::span<const double>(coefficients.data(), static_cast<std::size_t>(coefficients.size())),
+      {static_cast<hsize_t>(coefficients.rows()), static_cast<hsize_t>(coefficients.cols())},
+      {"of /model/unknowns/unit", unknown_frame,
+       "z(t) = mean + sum of cos k * cos(k Omega t) + sin k * sin(k Omega t); "
+       "[unknown, coefficient], coefficients in harmonic_name"});
+  file.write("/trim/harmonic_name", harmonic_names(trim.solution.harmonics()),
+             {"", no_frame, "the columns of harmonics"});
+  write_values("/trim/residual", {trim.residual, trim.residual_between},
+               {"N, N m", no_frame,
+                "largest entry of the force and moment balances; [at the samples of the trim, "
+                "between them]"});
+  write_value("/trim/load_level", trim.load_level,
+              {"N, N m", no_frame, "largest internal load, to compare the residual with"});
+  std::vector<std::string> held;
+  std::vector<double> loads;
+  for (const analysis::HeldCoordinate& coordinate : trim.held) {
+    held.push_back(coordinate.name);
+    loads.push_back(coordinate.load);
+  }
+  file.write("/trim/held_name", held,
+             {"", no_frame, "coordinates that nothing restores: their mean is set to zero"});
+  write_values("/trim/held_load", loads,
+               {"N m", "about the joint", "constant load that holds each of held_name"});
+  file.set_attribute(
+      "/trim", "method",
+      std::string(trim.method == analysis::TrimMethod::shooting ? "shooting" : "harmonic_balance"));
+  file.set_attribute("/trim", "harmonics", trim.solution.harmonics());
+  file.set_attribute("/trim", "newton_steps", trim.newton_steps);
+  file.set_attribute("/trim", "convergence", trim.convergence);
+}
+
+void ResultFile::write_floquet(const analysis::Floquet& floquet) {
+  Hdf5File& file = storage_->file;
+  const ModeSet& set = floquet.set;
+  file.write("/floquet/multipliers",
+             collect_complex(set, [](const Mode& m) { return m.multiplier; }),
+             {set.modes.size(), 2},
+             {"1", no_frame,
+              "over one revolution; [mode, re/im], im >= 0 before it is raised to "
+              "the number of sectors"});
+  std::vector<int> harmonics;
+  for (const Mode& mode : set.modes) harmonics.push_back(mode.harmonic);
+  file.write("/floquet/harmonic", harmonics,
+             {"1", mode_frame,
+              "the identified harmonic k of the rotor speed, counted from the "
+              "principal exponent"});
+  write_mode_set(file, "/floquet", set);
+  write_participation(file, "/floquet", set);
+  write_shapes(file, "/floquet", set);
+  file.set_attribute("/floquet", "steps", floquet.steps);
+  file.set_attribute("/floquet", "sectors", floquet.sectors);
+  file.set_attribute("/floquet", "step", floquet.step);
+}
+
+void ResultFile::write_modes(const ModeSet& set) {
+  write_mode_set(storage_->file, "/modes", set);
+  write_shapes(storage_->file, "/modes", set);
+}
+
+void ResultFile::publish() {
+  storage_->file.close();
+  storage_->target.publish();
+}
+
+bool is_result(const std::string& path) {
+  return has_hdf5_signature(path) && read_schema(path) >= 1;
+}
+
+void require_result_path(const std::string& path) {
+  if (!require_writable(path)) return;
+  const std::string hint = "; hint: -o gives the result another name";
+  if (!has_hdf5_signature(path))
+    throw InputError(path + ": exists and is no result of samara, it would be lost" + hint);
+  const int schema = read_schema(path);
+  if (schema == -2)
+    throw InputError(path + ": exists and cannot be opened: damaged, or in use" + hint);
+  if (schema < 1)
+    throw InputError(path + ": exists and is an HDF5 file of another program, it would be lost" +
+                     hint);
+  if (schema > result_schema)
+    throw InputError(path + ": exists and is the result of a newer samara (schema " +
+                     std::to_string(schema) + ", this one writes " + std::to_string(result_schema) +
+                     ")" + hint);
+}
+
+void require_table_path(const std::string& path) {
+  if (!require_writable(path)) return;
+  std::string line;
+  std::ifstream stream(path, std::ios::binary);
+  std::getline(stream, line);
+  if (!line.starts_with(mode_table_start) && !line.starts_with(trim_table_start))
+    throw InputError(path +
+                     ": exists and is no table of samara, it would be lost; hint: --csv "
+                     "gives the table another name");
+}
+
+void write_mode_table(const std::string& path, const ModeSet& set) {
+  const bool turns = set.rotor_speed > 0.0;
+  const bool periodic = set.participation.size() > 0;
+  Table table(path);
+  std::ostringstream& text = table.text();
+  text << mode_table_start << (turns ? "frequency_per_rev," : "")
+       << "frequency_hz,damping_ratio,exponent_re,exponent_im,"
+       << (periodic ? "multiplier_re,multiplier_im,harmonic," : "") << "resolved,residual\n";
+  int number = 0;
+  for (const Mode& mode : set.modes) {
+    text << ++number << ',' << mode.label << ',';
+    if (turns) text << per_rev(mode, set.rotor_speed) << ',';
+    text << hertz(mode) << ',' << mode.damping_ratio << ',' << mode.exponent.real() << ','
+         << mode.exponent.imag() << ',';
+    if (periodic)
+      text << mode.multiplier.real() << ',' << mode.multiplier.imag() << ',' << mode.harmonic
+           << ',';
+    text << (mode.resolved ? 1 : 0) << ',' << mode.residual << '\n';
+  }
+  table.publish();
+}
+
+void write_trim_table(const std::string& path, const system::PeriodicSystem& system,
+                      const analysis::Trim& trim) {
+  Table table(path);
+  std::ostringstream& text = table.text();
+  text << "name,unit";
+  for (const std::string& name : harmonic_names(trim.solution.harmonics())) text << ',' << name;
+  text << '\n';
+  for (std::size_t i = 0; i < system.unknowns().size(); ++i) {
+    text << system.unknowns()[i].name << ',' << system.unknowns()[i].unit;
+    for (Eigen::Index k = 0; k < trim.solution.coefficients().cols(); ++k)
+      text << ',' << trim.solution.coefficients()(static_cast<Eigen::Index>(i), k);
+    text << '\n';
+  }
+  table.publish();
+}
+
+std::string file_library_version() {
+  unsigned major = 0;
+  unsigned minor = 0;
+  unsigned release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return "HDF5 " + std::to_string(major) + "." + std::to_string(minor) + "." +
+         std::to_string(release);
+}
+
+}  // namespace samara::io
