@@ -12,8 +12,6 @@
 namespace samara::drivers {
 namespace {
 
-const std::vector<std::string> own_options{"--set", "--csv", "--help", "--version"};
-
 /// Number of letters to change, add, leave out or swap with the next to make one word of the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1);
@@ -23,7 +21,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   for (std::size_t i = 1; i <= a.size(); ++i) {
     next[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      next[j] = std::min({row[j] + 1, next[j - 1] + 1, row[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      next[j] =
+          std::min({row[j] + 1, next[j - 1] + 1, row[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
         next[j] = std::min(next[j], before[j - 2] + 1);
     }
@@ -48,7 +47,7 @@ std::string suggest(const std::string& word, const std::vector<std::string>& wor
 
 std::vector<std::string> names_of(std::span<const Command> commands) {
   std::vector<std::string> names;
-  for (const Command& command : commands) names.push_back(command.name);
+  for (const Command& command : commands) names.emplace_back(command.name);
   return names;
 }
 
@@ -122,8 +121,13 @@ class Parser {
     else if (name == "--csv")
       set_once(line_.csv_path, name, value_of(name, "a path, e.g. --csv modes.csv", value));
     else
-      throw InputError("unknown option " + word + suggest(name, own_options) +
-                       "; hint: samara --help; options of PETSc have one dash");
+      throw InputError("unknown option " + word + unknown_option_words(name));
+  }
+
+  static std::string unknown_option_words(const std::string& name) {
+    const std::string suggestion = suggest(name, {"--set", "--csv", "--help", "--version"});
+    return suggestion.empty() ? "; hint: samara --help; options of PETSc have one dash"
+                              : suggestion;
   }
 
   std::string value_of(const std::string& name, const std::string& expected,
@@ -141,6 +145,8 @@ class Parser {
   }
 
   void take_petsc(const std::string& word) {
+    if (word == "-set" || word == "-csv")  // PETSc would only say at the end that it is unused
+      throw InputError("unknown option " + word + "; did you mean \"-" + word + "\"?");
     line_.petsc_options.push_back(word);
     if (next_ == arguments_.size() || is_option(arguments_[next_])) return;
     line_.petsc_options.push_back(arguments_[next_++]);
@@ -150,34 +156,38 @@ class Parser {
     if (line_.command == nullptr) {
       const auto found = std::find_if(commands_.begin(), commands_.end(),
                                       [&](const Command& c) { return c.name == word; });
-      if (found == commands_.end())
-        throw InputError("unknown command \"" + word + "\"" + suggest(word, names_of(commands_)) +
-                         "; the commands are " + join(names_of(commands_), ", ") +
-                         "; hint: samara --help");
+      if (found == commands_.end()) throw InputError(unknown_command(word));
       line_.command = &*found;
     } else if (line_.case_path.empty() && !word.empty()) {
       line_.case_path = word;
     } else {
       throw InputError("unexpected argument \"" + word + "\": the case is " + line_.case_path +
-                       ", one a run; hint: samara " + line_.command->name + " --help");
+                       ", one a run; hint: samara " + std::string(line_.command->name) + " --help");
     }
+  }
+
+  std::string unknown_command(const std::string& word) const {
+    const std::string suggestion = suggest(word, names_of(commands_));
+    return "unknown command \"" + word + "\"" +
+           (suggestion.empty() ? "; hint: the commands are " + join(names_of(commands_), ", ")
+                               : suggestion);
   }
 
   void require_operands() const {
     if (line_.command == nullptr)
-      throw InputError("missing command: " + join(names_of(commands_), ", ") +
-                       "; hint: samara --help");
+      throw InputError("missing command; hint: the commands are " +
+                       join(names_of(commands_), ", ") + "; samara --help explains them");
+    const std::string name = line_.command->name;
     if (line_.case_path.empty()) {
-      std::string hint = "samara " + line_.command->name + " --help shows an example";
+      std::string hint = "samara " + name + " --help shows an example";
       for (std::size_t i = 1; i < line_.petsc_options.size(); ++i)
         if (line_.petsc_options[i].find(".y") != std::string::npos)
           hint = line_.petsc_options[i] + " was taken for the value of " +
                  line_.petsc_options[i - 1] + ", the case comes before the options of PETSc";
-      throw InputError("missing case file: samara " + line_.command->name +
-                       " CASE.yaml; hint: " + hint);
+      throw InputError("missing case file: samara " + name + " CASE.yaml; hint: " + hint);
     }
     if (!line_.csv_path.empty() && !line_.command->has_csv)
-      throw InputError("--csv: samara " + line_.command->name + " has no table to write");
+      throw InputError("--csv: samara " + name + " has no table to write");
     if (!line_.csv_path.empty() && line_.csv_path == line_.result_path)
       throw InputError("-o and --csv name the same file; give each its own");
   }
@@ -214,8 +224,8 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
   const std::string options = " CASE.yaml [options]";
   if (line.command != nullptr) {
     const Command& command = *line.command;
-    return "samara " + command.name + options + "\n\n" + command.description + "\nexample\n  samara " +
-           command.name + " " + command.example + "\n\n" + option_lines;
+    return std::string("samara ") + command.name + options + "\n\n" + command.description +
+           "\nexample\n  samara " + command.name + " " + command.example + "\n\n" + option_lines;
   }
   std::string text = "samara " + std::string(version) +
                      ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" +

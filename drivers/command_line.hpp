@@ -11,12 +11,12 @@ namespace samara::drivers {
 
 /// A sub-command.
 struct Command {
-  std::string name;
-  std::string summary;
-  std::string description;         ///< of its --help, whole lines
-  std::string example;             ///< the arguments of a command line that works
-  bool writes_result = true;       ///< also without -o
-  bool has_csv = true;
+  const char* name;
+  const char* summary;
+  const char* description;  ///< of its --help, whole lines
+  const char* example;      ///< the arguments of a command line that works
+  bool writes_result;       ///< also without -o
+  bool has_csv;
   void (*require)(const io::Case&);  ///< refuses before anything is solved; may be null
   void (*run)(const Job&);
 };

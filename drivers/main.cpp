@@ -1,1 +1,147 @@
-int main() { return 0; }
+// The program samara: reads the command line and the case, runs the command, ends with the exit
+// code that says who acts next (docs/case_file.md).
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <sstream>
+
+#include "samara/base/error.hpp"
+#include "samara/base/version.hpp"
+#include "samara/io/case.hpp"
+#include "samara/io/result_file.hpp"
+#include "samara/petsc/session.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+
+namespace samara::drivers {
+namespace {
+
+using petsc::Session;
+
+constexpr std::array<Command, 4> commands{{
+    {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
+     "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
+     "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
+     "inputs/lee2002/baseline.yaml", false, false, nullptr, run_check},
+    {"modes", "modes of a parked rotor, or of a balanced one in its own axes",
+     "Finds all modes about the steady state where the coefficients do not depend on the azimuth:\n"
+     "a parked rotor, or a balanced one in its own axes. Elsewhere use samara floquet.\n",
+     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, nullptr, run_modes},
+    {"trim", "the periodic steady state",
+     "Finds the periodic steady state: deflections and loads as harmonics of the rotor speed.\n",
+     "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true, nullptr,
+     run_trim},
+    {"floquet", "the stability of the periodic steady state: all modes",
+     "Finds the periodic steady state, and all modes about it by Floquet's theory: multipliers,\n"
+     "frequencies, damping, harmonics, and where the energy is.\n",
+     "inputs/lee2002/baseline.yaml --set blades.elements=8 --csv modes.csv", true, true,
+     require_speed, run_floquet},
+}};
+
+/// How a piece of work ended.
+struct Outcome {
+  int code = 0;
+  std::string message;  ///< whole lines
+};
+
+/// Lines that begin with a place in the case stand for themselves.
+std::string with_name(const std::string& message, const std::string& case_path) {
+  std::istringstream lines(message);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    const bool has_place =
+        !case_path.empty() && (line.starts_with(case_path + ":") || line.starts_with("--set "));
+    text += (has_place ? "" : "samara: ") + line + "\n";
+  }
+  return text;
+}
+
+template <class Work>
+Outcome attempt(const std::string& case_path, const Work& work) {
+  try {
+    work();
+    return {};
+  } catch (const InputError& error) {
+    return {2, with_name(error.what(), case_path)};
+  } catch (const ConvergenceError& error) {
+    return {3, with_name(error.what(), case_path)};
+  } catch (const DomainError& error) {
+    return {3, with_name(error.what(), case_path)};
+  } catch (const std::bad_alloc&) {
+    return {1, "samara: not enough memory\n"};
+  } catch (const InternalError& error) {
+    return {1, with_name(error.what(), case_path)};
+  } catch (const std::exception& error) {
+    return {1, with_name(std::string("unexpected: ") + error.what(), case_path)};
+  }
+}
+
+/// Everything that can be found wrong before anything is computed.
+Job prepare(const CommandLine& line) {
+  Job job;
+  job.input = io::read_case(line.case_path, line.settings);
+  if (line.command->require != nullptr) line.command->require(job.input);
+  job.command_line = line.text;
+  job.result_path = line.result_path;
+  job.csv_path = line.csv_path;
+  if (job.result_path.empty() && line.command->writes_result)
+    job.result_path = std::filesystem::path(line.case_path).stem().string() + ".h5";
+  if (Session::launch_rank() != 0) return job;
+  if (!job.result_path.empty()) io::require_result_path(job.result_path);
+  if (!job.csv_path.empty()) io::require_table_path(job.csv_path);
+  return job;
+}
+
+void report_unused_options() {
+  const std::string unused = Session::unused_options();
+  if (!unused.empty())
+    std::cerr << "samara: options that nothing in this run asked for: " << unused
+              << "; hint: misspelt, or of a solver that this command does not start\n";
+}
+
+void print_text(const CommandLine& line) {
+  if (Session::launch_rank() != 0) return;
+  if (line.request == Request::help)
+    std::cout << help_text(line, commands);
+  else
+    std::cout << "samara " << version << "\n"
+              << petsc::library_versions() << "\n"
+              << io::file_library_version() << "\n";
+}
+
+int run(const std::vector<std::string>& arguments) {
+  CommandLine line;
+  Job job;
+  Outcome outcome = attempt("", [&] { line = parse_command_line(arguments, commands); });
+  if (outcome.code == 0 && line.request != Request::run) {
+    print_text(line);
+    return 0;
+  }
+  if (outcome.code == 0) outcome = attempt(line.case_path, [&] { job = prepare(line); });
+  if (outcome.code != 0 && !Session::is_launched()) {
+    std::fputs(outcome.message.c_str(), stderr);
+    return outcome.code;
+  }
+  const Session session(line.petsc_options);
+  if (const int code = session.agree(outcome.code, outcome.message)) return code;
+  outcome = attempt(line.case_path, [&] { line.command->run(job); });
+  const int code = session.agree(outcome.code, outcome.message);
+  if (code == 0 && Session::rank() == 0) report_unused_options();
+  return code;
+}
+
+}  // namespace
+}  // namespace samara::drivers
+
+int main(int argc, char** argv) {
+  using namespace samara::drivers;
+  int code = 1;
+  const Outcome outcome =
+      attempt("", [&] { code = run(std::vector<std::string>(argv + 1, argv + argc)); });
+  if (outcome.code != 0) std::fputs(outcome.message.c_str(), stderr);
+  return outcome.code != 0 ? outcome.code : code;
+}

@@ -22,8 +22,11 @@ constexpr double constant_tolerance = 1e-9;
 
 /// The second shift, relative to the first, and how far two shifts may differ in a mode, relative:
 /// the stiffest strains of a fine mesh have frequencies beyond what double precision holds.
-constexpr double check_shift = 5.0;
+constexpr double check_shift = 3.0;
 constexpr double largest_difference = 1e-6;
+
+/// How many of the slowest modes have a shift of their own.
+constexpr std::size_t slow_modes = 12;
 
 /// Below this, relative to the shift, an exponent is zero: a double zero in double precision.
 constexpr double zero_to_shift = 1e-7;
@@ -101,17 +104,41 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   return spectrum;
 }
 
-/// Geometric mean of the exponents that are not zero: the shift that serves all best.
-double middle_of(const Spectrum& spectrum, double fallback) {
-  double sum = 0.0;
-  int count = 0;
-  for (const Complex& exponent : spectrum.exponents) {
-    if (std::abs(exponent) < zero_exponent * fallback) continue;
-    sum += std::log(std::abs(exponent));
-    ++count;
-  }
-  return count > 0 ? std::exp(sum / count) : fallback;
+/// Moduli of the exponents that are not zero, ascending.
+std::vector<double> moduli_of(const Spectrum& spectrum, double zero) {
+  std::vector<double> moduli;
+  for (const Complex& exponent : spectrum.exponents)
+    if (std::abs(exponent) > zero) moduli.push_back(std::abs(exponent));
+  std::sort(moduli.begin(), moduli.end());
+  return moduli;
 }
+
+/// Geometric mean of the first `count` moduli.
+double middle_of(const std::vector<double>& moduli, std::size_t count, double fallback) {
+  const std::size_t n = std::min(count, moduli.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) sum += std::log(moduli[i]);
+  return n > 0 ? std::exp(sum / static_cast<double>(n)) : fallback;
+}
+
+/// The middle of the widest gap, as a ratio, between two moduli in [low, high].
+double widest_gap(const std::vector<double>& moduli, double low, double high) {
+  double gap = 1.0;
+  double middle = low;
+  for (std::size_t i = 1; i < moduli.size(); ++i) {
+    const double ratio = moduli[i] / moduli[i - 1];
+    if (moduli[i - 1] < low || moduli[i] > high || ratio <= gap) continue;
+    gap = ratio;
+    middle = std::sqrt(moduli[i] * moduli[i - 1]);
+  }
+  return middle;
+}
+
+/// A shift, what it finds, and what a shift nearby finds.
+struct CheckedSpectrum {
+  double sigma = 0.0;
+  Spectrum found, check;
+};
 
 /// Distance to the nearest exponent of another spectrum, relative to the larger of itself and
 /// `zero`.
@@ -130,14 +157,33 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   const ConsistentSubspace subspace(system, solution);
   const double speed = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const double rate = speed > 0.0 ? speed : 1.0;
-  const double sigma = middle_of(find_spectrum(system, solution, subspace, rate), rate);
-  const Spectrum spectrum = find_spectrum(system, solution, subspace, sigma);
-  const Spectrum check = find_spectrum(system, solution, subspace, check_shift * sigma);
+  const auto checked = [&](double sigma) {
+    return CheckedSpectrum{sigma, find_spectrum(system, solution, subspace, sigma),
+                           find_spectrum(system, solution, subspace, check_shift * sigma)};
+  };
+  // The error of an exponent is about that of max(sigma, |lambda|^2 / sigma): the slow modes, which
+  // matter, and the fast ones, which a fine mesh brings along, want a shift each.
+  const double zero = zero_exponent * rate;
+  const std::vector<double> moduli =
+      moduli_of(find_spectrum(system, solution, subspace, rate), zero);
+  const CheckedSpectrum slow = checked(middle_of(moduli, slow_modes, rate));
+  const CheckedSpectrum fast = checked(middle_of(moduli, moduli.size(), rate));
+  const double border = widest_gap(moduli_of(slow.found, zero), slow.sigma, fast.sigma);
 
-  std::vector<std::size_t> order(spectrum.exponents.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return spectrum.exponents[a].imag() < spectrum.exponents[b].imag();
+  struct Found {
+    Complex exponent;
+    const CheckedSpectrum* spectrum;
+    Eigen::Index column;
+  };
+  std::vector<Found> order;
+  for (const CheckedSpectrum* spectrum : {&slow, &fast})
+    for (std::size_t i = 0; i < spectrum->found.exponents.size(); ++i) {
+      const Complex exponent = spectrum->found.exponents[i];
+      if ((std::abs(exponent) <= border) == (spectrum == &slow))
+        order.push_back({exponent, spectrum, static_cast<Eigen::Index>(i)});
+    }
+  std::stable_sort(order.begin(), order.end(), [](const Found& a, const Found& b) {
+    return a.exponent.imag() < b.exponent.imag();
   });
   const std::vector<PetscInt> kinetic = kinetic_unknowns(system);
   const HarmonicEnergy energy(system, kinetic);
@@ -145,9 +191,9 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   set.degrees_of_freedom = subspace.degrees_of_freedom();
   set.rotor_speed = speed;
   set.shape_times = {0.0};
-  for (const std::size_t i : order) {
+  for (const Found& found : order) {
     Mode mode;
-    const Eigen::MatrixXcd shape = spectrum.shapes.col(static_cast<Eigen::Index>(i));
+    const Eigen::MatrixXcd shape = found.spectrum->found.shapes.col(found.column);
     Eigen::MatrixXcd history(static_cast<Eigen::Index>(kinetic.size()), 1);
     for (std::size_t k = 0; k < kinetic.size(); ++k)
       history(static_cast<Eigen::Index>(k), 0) = shape(kinetic[k], 0);
@@ -155,16 +201,24 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     energy.identify(history, mode, participation);
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
-    mode.exponent = spectrum.exponents[i];
-    const double zero = std::max(zero_exponent * rate, zero_to_shift * sigma);
-    if (std::abs(mode.exponent) < zero) mode.exponent = 0.0;
-    mode.residual = mode.exponent == 0.0 ? 0.0 : distance(mode.exponent, check, zero);
+    mode.exponent = found.exponent;
+    if (std::abs(mode.exponent) < std::max(zero, zero_to_shift * found.spectrum->sigma))
+      mode.exponent = 0.0;
+    mode.residual =
+        mode.exponent == 0.0 ? 0.0 : distance(mode.exponent, found.spectrum->check, zero);
     mode.resolved = mode.residual <= largest_difference;
     const double size = std::abs(mode.exponent);
     mode.damping_ratio = size > 0.0 ? -mode.exponent.real() / size : 0.0;
     set.modes.push_back(mode);
     set.shapes.push_back(shape);
   }
+  const auto rows = [](const ModeSet& modes) {
+    std::size_t count = 0;
+    for (const Mode& mode : modes.modes) count += mode.exponent.imag() != 0.0 ? 2 : 1;
+    return count;
+  };
+  if (slow.sigma != fast.sigma && rows(set) > 2 * static_cast<std::size_t>(set.degrees_of_freedom))
+    throw ConvergenceError("modes: a mode was found with both shifts; hint: fewer elements");
   label_modes(system, set);
   scale_shapes(system, set);
   return set;

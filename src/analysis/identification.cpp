@@ -219,7 +219,7 @@ void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   }
   for (const std::string& stem : stems) ++count[stem];
   std::map<std::string, int> number;
-  for (std::size_t i = 0; i < set.modes.size(); ++i) {
+  for (std::size_t i = 0; i < stems.size(); ++i) {
     const std::string& stem = stems[i];
     set.modes[i].label =
         count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;

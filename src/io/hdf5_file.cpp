@@ -7,6 +7,9 @@
 namespace samara::io {
 namespace {
 
+/// Memory that the file grows by.
+constexpr std::size_t memory_increment = std::size_t{1} << 20;
+
 /// The innermost record of HDF5's error stack: nearest to the cause.
 std::string reason() {
   std::string text;
@@ -18,24 +21,26 @@ std::string reason() {
   return text.empty() ? "unknown reason" : text;
 }
 
+hid_t check(hid_t id) {
+  if (id < 0) throw InternalError("HDF5: " + reason());
+  return id;
+}
+
 }  // namespace
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-Hdf5File::Hdf5File(const std::string& path) : path_(path) {
+Hdf5File::Hdf5File() {
   silence_hdf5();
-  file_ = {check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), H5Fclose};
+  const Hdf5Id access(check(H5Pcreate(H5P_FILE_ACCESS)), H5Pclose);
+  check(H5Pset_fapl_core(access.get(), memory_increment, 0));  // nothing goes to the disk
+  file_ = {check(H5Fcreate("samara", H5F_ACC_TRUNC, H5P_DEFAULT, access.get())), H5Fclose};
   text_type_ = {check(H5Tcopy(H5T_C_S1)), H5Tclose};
   check(H5Tset_size(text_type_.get(), H5T_VARIABLE));
   check(H5Tset_cset(text_type_.get(), H5T_CSET_UTF8));
   scalar_space_ = {check(H5Screate(H5S_SCALAR)), H5Sclose};
   link_ = {check(H5Pcreate(H5P_LINK_CREATE)), H5Pclose};
   check(H5Pset_create_intermediate_group(link_.get(), 1));
-}
-
-hid_t Hdf5File::check(hid_t id) const {
-  if (id < 0) throw InternalError(path_ + ": cannot be written: " + reason());
-  return id;
 }
 
 Hdf5Id Hdf5File::make_dataset(const std::string& name, hid_t type, const Shape& shape,
@@ -138,6 +143,12 @@ void Hdf5File::set_attribute(const std::string& object, const std::string& name,
   set_number(object, name, H5T_NATIVE_INT, &value);
 }
 
-void Hdf5File::close() { check(file_.close()); }
+std::vector<char> Hdf5File::image() const {
+  check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL));
+  const auto size = static_cast<std::size_t>(check(H5Fget_file_image(file_.get(), nullptr, 0)));
+  std::vector<char> bytes(size);
+  check(H5Fget_file_image(file_.get(), bytes.data(), bytes.size()));
+  return bytes;
+}
 
 }  // namespace samara::io

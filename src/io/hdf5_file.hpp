@@ -1,4 +1,7 @@
 // A new HDF5 file: the C API behind an owner, and as much of it as results need.
+//
+// The file is built in memory and given away as bytes: HDF5 does not survive a disk that is full
+// (H5Fclose fails, and the library crashes when MPI ends).
 #pragma once
 
 #include <cstdint>
@@ -29,15 +32,12 @@ class Hdf5Id {
   }
   Hdf5Id(const Hdf5Id&) = delete;
   Hdf5Id& operator=(const Hdf5Id&) = delete;
-  ~Hdf5Id() { close(); }
+  ~Hdf5Id() {
+    if (id_ >= 0) close_(id_);
+  }
 
   hid_t get() const { return id_; }
   explicit operator bool() const { return id_ >= 0; }
-  /// Negative where the library refuses, e.g. because the disk is full.
-  herr_t close() noexcept {
-    const hid_t id = std::exchange(id_, H5I_INVALID_HID);
-    return id >= 0 ? close_(id) : 0;
-  }
 
  private:
   hid_t id_ = H5I_INVALID_HID;
@@ -51,8 +51,8 @@ class Hdf5File {
  public:
   using Shape = std::vector<hsize_t>;
 
-  /// @throws InternalError as all members do: the environment failed
-  explicit Hdf5File(const std::string& path);
+  /// @throws InternalError as all members do
+  Hdf5File();
 
   void write(const std::string& name, std::span<const double> values, const Shape& shape,
              const Meaning& meaning);
@@ -70,17 +70,16 @@ class Hdf5File {
   void set_attribute(const std::string& object, const std::string& name, double value);
   void set_attribute(const std::string& object, const std::string& name, int value);
 
-  void close();
+  /// The content of the file.
+  std::vector<char> image() const;
 
  private:
-  hid_t check(hid_t id) const;
   Hdf5Id make_dataset(const std::string& name, hid_t type, const Shape& shape,
                       const Meaning& meaning);
   void set_text(hid_t object, const std::string& name, const std::string& text);
   void set_number(const std::string& object, const std::string& name, hid_t type,
                   const void* value);
 
-  std::string path_;
   Hdf5Id file_;
   Hdf5Id text_type_;  ///< of any length
   Hdf5Id scalar_space_;

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <unistd.h>
 
@@ -17,7 +18,7 @@
 #include "samara/base/version.hpp"
 
 #include "hdf5_file.hpp"
-#include "new_file.hpp"
+#include "whole_file.hpp"
 
 namespace samara::io {
 namespace {
@@ -243,33 +244,20 @@ int read_schema(const std::string& path) {
   return schema;
 }
 
-class Table {
- public:
-  explicit Table(const std::string& path) : file_(path) { text_.precision(17); }
-
-  std::ostringstream& text() { return text_; }
-
-  void publish() {
-    {
-      std::ofstream stream(file_.temporary(), std::ios::binary);
-      stream << text_.str() << std::flush;
-      if (!stream) throw InternalError(file_.path() + ": cannot be written");
-    }
-    file_.publish();
-  }
-
- private:
-  NewFile file_;
-  std::ostringstream text_;
-};
+/// All digits of a double.
+std::ostringstream exact_text() {
+  std::ostringstream text;
+  text.precision(17);
+  return text;
+}
 
 }  // namespace
 
 class ResultFile::Storage {
  public:
-  explicit Storage(const std::string& path) : target(path), file(target.temporary()) {}
-  NewFile target;
-  Hdf5File file;  ///< is closed before the temporary file is removed
+  explicit Storage(std::string target) : path(std::move(target)) {}
+  std::string path;
+  Hdf5File file;
 };
 
 ResultFile::ResultFile(const std::string& path, const Case& input, const RunRecord& record)
@@ -389,10 +377,7 @@ void ResultFile::write_modes(const ModeSet& set) {
   write_shapes(storage_->file, "/modes", set);
 }
 
-void ResultFile::publish() {
-  storage_->file.close();
-  storage_->target.publish();
-}
+void ResultFile::publish() { write_whole_file(storage_->path, storage_->file.image()); }
 
 bool is_result(const std::string& path) {
   return has_hdf5_signature(path) && read_schema(path) >= 1;
@@ -429,8 +414,7 @@ void require_table_path(const std::string& path) {
 void write_mode_table(const std::string& path, const ModeSet& set) {
   const bool turns = set.rotor_speed > 0.0;
   const bool periodic = set.participation.size() > 0;
-  Table table(path);
-  std::ostringstream& text = table.text();
+  std::ostringstream text = exact_text();
   text << mode_table_start << (turns ? "frequency_per_rev," : "")
        << "frequency_hz,damping_ratio,exponent_re,exponent_im,"
        << (periodic ? "multiplier_re,multiplier_im,harmonic," : "") << "resolved,residual\n";
@@ -445,13 +429,12 @@ void write_mode_table(const std::string& path, const ModeSet& set) {
            << ',';
     text << (mode.resolved ? 1 : 0) << ',' << mode.residual << '\n';
   }
-  table.publish();
+  write_whole_file(path, text.str());
 }
 
 void write_trim_table(const std::string& path, const system::PeriodicSystem& system,
                       const analysis::Trim& trim) {
-  Table table(path);
-  std::ostringstream& text = table.text();
+  std::ostringstream text = exact_text();
   text << "name,unit";
   for (const std::string& name : harmonic_names(trim.solution.harmonics())) text << ',' << name;
   text << '\n';
@@ -461,7 +444,7 @@ void write_trim_table(const std::string& path, const system::PeriodicSystem& sys
       text << ',' << trim.solution.coefficients()(static_cast<Eigen::Index>(i), k);
     text << '\n';
   }
-  table.publish();
+  write_whole_file(path, text.str());
 }
 
 std::string file_library_version() {

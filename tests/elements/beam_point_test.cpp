@@ -1,17 +1,22 @@
 #include "samara/elements/beam_point.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
-#include "jet.hpp"
 #include "samara/elements/beam_tip.hpp"
 #include "samara/math/autodiff.hpp"
+
+#include "jet.hpp"
 
 namespace {
 
@@ -156,7 +161,8 @@ Inputs random_inputs(std::minstd_rand& random) {
   return x;
 }
 
-// ---- a trajectory of the attachment frame and of a section in it ---------------------------------
+// ---- a trajectory of the attachment frame and of a section in it
+// ---------------------------------
 
 /// Value at time t of a curve through `c[0]` with velocity c[1], acceleration 2 c[2], ...
 template <class T>
@@ -255,8 +261,7 @@ BOOST_AUTO_TEST_CASE(rigid_placement_produces_no_strain) {
     State<double> z = State<double>::Zero();
     z.segment<3>(0) = random_array<3>(random, 5.0) + turn * point.x - point.x;
     z.segment<3>(3) = theta;
-    const PointTerms<double> terms =
-        beam_point_terms<double>(point, z, State<double>::Zero(), {});
+    const PointTerms<double> terms = beam_point_terms<double>(point, z, State<double>::Zero(), {});
     // u' of the turned line, and theta' = 0.
     const Vector3 slope = (turn - Matrix3::Identity()) * point.C_ab.col(0);
     BOOST_TEST((terms.stretch - slope).norm() < rounding);
@@ -310,8 +315,7 @@ BOOST_AUTO_TEST_CASE(loads_are_newtons_law_of_the_particles_of_the_section) {
     Vector3 force = Vector3::Zero();
     Vector3 moment = Vector3::Zero();
     for (const Particle& p : particles) {
-      const Vector3 asked =
-          p.mass * (A.transpose() * acceleration_of(path, p.c) - now.a.gravity);
+      const Vector3 asked = p.mass * (A.transpose() * acceleration_of(path, p.c) - now.a.gravity);
       force += asked;
       moment += (R * p.c).cross(asked);
     }
@@ -444,10 +448,10 @@ BOOST_AUTO_TEST_CASE(tangents_are_those_of_the_complex_step) {
   std::minstd_rand random(10);
   for (int trial = 0; trial < 5; ++trial) {
     const BeamPoint point = random_point(random);
-    const double error = tangent_error(
-        random_inputs(random), [&point](const auto& z, const auto& z_dot, const auto& a) {
-          return beam_point_terms(point, z, z_dot, a);
-        });
+    const double error = tangent_error(random_inputs(random),
+                                       [&point](const auto& z, const auto& z_dot, const auto& a) {
+                                         return beam_point_terms(point, z, z_dot, a);
+                                       });
     BOOST_TEST(error < tangent_tolerance);
   }
 }
@@ -492,8 +496,8 @@ BOOST_AUTO_TEST_CASE(tangents_are_those_of_the_complex_step) {
   std::minstd_rand random(13);
   for (int trial = 0; trial < 5; ++trial) {
     const Vector3 x = random_array<3>(random, 3.0);
-    const double error = tangent_error(
-        random_inputs(random), [&x](const auto& z, const auto& z_dot, const auto& a) {
+    const double error =
+        tangent_error(random_inputs(random), [&x](const auto& z, const auto& z_dot, const auto& a) {
           return beam_tip_terms(x, 2.5, z, z_dot, a);
         });
     BOOST_TEST(error < tangent_tolerance);

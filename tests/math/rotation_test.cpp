@@ -123,20 +123,21 @@ BOOST_AUTO_TEST_CASE(two_turns_about_one_axis_add_their_angles) {
   std::minstd_rand random(5);
   const Vector3 n = random_direction(random);
   const auto parameters = [&n](double phi) { return Vector3(2.0 * std::tan(0.5 * phi) * n); };
-  const Matrix3 both = math::direction_cosines(parameters(0.9)) *
-                       math::direction_cosines(parameters(1.3));
+  const Matrix3 both =
+      math::direction_cosines(parameters(0.9)) * math::direction_cosines(parameters(1.3));
   BOOST_TEST(largest(Matrix3(both - math::direction_cosines(parameters(2.2)))) < rounding);
 }
 
 BOOST_AUTO_TEST_CASE(turns_compose_outer_after_inner) {
-  // Rodrigues' composition of half-tangents: a after b turns by (a + b + a x b / 2) / (1 - a.b / 4).
+  // Rodrigues' composition of half-tangents: a after b turns by (a + b + a x b / 2) / (1 - a.b /
+  // 4).
   std::minstd_rand random(6);
   for (int i = 0; i < 20; ++i) {
     const Vector3 a = random_vector(random, 1.0);
     const Vector3 b = random_vector(random, 1.0);
     const Vector3 both = (a + b + 0.5 * a.cross(b)) / (1.0 - 0.25 * a.dot(b));
-    const Matrix3 turned = math::direction_cosines(a).transpose() *
-                           math::direction_cosines(b).transpose();
+    const Matrix3 turned =
+        math::direction_cosines(a).transpose() * math::direction_cosines(b).transpose();
     BOOST_TEST(largest(Matrix3(math::direction_cosines(both).transpose() - turned)) < rounding);
   }
 }
@@ -190,9 +191,11 @@ BOOST_AUTO_TEST_CASE(tangent_is_the_matrix_of_the_theory_and_its_inverse_undoes_
     BOOST_TEST(largest(Vector3(math::tangent_times(theta, r) - printed)) < rounding);
     // Q^-1 grows with the square of theta; its product with Q loses that many digits.
     const double lost = 1.0 + quarter;
-    const Vector3 there_and_back = math::inverse_tangent_times(theta, math::tangent_times(theta, r));
+    const Vector3 there_and_back =
+        math::inverse_tangent_times(theta, math::tangent_times(theta, r));
     BOOST_TEST(largest(Vector3(there_and_back - r)) < rounding * lost);
-    const Vector3 back_and_there = math::tangent_times(theta, math::inverse_tangent_times(theta, r));
+    const Vector3 back_and_there =
+        math::tangent_times(theta, math::inverse_tangent_times(theta, r));
     BOOST_TEST(largest(Vector3(back_and_there - r)) < rounding * lost);
   }
 }
@@ -261,8 +264,7 @@ BOOST_AUTO_TEST_CASE(complex_step_goes_through_every_function) {
                                  return math::inverse_tangent_times(x, r);
                                }))) < difference_tolerance);
     const Vector3 axis = r.normalized();
-    const Matrix3 by_angle =
-        rate_of(math::turn_about<Complex>(axis, Complex(0.8, complex_step)));
+    const Matrix3 by_angle = rate_of(math::turn_about<Complex>(axis, Complex(0.8, complex_step)));
     const Matrix3 expected = math::skew<double>(axis) * math::turn_about<double>(axis, 0.8);
     BOOST_TEST(largest(Matrix3(by_angle - expected)) < rounding);
   }

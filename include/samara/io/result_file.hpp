@@ -1,6 +1,6 @@
 // Results of a run in one HDF5 file, and its tables as comma-separated values. The names are those
-// of docs/case_file.md, "Results". Files are written under a temporary name in the same folder and
-// renamed when complete: a run that fails leaves what was there before.
+// of docs/case_file.md, "Results". Nothing is on the disk before all is complete: a run that fails
+// leaves what was there before.
 //
 // Serial: one rank writes.
 #pragma once
@@ -39,7 +39,6 @@ class ResultFile {
  public:
   /// Starts the file with /case and the attributes of the root.
   ResultFile(const std::string& path, const Case& input, const RunRecord& record);
-  /// Removes the temporary file where publish() was not reached.
   ~ResultFile();
   ResultFile(const ResultFile&) = delete;
   ResultFile& operator=(const ResultFile&) = delete;
@@ -58,7 +57,8 @@ class ResultFile {
   void write_values(const std::string& name, const std::vector<double>& values,
                     const Meaning& meaning);
 
-  /// Gives the file its name. Nothing can be written afterwards.
+  /// Writes the file. Call it last.
+  /// @throws InternalError where the environment fails, e.g. the disk is full
   void publish();
 
  private:

@@ -1,0 +1,129 @@
+// samara check: what the case describes; solves nothing.
+#include <cmath>
+#include <numbers>
+
+#include "samara/petsc/session.hpp"
+#include "samara/system/turbine_system.hpp"
+
+#include "commands.hpp"
+#include "masses.hpp"
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+/// Of a centre of mass: smaller is rounding [m].
+constexpr double small_length = 1e-9;
+
+std::string triple(const Vector3& v) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += (i > 0 ? ", " : "") + (std::abs(v(i)) < small_length ? "0" : general(v(i), 5));
+  return text;
+}
+
+std::string mass_table(const model::Turbine& turbine, const Masses& masses) {
+  Table table;
+  table.add_column("part", "", Align::left);
+  table.add_column("mass", "kg");
+  table.add_column("centre of mass", "m");
+  table.add_column("in, from", "", Align::left);
+  const auto add = [&table](const std::string& name, const MassProperties& part,
+                            const std::string& frame) {
+    table.add_row(
+        {name, general(part.mass, 6), part.mass > 0.0 ? triple(part.center()) : "-", frame});
+  };
+  if (turbine.has_tower) add("tower", masses.tower, "n1 n2 n3, foot of the tower");
+  add("nacelle", masses.nacelle, "y1 y2 y3, tower top");
+  add("shaft", masses.shaft, "s1 s2 s3, yaw axis");
+  add("hub", masses.hub, "h1 h2 h3, teeter pin");
+  const std::size_t shown = turbine.identical_blades ? 1 : masses.blades.size();
+  for (std::size_t k = 0; k < shown; ++k)
+    add(turbine.identical_blades && turbine.blades.size() > 1 ? "each blade"
+                                                              : turbine.blades[k].name,
+        masses.blades[k], "b1 b2 b3, blade root");
+  add("rotor", masses.rotor, "h1 h2 h3, teeter pin");
+  add("turbine", masses.whole, "n1 n2 n3, foot of the tower");
+  return table.text();
+}
+
+std::string joint_words(const elements::Hinge& hinge) {
+  if (!hinge.free) return "locked";
+  std::string text = "free";
+  if (hinge.stiffness > 0.0) text += ", " + general(hinge.stiffness, 4) + " N m/rad";
+  if (hinge.damping > 0.0) text += ", " + general(hinge.damping, 4) + " N m s/rad";
+  if (hinge.stiffness == 0.0 && hinge.damping == 0.0) text += ", no spring, no damper";
+  return text;
+}
+
+/// How far the elements' lumped masses are from the sections'.
+std::string inertia_words(const Masses& masses) {
+  const double exact = masses.rotor.inertia(1, 1);
+  const double meshed = masses.meshed_rotor.inertia(1, 1);
+  std::string text = general(exact, 6) + " kg m^2 about the shaft";
+  if (exact > 0.0 && std::abs(meshed - exact) > 5e-5 * exact)
+    text += " (as meshed " + fixed(100.0 * (meshed / exact - 1.0), 2) + " %)";
+  return text;
+}
+
+std::string mesh_words(const model::Beam& beam) {
+  return count(beam.elements, "element") + " of order " + std::to_string(beam.order);
+}
+
+std::string facts(const io::Case& input, const system::TurbineSystem& system,
+                  const Masses& masses) {
+  const model::TurbineDefinition& definition = input.turbine;
+  const model::Turbine& turbine = system.turbine();
+  const double hub_to_tip = definition.hub.radius + definition.blades.beam.length;
+  const double radius = hub_to_tip * std::cos(definition.blades.precone);
+  const double speed = definition.shaft.speed;
+  std::string text;
+  const auto line = [&text](const std::string& name, const std::string& words) {
+    text += name + std::string(17 - name.size(), ' ') + words + "\n";
+  };
+  line("rotor speed", speed == 0.0 ? "0, parked"
+                                   : general(speed, 6) + " rad/s, " +
+                                         general(speed * 30.0 / std::numbers::pi, 5) +
+                                         " rpm; tip speed " + general(speed * radius, 4) + " m/s");
+  line("rotor radius", general(radius, 6) + " m: hub " + general(definition.hub.radius, 5) +
+                           " m, blade " + general(definition.blades.beam.length, 5) + " m");
+  if (turbine.has_tower) line("tower", general(definition.tower.length, 6) + " m");
+  line("rotor inertia", inertia_words(masses));
+  line("blades", count(static_cast<int>(turbine.blades.size()), "blade") +
+                     (turbine.blades.size() == 1 ? ""
+                      : turbine.identical_blades ? ", alike"
+                                                 : ", not alike"));
+  line("rotor symmetry",
+       system.symmetry().sectors > 1
+           ? "repeats every 1/" + std::to_string(system.symmetry().sectors) + " revolution"
+           : "none, the period is a whole revolution");
+  line("joints",
+       "yaw " + joint_words(turbine.chain.yaw) + "; teeter " + joint_words(turbine.chain.teeter));
+  line("gravity", general(definition.gravity, 6) + " m/s^2");
+  line("mesh", "blades " + mesh_words(turbine.blades.front()) +
+                   (turbine.has_tower ? "; tower " + mesh_words(turbine.tower) : ""));
+  line("unknowns", std::to_string(system.size()) + ", " +
+                       count(turbine.degrees_of_freedom, "degree") + " of freedom");
+  return text;
+}
+
+}  // namespace
+
+void run_check(const Job& job) {
+  const model::Turbine turbine = model::build_turbine(job.input.turbine);
+  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  if (petsc::Session::rank() != 0) return;
+  const Masses masses = compute_masses(job.input.turbine, turbine);
+  const std::string& title = job.input.turbine.title;
+  deliver(
+      job,
+      (title.empty() ? job.input.path : title) + "\n\n" + mass_table(turbine, masses) + "\n" +
+          facts(job.input, system, masses),
+      [&](io::ResultFile& file) {
+        file.write_model(system);
+        write_masses(file, masses);
+      },
+      nullptr);
+}
+
+}  // namespace samara::drivers

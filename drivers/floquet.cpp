@@ -1,0 +1,59 @@
+// samara floquet: the stability of the periodic steady state.
+#include "samara/analysis/floquet.hpp"
+
+#include "samara/analysis/trim.hpp"
+#include "samara/base/error.hpp"
+#include "samara/petsc/session.hpp"
+#include "samara/system/turbine_system.hpp"
+
+#include "commands.hpp"
+#include "masses.hpp"
+#include "mode_report.hpp"
+#include "progress.hpp"
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+std::string headline(const io::Case& input, const analysis::Floquet& floquet) {
+  const double speed = floquet.set.rotor_speed;
+  const std::string span = floquet.sectors == 1
+                               ? "one revolution"
+                               : "1/" + std::to_string(floquet.sectors) + " revolution";
+  return (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n" + "rotor speed " +
+         general(speed, 6) + " rad/s; " + count(floquet.set.degrees_of_freedom, "degree") +
+         " of freedom; " + std::to_string(floquet.steps) + " steps a revolution, integrated over " +
+         span + "\n\n";
+}
+
+}  // namespace
+
+void require_speed(const io::Case& input) {
+  if (input.turbine.shaft.speed == 0.0)
+    throw InputError(input.path +
+                     ": shaft.speed is 0, a rotor that stands still has no period; hint: use "
+                     "samara modes, or --set shaft.speed=...");
+}
+
+void run_floquet(const Job& job) {
+  const model::Turbine turbine = model::build_turbine(job.input.turbine);
+  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const bool is_first = petsc::Session::rank() == 0;
+  Progress progress(is_first);
+  const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
+  const analysis::Floquet floquet = analysis::find_floquet_modes(
+      system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
+  progress.finish();
+  if (!is_first) return;
+  deliver(
+      job, headline(job.input, floquet) + mode_table(floquet.set) + "\n" + verdict(floquet.set),
+      [&](io::ResultFile& file) {
+        file.write_model(system);
+        write_masses(file, compute_masses(job.input.turbine, turbine));
+        file.write_trim(trim);
+        file.write_floquet(floquet);
+      },
+      [&](const std::string& path) { io::write_mode_table(path, floquet.set); });
+}
+
+}  // namespace samara::drivers

@@ -1,0 +1,200 @@
+#include "mode_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <vector>
+
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+using analysis::Mode;
+using analysis::ModeSet;
+
+constexpr double visible_share = 0.05;
+constexpr std::size_t most_parts = 2;
+constexpr std::size_t most_harmonics = 2;
+constexpr std::size_t most_names = 4;
+
+double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
+
+std::string percent(double share) { return fixed(100.0 * share, 0); }
+
+std::string parts_of(const Mode& mode) {
+  std::string text;
+  std::size_t entries = 0;
+  for (const analysis::PartShare& part : mode.parts) {
+    if (part.share < visible_share || entries++ == most_parts) break;
+    text += (text.empty() ? "" : " ") + part.part + " " + percent(part.share);
+  }
+  return text;
+}
+
+/// The harmonics beside the identified one, the largest first: "k-2:31% k+1:7%". Shares that print
+/// alike are ordered by distance, so that rounding does not decide.
+std::string other_harmonics(const ModeSet& set, std::size_t m) {
+  struct Entry {
+    int offset;
+    long percent;
+  };
+  std::vector<Entry> entries;
+  const Eigen::RowVectorXd shares = set.participation.row(static_cast<Eigen::Index>(m));
+  for (Eigen::Index i = 0; i < shares.size(); ++i) {
+    const int offset = set.first_harmonic + static_cast<int>(i) - set.modes[m].harmonic;
+    if (offset != 0 && shares(i) > visible_share)
+      entries.push_back({offset, std::lround(100.0 * shares(i))});
+  }
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tuple(-a.percent, std::abs(a.offset), a.offset) <
+           std::tuple(-b.percent, std::abs(b.offset), b.offset);
+  });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(entries.size(), most_harmonics); ++i)
+    text += (text.empty() ? "k" : " k") + std::string(entries[i].offset > 0 ? "+" : "") +
+            std::to_string(entries[i].offset) + ":" + std::to_string(entries[i].percent) + "%";
+  return text;
+}
+
+std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
+  if (!set.modes[m].resolved) return "unresolved*";
+  if (motion == Motion::rigid_body) return "rigid-body";
+  return set.participation.size() > 0 ? other_harmonics(set, m) : "";
+}
+
+std::vector<std::string> row_of(const ModeSet& set, std::size_t m) {
+  const Mode& mode = set.modes[m];
+  const Motion motion = motion_of(mode, set.rotor_speed);
+  const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
+  const double frequency = motion == Motion::rigid_body ? 0.0 : mode.exponent.imag();
+  std::vector<std::string> row{std::to_string(m + 1), mode.label};
+  if (set.rotor_speed > 0.0) row.push_back(fixed(frequency / set.rotor_speed, 4));
+  row.push_back(fixed(frequency / (2.0 * std::numbers::pi), 4));
+  row.push_back(frequency == 0.0 ? "-" : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
+  row.push_back(!has_rate
+                    ? "0"
+                    : (motion == Motion::growing ? "+" : "") + scientific(mode.exponent.real(), 2));
+  if (set.participation.size() > 0) row.push_back(std::to_string(mode.harmonic));
+  row.push_back(parts_of(mode));
+  row.push_back(remark_on(set, m, motion));
+  return row;
+}
+
+std::string seconds(double time) { return general(time, 3) + " s"; }
+
+/// "yaw 1 doubles in 2.5 s, ..." of the modes that grow fastest.
+std::string name_growing(std::vector<const Mode*> growing) {
+  std::stable_sort(growing.begin(), growing.end(), [](const Mode* a, const Mode* b) {
+    return a->exponent.real() > b->exponent.real();
+  });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(growing.size(), most_names); ++i)
+    text += (text.empty() ? "" : ", ") + growing[i]->label + " doubles in " +
+            seconds(std::numbers::ln2 / growing[i]->exponent.real());
+  if (growing.size() > most_names)
+    text += " and " + std::to_string(growing.size() - most_names) + " more";
+  return text;
+}
+
+struct Tally {
+  std::vector<const Mode*> growing;
+  std::vector<const Mode*> decaying;
+  int undamped = 0;
+  int rigid_body = 0;
+  int unresolved = 0;
+};
+
+Tally tally(const ModeSet& set) {
+  Tally result;
+  for (const Mode& mode : set.modes) {
+    const Motion motion = motion_of(mode, set.rotor_speed);
+    if (!mode.resolved)
+      ++result.unresolved;
+    else if (motion == Motion::growing)
+      result.growing.push_back(&mode);
+    else if (motion == Motion::decaying)
+      result.decaying.push_back(&mode);
+    else
+      ++(motion == Motion::undamped ? result.undamped : result.rigid_body);
+  }
+  return result;
+}
+
+std::string decay_words(const Tally& result) {
+  const auto least = std::min_element(
+      result.decaying.begin(), result.decaying.end(),
+      [](const Mode* a, const Mode* b) { return a->damping_ratio < b->damping_ratio; });
+  return "all " + count(static_cast<int>(result.decaying.size()), "mode") +
+         " decay; the least damped is " + (*least)->label + ", " +
+         general(100.0 * (*least)->damping_ratio, 3) + " %";
+}
+
+/// What the modes do that do not grow, in words.
+std::string rest_words(const Tally& result) {
+  std::vector<std::string> rest;
+  const int decaying = static_cast<int>(result.decaying.size());
+  if (decaying > 0)
+    rest.push_back(std::to_string(decaying) + (decaying == 1 ? " decays" : " decay"));
+  if (result.rigid_body > 0)
+    rest.push_back(std::to_string(result.rigid_body) + (result.rigid_body == 1 ? " is" : " are") +
+                   " rigid-body");
+  if (result.undamped > 0)
+    rest.push_back(std::to_string(result.undamped) + (result.undamped == 1 ? " is" : " are") +
+                   " undamped, neither growing nor decaying");
+  std::string text;
+  for (const std::string& words : rest) text += (text.empty() ? "" : "; ") + words;
+  return text;
+}
+
+}  // namespace
+
+Motion motion_of(const Mode& mode, double rotor_speed) {
+  const double zero = analysis::zero_exponent * rate_scale(rotor_speed);
+  if (std::abs(mode.exponent) < zero) return Motion::rigid_body;
+  if (std::abs(mode.exponent.real()) < zero) return Motion::undamped;
+  return mode.exponent.real() > 0.0 ? Motion::growing : Motion::decaying;
+}
+
+std::string mode_table(const ModeSet& set) {
+  Table table;
+  table.add_column("#", "");
+  table.add_column("mode", "", Align::left);
+  if (set.rotor_speed > 0.0) table.add_column("frequency", "per rev");
+  table.add_column(set.rotor_speed > 0.0 ? "" : "frequency", "Hz");
+  table.add_column("damping", "%");
+  table.add_column("growth", "1/s");
+  if (set.participation.size() > 0) table.add_column("k", "");
+  table.add_column("energy in", "%", Align::left);
+  table.add_column(set.participation.size() > 0 ? "other k, remark" : "", "", Align::left);
+  for (std::size_t m = 0; m < set.modes.size(); ++m) table.add_row(row_of(set, m));
+  return table.text();
+}
+
+std::string verdict(const ModeSet& set) {
+  const Tally result = tally(set);
+  const std::string rest = rest_words(result);
+  std::string text;
+  if (!result.growing.empty()) {
+    const int growing = static_cast<int>(result.growing.size());
+    text = "unstable: " + count(growing, "mode") + (growing == 1 ? " grows: " : " grow: ") +
+           name_growing(result.growing) + (rest.empty() ? "" : "\nof the others " + rest);
+  } else if (result.undamped + result.rigid_body > 0) {
+    text = "neutral: no mode grows; " + rest;
+  } else if (!result.decaying.empty()) {
+    text = "stable: " + decay_words(result);
+  } else {
+    text = "no verdict: no mode is resolved";
+  }
+  text += "\n";
+  if (result.unresolved > 0)
+    text +=
+        "* " + std::to_string(result.unresolved) + " unresolved, left out of the verdict: " +
+        (set.participation.size() > 0
+             ? "too fast for the time step (hint: more floquet.steps), or a residual too large\n"
+             : "a residual too large\n");
+  return text;
+}
+
+}  // namespace samara::drivers

@@ -1,0 +1,21 @@
+// Modes as a table, and what they say about stability.
+#pragma once
+
+#include <string>
+
+#include "samara/analysis/mode.hpp"
+
+namespace samara::drivers {
+
+enum class Motion { rigid_body, undamped, growing, decaying };
+
+/// What the exponent says; rates below analysis::zero_exponent count as zero.
+Motion motion_of(const analysis::Mode& mode, double rotor_speed);
+
+/// One line a mode. Harmonics stand there where the set has participations.
+std::string mode_table(const analysis::ModeSet& set);
+
+/// "stable: ...", "neutral: ..." or "unstable: ...", and what was left out of the verdict.
+std::string verdict(const analysis::ModeSet& set);
+
+}  // namespace samara::drivers

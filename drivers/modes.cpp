@@ -1,0 +1,53 @@
+// samara modes: the modes of constant tangents, of a parked rotor or a balanced one in its axes.
+#include "samara/analysis/constant_modes.hpp"
+#include "samara/analysis/trim.hpp"
+#include "samara/base/error.hpp"
+#include "samara/petsc/session.hpp"
+#include "samara/system/turbine_system.hpp"
+
+#include "commands.hpp"
+#include "masses.hpp"
+#include "mode_report.hpp"
+#include "progress.hpp"
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+std::string headline(const io::Case& input, const analysis::ModeSet& set) {
+  const std::string rotor = set.rotor_speed > 0.0 ? "rotor speed " + general(set.rotor_speed, 6) +
+                                                        " rad/s, frequencies as the rotor sees them"
+                                                  : "parked rotor";
+  return (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n" + rotor + "; " +
+         count(set.degrees_of_freedom, "degree") + " of freedom\n\n";
+}
+
+}  // namespace
+
+void run_modes(const Job& job) {
+  const model::Turbine turbine = model::build_turbine(job.input.turbine);
+  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const bool is_first = petsc::Session::rank() == 0;
+  Progress progress(is_first);
+  analysis::TrimOptions options = job.input.trim;
+  if (turbine.speed == 0.0) options.harmonics = 0;
+  const analysis::Trim trim = analysis::find_trim(system, options, progress);
+  if (!trim.solution.is_constant())
+    throw InputError(job.input.path +
+                     ": the coefficients are periodic, the steady state changes with the "
+                     "azimuth; hint: use samara floquet");
+  const analysis::ModeSet set = analysis::find_constant_modes(system, trim.solution);
+  progress.finish();
+  if (!is_first) return;
+  deliver(
+      job, headline(job.input, set) + mode_table(set) + "\n" + verdict(set),
+      [&](io::ResultFile& file) {
+        file.write_model(system);
+        write_masses(file, compute_masses(job.input.turbine, turbine));
+        file.write_trim(trim);
+        file.write_modes(set);
+      },
+      [&](const std::string& path) { io::write_mode_table(path, set); });
+}
+
+}  // namespace samara::drivers

@@ -1,0 +1,37 @@
+// Tells of a long analysis on stderr: a bar on a terminal, a line now and then otherwise.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "samara/analysis/observer.hpp"
+
+namespace samara::drivers {
+
+class Progress final : public analysis::Observer {
+ public:
+  /// `speaks`: false on all ranks but the first.
+  explicit Progress(bool speaks);
+  ~Progress() override;
+
+  void note(const std::string& text) override;
+  /// Costs a look at the clock.
+  void progress(const std::string& stage, long done, long all) override;
+
+  /// Takes the bar away: what follows goes to stdout.
+  void finish() { clear_bar(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void clear_bar();
+  void draw_bar(const std::string& stage, double part);
+
+  bool speaks_;
+  bool on_terminal_;
+  bool has_bar_ = false;
+  Clock::duration interval_;
+  Clock::time_point next_;
+};
+
+}  // namespace samara::drivers

@@ -1,0 +1,172 @@
+// samara trim: the periodic steady state.
+#include "samara/analysis/trim.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "samara/petsc/session.hpp"
+#include "samara/system/turbine_system.hpp"
+
+#include "commands.hpp"
+#include "masses.hpp"
+#include "progress.hpp"
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+using analysis::Trim;
+
+constexpr int most_harmonics_shown = 5;
+constexpr int instants = 180;
+
+/// Relative to the size of what it is part of: below it a value is rounding.
+constexpr double rounding = 1e-9;
+
+/// A line of the table: an unknown that people ask for.
+struct Output {
+  std::string name;
+  std::string unit;
+  int unknown = 0;
+  double factor = 1.0;  ///< from SI to `unit`
+  double zero = 0.0;    ///< below it a value is rounding
+};
+
+std::vector<Output> outputs_of(const system::TurbineSystem& system, double load_level) {
+  const model::Turbine& turbine = system.turbine();
+  const model::Layout& layout = system.layout();
+  const double small_load = rounding * std::max(load_level, 1.0);
+  std::vector<Output> outputs;
+  const auto add_three = [&outputs](const std::string& place, int first, const std::string& unit,
+                                    double zero, const std::vector<std::string>& directions) {
+    for (int i = 0; i < 3; ++i)
+      outputs.push_back(
+          {place + " " + directions[static_cast<std::size_t>(i)], unit, first + i, 1.0, zero});
+  };
+  const auto add_angle = [&outputs](const std::string& name, int unknown) {
+    outputs.push_back({name, "deg", unknown, 180.0 / std::numbers::pi, rounding});
+  };
+  // Blades that repeat each other differ in azimuth only.
+  const int shown = system.symmetry().sectors > 1 ? 1 : static_cast<int>(turbine.blades.size());
+  for (int k = 0; k < shown; ++k) {
+    const std::string blade = turbine.blades[static_cast<std::size_t>(k)].name;
+    const int root = layout.blade_root(k);
+    const double length = turbine.blades[static_cast<std::size_t>(k)].tip.norm();
+    add_three(blade + " tip", layout.blade_tip(k), "m", rounding * length,
+              {"along b1 (outward)", "along b2 (lead-lag)", "along b3 (flap)"});
+    add_three(blade + " root force", root, "N", small_load, {"b1 (axial)", "b2", "b3"});
+    add_three(blade + " root moment", root + 3, "N m", small_load,
+              {"b1 (torsion)", "b2 (flap)", "b3 (lead-lag)"});
+  }
+  if (turbine.chain.teeter.free) add_angle("teeter", layout.teeter());
+  if (turbine.chain.yaw.free) add_angle("yaw", layout.yaw());
+  if (!turbine.has_tower) return outputs;
+  add_three("tower top", layout.tower_tip(), "m", rounding * turbine.tower.tip.norm(),
+            {"along n3 (up)", "along n1 (lateral)", "along n2 (downwind)"});
+  add_three("tower root force", layout.tower_root(), "N", small_load,
+            {"n3 (vertical)", "n1 (lateral)", "n2 (downwind)"});
+  add_three("tower root moment", layout.tower_root() + 3, "N m", small_load,
+            {"n3 (torsion)", "n1 (fore-aft)", "n2 (lateral)"});
+  return outputs;
+}
+
+/// The value of largest size over a revolution.
+double largest_value(const analysis::PeriodicSolution& solution, int unknown) {
+  const Eigen::RowVectorXd row = solution.coefficients().row(unknown);
+  if (solution.is_constant()) return row(0);
+  double largest = 0.0;
+  for (int i = 0; i < instants; ++i) {
+    const double t = solution.period() * i / instants;
+    const double value =
+        row.dot(analysis::PeriodicSolution::basis(solution.harmonics(), solution.period(), t));
+    if (std::abs(value) > std::abs(largest)) largest = value;
+  }
+  return largest;
+}
+
+std::string output_table(const system::TurbineSystem& system, const Trim& trim) {
+  const analysis::PeriodicSolution& solution = trim.solution;
+  const int shown = std::min(solution.harmonics(), most_harmonics_shown);
+  Table table;
+  table.add_column("output", "", Align::left);
+  table.add_column("unit", "", Align::left);
+  table.add_column("mean", "");
+  for (int k = 1; k <= shown; ++k) table.add_column(std::to_string(k) + "P", "");
+  if (shown > 0) table.add_column("largest", "");
+  for (const Output& output : outputs_of(system, trim.load_level)) {
+    const Eigen::RowVectorXd row = solution.coefficients().row(output.unknown);
+    const auto number = [&output](double value) {
+      return std::abs(value) < output.zero ? "0" : general(value * output.factor, 4);
+    };
+    std::vector<std::string> words{output.name, output.unit, number(row(0))};
+    for (Eigen::Index k = 1; k <= shown; ++k)
+      words.push_back(number(std::hypot(row(2 * k - 1), row(2 * k))));
+    if (shown > 0) words.push_back(number(largest_value(solution, output.unknown)));
+    table.add_row(words);
+  }
+  std::string notes;
+  if (shown > 0) notes += "kP: amplitude at k times the rotor speed";
+  if (shown < solution.harmonics()) notes += "; higher ones are in the result";
+  if (system.symmetry().sectors > 1)
+    notes += std::string(notes.empty() ? "" : "; ") +
+             "the other blades do the same, each at its azimuth";
+  return table.text() + (notes.empty() ? "" : notes + "\n");
+}
+
+/// PETSc's reason for the end of the nonlinear solve.
+std::string explain(const std::string& reason) {
+  if (reason == "CONVERGED_FNORM_ABS") return "the residual vanished (" + reason + ")";
+  if (reason == "CONVERGED_FNORM_RELATIVE")
+    return "the residual fell by trim.tolerance (" + reason + ")";
+  if (reason == "CONVERGED_SNORM_RELATIVE") return "the steps became small (" + reason + ")";
+  return reason;
+}
+
+std::string summary(const io::Case& input, const Trim& trim) {
+  const int harmonics = trim.solution.harmonics();
+  std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
+  text += "rotor speed  " + general(input.turbine.shaft.speed, 6) + " rad/s\n";
+  text += "method       ";
+  text += trim.method == analysis::TrimMethod::shooting ? "shooting" : "harmonic balance";
+  text += harmonics > 0 ? ", " + count(harmonics, "harmonic") + " of the rotor speed\n"
+                        : ": a constant, nothing changes with the azimuth\n";
+  for (std::size_t i = 0; trim.history.size() > 1 && i < trim.history.size(); ++i)
+    text += std::string(i == 0 ? "tried        " : "             ") +
+            count(trim.history[i].first, "harmonic") + ": residual between the samples " +
+            scientific(trim.history[i].second, 1) + "\n";
+  text +=
+      "Newton       " + count(trim.newton_steps, "step") + ", " + explain(trim.convergence) + "\n";
+  text += "residual     " + scientific(trim.residual, 1) + " at the samples, " +
+          scientific(trim.residual_between, 1) + " between them [N, N m]; largest load " +
+          general(trim.load_level, 4) + "\n";
+  for (const analysis::HeldCoordinate& held : trim.held) {
+    const bool is_zero = std::abs(held.load) < rounding * std::max(trim.load_level, 1.0);
+    text += "held         " + held.name + ", which nothing restores: mean 0, by " +
+            (is_zero ? "0" : general(held.load, 4)) + " " + held.unit +
+            (is_zero ? "" : " (not 0: no equilibrium there)") + "\n";
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+void run_trim(const Job& job) {
+  const model::Turbine turbine = model::build_turbine(job.input.turbine);
+  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const bool is_first = petsc::Session::rank() == 0;
+  Progress progress(is_first);
+  const Trim trim = analysis::find_trim(system, job.input.trim, progress);
+  progress.finish();
+  if (!is_first) return;
+  deliver(
+      job, summary(job.input, trim) + output_table(system, trim),
+      [&](io::ResultFile& file) {
+        file.write_model(system);
+        write_masses(file, compute_masses(job.input.turbine, turbine));
+        file.write_trim(trim);
+      },
+      [&](const std::string& path) { io::write_trim_table(path, system, trim); });
+}
+
+}  // namespace samara::drivers

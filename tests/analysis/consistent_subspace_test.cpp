@@ -1,0 +1,179 @@
+// The states that the paper's turbine can have: their number and the equations they obey.
+#include "samara/analysis/consistent_subspace.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <Eigen/Dense>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/trim.hpp"
+#include "samara/system/turbine_system.hpp"
+#include "small_systems.hpp"
+#include "turbines.hpp"
+
+using namespace samara;
+using namespace samara::test;
+
+namespace {
+
+analysis::PeriodicSolution trim_of(const system::PeriodicSystem& system) {
+  analysis::Observer observer;
+  analysis::TrimOptions options;
+  options.harmonics = 2;
+  return analysis::find_trim(system, options, observer).solution;
+}
+
+struct Tangents {
+  Eigen::MatrixXd K, M;
+};
+
+Tangents tangents_at(const system::PeriodicSystem& system,
+                     const analysis::PeriodicSolution& solution, double t) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Mat> jacobian = system.make_jacobian();
+  const petsc::Handle<Mat> mass = system.make_mass();
+  solution.evaluate(t, z.get(), z_dot.get());
+  system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+  return {analysis::to_sparse(jacobian.get()), analysis::to_sparse(mass.get())};
+}
+
+/// Largest entry of the rows of one role in `sum`, relative to the largest of the row in `terms`,
+/// what was added up for it.
+double defect(const system::PeriodicSystem& system, RowRole role, const Eigen::MatrixXd& sum,
+              const Eigen::MatrixXd& terms) {
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < sum.rows(); ++i) {
+    if (system.rows()[static_cast<std::size_t>(i)] != role) continue;
+    const double size = terms.row(i).maxCoeff();
+    if (size > 0.0) worst = std::max(worst, sum.row(i).cwiseAbs().maxCoeff() / size);
+  }
+  return worst;
+}
+
+/// Rounding of a solve with the constraint rows; the shortest element makes them largest.
+constexpr double rounding = 1e-9;
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(degrees_of_freedom_are_three_a_tower_point_six_a_blade_point_and_two) {
+  // theory.md, section 5: s (3 M + 6 N) + 2, here with an order for each beam.
+  for (const Mesh& mesh : {Mesh{4, 1, 4, 1}, Mesh{1, 1, 1, 1}, Mesh{3, 2, 5, 1}, Mesh{1, 3, 2, 2},
+                           Mesh{2, 4, 1, 6}, Mesh{7, 1, 3, 3}, Mesh{2, 5, 12, 1}}) {
+    const system::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);
+    const int tower = mesh.tower_elements * mesh.tower_order;
+    const int blade = mesh.blade_elements * mesh.blade_order;
+    const analysis::ConsistentSubspace subspace(system, trim_of(system));
+    BOOST_TEST(subspace.degrees_of_freedom() == 3 * tower + 6 * blade + 2);
+    BOOST_TEST(system.turbine().degrees_of_freedom == 3 * tower + 6 * blade + 2);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(locked_joints_and_other_rigid_strains_change_the_count) {
+  model::TurbineDefinition definition = lee_turbine({2, 2, 3, 1});
+  definition.nacelle.yaw.kind = model::JointKind::locked;
+  definition.hub.teeter.kind = model::JointKind::locked;
+  // All strains of the tower elastic (6 a point), torsion of the blades rigid (2 a point).
+  model::SectionDefinition& tower = definition.tower.sections[0];
+  tower.rigid = {};
+  tower.stiffness.diagonal() << 1e10, 1e9, 1e9, 1e9, 1e9, 1e9;
+  definition.blades.beam.sections[0].rigid[3] = true;
+  definition.blades.beam.sections[0].stiffness(3, 3) = 0.0;
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const analysis::ConsistentSubspace subspace(system, trim_of(system));
+  BOOST_TEST(subspace.degrees_of_freedom() == 6 * 4 + 2 * 2 * 3);
+}
+
+BOOST_AUTO_TEST_CASE(without_tower_and_nacelle_only_blades_and_teeter_move) {
+  model::TurbineDefinition definition = lee_turbine({1, 1, 3, 2});
+  definition.has_tower = false;
+  definition.has_nacelle = false;
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const analysis::ConsistentSubspace subspace(system, trim_of(system));
+  BOOST_TEST(subspace.degrees_of_freedom() == 6 * 6 + 1);
+}
+
+BOOST_AUTO_TEST_CASE(basis_is_the_identity_in_its_own_coordinates) {
+  const system::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 2})),
+                                     PETSC_COMM_SELF);
+  const analysis::PeriodicSolution solution = trim_of(system);
+  const analysis::ConsistentSubspace subspace(system, solution);
+  const Eigen::Index d = subspace.degrees_of_freedom();
+  const Eigen::MatrixXd eta = subspace.coordinates_of(subspace.basis(0.0, 1e-3));
+  BOOST_TEST((eta.leftCols(d) - Eigen::MatrixXd::Identity(d, d)).cwiseAbs().maxCoeff() < 1e-12);
+  BOOST_TEST(eta.rightCols(d).cwiseAbs().maxCoeff() == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_constant_solution) {
+  for (const Mesh& mesh : {Mesh{4, 1, 4, 1}, Mesh{2, 2, 1, 4}}) {
+    const system::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);
+    const analysis::PeriodicSolution solution = trim_of(system);
+    BOOST_REQUIRE(solution.is_constant());
+    const analysis::ConsistentSubspace subspace(system, solution);
+    const Eigen::Index d = subspace.degrees_of_freedom();
+    for (const double t : {0.0, 0.31}) {  // the velocities change with azimuth
+      const Eigen::MatrixXd z = subspace.basis(t, 1e-3);
+      const Tangents tangents = tangents_at(system, solution, t);
+      // Positions in the left half, at rest; in the right half they are the rates of position.
+      Eigen::MatrixXd z_dot = Eigen::MatrixXd::Zero(z.rows(), z.cols());
+      z_dot.rightCols(d) = z.leftCols(d);
+      for (Eigen::Index i = 0; i < z.rows(); ++i)
+        if (system.unknowns()[static_cast<std::size_t>(i)].role != UnknownRole::position)
+          z_dot.row(i).setZero();
+      const Eigen::MatrixXd sum = tangents.K * z + tangents.M * z_dot;
+      const Eigen::MatrixXd terms = tangents.K.cwiseAbs() * z.cwiseAbs() +
+                                    tangents.M.cwiseAbs() * z_dot.cwiseAbs();
+      BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < rounding);
+      BOOST_TEST(defect(system, RowRole::kinematic, sum, terms) < rounding);
+      // Something moves in every column.
+      for (Eigen::Index j = 0; j < z.cols(); ++j) BOOST_TEST(z.col(j).norm() > 0.0);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_periodic_solution) {
+  // Under gravity the constraints change in time: their rate gives the left half a velocity, by
+  // central differences with an error of (Omega step)^2 / 6 = 6e-8 of it.
+  const system::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 2}, 9.80665)),
+                                     PETSC_COMM_SELF);
+  const analysis::PeriodicSolution solution = trim_of(system);
+  BOOST_REQUIRE(!solution.is_constant());
+  const analysis::ConsistentSubspace subspace(system, solution);
+  const Eigen::Index d = subspace.degrees_of_freedom();
+  constexpr double step = 1e-4;
+  const double t = 0.4;
+  const Eigen::MatrixXd z = subspace.basis(t, step);
+  const Tangents tangents = tangents_at(system, solution, t);
+  const Eigen::MatrixXd rate =
+      (subspace.basis(t + step, step) - subspace.basis(t - step, step)) / (2.0 * step);
+  Eigen::MatrixXd z_dot(z.rows(), z.cols());
+  z_dot.leftCols(d) = rate.leftCols(d);
+  z_dot.rightCols(d) = z.leftCols(d);
+  for (Eigen::Index i = 0; i < z.rows(); ++i)
+    if (system.unknowns()[static_cast<std::size_t>(i)].role != UnknownRole::position)
+      z_dot.row(i).setZero();
+  BOOST_TEST(z_dot.leftCols(d).cwiseAbs().maxCoeff() > 0.0);
+  const Eigen::MatrixXd sum = tangents.K * z + tangents.M * z_dot;
+  const Eigen::MatrixXd terms =
+      tangents.K.cwiseAbs() * z.cwiseAbs() + tangents.M.cwiseAbs() * z_dot.cwiseAbs();
+  BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < rounding);
+  BOOST_TEST(defect(system, RowRole::kinematic, sum, terms) < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(gear_carries_its_positions_and_the_load_of_its_spring) {
+  const ChangingGear system;
+  const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(6, 1), system.period());
+  const analysis::ConsistentSubspace subspace(system, rest);
+  BOOST_REQUIRE(subspace.degrees_of_freedom() == 1);
+  BOOST_TEST(subspace.coordinates()[0] == 4);
+  const double t = 0.2;
+  const Eigen::MatrixXd z = subspace.basis(t, 1e-4);
+  const double w = z(0, 0);
+  BOOST_TEST(w != 0.0);
+  BOOST_TEST(z(1, 0) == ChangingGear::c(t) * w, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(std::abs(z(2, 0)) < 1e-12 * std::abs(w));
+  BOOST_TEST(z(3, 0) == ChangingGear::c_rate(t) * w, boost::test_tools::tolerance(1e-6));
+  BOOST_TEST(z(4, 0) == w / ChangingGear::f, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(z(2, 1) == w, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(z(3, 1) == ChangingGear::c(t) * w, boost::test_tools::tolerance(1e-12));
+}

@@ -1,0 +1,95 @@
+// Floquet's analysis on several ranks: every rank also does the whole work alone and compares.
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+#include "samara/analysis/floquet.hpp"
+#include "samara/analysis/trim.hpp"
+#include "samara/system/turbine_system.hpp"
+#include "turbines.hpp"
+
+using namespace samara;
+using namespace samara::test;
+
+namespace {
+
+struct Runs {
+  analysis::Floquet alone, together;
+};
+
+Runs run(const model::TurbineDefinition& definition, const analysis::FloquetOptions& options) {
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  analysis::Observer observer;
+  const analysis::Trim trim = analysis::find_trim(system, {}, observer);
+  return {find_floquet_modes(system, trim.solution, options, PETSC_COMM_SELF, observer),
+          find_floquet_modes(system, trim.solution, options, PETSC_COMM_WORLD, observer)};
+}
+
+/// An exponent of the free yaw, where mu = 1 is defective: rounding moves it by its root.
+bool is_defective(const analysis::Mode& mode, double speed) {
+  return std::abs(mode.exponent) < 1e-4 * speed;
+}
+
+constexpr double regular = 1e-9;    // relative, Must hold
+constexpr double defective = 1e-4;  // in the multiplier, Must hold
+
+void require_same(const Runs& runs) {
+  const analysis::ModeSet& a = runs.alone.set;
+  const analysis::ModeSet& b = runs.together.set;
+  BOOST_REQUIRE(a.modes.size() == b.modes.size());
+  std::size_t defective_count = 0;
+  for (std::size_t m = 0; m < a.modes.size(); ++m) {
+    const analysis::Mode& x = a.modes[m];
+    if (is_defective(x, a.rotor_speed)) {
+      ++defective_count;
+      BOOST_TEST(std::abs(b.modes[m].multiplier - 1.0) < defective);
+      continue;
+    }
+    // Equal exponents may change places: take the nearest.
+    double nearest = 1e300;
+    for (const analysis::Mode& y : b.modes)
+      nearest = std::min(nearest, std::abs(x.exponent - y.exponent));
+    if (x.resolved) BOOST_TEST(nearest < regular * std::abs(x.exponent), x.label);
+    BOOST_TEST(b.modes[m].label == x.label);
+    BOOST_TEST(b.modes[m].harmonic == x.harmonic, x.label);
+    BOOST_TEST(b.modes[m].resolved == x.resolved, x.label);
+    if (!x.resolved) continue;
+    BOOST_REQUIRE(b.modes[m].parts.size() == x.parts.size());
+    for (std::size_t p = 0; p < x.parts.size(); ++p)
+      BOOST_TEST(std::abs(b.modes[m].parts[p].share - x.parts[p].share) < 1e-7);
+    const auto row = static_cast<Eigen::Index>(m);
+    BOOST_TEST((a.participation.row(row) - b.participation.row(row)).cwiseAbs().maxCoeff() < 1e-7);
+  }
+  BOOST_TEST(defective_count <= 2U);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(ranks_do_not_change_the_modes_of_a_coupled_turbine) {
+  require_same(run(lee_turbine({3, 1, 3, 1}), {200, analysis::FloquetPeriod::automatic}));
+}
+
+BOOST_AUTO_TEST_CASE(ranks_do_not_change_the_modes_under_gravity_over_the_full_period) {
+  require_same(run(lee_turbine({2, 1, 2, 2}, 9.80665), {201, analysis::FloquetPeriod::full}));
+}
+
+BOOST_AUTO_TEST_CASE(mode_shapes_are_on_the_first_rank) {
+  const Runs runs = run(lee_turbine({1, 1, 1, 1}), {100, analysis::FloquetPeriod::automatic});
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank != 0) {
+    BOOST_TEST(runs.together.set.shapes.empty());
+    return;
+  }
+  BOOST_REQUIRE(runs.together.set.shapes.size() == runs.alone.set.shapes.size());
+  for (std::size_t m = 0; m < runs.alone.set.shapes.size(); ++m) {
+    const Eigen::MatrixXcd& x = runs.alone.set.shapes[m];
+    const Eigen::MatrixXcd& y = runs.together.set.shapes[m];
+    if (is_defective(runs.alone.set.modes[m], runs.alone.set.rotor_speed)) continue;
+    if (!runs.alone.set.modes[m].resolved) continue;
+    // A shape is known up to a complex factor.
+    const std::complex<double> factor = (x.conjugate().cwiseProduct(y)).sum() / x.squaredNorm();
+    BOOST_TEST((y - factor * x).norm() < 1e-7 * y.norm(), runs.alone.set.modes[m].label);
+    BOOST_TEST(std::abs(factor) == 1.0, boost::test_tools::tolerance(1e-6));
+  }
+}

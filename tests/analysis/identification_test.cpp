@@ -1,0 +1,219 @@
+// Identification of modes whose history is written down here.
+#include "samara/analysis/identification.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include "small_systems.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using Complex = std::complex<double>;
+
+namespace {
+
+/// Only what identification asks for: groups and names.
+class Described final : public SmallSystem {
+ public:
+  Described() {
+    period_ = 1.0;
+    symmetry_.sectors = 1;
+    for (int blade = 1; blade <= 2; ++blade) {
+      const auto first = static_cast<PetscInt>(unknowns_.size());
+      const std::string name = "blade " + std::to_string(blade);
+      add_position(name + " u");
+      add_velocity(name + " V");
+      add(name + " M2", UnknownRole::internal, RowRole::balance);
+      add(name + " M3", UnknownRole::internal, RowRole::balance);
+      groups_.push_back({EnergyGroup::Kind::kinetic, "blade", "", blade, Frame::rotating,
+                         {first + 1}, {2.0}});
+      groups_.push_back({EnergyGroup::Kind::strain, "blade", "flap", blade, Frame::rotating,
+                         {first + 2}, {1.0}});
+      groups_.push_back({EnergyGroup::Kind::strain, "blade", "lead-lag", blade, Frame::rotating,
+                         {first + 3}, {1.0}});
+    }
+    const auto first = static_cast<PetscInt>(unknowns_.size());  // 8
+    add_position("tower u");
+    add_velocity("tower V");
+    add_velocity("tower Omega");
+    add("tower M", UnknownRole::internal, RowRole::balance);
+    groups_.push_back({EnergyGroup::Kind::kinetic, "tower", "", 0, Frame::fixed,
+                       {first + 1, first + 2}, {3.0, 0.5, 0.5, 1.0}});
+    groups_.push_back({EnergyGroup::Kind::strain, "tower", "fore-aft", 0, Frame::fixed,
+                       {first + 3}, {1.0}});
+    add_position("yaw angle");
+    add_velocity("yaw speed");
+    add_position("teeter angle");
+    add_velocity("teeter speed");
+  }
+  void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd&,
+                   Eigen::MatrixXd&) const override {}
+};
+
+/// Rows of the histories, as kinetic_unknowns orders them: V of blade 1, of blade 2, tower V, Omega.
+struct Identified {
+  analysis::Mode mode;
+  Eigen::VectorXd participation;
+};
+
+Identified identify(const Described& system, const Eigen::MatrixXcd& history) {
+  const analysis::HarmonicEnergy energy(system, analysis::kinetic_unknowns(system));
+  Identified result;
+  energy.identify(history, result.mode, result.participation);
+  return result;
+}
+
+Complex wave(int k, Eigen::Index sample, Eigen::Index samples) {
+  return std::polar(1.0, 2.0 * pi * k * static_cast<double>(sample) / static_cast<double>(samples));
+}
+
+double share_of(const analysis::Mode& mode, const std::string& part) {
+  for (const analysis::PartShare& share : mode.parts)
+    if (share.part == part) return share.share;
+  return -1.0;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(kinetic_unknowns_are_listed_once_in_order) {
+  const std::vector<PetscInt> unknowns = analysis::kinetic_unknowns(Described());
+  const std::vector<PetscInt> wanted{1, 5, 9, 10};
+  BOOST_TEST(unknowns == wanted, boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(one_harmonic_is_found_at_its_place_with_odd_and_even_samples) {
+  const Described system;
+  for (const Eigen::Index samples : {12, 13, 250, 501}) {
+    for (const int k : {0, 1, -1, 3, -5, 5, -6}) {
+      Eigen::MatrixXcd history = Eigen::MatrixXcd::Zero(4, samples);
+      for (Eigen::Index s = 0; s < samples; ++s) history(0, s) = Complex(0.3, 2.0) * wave(k, s, samples);
+      const Identified found = identify(system, history);
+      BOOST_TEST(found.mode.harmonic == k, samples << " samples");
+      BOOST_TEST(found.participation.sum() == 1.0, boost::test_tools::tolerance(1e-12));
+      // participation is listed from k = -floor(samples / 2)
+      BOOST_TEST(found.participation(samples / 2 + k) == 1.0, boost::test_tools::tolerance(1e-12));
+      // Mean energy: weight 2, half of it, of |0.3 + 2 i|^2.
+      BOOST_TEST(found.mode.kinetic_energy == 4.09, boost::test_tools::tolerance(1e-12));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(dominant_harmonic_is_that_of_the_part_with_most_energy) {
+  // The tower has the largest single harmonic (k = 1), the blades most energy, at 4 and 5.
+  const Described system;
+  constexpr Eigen::Index samples = 32;
+  Eigen::MatrixXcd history(4, samples);
+  for (Eigen::Index s = 0; s < samples; ++s) {
+    history(0, s) = 1.0 * wave(4, s, samples) + 0.9 * wave(5, s, samples);
+    history(1, s) = 1.0 * wave(4, s, samples) - 0.9 * wave(5, s, samples);
+    history(2, s) = 1.2 * wave(1, s, samples);
+    history(3, s) = 0.0;
+  }
+  const Identified found = identify(system, history);
+  const double blades = 2.0 * (1.0 + 0.81);  // 2 blades, weight 2, half
+  const double tower = 0.5 * 3.0 * 1.44;
+  BOOST_TEST(tower > 2.0);  // more than either harmonic of the blades
+  BOOST_TEST(found.mode.harmonic == 4);
+  BOOST_TEST(found.mode.kinetic_energy == blades + tower, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(share_of(found.mode, "blade") == blades / (blades + tower),
+             boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(share_of(found.mode, "tower") == tower / (blades + tower),
+             boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(found.participation(samples / 2 + 5) == 1.62 / (blades + tower),
+             boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(found.participation(samples / 2 + 1) == tower / (blades + tower),
+             boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(coupled_weights_count_both_ways) {
+  // e = (3 V^2 + 2 * 0.5 V W + W^2) / 2 with V = 2 i, W = i - 1: V W* has real part 2.
+  const Described system;
+  Eigen::MatrixXcd history = Eigen::MatrixXcd::Zero(4, 1);
+  history(2, 0) = Complex(0.0, 2.0);
+  history(3, 0) = Complex(-1.0, 1.0);
+  const Identified found = identify(system, history);
+  BOOST_TEST(found.mode.kinetic_energy == 0.5 * (3.0 * 4.0 + 2.0 * 0.5 * 2.0 + 2.0),
+             boost::test_tools::tolerance(1e-13));
+}
+
+BOOST_AUTO_TEST_CASE(ties_go_to_the_smallest_harmonic_that_is_not_negative) {
+  const Described system;
+  constexpr Eigen::Index samples = 40;
+  struct Case {
+    std::vector<int> equal;
+    int wanted;
+  };
+  for (const Case& c : {Case{{-1, 1}, 1}, Case{{-3, 2}, 2}, Case{{-4, -2}, -2}, Case{{0, -1}, 0},
+                        Case{{5, 3, -1}, 3}}) {
+    Eigen::MatrixXcd history = Eigen::MatrixXcd::Zero(4, samples);
+    for (Eigen::Index s = 0; s < samples; ++s)
+      for (const int k : c.equal) history(1, s) += wave(k, s, samples);
+    BOOST_TEST(identify(system, history).mode.harmonic == c.wanted);
+    // Rounding breaks no tie; a part in a thousand does.
+    for (Eigen::Index s = 0; s < samples; ++s)
+      history(1, s) += 1e-9 * wave(c.equal.front(), s, samples);
+    BOOST_TEST(identify(system, history).mode.harmonic == c.wanted);
+    for (Eigen::Index s = 0; s < samples; ++s)
+      history(1, s) += 1e-3 * wave(c.equal.front(), s, samples);
+    BOOST_TEST(identify(system, history).mode.harmonic == c.equal.front());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(nothing_that_moves_is_no_error) {
+  const Described system;
+  const Identified found = identify(system, Eigen::MatrixXcd::Zero(4, 8));
+  BOOST_TEST(found.mode.harmonic == 0);
+  BOOST_TEST(found.mode.kinetic_energy == 0.0);
+  BOOST_TEST(found.participation.sum() == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(labels_say_part_motion_and_how_the_blades_move) {
+  const Described system;
+  analysis::ModeSet set;
+  set.rotor_speed = 1.0;
+  const auto add = [&set](const std::vector<std::pair<int, double>>& values, double kinetic,
+                          Complex exponent = Complex(0.0, 2.0)) {
+    analysis::Mode mode;
+    mode.exponent = exponent;
+    mode.kinetic_energy = kinetic;
+    set.modes.push_back(mode);
+    Eigen::MatrixXcd shape = Eigen::MatrixXcd::Zero(16, 1);
+    for (const auto& [unknown, value] : values) shape(unknown, 0) = value;
+    set.shapes.push_back(shape);
+  };
+  // Strain as large as the kinetic energy, as in an elastic mode.
+  add({{2, 1.0}, {6, 1.0}}, 1.0);
+  add({{2, 1.0}, {6, -1.0}}, 1.0);
+  add({{3, 1.0}, {7, 1.0}, {2, 0.5}}, 1.0);
+  add({{3, 1.0}}, 0.5);                          // one blade alone: neither
+  add({{11, 1.0}, {2, 0.2}}, 0.5);               // the tower
+  add({{2, 1.0}, {6, 1.0}}, 1.0);                // again
+  add({{12, 1.0}, {14, 0.2}, {2, 0.1}}, 1.0);    // hardly a strain: a joint
+  add({{12, 0.1}, {14, 0.2}}, 1.0);
+  add({{12, 1.0}, {2, 1.0}}, 1.0, Complex(1e-9, 0.0));  // counts as zero: at rest in the joint
+  label_modes(system, set);
+  const std::vector<std::string> wanted{"blade flap symmetric 1",
+                                        "blade flap antisymmetric",
+                                        "blade lead-lag symmetric",
+                                        "blade lead-lag",
+                                        "tower fore-aft",
+                                        "blade flap symmetric 2",
+                                        "yaw 1",
+                                        "teeter",
+                                        "yaw 2"};
+  for (std::size_t i = 0; i < wanted.size(); ++i) BOOST_TEST(set.modes[i].label == wanted[i]);
+}
+
+BOOST_AUTO_TEST_CASE(shapes_are_scaled_to_a_largest_position_of_one) {
+  const Described system;
+  analysis::ModeSet set;
+  set.modes.emplace_back();
+  set.modes[0].kinetic_energy = 8.0;
+  Eigen::MatrixXcd shape = Eigen::MatrixXcd::Zero(16, 2);
+  shape(0, 0) = Complex(0.0, 1.0);
+  shape(8, 1) = Complex(1.2, -1.6);  // 2
+  shape(1, 0) = 100.0;               // a velocity does not count
+  set.shapes.push_back(shape);
+  scale_shapes(system, set);
+  BOOST_TEST((set.shapes[0] - 0.5 * shape).norm() < 1e-15);
+  BOOST_TEST(set.modes[0].kinetic_energy == 2.0, boost::test_tools::tolerance(1e-14));
+}

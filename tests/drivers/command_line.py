@@ -1,0 +1,154 @@
+"""Help, version, PETSc options, exit codes and streams."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import (  # noqa: E402
+    BASELINE,
+    LONGEST_RUN,
+    MINIMAL,
+    PROGRAM,
+    QUICK,
+    SOURCE,
+    ProgramTest,
+)
+
+COMMANDS = ["check", "modes", "trim", "floquet"]
+
+
+class CommandLine(ProgramTest):
+    def test_help_names_commands_options_and_exit_codes(self):
+        for option in ("--help", "-h"):
+            text = self.succeed(option).stdout
+            for word in (*COMMANDS, "--set", "-o ", "--csv", "--version", "mpirun", "exit codes"):
+                self.assertIn(word, text)
+            self.assertLessEqual(max(map(len, text.splitlines())), 100)
+
+    def test_help_of_a_command_has_an_example_that_works(self):
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                text = self.succeed(command, "--help").stdout
+                example = re.search(r"^example\n  samara (.*)$", text, re.MULTILINE).group(1)
+                words = example.split()
+                self.assertEqual(words[0], command)
+                words = [str(SOURCE / w) if w.startswith("inputs/") else w for w in words]
+                self.succeed(*words)
+
+    def test_help_needs_no_case(self):
+        self.assertEqual(self.succeed("floquet", "no.yaml", "--help").stderr, "")
+        self.assertEqual(self.files(), {})
+
+    def test_version_names_the_libraries(self):
+        text = self.succeed("--version").stdout
+        self.assertRegex(text, r"^samara \d+\.\d+\.\d+\n")
+        for word in ("Petsc", "SLEPc", "MPI", "HDF5"):
+            self.assertRegex(text, rf"(?m)^.*{word}.* v?\d+\.\d+")
+
+    def test_own_options_may_stand_anywhere(self):
+        self.succeed("-o", "x.h5", "--set=gravity=0", "check", BASELINE)
+        self.assertEqual(list(self.files()), ["x.h5"])
+
+    def test_petsc_options_reach_petsc(self):
+        run = self.succeed("trim", BASELINE, "-trim_snes_monitor", "-trim_snes_rtol", "1e-6")
+        self.assertRegex(run.stdout, r"0 SNES Function norm")
+        self.assertNotIn("nothing in this run asked for", run.stderr)
+
+    def test_a_negative_number_is_a_value(self):
+        run = self.succeed("check", BASELINE, "-some_option", "-1.5", "-other_option")
+        for option in ("-some_option", "-other_option"):
+            self.assertIn(option, run.stderr)
+
+    def test_options_that_nothing_asked_for_are_reported(self):
+        run = self.succeed("trim", BASELINE, "-trim_snes_monitr")
+        self.assertEqual(len(run.stderr.splitlines()), 1)
+        self.assertIn("-trim_snes_monitr", run.stderr)
+
+    def test_a_quiet_run_says_nothing_on_stderr(self):
+        self.assertEqual(self.succeed("floquet", BASELINE, *QUICK).stderr, "")
+
+    def test_a_trim_that_does_not_converge_ends_with_3(self):
+        for command in ("trim", "floquet"):
+            run = self.refuse(command, BASELINE, "-trim_snes_max_it", "0", code=3,
+                              words=["trim: ", "hint: "])
+            self.assertTrue(run.stderr.startswith("samara: "))
+
+    def test_a_standard_output_that_is_full_ends_with_1(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            run = self.samara("check", BASELINE, stdout=full)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("standard output", run.stderr)
+
+    def test_a_reader_that_leaves_costs_no_result(self):
+        process = subprocess.Popen(
+            [PROGRAM, "floquet", str(BASELINE), *QUICK, "-o", "x.h5"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+        )
+        process.stdout.close()
+        process.wait(timeout=LONGEST_RUN)
+        self.assertEqual(list(self.files()), ["x.h5"])
+
+
+class Tables(ProgramTest):
+    def test_check_reports_the_masses_of_the_paper(self):
+        """Lee, Hodges and Patil (2002), Table I: 67.5772 kg/m, 8.42 m and 27 m, 6900 kg."""
+        text = self.succeed("check", BASELINE).stdout
+        rows = re.findall(r"(?m)^(\w+(?: \w+)*) +(\S+) +\S+, \S+, \S+  [nyhb]1", text)
+        mass = {part: float(value) for part, value in rows}
+        blade, tower = 67.5772 * 8.42, 67.5772 * 27
+        expected = {"tower": tower, "nacelle": 6900, "each blade": blade, "rotor": 2 * blade,
+                    "turbine": tower + 6900 + 2 * blade}
+        for part, value in expected.items():
+            self.assertAlmostEqual(mass[part], value, delta=1e-5 * value)
+        radius, length, density = 1.8, 8.42, 67.5772
+        inertia = 2 * density * ((radius + length) ** 3 - radius**3) / 3
+        inertia += 2 * length * 4.9999 + 5  # sections about b3, and the hub
+        found = float(re.search(r"rotor inertia +(\S+) kg m\^2", text).group(1))
+        self.assertAlmostEqual(found, inertia, delta=1e-5 * inertia)
+        self.assertIn("38 degrees of freedom", text)
+        self.assertEqual(self.files(), {})
+
+    def test_floquet_tells_what_grows(self):
+        text = self.succeed("floquet", BASELINE, *QUICK).stdout
+        self.assertRegex(text, r"(?m)^unstable: 1 mode grows: yaw \d+ doubles in \d")
+        self.assertNotRegex(text, r"-0\.0+\s")
+        self.assertNotRegex(text, r"e-(0[89]|[1-9]\d)")
+        self.assertLessEqual(max(map(len, text.splitlines())), 120)
+
+    def test_a_clamped_rotor_is_neutral(self):
+        self.write("case.yaml", MINIMAL)
+        text = self.succeed("floquet", "case.yaml").stdout
+        self.assertRegex(text, r"(?m)^neutral: no mode grows; \d+ are undamped, neither growing")
+
+    def test_damping_makes_it_stable(self):
+        damped = MINIMAL.replace("length: 10", "length: 10\n  damping: 1e-3")
+        self.write("case.yaml", damped + "gravity: 0\n")
+        for command in ("floquet", "modes"):
+            text = self.succeed(command, "case.yaml", "--set", "floquet.steps=2000").stdout
+            self.assertRegex(text, r"(?m)^stable: all \d+ modes decay; the least damped is ")
+
+    def test_unresolved_modes_are_explained(self):
+        self.write("case.yaml", MINIMAL)
+        text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
+        self.assertRegex(text, r"(?m)^\* \d+ unresolved, left out of the verdict: ")
+        self.assertIn("unresolved*", text)
+
+    def test_trim_shows_harmonics_of_deflections_and_loads(self):
+        text = self.succeed("trim", BASELINE, *QUICK, "--set", "gravity=9.81").stdout
+        for word in ("harmonic balance, 4 harmonics", "Newton", "residual", "held", "mean", "1P",
+                     "4P", "largest", "blade 1 tip", "teeter", "yaw", "tower top", "root moment"):
+            self.assertIn(word, text)
+
+    def test_the_foot_of_the_tower_carries_the_weight(self):
+        """The mean vertical force at the tower's foot is the weight of all."""
+        text = self.succeed("trim", BASELINE, *QUICK, "--set", "gravity=9.81").stdout
+        force = float(re.search(r"tower root force n3 \(vertical\) +N +(\S+)", text).group(1))
+        weight = 9.81 * (67.5772 * (27 + 2 * 8.42) + 6900)
+        self.assertAlmostEqual(force, -weight, delta=1e-3 * weight)
+
+
+unittest.main()

@@ -1,0 +1,224 @@
+"""What the user can mend ends with exit code 2, one clear line, and nothing written."""
+
+import os
+import pathlib
+import sys
+import unittest
+
+import h5py
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import BASELINE, MINIMAL, ProgramTest  # noqa: E402
+
+COMMANDS = ["check", "modes", "trim", "floquet"]
+
+
+class Cases(ProgramTest):
+    """The case file itself."""
+
+    def refuse_text(self, text, words, line=None, lines=1):
+        """Every command refuses the case, at the line where there is one."""
+        self.write("case.yaml", text)
+        place = r"case\.yaml:" if line is None else rf"case\.yaml:{line}:\d+: "
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                self.refuse(command, "case.yaml", words=words, place=place, lines=lines)
+
+    def test_missing_file(self):
+        self.refuse("floquet", "case.yaml", words="no such file", place=r"case\.yaml:")
+
+    def test_missing_suffix_is_suggested(self):
+        self.write("case.yaml", MINIMAL)
+        self.refuse("floquet", "case", words='did you mean "case.yaml"?')
+
+    def test_directory(self):
+        os.mkdir(self.folder / "case.yaml")
+        self.refuse("floquet", "case.yaml", words="a directory", place=r"case\.yaml:")
+
+    def test_empty_file(self):
+        self.refuse_text("", "empty")
+
+    def test_random_bytes(self):
+        self.refuse_text(bytes(range(256)) * 8, "not a text file", line=1)
+
+    def test_yaml_syntax_error(self):
+        self.refuse_text(MINIMAL + "gravity: [1, 2\n", "not valid YAML", line=r"\d+")
+
+    def test_unknown_key(self):
+        self.refuse_text(MINIMAL + "gravty: 9.81\n", 'did you mean "gravity"?', line=9)
+
+    def test_duplicate_key(self):
+        self.refuse_text(MINIMAL + "gravity: 0\ngravity: 9.81\n", "gravity", line=10)
+
+    def test_two_spellings_of_one_key(self):
+        text = MINIMAL.replace("{speed: 6}", "{speed: 6, speed_rpm: 57}")
+        self.refuse_text(text, ["speed_rpm", "leave one of them out"], line=2)
+
+    def test_wrong_type(self):
+        self.refuse_text(MINIMAL + "gravity: strong\n", ["a number", '"strong"'], line=9)
+
+    def test_wrong_length_of_a_list(self):
+        text = MINIMAL.replace("[2e-4, 1e-4, 1e-4]", "[2e-4, 1e-4]")
+        self.refuse_text(text, "inertia", line=7)
+
+    def test_mass_that_is_not_positive(self):
+        for mass in ("-1", "0"):
+            text = MINIMAL.replace("mass: 1\n", f"mass: {mass}\n")
+            self.refuse_text(text, ["mass", "> 0"], line=6)
+
+    def test_indefinite_stiffness(self):
+        matrix = [[1e4 if i == j else 0 for j in range(6)] for i in range(6)]
+        matrix[4][5] = matrix[5][4] = 2e4
+        stiffness = MINIMAL.splitlines()[7].strip()
+        text = MINIMAL.replace(stiffness, f"stiffness_matrix: {matrix}")
+        self.refuse_text(text, "positive definite", line=r"\d+")
+
+    def test_negative_stiffness(self):
+        self.refuse_text(MINIMAL.replace("GJ: 8e3", "GJ: -8e3"), ["GJ", "> 0"], line=8)
+
+    def test_nan(self):
+        self.refuse_text(MINIMAL + "gravity: .nan\n", "gravity", line=9)
+
+    def test_no_elements(self):
+        text = MINIMAL.replace("length: 10", "length: 10\n  elements: 0")
+        self.refuse_text(text, "elements", line=5)
+
+    def test_no_blades(self):
+        for count in (0, -2):
+            text = MINIMAL.replace("length: 10", f"length: 10\n  count: {count}")
+            self.refuse_text(text, "count", line=5)
+
+    def test_version_of_the_future(self):
+        text = MINIMAL.replace("samara: 1", "samara: 99")
+        self.refuse_text(text, ["newer", "99"], line=1)
+
+    def test_all_errors_come_at_once(self):
+        text = MINIMAL.replace("mass: 1\n", "mass: -1\n") + "gravty: 1\n"
+        self.refuse_text(text, ["mass", "gravty"], lines=2)
+
+
+class Settings(ProgramTest):
+    """--set"""
+
+    def test_unknown_key(self):
+        setting = "blades.elments=8"
+        self.refuse("floquet", BASELINE, "--set", setting, words='did you mean "elements"?',
+                    place=rf"--set {setting}: ")
+
+    def test_wrong_value(self):
+        self.refuse("floquet", BASELINE, "--set", "gravity=much", words=["gravity", "a number"])
+
+    def test_no_value(self):
+        self.refuse("floquet", BASELINE, "--set", "gravity", words="key=value")
+
+    def test_nothing_behind_it(self):
+        self.refuse("floquet", BASELINE, "--set", words="key=value", place="samara: ")
+
+
+class Physics(ProgramTest):
+    """A case that the command cannot treat."""
+
+    def test_floquet_needs_a_speed(self):
+        self.write("case.yaml", MINIMAL.replace("speed: 6", "speed: 0"))
+        self.refuse("floquet", "case.yaml", words=["shaft.speed is 0", "use samara modes"],
+                    place=r"case\.yaml: ")
+
+    def test_modes_need_constant_coefficients(self):
+        self.refuse("modes", BASELINE, words=["periodic", "use samara floquet"])
+
+    def test_what_is_not_available_yet(self):
+        text = MINIMAL.replace("length: 10", "reference_line: [[0, 0, 0], [10, 0, 0.3]]")
+        self.write("case.yaml", text)
+        self.refuse("check", "case.yaml", words=["reference_line", "not available yet"])
+
+
+class Results(ProgramTest):
+    """Where the result goes."""
+
+    def refuse_path(self, path, words):
+        for option in ("-o", "--csv"):
+            with self.subTest(option=option):
+                self.refuse("floquet", BASELINE, option, path, words=words)
+
+    def test_missing_folder(self):
+        self.refuse_path("missing/x", "there is no folder missing")
+
+    def test_folder_that_is_a_file(self):
+        self.write("file", "")
+        self.refuse_path("file/x", "file is not a folder")
+
+    def test_folder(self):
+        os.mkdir(self.folder / "results")
+        self.refuse_path("results", "a folder")
+
+    def test_device(self):
+        self.refuse_path("/dev/null", "not a plain file")
+
+    def test_file_of_the_user(self):
+        self.write("notes", "my notes\n")
+        self.refuse_path("notes", "it would be lost")
+
+    def test_hdf5_of_another_program(self):
+        with h5py.File(self.folder / "other.h5", "w") as file:
+            file["x"] = [1, 2, 3]
+        self.refuse("floquet", BASELINE, "-o", "other.h5", words=["another program", "hint"])
+
+    def test_case_as_result(self):
+        self.write("case.yaml", MINIMAL)
+        self.refuse("floquet", "case.yaml", "-o", "case.yaml", words="it would be lost")
+
+    def test_default_path(self):
+        self.write("sub/case.yaml", MINIMAL)
+        self.write("case.h5", "not a result")
+        self.refuse("floquet", "sub/case.yaml", words=["case.h5", "it would be lost"])
+
+    def test_write_protection(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may write everywhere")
+        os.chmod(self.folder, 0o500)
+        self.addCleanup(os.chmod, self.folder, 0o700)
+        self.refuse_path("x", "no permission")
+
+
+class CommandLine(ProgramTest):
+    """What is typed."""
+
+    def test_nothing(self):
+        self.refuse(words=["missing command", "check, modes, trim, floquet"])
+
+    def test_unknown_command(self):
+        self.refuse("floqet", BASELINE, words='did you mean "floquet"?')
+        self.refuse("xyzzy", BASELINE, words="the commands are")
+
+    def test_missing_case(self):
+        for command in COMMANDS:
+            self.refuse(command, words=["missing case file", f"samara {command} --help"])
+
+    def test_case_taken_for_the_value_of_an_option(self):
+        self.refuse("floquet", "-floquet_ksp_view", BASELINE, words="value of -floquet_ksp_view")
+
+    def test_two_cases(self):
+        self.refuse("floquet", BASELINE, "other.yaml", words='unexpected argument "other.yaml"')
+
+    def test_unknown_option(self):
+        self.refuse("floquet", BASELINE, "--sett", "a=1", words='did you mean "--set"?')
+        self.refuse("floquet", BASELINE, "--xyzzy", words="samara --help")
+
+    def test_own_option_with_one_dash(self):
+        self.refuse("floquet", BASELINE, "-set", "a=1", words='did you mean "--set"?')
+
+    def test_option_without_its_value(self):
+        for option in ("-o", "--csv"):
+            self.refuse("floquet", BASELINE, option, words="needs a path")
+
+    def test_option_given_twice(self):
+        self.refuse("floquet", BASELINE, "-o", "a.h5", "-o", "b.h5", words="given twice")
+
+    def test_one_path_for_two_files(self):
+        self.refuse("floquet", BASELINE, "-o", "a", "--csv", "a", words="the same file")
+
+    def test_table_of_check(self):
+        self.refuse("check", BASELINE, "--csv", "a.csv", words="no table")
+
+
+unittest.main()

@@ -1,0 +1,67 @@
+"""The same results and exit codes on 1, 2 and 3 ranks."""
+
+import pathlib
+import sys
+import unittest
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import BASELINE, QUICK, ProgramTest  # noqa: E402
+
+# Sums over ranks round in another order; well-conditioned eigenvalues move with rounding.
+EXPONENTS = 1e-9
+# The double zero of free yaw is defective: rounding of 1e-16 moves it by its square root and more.
+ZEROS = 1e-4
+
+
+class Ranks(ProgramTest):
+    def exponents(self, ranks):
+        """Resolved exponents over the rotor speed, and their labels."""
+        name = f"{ranks}.h5"
+        self.succeed("floquet", BASELINE, "-o", name, ranks=ranks)
+        with h5py.File(self.folder / name) as file:
+            group = file["/floquet"]
+            self.assertEqual(file.attrs["ranks"], ranks)
+            values = group["exponents"][:] @ [1, 1j] / group.attrs["rotor_speed"]
+            resolved = group["resolved"][:] == 1
+            return values[resolved], group["label"].asstr()[:][resolved]
+
+    def test_exponents_do_not_depend_on_the_number_of_ranks(self):
+        first, labels = self.exponents(1)
+        is_zero = abs(first) < ZEROS
+        self.assertEqual(numpy.count_nonzero(is_zero), 2)
+        for ranks in (2, 3):
+            other, other_labels = self.exponents(ranks)
+            self.assertEqual(len(other), len(first))
+            self.assertLess(abs(other[is_zero]).max(), ZEROS)
+            # Real exponents share a frequency: their order among themselves does not matter.
+            a = numpy.sort_complex(first[~is_zero] * -1j)
+            b = numpy.sort_complex(other[~is_zero] * -1j)
+            self.assertLess((abs(a - b) / abs(a)).max(), EXPONENTS)
+            self.assertEqual(sorted(labels), sorted(other_labels))
+
+    def test_tables_are_printed_once(self):
+        for command in ("check", "trim", "floquet"):
+            text = self.succeed(command, BASELINE, *QUICK, ranks=2).stdout
+            self.assertEqual(text.count("Two-bladed teetering turbine"), 1)
+        self.assertEqual(self.succeed("--help", ranks=2).stdout.count("exit codes"), 1)
+        self.assertEqual(self.succeed("--version", ranks=2).stdout.count("SLEPc"), 1)
+
+    def test_errors_are_printed_once_and_keep_their_code(self):
+        for code, words, arguments in (
+            (2, "no such file", ["floquet", "no.yaml"]),
+            (2, "unknown command", ["floqet", BASELINE]),
+            (2, "there is no folder", ["floquet", BASELINE, "-o", "missing/x.h5"]),
+            (2, "use samara floquet", ["modes", BASELINE]),
+            (3, "trim: ", ["trim", BASELINE, "-trim_snes_max_it", "0"]),
+        ):
+            with self.subTest(words=words):
+                run = self.samara(*arguments, ranks=2)
+                self.assertEqual(run.returncode, code, run.stderr)
+                self.assertEqual(run.stderr.count(words), 1, run.stderr)
+                self.assertEqual(self.files(), {})
+
+
+unittest.main()

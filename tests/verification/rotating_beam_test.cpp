@@ -1,0 +1,355 @@
+// A single uniform beam, at rest and turning, by the modes of constant tangents: closed forms,
+// published tables (R1-R4) and Ritz's method; the order of convergence.
+#include <boost/test/unit_test.hpp>
+
+#include <array>
+
+#include "cases.hpp"
+#include "ritz.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using boost::test_tools::tolerance;
+
+namespace {
+
+/// By label: the two planes of bending must not have equal frequencies, for then any mixture of
+/// them is a mode and has no label.
+std::vector<double> flap(const BeamCase& beam) {
+  return frequencies(constant_modes_of(definition_of(beam)), "blade flap");
+}
+std::vector<double> lead_lag(const BeamCase& beam) {
+  return frequencies(constant_modes_of(definition_of(beam)), "blade lead-lag");
+}
+
+RitzBeam ritz_of(const BeamCase& beam, bool lag) {
+  return {beam.length, beam.hub_radius, beam.speed, beam.mass, beam.inertia(0), beam.inertia(1),
+          beam.inertia(2), beam.stiffness(lag ? 5 : 4)};
+}
+
+/// The cantilever's: cos(b) cosh(b) = -1, omega = b^2 sqrt(EI / (m l^4)).
+constexpr std::array<double, 3> cantilever{3.5160152685, 22.0344915647, 61.6972144118};
+
+/// Slope of the error between meshes of n and 2 n elements.
+double slope(double coarse, double fine, double exact) {
+  return std::log2(std::abs(coarse - exact) / std::abs(fine - exact));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(ritz_reproduces_the_cantilever_and_the_published_tables) {
+  // The oracle first: against the closed form and R1, R2, all printed digits.
+  RitzBeam beam;
+  const std::vector<double> rest = ritz_frequencies(beam, false);
+  for (std::size_t i = 0; i < 3; ++i) BOOST_TEST(rest[i] == cantilever[i], tolerance(1e-9));
+  beam.speed = 12.0;
+  const std::vector<double> fast = ritz_frequencies(beam, false);
+  BOOST_TEST(fast[0] == 13.1702, tolerance(5e-6));
+  BOOST_TEST(fast[1] == 37.6031, tolerance(5e-6));
+  BOOST_TEST(fast[2] == 79.615, tolerance(1e-5));
+  beam.hub_radius = 0.1;
+  const std::vector<double> away = ritz_frequencies(beam, false);
+  BOOST_TEST(away[0] == 13.96920, tolerance(1e-6));
+  BOOST_TEST(away[1] == 39.18289, tolerance(1e-6));
+  BOOST_TEST(away[2] == 81.75091, tolerance(1e-6));
+}
+
+BOOST_AUTO_TEST_CASE(cantilever_at_rest_bends_at_its_closed_form) {
+  // 16 elements of order 3: error of the third mode some (61.7 / 22)^3.5 of the second's, 1e-8.
+  BeamCase beam;
+  beam.elements = 16;
+  beam.stiffness(5) = 2.0;
+  const analysis::ModeSet set = constant_modes_of(definition_of(beam));
+  BOOST_TEST(set.degrees_of_freedom == 2 * 48);
+  for (const auto& [label, factor] :
+       {std::pair{"blade flap", 1.0}, std::pair{"blade lead-lag", std::sqrt(2.0)}}) {
+    const std::vector<double> found = frequencies(set, label);
+    BOOST_REQUIRE(found.size() == 48U);
+    for (std::size_t i = 0; i < 3; ++i)
+      BOOST_TEST(found[i] == factor * cantilever[i], tolerance(1e-6));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(cantilever_errors_are_those_of_the_weak_form) {
+  // theory.md, section 2: relative errors of the first two bending modes of this weak form, found
+  // by another program and printed to two digits, which leaves 5 % of a figure.
+  struct Row {
+    int order, elements;
+    double first, second;
+  };
+  for (const Row& row : {Row{1, 4, 2.0e-2, 2.9e-1}, Row{1, 8, 4.9e-3, 6.3e-2},
+                         Row{2, 4, 1.3e-4, 4.9e-3}, Row{3, 2, 6.8e-6, 2.8e-3},
+                         Row{3, 4, 1.1e-7, 5.1e-5}}) {
+    BeamCase beam;
+    beam.stiffness(5) = 2.0;
+    beam.order = row.order;
+    beam.elements = row.elements;
+    const std::vector<double> found = flap(beam);
+    BOOST_TEST(std::abs(found[0] / cantilever[0] - 1.0) == row.first, tolerance(0.06));
+    BOOST_TEST(std::abs(found[1] / cantilever[1] - 1.0) == row.second, tolerance(0.06));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(cantilever_converges_with_slope_two_s) {
+  // Meshes on which the second mode's error is between 1e-1 and 1e-8, where the slope shows.
+  for (const auto& [order, first] : {std::pair{1, 16}, std::pair{2, 4}, std::pair{3, 3}}) {
+    std::vector<double> errors;
+    for (const int elements : {first, 2 * first, 4 * first}) {
+      BeamCase beam;
+      beam.stiffness(5) = 2.0;
+      beam.order = order;
+      beam.elements = elements;
+      errors.push_back(flap(beam)[1]);
+    }
+    BOOST_TEST(slope(errors[0], errors[1], cantilever[1]) == 2.0 * order, tolerance(0.05));
+    BOOST_TEST(slope(errors[1], errors[2], cantilever[1]) == 2.0 * order, tolerance(0.03));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(turning_beam_converges_with_slope_two_s) {
+  for (const bool lag : {false, true}) {
+    BeamCase beam;
+    beam.speed = 6.0;
+    beam.hub_radius = 0.1;
+    beam.inertia = Vector3(3e-3, 1e-3, 2e-3);  // torsion stays rigid: it would couple with flap
+    const double exact = ritz_frequencies(ritz_of(beam, lag), lag)[1];
+    for (const auto& [order, first] : {std::pair{1, 16}, std::pair{2, 4}, std::pair{3, 3}}) {
+      std::vector<double> found;
+      for (const int elements : {first, 2 * first, 4 * first}) {
+        beam.order = order;
+        beam.elements = elements;
+        found.push_back(nearest(lag ? lead_lag(beam) : flap(beam), exact));
+      }
+      BOOST_TEST(slope(found[0], found[1], exact) == 2.0 * order, tolerance(0.08));
+      BOOST_TEST(slope(found[1], found[2], exact) == 2.0 * order, tolerance(0.04));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(torsion_of_the_lowest_order_has_the_box_formula) {
+  // (2 N / l) tan((2 j - 1) pi / (4 N)) sqrt(GJ / I1), exact for s = 1 at rest.
+  BeamCase beam;
+  beam.length = 3.0;
+  beam.inertia = Vector3(0.7, 0.3, 0.4);
+  beam.stiffness << 0.0, 0.0, 0.0, 11.0, 1e5, 1e5;
+  beam.order = 1;
+  for (const int elements : {1, 2, 5, 12}) {
+    beam.elements = elements;
+    const std::vector<double> found =
+        frequencies(constant_modes_of(definition_of(beam)), "blade torsion");
+    BOOST_REQUIRE(found.size() == static_cast<std::size_t>(elements));
+    for (int j = 1; j <= elements; ++j) {
+      const double wanted = 2.0 * elements / beam.length *
+                            std::tan((2 * j - 1) * pi / (4.0 * elements)) * std::sqrt(11.0 / 0.7);
+      BOOST_TEST(found[static_cast<std::size_t>(j - 1)] == wanted, tolerance(1e-9));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(torsion_of_a_turning_blade_is_stiffened_by_its_flatness) {
+  // I1 omega^2 = GJ (pi / 2 l)^2 + (I3 - I2) Omega^2: the tennis-racket effect.
+  BeamCase beam;
+  beam.length = 3.0;
+  beam.speed = 2.5;
+  beam.inertia = Vector3(0.7, 0.1, 0.6);
+  beam.stiffness << 0.0, 0.0, 0.0, 11.0, 0.0, 0.0;  // rigid in bending
+  const double wanted = std::sqrt(11.0 / 0.7 * std::pow(pi / 6.0, 2) + 0.5 / 0.7 * 6.25);
+  const std::vector<double> found =
+      frequencies(constant_modes_of(definition_of(beam)), "blade torsion");
+  BOOST_TEST(found[0] == wanted, tolerance(1e-9));
+}
+
+BOOST_AUTO_TEST_CASE(r1_turning_beam_of_wright) {
+  // Wright et al. (1982), hub radius 0; tolerance 1e-4 of verification.md.
+  struct Row {
+    double speed;
+    std::vector<double> flap;
+  };
+  const std::vector<Row> rows{{0.0, {3.5160, 22.0345, 61.697}}, {1.0, {3.6816}},
+                              {2.0, {4.1373, 22.6149, 62.273}}, {3.0, {4.7973}},
+                              {4.0, {5.5850}},                  {5.0, {6.4495}},
+                              {6.0, {7.3604, 26.8091, 66.684}}, {12.0, {13.1702, 37.6031, 79.615}}};
+  for (const Row& row : rows) {
+    BeamCase beam;
+    beam.speed = row.speed;
+    beam.stiffness(5) = 2.0;
+    beam.elements = 16;
+    const std::vector<double> found = flap(beam);
+    const std::vector<double> exact = ritz_frequencies(ritz_of(beam, false), false);
+    for (std::size_t i = 0; i < row.flap.size(); ++i)
+      BOOST_TEST(found[i] == row.flap[i], tolerance(1e-4));
+    for (std::size_t i = 0; i < 3; ++i) BOOST_TEST(found[i] == exact[i], tolerance(1e-6));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(lead_lag_is_flap_less_the_speed) {
+  // omega_lag^2 = omega_flap^2 - Omega^2 for equal stiffness and no rotary inertia, on any mesh:
+  // the terms that differ are those of the mass alone.
+  for (const auto& [order, elements] : {std::pair{1, 6}, std::pair{2, 3}, std::pair{3, 8}}) {
+    for (const double speed : {1.0, 3.0, 12.0}) {
+      BeamCase beam;
+      beam.speed = speed;
+      beam.hub_radius = 0.1;
+      beam.order = order;
+      beam.elements = elements;
+      const analysis::ModeSet set = constant_modes_of(definition_of(beam));
+      const std::vector<double> out = frequencies(set, "blade flap");
+      const std::vector<double> in = frequencies(set, "blade lead-lag");
+      BOOST_REQUIRE(out.size() == in.size());
+      BOOST_REQUIRE(out.size() == static_cast<std::size_t>(order * elements));
+      for (std::size_t i = 0; i < 3; ++i)
+        BOOST_TEST(in[i] * in[i] == out[i] * out[i] - speed * speed, tolerance(1e-8));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(r2_beam_on_a_hub) {
+  for (const auto& [speed, wanted] :
+       {std::pair{6.0, std::array{7.72603, 27.37965, 67.34620}},
+        std::pair{12.0, std::array{13.96920, 39.18289, 81.75091}}}) {
+    BeamCase beam;
+    beam.speed = speed;
+    beam.hub_radius = 0.1;
+    beam.elements = 16;
+    const std::vector<double> found = flap(beam);
+    for (std::size_t i = 0; i < 3; ++i) BOOST_TEST(found[i] == wanted[i], tolerance(1e-6));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(r3_string_limit) {
+  // omega = Omega sqrt(k (2 k - 1)). A clamp adds a boundary layer of length l sqrt(2 e),
+  // e = EI / (m Omega^2 l^4), and its energy omega_1 / Omega - 1 = 3 / (2 sqrt 2) sqrt(e) + O(e):
+  // 1.0607, which at small e is the 1.07 of verification.md. The layer is 0.014 long at e = 1e-4,
+  // an element of order 3 0.031.
+  std::vector<double> rates;
+  for (const double e : {4e-4, 1e-4}) {
+    BeamCase beam;
+    beam.speed = 1.0;
+    beam.stiffness(4) = e;
+    beam.stiffness(5) = 2.0 * e;
+    beam.elements = 32;
+    const std::vector<double> found = flap(beam);
+    for (int k = 1; k <= 3; ++k) {
+      const double string = std::sqrt(k * (2.0 * k - 1.0));
+      const double excess = found[static_cast<std::size_t>(k - 1)] / string - 1.0;
+      BOOST_TEST(excess > 0.0);
+      BOOST_TEST(excess < 2.0 * k * std::sqrt(e));  // vanishes as the layer does
+    }
+    rates.push_back((found[0] - 1.0) / std::sqrt(e));
+  }
+  BOOST_TEST(2.0 * rates[1] - rates[0] == 1.5 / std::sqrt(2.0), tolerance(2e-3));
+}
+
+BOOST_AUTO_TEST_CASE(r3_hinged_rotor_flaps_once_a_revolution) {
+  // A rotor that teeters at the shaft's axis tilts as a plane at exactly 1/rev, whatever the
+  // stiffness, in any mesh: it turns on in its tilted plane. So does a hub that is a flat disc,
+  // I2 = I1 + I3, without which one coordinate had no mass at all.
+  for (const double stiffness : {1e-2, 1.0, 50.0}) {
+    for (const auto& [order, elements] : {std::pair{1, 5}, std::pair{3, 4}}) {
+      BeamCase beam;
+      beam.speed = 1.7;
+      beam.stiffness(4) = stiffness;
+      beam.stiffness(5) = 1.3 * stiffness;
+      beam.order = order;
+      beam.elements = elements;
+      model::TurbineDefinition definition = definition_of(beam);
+      definition.blades.count = 2;
+      definition.hub.inertia = Vector3(0.01, 0.02, 0.01);
+      definition.hub.teeter.kind = model::JointKind::free;
+      const analysis::ModeSet set = constant_modes_of(definition);
+      BOOST_TEST(nearest(frequencies(set, "teeter"), 1.7) == 1.7, tolerance(1e-9));
+      const analysis::Floquet floquet = floquet_of(definition, 100);
+      const double warped = 2.0 / floquet.step * std::atan(0.5 * 1.7 * floquet.step);
+      BOOST_TEST(nearest(frequencies(floquet.set, "teeter"), warped) == warped, tolerance(1e-9));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(r4_beam_that_stretches_and_shears) {
+  BeamCase beam;
+  beam.length = 10.0;
+  beam.inertia = Vector3(2e-4, 1e-4, 1e-4);
+  beam.stiffness << 1e8, 4e7, 4e7, 8e3, 1e4, 1e4;
+  beam.elements = 12;
+  ShearBeam exact{10.0, 0.0, 1.0, 2e-4, 1e-4, 1e-4, 1e8, 4e7, 8e3, 1e4};
+  // BeamDyn of order 12, verification.md: 1e-4 as R1. Ritz differs from its first edge mode by
+  // 1.8e-5 and agrees with this program to 1e-6: two different formulations.
+  struct Row {
+    double speed;
+    std::array<double, 3> edge, flap;
+  };
+  for (const Row& row : {Row{6.0, {4.26292, 26.1274, 66.4042}, {7.36022, 26.8075, 66.6747}},
+                         Row{12.0, {5.42599, 35.6345, 78.6940}, {13.16989, 37.6010, 79.6038}}}) {
+    beam.speed = row.speed;
+    exact.speed = row.speed;
+    const analysis::ModeSet set = constant_modes_of(definition_of(beam));
+    BOOST_TEST(set.degrees_of_freedom == 6 * 36);
+    const std::vector<double> edge = frequencies(set, "blade lead-lag");
+    const std::vector<double> out = frequencies(set, "blade flap");
+    const std::vector<double> exact_edge = shear_beam_frequencies(exact, true);
+    const std::vector<double> exact_flap = shear_beam_frequencies(exact, false);
+    for (std::size_t i = 0; i < 3; ++i) {
+      BOOST_TEST(nearest(edge, row.edge[i]) == row.edge[i], tolerance(1e-4));
+      BOOST_TEST(nearest(out, row.flap[i]) == row.flap[i], tolerance(1e-4));
+      BOOST_TEST(nearest(edge, exact_edge[i]) == exact_edge[i], tolerance(2e-6));
+      BOOST_TEST(nearest(out, exact_flap[i]) == exact_flap[i], tolerance(2e-6));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(modes_of_a_beam_with_all_strains_elastic_are_resolved) {
+  // The lowest frequencies sit beside those of shear and stretch, 1e5 times as high: `resolved`
+  // asks for 1e-6.
+  BeamCase beam;
+  beam.length = 10.0;
+  beam.speed = 6.0;
+  beam.inertia = Vector3(2e-4, 1e-4, 1e-4);
+  beam.stiffness << 1e8, 4e7, 4e7, 8e3, 1e4, 1e4;
+  for (const int elements : {4, 8, 16}) {
+    beam.elements = elements;
+    const analysis::ModeSet set = constant_modes_of(definition_of(beam));
+    for (std::size_t i = 0; i < 6; ++i)
+      BOOST_TEST(set.modes[i].resolved, elements << " elements, " << set.modes[i].exponent.imag()
+                                                 << " residual " << set.modes[i].residual);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(beam_of_soft_section_agrees_with_ritz_in_all_its_couplings) {
+  // Stretch of some per cent, shear that matters, and gyroscopic coupling of flap and twist.
+  BeamCase beam;
+  beam.speed = 3.0;
+  beam.inertia = Vector3(0.05, 0.03, 0.01);
+  beam.stiffness << 60.0, 40.0, 40.0, 2.0, 1.0, 1.0;
+  beam.elements = 8;
+  beam.order = 5;
+  const ShearBeam soft{1.0, 3.0, 1.0, 0.05, 0.03, 0.01, 60.0, 40.0, 2.0, 1.0};
+  const std::vector<double> found = frequencies(constant_modes_of(definition_of(beam)));
+  for (const bool lag : {false, true}) {
+    const std::vector<double> exact = shear_beam_frequencies(soft, lag);
+    for (std::size_t i = 0; i < 5; ++i)
+      BOOST_TEST(nearest(found, exact[i]) == exact[i], tolerance(1e-8));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(uniform_damping_gives_half_of_mu_omega) {
+  // Section force F + mu F_dot with one mu: every mode at rest has lambda^2 + mu w^2 lambda + w^2
+  // = 0, w that of the undamped mesh. Overdamped ones become real.
+  constexpr double mu = 0.01;
+  BeamCase beam;
+  beam.order = 2;
+  beam.elements = 4;
+  beam.stiffness(5) = 2.0;
+  const std::vector<double> undamped = frequencies(constant_modes_of(definition_of(beam)));
+  BOOST_REQUIRE(undamped.size() == 16U);
+  beam.damping << 0.0, 0.0, 0.0, 0.0, mu, mu;
+  const analysis::ModeSet set = constant_modes_of(definition_of(beam));
+  BOOST_TEST(set.degrees_of_freedom == 16);
+  for (const double w : undamped) {
+    const Complex root = std::sqrt(Complex(0.25 * mu * mu * std::pow(w, 4) - w * w, 0.0));
+    const Complex wanted = -0.5 * mu * w * w + root;
+    double distance = std::numeric_limits<double>::infinity();
+    for (const analysis::Mode& mode : set.modes)
+      distance = std::min(distance, std::abs(mode.exponent - wanted));
+    BOOST_TEST(distance < 1e-8 * std::abs(wanted), "undamped " << w << " wanted " << wanted);
+  }
+}
