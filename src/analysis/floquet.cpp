@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <sstream>
+#include <string>
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/identification.hpp"
@@ -391,7 +393,20 @@ class Analysis {
             (static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
     label_modes(system_, result.set);
     scale_shapes(system_, result.set);
+    share_labels(result.set);
     return result;
+  }
+
+  /// Names come from the shapes, which only the first rank has.
+  void share_labels(ModeSet& set) const {
+    std::string text;
+    for (const Mode& mode : set.modes) text += mode.label + '\n';
+    int length = static_cast<int>(text.size());
+    MPI_Bcast(&length, 1, MPI_INT, 0, ranks_.comm);
+    text.resize(static_cast<std::size_t>(length));
+    MPI_Bcast(text.data(), length, MPI_CHAR, 0, ranks_.comm);
+    std::istringstream lines(text);
+    for (Mode& mode : set.modes) std::getline(lines, mode.label);
   }
 
   const system::PeriodicSystem& system_;
