@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes the tables of docs/lee2002.md: Tables II and III of Lee, Hodges & Patil (2002) as printed,
 beside what Samara finds.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws docs/modes.svg: six modes of the turbine of Lee, Hodges & Patil (2002), from a result file.
 
     scripts/mode_gallery.py [--program build/samara] [--png FILE]
