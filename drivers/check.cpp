@@ -22,13 +22,13 @@ std::string triple(const Vector3& v) {
   return text;
 }
 
-std::string mass_table(const model::Turbine& turbine, const Masses& masses) {
+std::string mass_table(const model::Turbine& turbine, const model::Masses& masses) {
   Table table;
   table.add_column("part", "", Align::left);
   table.add_column("mass", "kg");
   table.add_column("centre of mass", "m");
   table.add_column("in, from", "", Align::left);
-  const auto add = [&table](const std::string& name, const MassProperties& part,
+  const auto add = [&table](const std::string& name, const model::MassProperties& part,
                             const std::string& frame) {
     table.add_row(
         {name, general(part.mass, 6), part.mass > 0.0 ? triple(part.center()) : "-", frame});
@@ -57,7 +57,7 @@ std::string joint_words(const elements::Hinge& hinge) {
 }
 
 /// How far the elements' lumped masses are from the sections'.
-std::string inertia_words(const Masses& masses) {
+std::string inertia_words(const model::Masses& masses) {
   const double exact = masses.rotor.inertia(1, 1);
   const double meshed = masses.meshed_rotor.inertia(1, 1);
   std::string text = general(exact, 6) + " kg m^2 about the shaft";
@@ -71,7 +71,7 @@ std::string mesh_words(const model::Beam& beam) {
 }
 
 std::string facts(const io::Case& input, const system::TurbineSystem& system,
-                  const Masses& masses) {
+                  const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
   const model::Turbine& turbine = system.turbine();
   const double hub_to_tip = definition.hub.radius + definition.blades.beam.length;
@@ -113,7 +113,7 @@ void run_check(const Job& job) {
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
   if (petsc::Session::rank() != 0) return;
-  const Masses masses = compute_masses(job.input.turbine, turbine);
+  const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
   const std::string& title = job.input.turbine.title;
   deliver(
       job,

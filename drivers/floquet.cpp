@@ -49,7 +49,7 @@ void run_floquet(const Job& job) {
       job, headline(job.input, floquet) + mode_table(floquet.set) + "\n" + verdict(floquet.set),
       [&](io::ResultFile& file) {
         file.write_model(system);
-        write_masses(file, compute_masses(job.input.turbine, turbine));
+        write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
         file.write_floquet(floquet);
       },

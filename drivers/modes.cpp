@@ -43,7 +43,7 @@ void run_modes(const Job& job) {
       job, headline(job.input, set) + mode_table(set) + "\n" + verdict(set),
       [&](io::ResultFile& file) {
         file.write_model(system);
-        write_masses(file, compute_masses(job.input.turbine, turbine));
+        write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
         file.write_modes(set);
       },

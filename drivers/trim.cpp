@@ -163,7 +163,7 @@ void run_trim(const Job& job) {
       job, summary(job.input, trim) + output_table(system, trim),
       [&](io::ResultFile& file) {
         file.write_model(system);
-        write_masses(file, compute_masses(job.input.turbine, turbine));
+        write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
       },
       [&](const std::string& path) { io::write_trim_table(path, system, trim); });

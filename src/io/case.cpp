@@ -438,6 +438,7 @@ void read_trim(const YamlNode& node, analysis::TrimOptions& trim, ErrorList& err
     map.read("harmonics", trim.harmonics, 0, max_harmonics);
   }
   map.read("tolerance", trim.tolerance, positive);
+  map.read("auto_tolerance", trim.auto_tolerance, positive);
   map.read("steps", trim.steps, min_steps, max_steps);
   map.finish();
 }

@@ -3,6 +3,8 @@
 #include <array>
 #include <string>
 
+#include "samara/math/rotation.hpp"
+
 namespace samara::system {
 namespace {
 
@@ -135,32 +137,52 @@ class Describer {
     add_rigid_energies();
   }
 
+  /// What the tower top carries, at zero yaw and azimuth: nacelle and shaft, and the hub, of which
+  /// a free teeter leaves only the mass at the pin; what turns about the hinge is the hub's own.
+  Matrix6 carried_mass() const {
+    const elements::RigidChain& chain = turbine_.chain;
+    const Matrix3 tilted = math::turn_about<double>(Vector3::UnitX(), chain.tilt);
+    const Vector3 bearing(0.0, 0.0, chain.height);
+    const Vector3 pin = bearing + tilted * Vector3(0.0, chain.overhang, 0.0);
+    Matrix6 weight = Matrix6::Zero();
+    const auto add = [&weight](double mass, const Vector3& center, const Matrix3& inertia) {
+      const Matrix3 across = math::skew<double>(center);
+      weight.topLeftCorner<3, 3>() += mass * Matrix3::Identity();
+      weight.topRightCorner<3, 3>() -= mass * across;  // m V.(omega x c)
+      weight.bottomLeftCorner<3, 3>() += mass * across;
+      weight.bottomRightCorner<3, 3>() += inertia - mass * across * across;
+    };
+    const auto add_body = [&](const elements::RigidBody& body, const Matrix3& C,
+                              const Vector3& reference) {
+      add(body.mass, reference + C * body.center, C * body.inertia * C.transpose());
+    };
+    add_body(chain.nacelle, Matrix3::Identity(), Vector3::Zero());
+    add_body(chain.shaft, tilted, bearing);
+    if (chain.teeter.free)
+      add(chain.hub.mass, pin, Matrix3::Zero());
+    else
+      add_body(chain.hub, tilted, pin);
+    return weight;
+  }
+
   void add_rigid_energies() {
     const elements::RigidChain& chain = turbine_.chain;
-    const auto moment_about = [](const elements::RigidBody& body, const Vector3& shift) {
-      const Vector3 r = body.center + shift;
-      return Matrix3(body.inertia +
-                     body.mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose()));
-    };
+    const Matrix6 carried = carried_mass();
+    EnergyGroup group{EnergyGroup::Kind::kinetic, "nacelle", "", 0, Frame::fixed, {}, {}};
     if (turbine_.has_tower) {
-      // Nacelle, shaft and hub as one body about the tower top, at zero yaw; V = (U8 U6 U7).
-      const Vector3 bearing(0.0, 0.0, chain.height);
-      const Matrix3 inertia =
-          moment_about(chain.nacelle, Vector3::Zero()) + moment_about(chain.shaft, bearing) +
-          moment_about(chain.hub, bearing + Vector3(0.0, chain.overhang, 0.0));
-      const double mass = chain.nacelle.mass + chain.shaft.mass + chain.hub.mass;
-      EnergyGroup group{EnergyGroup::Kind::kinetic, "nacelle", "", 0, Frame::fixed, {}, {}};
-      const int top = layout_.tower_tip();
-      group.unknowns = {top + 6, top + 7, top + 8, top + 10, top + 11, layout_.yaw() + 1};
-      Matrix6 weight = Matrix6::Zero();
-      weight.topLeftCorner<3, 3>() = mass * Matrix3::Identity();
-      weight.bottomRightCorner<3, 3>() = inertia;
-      group.weight.assign(weight.data(), weight.data() + weight.size());
+      const int top = layout_.tower_tip();  // V = (U6 U7 U8), omega = (U3 U4 U1)
+      group.unknowns = {top + 7, top + 8, top + 6, top + 10, top + 11, layout_.yaw() + 1};
+      group.weight.assign(carried.data(), carried.data() + carried.size());
+      result_.groups.push_back(group);
+    } else if (chain.yaw.free && carried(5, 5) > 0.0) {
+      group.unknowns = {layout_.yaw() + 1};
+      group.weight = {carried(5, 5)};
       result_.groups.push_back(group);
     }
     if (chain.teeter.free) {
       const Vector3 e = chain.teeter_axis;
-      const double inertia = e.dot(moment_about(chain.hub, Vector3::Zero()) * e);
+      const Matrix3 across = math::skew<double>(chain.hub.center);
+      const double inertia = e.dot((chain.hub.inertia - chain.hub.mass * across * across) * e);
       if (inertia > 0.0)
         result_.groups.push_back({EnergyGroup::Kind::kinetic, "hub", "teeter", 0, Frame::rotating,
                                   {layout_.teeter() + 1}, {inertia}});

@@ -314,6 +314,23 @@ BOOST_AUTO_TEST_CASE(residual_of_a_complex_state_is_the_sum_too) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_mass_on_the_tower_top_keeps_the_moments_of_the_nacelle_about_it) {
+  model::TurbineDefinition definition = sample::turbine_definition({});
+  const auto nacelle_of = [&definition](double mass) {
+    definition.tower.tip_mass = mass;
+    return model::build_turbine(definition).chain.nacelle;
+  };
+  const auto inertia_about_top = [](const elements::RigidBody& body) {
+    const Matrix3 across = math::skew<double>(body.center);
+    return Matrix3(body.inertia - body.mass * across * across);
+  };
+  const elements::RigidBody before = nacelle_of(0.0);
+  const elements::RigidBody after = nacelle_of(5.0);
+  BOOST_TEST(std::abs(after.mass - before.mass - 5.0) < rounding);
+  BOOST_TEST((after.mass * after.center - before.mass * before.center).norm() < rounding);
+  BOOST_TEST((inertia_about_top(after) - inertia_about_top(before)).norm() < rounding);
+}
+
 BOOST_AUTO_TEST_CASE(a_parked_turbine_has_no_period) {
   model::TurbineDefinition definition = sample::turbine_definition({});
   definition.shaft.speed = 0.0;

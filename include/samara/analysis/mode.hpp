@@ -21,8 +21,9 @@ struct Mode {
   double damping_ratio = 0.0;       ///< -Re / |lambda|; 0 where |lambda| counts as zero
   std::string label;
   bool resolved = true;             ///< omega dt / 2 <= 0.7 and the residual is small
-  double residual = 0.0;            ///< Floquet: |z(T) - mu z(0)| / |z(0)|; constant tangents: relative
-                                    ///< difference of the exponent found with two shifts
+  /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
+  /// tangents: relative difference of the exponent found with two shifts.
+  double residual = 0.0;
   std::vector<PartShare> parts;     ///< descending
   double kinetic_energy = 0.0;      ///< mean, of the shape as it is scaled [J]
 };

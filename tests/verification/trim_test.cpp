@@ -1,0 +1,226 @@
+// The steady state of the paper's turbine under gravity.
+#include <boost/test/unit_test.hpp>
+
+#include "cases.hpp"
+#include "samara/analysis/harmonic_balance.hpp"
+#include "samara/analysis/shooting.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using analysis::solve_harmonic_balance;
+using boost::test_tools::tolerance;
+
+namespace {
+
+/// The paper's turbine with the gravity of the earth, on a mesh of n elements of order s.
+std::unique_ptr<system::TurbineSystem> heavy(int elements, int order) {
+  const io::Case input = lee("baseline", with(mesh(true, elements, order), {"gravity=9.80665"}));
+  return std::make_unique<system::TurbineSystem>(model::build_turbine(input.turbine),
+                                                 PETSC_COMM_SELF);
+}
+
+constexpr double tight = 1e-10;  // the default of trim.tolerance
+
+/// Largest amplitude of a position in any harmonic.
+double largest_deflection(const system::PeriodicSystem& system, const Eigen::MatrixXd& h) {
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < h.rows(); ++i)
+    if (system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
+      largest = std::max(largest, h.row(i).cwiseAbs().maxCoeff());
+  return largest;
+}
+
+/// The same of the difference of two series, harmonics that one lacks taken as zero.
+double largest_difference(const system::PeriodicSystem& system, const Eigen::MatrixXd& a,
+                          const Eigen::MatrixXd& b) {
+  const Eigen::Index columns = std::max(a.cols(), b.cols());
+  Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(a.rows(), columns);
+  difference.leftCols(a.cols()) += a;
+  difference.leftCols(b.cols()) -= b;
+  return largest_deflection(system, difference);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(gravity_is_balanced_in_at_most_eight_newton_steps) {
+  for (const auto& [elements, order] : {std::pair{4, 1}, std::pair{3, 2}}) {
+    const auto system = heavy(elements, order);
+    for (const int harmonics : {2, 4, 6}) {
+      const analysis::Trim trim = solve_harmonic_balance(*system, harmonics, tight, nullptr);
+      BOOST_TEST(trim.newton_steps <= 8);
+      BOOST_TEST(trim.newton_steps >= 2);  // it is nonlinear
+      BOOST_TEST(trim.solution.harmonics() == harmonics);
+      BOOST_REQUIRE(trim.held.size() == 1U);
+      BOOST_TEST(trim.held[0].name == "yaw");
+      // By symmetry no mean moment turns the yaw.
+      BOOST_TEST(std::abs(trim.held[0].load) < 1e-6 * trim.load_level);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(residual_between_the_samples_falls_with_every_pair_of_harmonics) {
+  // "Several times each": at least three, until rounding of the loads (1e-11 of 1e5 N) is reached.
+  for (const auto& [elements, order] : {std::pair{4, 1}, std::pair{3, 2}}) {
+    const auto system = heavy(elements, order);
+    double last = 0.0;
+    for (const int harmonics : {2, 4, 6, 8}) {
+      const analysis::Trim trim = solve_harmonic_balance(*system, harmonics, tight, nullptr);
+      if (harmonics > 2)
+        BOOST_TEST(trim.residual_between < last / 3.0, harmonics << " harmonics");
+      last = trim.residual_between;
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(odd_harmonics_are_worse_than_the_even_ones_below) {
+  // Two blades load the tower at even multiples: with H odd the multiple H + 1 is not balanced.
+  const auto system = heavy(4, 1);
+  for (const int even : {2, 4}) {
+    const double below = solve_harmonic_balance(*system, even, tight, nullptr).residual_between;
+    const double odd = solve_harmonic_balance(*system, even + 1, tight, nullptr).residual_between;
+    BOOST_TEST(odd > 10.0 * below, even << " harmonics");
+  }
+}
+
+BOOST_AUTO_TEST_CASE(off_sample_residuals_are_of_the_published_size) {
+  // theory.md, section 4, by another program at s = 2, 3 elements: 190, .22, 97, .057 (H = 1 .. 4),
+  // .0097 N (H = 6). Where between the samples is not said: a factor of three.
+  const auto system = heavy(3, 2);
+  for (const auto& [harmonics, wanted] :
+       {std::pair{1, 190.0}, std::pair{2, 0.22}, std::pair{3, 97.0}, std::pair{4, 0.057},
+        std::pair{6, 0.0097}}) {
+    const double found =
+        solve_harmonic_balance(*system, harmonics, tight, nullptr).residual_between;
+    BOOST_TEST(found < 3.0 * wanted, harmonics << " harmonics: " << found);
+    BOOST_TEST(found > wanted / 3.0, harmonics << " harmonics: " << found);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(automatic_harmonics_are_even_for_two_blades) {
+  const auto system = heavy(4, 1);
+  analysis::Observer observer;
+  for (const double wanted : {1e-4, 1e-6, 1e-7}) {
+    analysis::TrimOptions options;
+    options.automatic = true;
+    options.auto_tolerance = wanted;
+    const analysis::Trim trim = analysis::find_trim(*system, options, observer);
+    BOOST_TEST(trim.solution.harmonics() % 2 == 0);
+    BOOST_TEST(trim.solution.harmonics() > 0);
+    BOOST_TEST(trim.residual_between <= wanted * trim.load_level);
+    for (const auto& [harmonics, residual] : trim.history) {
+      BOOST_TEST(harmonics % 2 == 0);
+      if (harmonics != trim.solution.harmonics())
+        BOOST_TEST(residual > wanted * trim.load_level);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(coefficients_settle_as_harmonics_are_added) {
+  // 4 H + 2 samples suffice: what they alias would stay in the difference to a longer series.
+  const auto system = heavy(4, 1);
+  const Eigen::MatrixXd reference =
+      solve_harmonic_balance(*system, 10, tight, nullptr).solution.coefficients();
+  const double size = largest_deflection(*system, reference);
+  BOOST_TEST(size > 1e-3);
+  double last = 1.0;
+  for (const int harmonics : {2, 4, 6}) {
+    const Eigen::MatrixXd h =
+        solve_harmonic_balance(*system, harmonics, tight, nullptr).solution.coefficients();
+    const double difference = largest_difference(*system, h, reference) / size;
+    BOOST_TEST(difference < last / 3.0, harmonics << " harmonics: " << difference);
+    last = difference;
+  }
+  BOOST_TEST(last < 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(balance_holds_with_three_times_the_samples) {
+  // The projections on the harmonics kept, with 12 H + 6 samples: what 4 H + 2 alias is small
+  // beside what the series leaves between them.
+  const auto system = heavy(4, 1);
+  for (const int harmonics : {2, 4}) {
+    const analysis::Trim trim = solve_harmonic_balance(*system, harmonics, tight, nullptr);
+    const petsc::Handle<Vec> z = system->make_state();
+    const petsc::Handle<Vec> z_dot = system->make_state();
+    const petsc::Handle<Vec> r = system->make_state();
+    const int samples = 12 * harmonics + 6;
+    Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(2 * harmonics + 1, system->size());
+    for (int k = 0; k < samples; ++k) {
+      const double t = system->period() * k / samples;
+      trim.solution.evaluate(t, z.get(), z_dot.get());
+      system->residual(t, z.get(), z_dot.get(), r.get());
+      const petsc::ReadView view(r.get());
+      projected += 2.0 / samples *
+                   analysis::PeriodicSolution::basis(harmonics, system->period(), t) *
+                   Eigen::Map<const Eigen::RowVectorXd>(view.data(), system->size());
+    }
+    double worst = 0.0;
+    for (Eigen::Index i = 0; i < projected.cols(); ++i)
+      if (system->rows()[static_cast<std::size_t>(i)] == system::RowRole::balance)
+        worst = std::max(worst, projected.col(i).tail(2 * harmonics).cwiseAbs().maxCoeff());
+    BOOST_TEST(worst < 0.1 * trim.residual_between,
+               harmonics << " harmonics: " << worst << " of " << trim.residual_between);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(balanced_rotor_without_gravity_is_a_constant) {
+  const io::Case input = lee("baseline", {});
+  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  analysis::Observer observer;
+  const analysis::Trim trim = analysis::find_trim(system, input.trim, observer);
+  BOOST_TEST(trim.solution.is_constant());
+  // Root tension of a blade: m Omega^2 int r dr from 1.8 to 10.22 m, exact for any mesh.
+  const double tension = 67.5772 * 6.02 * 6.02 * 0.5 * (10.22 * 10.22 - 1.8 * 1.8);
+  BOOST_TEST(trim.load_level == tension, tolerance(1e-9));
+  BOOST_TEST(largest_deflection(system, trim.solution.coefficients()) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(weight_appears_in_the_loads) {
+  // Mean tower-root force: the weight of the whole turbine; mean moment about n1: the rotor's weight
+  // at the overhang. One per rev at the blade root: m g l along the blade and across it.
+  const auto system = heavy(4, 1);
+  const analysis::Trim trim = solve_harmonic_balance(*system, 6, tight, nullptr);
+  const Eigen::MatrixXd& h = trim.solution.coefficients();
+  const auto& unknowns = system->unknowns();
+  const auto row = [&](const std::string& name) {
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+      if (unknowns[i].name == name) return static_cast<Eigen::Index>(i);
+    BOOST_FAIL("no unknown " + name);
+    return Eigen::Index{0};
+  };
+  constexpr double g = 9.80665;
+  const double blade = 67.5772 * 8.42 * g;
+  const double tower = 67.5772 * 27.0 * g;
+  BOOST_TEST(std::abs(h(row("tower root F1"), 0)) == 2.0 * blade + 6900.0 * g + tower,
+             tolerance(1e-6));
+  BOOST_TEST(std::abs(h(row("tower root M2"), 0)) == 2.0 * blade * 2.388, tolerance(0.02));
+  const double radial = std::hypot(h(row("blade 1 root F1"), 1), h(row("blade 1 root F1"), 2));
+  const double across = std::hypot(h(row("blade 1 root F2"), 1), h(row("blade 1 root F2"), 2));
+  // Beside the weight the blade's own motion at 1/rev: lead-lag at 3.2 per rev, some per cent.
+  BOOST_TEST(radial == blade, tolerance(0.1));
+  BOOST_TEST(across == blade, tolerance(0.15));
+}
+
+BOOST_AUTO_TEST_CASE(shooting_tends_to_harmonic_balance_with_the_square_of_the_step) {
+  const auto system = heavy(2, 1);
+  const Eigen::MatrixXd balance =
+      solve_harmonic_balance(*system, 10, tight, nullptr).solution.coefficients();
+  const double size = largest_deflection(*system, balance);
+  analysis::Observer observer;
+  std::vector<Eigen::MatrixXd> found;
+  std::vector<double> errors;
+  for (const int steps : {100, 200, 400}) {
+    analysis::TrimOptions options;
+    options.method = analysis::TrimMethod::shooting;
+    options.steps = steps;
+    const analysis::Trim trim = analysis::find_trim(*system, options, observer);
+    BOOST_TEST((trim.method == analysis::TrimMethod::shooting));
+    found.push_back(trim.solution.coefficients());
+    errors.push_back(largest_difference(*system, found.back(), balance) / size);
+  }
+  BOOST_TEST(std::log2(errors[0] / errors[1]) == 2.0, tolerance(0.05));
+  BOOST_TEST(std::log2(errors[1] / errors[2]) == 2.0, tolerance(0.02));
+  const Eigen::Index columns = std::min(found[1].cols(), found[2].cols());
+  const Eigen::MatrixXd limit =
+      (4.0 * found[2].leftCols(columns) - found[1].leftCols(columns)) / 3.0;
+  BOOST_TEST(largest_difference(*system, limit, balance) < 1e-6 * size);
+}
