@@ -1,5 +1,6 @@
 #include "samara/analysis/monodromy.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace samara::analysis {
@@ -13,7 +14,7 @@ LinearizedStep::LinearizedStep(const system::PeriodicSystem& system, std::vector
       jacobian_(system.make_jacobian()),
       mass_(system.make_mass()),
       solver_(prefix, [&system, step](Mat matrix) {
-        return scale_by_role(system, matrix, 2.0 / step);
+        return scale_by_role(system, matrix, 2.0 / std::abs(step));
       }) {
   if (!fixed_constraints_) end_jacobian_ = system.make_jacobian();
 }

@@ -56,7 +56,7 @@ class LinearizedStep {
   DirectSolver solver_;
 };
 
-/// Advances columns of states along a periodic solution.
+/// Advances columns of states along a periodic solution; a negative step goes back in time.
 class StepPropagator {
  public:
   StepPropagator(const system::PeriodicSystem& system, const PeriodicSolution& solution,
