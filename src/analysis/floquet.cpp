@@ -25,7 +25,7 @@ using Complex = std::complex<double>;
 constexpr double largest_half_phase = 0.7;
 constexpr double largest_residual = 1e-6;
 /// Instants of the mode shapes a revolution, at the most.
-constexpr int shape_samples = 36;
+constexpr int shape_samples = 24;
 
 /// Of the middles of the steps on both sides of t = 0, see Analysis::smooth_velocities.
 constexpr std::array<double, 4> smoothing_weights{93.0 / 128.0, -37.0 / 128.0, 9.0 / 128.0,
@@ -100,7 +100,7 @@ class Analysis {
     StepPropagator propagator(system_, solution_, subspace_.carried(), dt_);
     put_coordinates(z, first_, 0);
     for (long k = 0; k <= span_; ++k) {
-      const Eigen::MatrixXd middle = propagator.advance(k, z);
+      const Eigen::MatrixXd& middle = propagator.advance(k, z);
       if (k == span_) end_ = middle;
       if (k < span_) {
         for (Eigen::Index j = 0; j < z.cols(); ++j)

@@ -132,17 +132,17 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
   const Eigen::Map<const Eigen::VectorXd> row_factors(rows.data(), right.rows());
   const Eigen::Map<const Eigen::VectorXd> column_factors(columns.data(), right.rows());
   right.array().colwise() *= row_factors.array();
-  Eigen::MatrixXd solution(right.rows(), right.cols());
+  solution_.resize(right.rows(), right.cols());
   petsc::Handle<Mat> B;
   petsc::Handle<Mat> X;
   const auto n = static_cast<PetscInt>(right.rows());
   const auto m = static_cast<PetscInt>(right.cols());
   petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, m, right.data(), B.fill()));
-  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, m, solution.data(), X.fill()));
+  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, m, solution_.data(), X.fill()));
   petsc::check(KSPMatSolve(solver_.get(), B.get(), X.get()));
   // One column after the other is probed, a new one each time.
   probe_ = (probe_ + 1) % right.cols();
-  Eigen::VectorXd probe = solution.col(probe_);
+  Eigen::VectorXd probe = solution_.col(probe_);
   Eigen::VectorXd product(right.rows());
   petsc::Handle<Vec> x;
   petsc::Handle<Vec> y;
@@ -157,7 +157,7 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
          << size << " and a solution of " << probe.norm() << "; hint: -" << prefix_ << "pc_factor_mat_solver_type mumps";
     throw ConvergenceError(text.str());
   }
-  right = solution.array().colwise() * column_factors.array();
+  right = solution_.array().colwise() * column_factors.array();
 }
 
 Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

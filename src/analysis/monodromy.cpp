@@ -51,15 +51,15 @@ void LinearizedStep::replace_constraints(double t_end, Vec z_end, Vec z_dot_end)
   constraint_rows_.setFromTriplets(entries.begin(), entries.end());
 }
 
-Eigen::MatrixXd LinearizedStep::advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load) {
+const Eigen::MatrixXd& LinearizedStep::advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load) {
   // With z_f = 2 z_m - z_i: (2/dt M + K) z_m = 2/dt M z_i, and D_f z_m = D_f z_i / 2.
-  Eigen::MatrixXd middle = (2.0 / step_) * (to_sparse(mass_.get()) * z);
-  if (!fixed_constraints_) middle += 0.5 * (constraint_rows_ * z);
-  if (load.size() > 0) middle += load;
-  solver_.solve(middle);
+  middle_.noalias() = (2.0 / step_) * to_sparse(mass_.get()) * z;
+  if (!fixed_constraints_) middle_ += 0.5 * constraint_rows_ * z;
+  if (load.size() > 0) middle_ += load;
+  solver_.solve(middle_);
   for (Eigen::Index j = 0; j < z.cols(); ++j)
-    for (Eigen::Index i = 0; i < z.rows(); ++i) z(i, j) = end_value(i, z(i, j), middle(i, j));
-  return middle;
+    for (Eigen::Index i = 0; i < z.rows(); ++i) z(i, j) = end_value(i, z(i, j), middle_(i, j));
+  return middle_;
 }
 
 StepPropagator::StepPropagator(const system::PeriodicSystem& system,
@@ -74,7 +74,7 @@ StepPropagator::StepPropagator(const system::PeriodicSystem& system,
       linearized_(system, std::move(carried), step,
                   solution.is_constant() && system.constraints_are_autonomous(), "floquet_") {}
 
-Eigen::MatrixXd StepPropagator::advance(long k, Eigen::MatrixXd& z) {
+const Eigen::MatrixXd& StepPropagator::advance(long k, Eigen::MatrixXd& z) {
   const double middle = (static_cast<double>(k) + 0.5) * step_;
   const double end = static_cast<double>(k + 1) * step_;
   solution_.evaluate(middle, z_.get(), z_dot_.get());

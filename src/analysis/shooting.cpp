@@ -110,7 +110,7 @@ class Shooting {
     for (int k = 0; k <= steps_; ++k) {
       if (k < steps_) ends_.col(k) = z;
       advance(k, z, middle, linearized);
-      const Eigen::MatrixXd middle_columns = linearized.advance(columns, forcing);
+      const Eigen::MatrixXd& middle_columns = linearized.advance(columns, forcing);
       if (k < steps_) {
         middles_.col(k) = middle;
         for (Eigen::Index h = 0; h < held; ++h) {

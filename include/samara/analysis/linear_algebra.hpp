@@ -47,6 +47,7 @@ class DirectSolver {
   petsc::Handle<KSP> solver_;
   Equilibration scaling_;
   Mat matrix_ = nullptr;
+  Eigen::MatrixXd solution_;  ///< kept: large arrays cost more to get than to fill
   Eigen::Index probe_ = 0;
 };
 

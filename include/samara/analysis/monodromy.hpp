@@ -30,9 +30,9 @@ class LinearizedStep {
   void factor(double t_middle, Vec z_middle, Vec z_dot_middle, double t_end, Vec z_end,
               Vec z_dot_end);
 
-  /// Columns of states from the step's start to its end; returns their values at the middle.
-  /// `load` (size x columns or empty) is added to the rows.
-  Eigen::MatrixXd advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load = {});
+  /// Columns of states from the step's start to its end; returns their values at the middle, which
+  /// stand until the next call. `load` (size x columns or empty) is added to the rows.
+  const Eigen::MatrixXd& advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load = {});
 
   /// Solves J x = right for the values x at the middle, J = 2 M / dt + K.
   void solve(Eigen::MatrixXd& right) { solver_.solve(right); }
@@ -53,6 +53,7 @@ class LinearizedStep {
   petsc::Handle<Mat> mass_;
   petsc::Handle<Mat> end_jacobian_;
   Eigen::SparseMatrix<double> constraint_rows_;
+  Eigen::MatrixXd middle_;
   DirectSolver solver_;
 };
 
@@ -62,8 +63,9 @@ class StepPropagator {
   StepPropagator(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                  std::vector<bool> carried, double step);
 
-  /// From z at the start of step k (t = k step) to its end; returns the values at the middle.
-  Eigen::MatrixXd advance(long k, Eigen::MatrixXd& z);
+  /// From z at the start of step k (t = k step) to its end; returns the values at the middle, which
+  /// stand until the next call.
+  const Eigen::MatrixXd& advance(long k, Eigen::MatrixXd& z);
 
  private:
   const PeriodicSolution& solution_;
