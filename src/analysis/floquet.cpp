@@ -173,15 +173,31 @@ class Analysis {
     return result;
   }
 
+  Complex principal_exponent(Complex multiplier) const {
+    return std::log(multiplier) * static_cast<double>(sectors_) / system_.period();
+  }
+
+  void keep(Complex multiplier, const Eigen::VectorXcd& vector) {
+    multipliers_.push_back(multiplier);
+    vectors_.conservativeResize(states_, vectors_.cols() + 1);
+    vectors_.col(vectors_.cols() - 1) = vector;
+  }
+
   void solve_eigenproblem() {
     const Eigen::PartialPivLU<Eigen::MatrixXd> first(mean_and_rate(first_));
     const Eigen::MatrixXd map = first.solve(mean_and_rate(turned(last_)));
     const Eigenpairs pairs = dense_eigenpairs(map, "floquet_");
     for (std::size_t i = 0; i < pairs.values.size(); ++i) {
       if (pairs.values[i].imag() < 0.0) continue;  // its conjugate stands for it
-      multipliers_.push_back(pairs.values[i]);
-      vectors_.conservativeResize(states_, vectors_.cols() + 1);
-      vectors_.col(vectors_.cols() - 1) = pairs.vectors.col(static_cast<Eigen::Index>(i));
+      const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
+      const Complex exponent = principal_exponent(pairs.values[i]);
+      if (pairs.values[i].imag() > 0.0 && std::abs(exponent) < zero_exponent * speed_) {
+        // A double zero that rounding has split into a pair: two real rows, as on another day.
+        keep(pairs.values[i].real(), vector.real());
+        keep(pairs.values[i].real(), vector.real());
+      } else {
+        keep(pairs.values[i], vector);
+      }
     }
     if (ranks_.size > 1) {  // one rank decides
       int count = static_cast<int>(multipliers_.size());
@@ -194,9 +210,7 @@ class Analysis {
     }
     modes_.resize(multipliers_.size());
     for (std::size_t i = 0; i < modes_.size(); ++i) {
-      const Complex principal = std::log(multipliers_[i]) * static_cast<double>(sectors_) /
-                                system_.period();
-      exponents_.push_back(principal);
+      exponents_.push_back(principal_exponent(multipliers_[i]));
       modes_[i].multiplier = std::pow(multipliers_[i], sectors_);
     }
   }
