@@ -1,7 +1,8 @@
 #include "samara/analysis/consistent_subspace.hpp"
 
-#include <Eigen/SparseLU>
 #include <string>
+
+#include <Eigen/SparseLU>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"

@@ -1,11 +1,12 @@
 #include "samara/analysis/constant_modes.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
+
+#include <Eigen/LU>
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/identification.hpp"
@@ -54,7 +55,8 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
     const Eigen::VectorXd changes = change.cwiseAbs() * Eigen::VectorXd::Ones(first.cols());
     for (Eigen::Index i = 0; i < sizes.size(); ++i)
       if (changes(i) > constant_tolerance * std::max(sizes(i), 1.0))
-        throw InputError("modes: the coefficients are periodic in the azimuth; hint: use samara floquet");
+        throw InputError(
+            "modes: the coefficients are periodic in the azimuth; hint: use samara floquet");
   }
 }
 
@@ -69,9 +71,8 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   solution.evaluate(0.0, z.get(), z_dot.get());
   system.tangents(0.0, z.get(), z_dot.get(), sigma, jacobian.get(), mass.get());
   const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
-  DirectSolver solver("modes_", [&system, sigma](Mat matrix) {
-    return scale_by_role(system, matrix, sigma);
-  });
+  DirectSolver solver(
+      "modes_", [&system, sigma](Mat matrix) { return scale_by_role(system, matrix, sigma); });
   solver.factor(jacobian.get());
   const Eigen::Index d = subspace.degrees_of_freedom();
   Eigen::MatrixXd states = subspace.basis(0.0, 1e-3 / sigma);

@@ -1,7 +1,5 @@
 #include "samara/analysis/floquet.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,9 @@
 #include <numeric>
 #include <sstream>
 #include <string>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/identification.hpp"
@@ -205,8 +206,7 @@ class Analysis {
       multipliers_.resize(static_cast<std::size_t>(count));
       vectors_.conservativeResize(states_, count);
       MPI_Bcast(multipliers_.data(), 2 * count, MPI_DOUBLE, 0, ranks_.comm);
-      MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0,
-                ranks_.comm);
+      MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0, ranks_.comm);
     }
     modes_.resize(multipliers_.size());
     for (std::size_t i = 0; i < modes_.size(); ++i) {
@@ -282,9 +282,9 @@ class Analysis {
     Eigen::MatrixXcd result(values.rows(), values.cols());
     for (std::size_t i = 0; i < unknowns.size(); ++i) {
       const auto unknown = static_cast<std::size_t>(unknowns[i]);
-      const auto source = std::lower_bound(unknowns.begin(), unknowns.end(),
-                                           symmetry.source[unknown]) -
-                          unknowns.begin();
+      const auto source =
+          std::lower_bound(unknowns.begin(), unknowns.end(), symmetry.source[unknown]) -
+          unknowns.begin();
       result.row(source) = symmetry.sign[unknown] * values.row(static_cast<Eigen::Index>(i));
     }
     return result;
@@ -397,8 +397,8 @@ class Analysis {
     const double size = std::abs(exponent);
     mode.damping_ratio = size > zero_exponent * speed_ ? -exponent.real() / size : 0.0;
     const double half_phase = 0.5 * std::abs(exponent.imag()) * dt_;
-    const bool fine = half_phase < 0.5 * std::numbers::pi &&
-                      std::tan(half_phase) <= largest_half_phase;
+    const bool fine =
+        half_phase < 0.5 * std::numbers::pi && std::tan(half_phase) <= largest_half_phase;
     mode.resolved = fine && mode.residual <= largest_residual;
     for (std::size_t p = 0; p < energy_.part_names().size(); ++p)
       mode.parts.push_back({energy_.part_names()[p], part_shares_(static_cast<Eigen::Index>(p),
@@ -426,14 +426,13 @@ class Analysis {
       result.set.modes.push_back(modes_[order[i]]);
       result.set.participation.row(static_cast<Eigen::Index>(i)) =
           participation_.row(static_cast<Eigen::Index>(order[i]));
-      if (!mode_shapes_.empty())
-        result.set.shapes.push_back(std::move(mode_shapes_[order[i]]));
+      if (!mode_shapes_.empty()) result.set.shapes.push_back(std::move(mode_shapes_[order[i]]));
     }
     const Eigen::Index columns = shapes_.rows() / system_.size();
     for (int q = 0; q < sectors_; ++q)
       for (Eigen::Index k = 0; k < columns; ++k)
-        result.set.shape_times.push_back(
-            (static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
+        result.set.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) *
+                                         dt_);
     label_modes(system_, result.set);
     scale_shapes(system_, result.set);
     share_labels(result.set);
@@ -488,9 +487,10 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
   const int repeats = system.symmetry().sectors;
   if (options.period == FloquetPeriod::blade && repeats < 2)
-    throw InputError("floquet.period: blade needs two or more identical blades" +
-                     (system.symmetry().broken_by.empty() ? "" : ": " + system.symmetry().broken_by) +
-                     "; hint: auto");
+    throw InputError(
+        "floquet.period: blade needs two or more identical blades" +
+        (system.symmetry().broken_by.empty() ? "" : ": " + system.symmetry().broken_by) +
+        "; hint: auto");
   const std::string& broken_by = system.symmetry().broken_by;
   if (options.period == FloquetPeriod::automatic && !broken_by.empty())
     observer.note("floquet: full period, for " + broken_by);

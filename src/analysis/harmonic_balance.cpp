@@ -34,8 +34,7 @@ class Balance {
   PetscInt unknowns() const { return static_cast<PetscInt>(size_ * width_); }
 
   Eigen::MatrixXd unpack(const PetscScalar* h) const {
-    Eigen::MatrixXd coefficients =
-        Eigen::Map<const Eigen::MatrixXd>(h, width_, size_).transpose();
+    Eigen::MatrixXd coefficients = Eigen::Map<const Eigen::MatrixXd>(h, width_, size_).transpose();
     for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
       coefficients(neutral.unknown, 0) = 0.0;
     return coefficients;
@@ -86,7 +85,8 @@ class Balance {
       const Eigen::MatrixXd by_rate =
           PeriodicSolution::basis_rate(harmonics_, period(), t) * w.transpose();
       harmonics.col(k) = Eigen::Map<const Eigen::VectorXd>(by_value.data(), by_value.size());
-      harmonics.col(samples + k) = Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
+      harmonics.col(samples + k) =
+          Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
     }
     insert_blocks(multiply(harmonics, sampled), matrix);
   }
@@ -110,7 +110,8 @@ class Balance {
       const double t = (0.37 + probe * 0.29) * system_.period();
       system_.tangents(t, z_.get(), z_dot_.get(), 1.0 + uniform(random), jacobian_.get(),
                        mass_.get());
-      const Eigen::SparseMatrix<double, Eigen::RowMajor> found = to_sparse(jacobian_.get()).cwiseAbs();
+      const Eigen::SparseMatrix<double, Eigen::RowMajor> found =
+          to_sparse(jacobian_.get()).cwiseAbs();
       pattern_ = Eigen::SparseMatrix<double, Eigen::RowMajor>(pattern_ + found);
     }
     pattern_.makeCompressed();
@@ -143,7 +144,8 @@ class Balance {
   }
 
   /// The entries of a tangent in the order of the pattern.
-  void sample_entries(Mat sample, Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> out) const {
+  void sample_entries(Mat sample,
+                      Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> out) const {
     std::vector<Eigen::Index> place(static_cast<std::size_t>(size_), -1);
     for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i) {
       const Eigen::Index first = pattern_.outerIndexPtr()[i];
@@ -199,8 +201,8 @@ class Balance {
     petsc::check(MatAssemblyBegin(matrix, MAT_FLUSH_ASSEMBLY));
     petsc::check(MatAssemblyEnd(matrix, MAT_FLUSH_ASSEMBLY));
     for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      petsc::check(MatSetValue(matrix, neutral.row * width_, neutral.unknown * width_, 1.0,
-                               INSERT_VALUES));
+      petsc::check(
+          MatSetValue(matrix, neutral.row * width_, neutral.unknown * width_, 1.0, INSERT_VALUES));
     petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
     petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   }
@@ -256,8 +258,8 @@ PetscErrorCode form_jacobian(SNES snes, Vec x, Mat, Mat matrix, void* pointer) n
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
     context.balance->tangent(context.unscale(x), matrix);
-    petsc::check(MatDiagonalScale(matrix, context.scaling->rows.get(),
-                                  context.scaling->columns.get()));
+    petsc::check(
+        MatDiagonalScale(matrix, context.scaling->rows.get(), context.scaling->columns.get()));
   } catch (const DomainError&) {
     context.error = std::current_exception();
     return SNESSetJacobianDomainError(snes);
@@ -295,8 +297,7 @@ Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics
   const auto n = static_cast<Eigen::Index>(system.size());
   Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(2 * harmonics + 1, n);
   if (start != nullptr) {
-    const Eigen::Index columns =
-        std::min(coefficients.rows(), start->coefficients().cols());
+    const Eigen::Index columns = std::min(coefficients.rows(), start->coefficients().cols());
     coefficients.topRows(columns) = start->coefficients().leftCols(columns).transpose();
   } else {
     const petsc::Handle<Vec> z = system.make_state();
@@ -333,10 +334,9 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
 void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
   for (std::size_t i = 0; i < system.unknowns().size(); ++i)
     if (system.unknowns()[i].role == system::UnknownRole::internal)
-      trim.load_level = std::max(trim.load_level, trim.solution.coefficients()
-                                                      .row(static_cast<Eigen::Index>(i))
-                                                      .cwiseAbs()
-                                                      .maxCoeff());
+      trim.load_level = std::max(
+          trim.load_level,
+          trim.solution.coefficients().row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
   trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
   trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
 }
@@ -347,10 +347,10 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
     throw InternalError("harmonics of a system without a period");
   Balance balance(system, harmonics);
   const petsc::Handle<Mat> matrix = balance.make_matrix();
-  const petsc::Handle<Vec> x = petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(),
-                                                  balance.unknowns());
-  const petsc::Handle<Vec> f = petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(),
-                                                  balance.unknowns());
+  const petsc::Handle<Vec> x =
+      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
+  const petsc::Handle<Vec> f =
+      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
   Eigen::VectorXd h = start_vector(system, harmonics, start);
   balance.tangent(h.data(), matrix.get());
   const Equilibration scaling = equilibrate(matrix.get());

@@ -153,8 +153,7 @@ void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
   if (history.rows() == 0) return;
   math::FourierTransform transform(static_cast<int>(history.rows()), static_cast<int>(samples));
   const Eigen::MatrixXcd spectrum = transform(history);
-  Eigen::MatrixXd energy =
-      Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(parts_.size()));
+  Eigen::MatrixXd energy = Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(parts_.size()));
   for (const Group& group : groups_) {
     const auto part = static_cast<Eigen::Index>(group.part);
     for (Eigen::Index a = 0; a < group.weight.rows(); ++a)
@@ -163,8 +162,9 @@ void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
         if (weight == 0.0) continue;
         const auto row = group.rows[static_cast<std::size_t>(a)];
         const auto other = group.rows[static_cast<std::size_t>(b)];
-        energy.col(part) += weight * (spectrum.col(row).real().cwiseProduct(spectrum.col(other).real()) +
-                                      spectrum.col(row).imag().cwiseProduct(spectrum.col(other).imag()));
+        energy.col(part) +=
+            weight * (spectrum.col(row).real().cwiseProduct(spectrum.col(other).real()) +
+                      spectrum.col(row).imag().cwiseProduct(spectrum.col(other).imag()));
       }
   }
   const Eigen::Index half = samples / 2;
@@ -214,15 +214,13 @@ void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   for (std::size_t i = 0; i < set.shapes.size(); ++i) {
     const std::string joint = moving_joint(system, set.shapes[i]);
     const bool rests = std::abs(set.modes[i].exponent) < zero && !joint.empty();
-    stems.push_back(rests ? joint
-                          : stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
+    stems.push_back(rests ? joint : stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
   }
   for (const std::string& stem : stems) ++count[stem];
   std::map<std::string, int> number;
   for (std::size_t i = 0; i < stems.size(); ++i) {
     const std::string& stem = stems[i];
-    set.modes[i].label =
-        count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
+    set.modes[i].label = count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
   }
 }
 

@@ -1,10 +1,10 @@
 #include "samara/analysis/linear_algebra.hpp"
 
-#include <petscblaslapack.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include <petscblaslapack.h>
 
 #include "samara/base/error.hpp"
 
@@ -153,8 +153,9 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
   const double residual = (product - right.col(probe_)).norm();
   if (!(residual <= largest_solve_residual * (size + probe.norm()))) {
     std::ostringstream text;
-    text << "linear solve (" << prefix_ << "): residual " << residual << " for a right-hand side of "
-         << size << " and a solution of " << probe.norm() << "; hint: -" << prefix_ << "pc_factor_mat_solver_type mumps";
+    text << "linear solve (" << prefix_ << "): residual " << residual
+         << " for a right-hand side of " << size << " and a solution of " << probe.norm()
+         << "; hint: -" << prefix_ << "pc_factor_mat_solver_type mumps";
     throw ConvergenceError(text.str());
   }
   right = solution_.array().colwise() * column_factors.array();

@@ -1,11 +1,12 @@
 #include "samara/analysis/shooting.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <sstream>
+
+#include <Eigen/LU>
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/harmonic_balance.hpp"
@@ -48,8 +49,9 @@ class Shooting {
         z_dot_end_(system.make_state()),
         r_(system.make_state()),
         r_end_(system.make_state()),
-        loads_(Eigen::VectorXd::Zero(
-            static_cast<Eigen::Index>(system.neutral_coordinates().size()))) {}
+        loads_(
+            Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.neutral_coordinates().size()))) {
+  }
 
   Trim run() {
     system_.reference_state(0.0, z_.get());
@@ -235,10 +237,10 @@ class Shooting {
   double speed_;
   Observer& observer_;
   petsc::Handle<Vec> z_, z_dot_, z_end_, z_dot_end_, r_, r_end_;
-  Eigen::VectorXd loads_;                ///< that hold the neutral coordinates
-  Eigen::VectorXd start_;                ///< z at t = 0
-  Eigen::VectorXd eta_, eta_rate_;       ///< rate per radian of rotor azimuth
-  Eigen::MatrixXd ends_, middles_;       ///< z at the steps' starts and middles
+  Eigen::VectorXd loads_;           ///< that hold the neutral coordinates
+  Eigen::VectorXd start_;           ///< z at t = 0
+  Eigen::VectorXd eta_, eta_rate_;  ///< rate per radian of rotor azimuth
+  Eigen::MatrixXd ends_, middles_;  ///< z at the steps' starts and middles
   std::unique_ptr<PeriodicSolution> solution_;
   std::unique_ptr<ConsistentSubspace> subspace_;
 };

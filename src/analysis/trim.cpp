@@ -21,13 +21,10 @@ double allowed_residual(const Trim& trim, double relative) {
 
 /// With Q identical blades the tower sees multiples of Q. Leaving out the multiple next above H
 /// while the blades keep H leaves its load unbalanced: H + 1 must not be a multiple of Q.
-bool is_closed(int harmonics, int sectors) {
-  return sectors < 2 || (harmonics + 1) % sectors != 0;
-}
+bool is_closed(int harmonics, int sectors) { return sectors < 2 || (harmonics + 1) % sectors != 0; }
 
 /// A constant is only tried: an unbalanced rotor may have none.
-std::optional<Trim> try_constant(const system::PeriodicSystem& system,
-                                 const TrimOptions& options) {
+std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options) {
   try {
     return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
   } catch (const ConvergenceError&) {

@@ -1,7 +1,8 @@
 #include "samara/model/beam.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
+
+#include <Eigen/Cholesky>
 
 #include "samara/base/error.hpp"
 #include "samara/math/quadrature.hpp"
@@ -52,7 +53,8 @@ Matrix6 compliance_of(const SectionDefinition& section) {
 Beam build_beam(const std::string& name, const BeamDefinition& definition, double mass_factor,
                 double stiffness_factor) {
   if (!definition.reference_line.empty())
-    throw InputError(name + ": a reference_line is not available yet; hint: give length (straight)");
+    throw InputError(name +
+                     ": a reference_line is not available yet; hint: give length (straight)");
   const math::QuadratureRule rule = math::gauss_rule(definition.order);
   Beam beam;
   beam.name = name;
@@ -72,8 +74,7 @@ Beam build_beam(const std::string& name, const BeamDefinition& definition, doubl
       point.compliance = compliance_of(section) / stiffness_factor;
       point.mass = section.mass * mass_factor;
       for (int i = 0; i < 6; ++i)
-        point.damping(i) =
-            section.rigid[static_cast<std::size_t>(i)] ? 0.0 : definition.damping(i);
+        point.damping(i) = section.rigid[static_cast<std::size_t>(i)] ? 0.0 : definition.damping(i);
       beam.points.push_back(point);
       beam.fractions.push_back(fraction);
     }

@@ -49,8 +49,8 @@ void BlockMatrix::copy_to(Mat matrix) const {
       const PetscInt j = columns[n];
       // MatSetValuesBlocked reads rows; the blocks here are columns.
       const Eigen::Matrix<double, block, block, Eigen::RowMajor> values =
-          Eigen::Map<const Eigen::Matrix<double, block, block>>(
-              values_.data() + offset(row, static_cast<int>(n)));
+          Eigen::Map<const Eigen::Matrix<double, block, block>>(values_.data() +
+                                                                offset(row, static_cast<int>(n)));
       petsc::check(MatSetValuesBlocked(matrix, 1, &i, 1, &j, values.data(), INSERT_VALUES));
     }
   }

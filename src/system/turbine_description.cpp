@@ -15,12 +15,24 @@ struct NamedUnknown {
   const char* unit;
 };
 
-constexpr std::array<NamedUnknown, block> point_unknowns{
-    {{"u1", "m"},         {"u2", "m"},         {"u3", "m"},        {"theta1", "rad"},
-     {"theta2", "rad"},   {"theta3", "rad"},   {"V1", "m/s"},      {"V2", "m/s"},
-     {"V3", "m/s"},       {"Omega1", "rad/s"}, {"Omega2", "rad/s"}, {"Omega3", "rad/s"},
-     {"F1", "N"},         {"F2", "N"},         {"F3", "N"},        {"M1", "N m"},
-     {"M2", "N m"},       {"M3", "N m"}}};
+constexpr std::array<NamedUnknown, block> point_unknowns{{{"u1", "m"},
+                                                          {"u2", "m"},
+                                                          {"u3", "m"},
+                                                          {"theta1", "rad"},
+                                                          {"theta2", "rad"},
+                                                          {"theta3", "rad"},
+                                                          {"V1", "m/s"},
+                                                          {"V2", "m/s"},
+                                                          {"V3", "m/s"},
+                                                          {"Omega1", "rad/s"},
+                                                          {"Omega2", "rad/s"},
+                                                          {"Omega3", "rad/s"},
+                                                          {"F1", "N"},
+                                                          {"F2", "N"},
+                                                          {"F3", "N"},
+                                                          {"M1", "N m"},
+                                                          {"M2", "N m"},
+                                                          {"M3", "N m"}}};
 
 UnknownRole role_at(int i) {
   return i < 6 ? UnknownRole::position : i < 12 ? UnknownRole::velocity : UnknownRole::internal;
@@ -52,8 +64,8 @@ class Describer {
     for (int i = 0; i < block; ++i) {
       const auto at = static_cast<std::size_t>(first + i);
       const auto local = static_cast<std::size_t>(i);
-      result_.unknowns[at] = {place + " " + point_unknowns[local].name,
-                              point_unknowns[local].unit, role_at(i)};
+      result_.unknowns[at] = {place + " " + point_unknowns[local].name, point_unknowns[local].unit,
+                              role_at(i)};
       result_.rows[at] = row_role_at(i);
     }
   }
@@ -107,9 +119,13 @@ class Describer {
     result_.groups.push_back(kinetic);
     for (int i = 0; i < 6; ++i) {
       if (point.compliance(i, i) <= 0.0) continue;
-      result_.groups.push_back({EnergyGroup::Kind::strain, part,
-                                motions[static_cast<std::size_t>(i)], blade, frame,
-                                {first + 12 + i}, {length * point.compliance(i, i)}});
+      result_.groups.push_back({EnergyGroup::Kind::strain,
+                                part,
+                                motions[static_cast<std::size_t>(i)],
+                                blade,
+                                frame,
+                                {first + 12 + i},
+                                {length * point.compliance(i, i)}});
     }
   }
 
@@ -184,15 +200,30 @@ class Describer {
       const Matrix3 across = math::skew<double>(chain.hub.center);
       const double inertia = e.dot((chain.hub.inertia - chain.hub.mass * across * across) * e);
       if (inertia > 0.0)
-        result_.groups.push_back({EnergyGroup::Kind::kinetic, "hub", "teeter", 0, Frame::rotating,
-                                  {layout_.teeter() + 1}, {inertia}});
+        result_.groups.push_back({EnergyGroup::Kind::kinetic,
+                                  "hub",
+                                  "teeter",
+                                  0,
+                                  Frame::rotating,
+                                  {layout_.teeter() + 1},
+                                  {inertia}});
     }
     if (chain.yaw.free && chain.yaw.stiffness > 0.0)
-      result_.groups.push_back({EnergyGroup::Kind::strain, "joint", "yaw", 0, Frame::fixed,
-                                {layout_.yaw()}, {chain.yaw.stiffness}});
+      result_.groups.push_back({EnergyGroup::Kind::strain,
+                                "joint",
+                                "yaw",
+                                0,
+                                Frame::fixed,
+                                {layout_.yaw()},
+                                {chain.yaw.stiffness}});
     if (chain.teeter.free && chain.teeter.stiffness > 0.0)
-      result_.groups.push_back({EnergyGroup::Kind::strain, "joint", "teeter", 0, Frame::rotating,
-                                {layout_.teeter()}, {chain.teeter.stiffness}});
+      result_.groups.push_back({EnergyGroup::Kind::strain,
+                                "joint",
+                                "teeter",
+                                0,
+                                Frame::rotating,
+                                {layout_.teeter()},
+                                {chain.teeter.stiffness}});
   }
 
   /// Why the rotor does not look the same after 1/B of a turn; empty where it does.

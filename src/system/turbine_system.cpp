@@ -174,14 +174,13 @@ petsc::Handle<Mat> TurbineSystem::make_jacobian() const {
   petsc::check(MatSetSizes(matrix.get(), local, local, size(), size()));
   petsc::check(MatSetType(matrix.get(), MATBAIJ));
   petsc::check(MatSeqBAIJSetPreallocation(matrix.get(), block, 0, inside.data()));
-  petsc::check(MatMPIBAIJSetPreallocation(matrix.get(), block, 0, inside.data(), 0,
-                                          outside.data()));
+  petsc::check(
+      MatMPIBAIJSetPreallocation(matrix.get(), block, 0, inside.data(), 0, outside.data()));
   for (int i = first; i < last; ++i) {  // sets the pattern; the values come block by block
     const std::vector<double> zeros(static_cast<std::size_t>(block * block), 0.0);
     for (const PetscInt j : columns[static_cast<std::size_t>(i)]) {
       const PetscInt row = i;
-      petsc::check(
-          MatSetValuesBlocked(matrix.get(), 1, &row, 1, &j, zeros.data(), INSERT_VALUES));
+      petsc::check(MatSetValuesBlocked(matrix.get(), 1, &row, 1, &j, zeros.data(), INSERT_VALUES));
     }
   }
   petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));

@@ -21,7 +21,6 @@ using PointDualState = Eigen::Matrix<PointDual, block, 1>;
 using ChainDual = math::Dual<chain_inputs>;
 using MotionJacobian = Eigen::Matrix<double, 9, chain_motion_inputs>;
 
-
 /// The block columns of every block row.
 class Pattern {
  public:
@@ -89,12 +88,10 @@ class TurbineTangents::Scatter {
         M_(owner.M_) {}
 
   void evaluate(double t, const std::vector<double>& z, const std::vector<double>& z_dot) {
-    const auto make = [](double value, int i) {
-      return math::independent<chain_inputs>(value, i);
-    };
+    const auto make = [](double value, int i) { return math::independent<chain_inputs>(value, i); };
     elements::HubMotion<ChainDual> hub;
-    const elements::ChainRows<ChainDual> rows =
-        elements::rigid_chain(turbine_.chain, equations_.chain_state<ChainDual>(t, z, z_dot, make), hub);
+    const elements::ChainRows<ChainDual> rows = elements::rigid_chain(
+        turbine_.chain, equations_.chain_state<ChainDual>(t, z, z_dot, make), hub);
     elements::HubMotion<double> motion;
     MotionJacobian motion_jacobian;
     for (int i = 0; i < 3; ++i) {
@@ -177,8 +174,7 @@ class TurbineTangents::Scatter {
   /// Adds three rows that depend on the 18 unknowns from `first`, their rates and the attachment.
   void add_term(int row, int first, const TermJacobian& term, const MotionJacobian& root,
                 bool on_hub) {
-    K_.at(row / block, first / block).block<3, block>(row % block, 0) +=
-        term.leftCols<block>();
+    K_.at(row / block, first / block).block<3, block>(row % block, 0) += term.leftCols<block>();
     M_.at(row / block, first / block).block<3, block>(row % block, 0) +=
         term.middleCols<block>(block);
     if (!on_hub) return;
@@ -194,7 +190,8 @@ class TurbineTangents::Scatter {
     PointDualState dual;
     PointDualState dual_dot;
     Attachment<PointDual> dual_a;
-    fill_inputs(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a, dual, dual_dot, dual_a);
+    fill_inputs(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a, dual, dual_dot,
+                dual_a);
     const PointTerms<PointDual> terms = elements::beam_point_terms<PointDual>(
         beam.points[static_cast<std::size_t>(p)], dual, dual_dot, dual_a);
     const TermJacobian force_flux = jacobian_of(terms.force_flux);
@@ -237,7 +234,8 @@ class TurbineTangents::Scatter {
     PointDualState dual;
     PointDualState dual_dot;
     Attachment<PointDual> dual_a;
-    fill_inputs(TurbineResidual::at(z, placed.tip), TurbineResidual::at(z_dot, placed.tip), a, dual, dual_dot, dual_a);
+    fill_inputs(TurbineResidual::at(z, placed.tip), TurbineResidual::at(z_dot, placed.tip), a, dual,
+                dual_dot, dual_a);
     const elements::TipTerms<PointDual> terms = elements::beam_tip_terms<PointDual>(
         placed.beam->tip, placed.beam->tip_mass, dual, dual_dot, dual_a);
     add_term(placed.tip + 6, placed.tip, jacobian_of(terms.velocity), root, placed.on_hub);
@@ -294,9 +292,7 @@ class TurbineTangents::Scatter {
 };
 
 TurbineTangents::TurbineTangents(const TurbineResidual& equations)
-    : equations_(equations),
-      K_(Pattern(equations).pattern()),
-      M_(K_.columns()) {}
+    : equations_(equations), K_(Pattern(equations).pattern()), M_(K_.columns()) {}
 
 void TurbineTangents::evaluate(double t, const std::vector<double>& z,
                                const std::vector<double>& z_dot) {

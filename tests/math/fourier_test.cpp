@@ -1,9 +1,10 @@
 #include "samara/math/fourier.hpp"
 
-#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
+
+#include <boost/test/unit_test.hpp>
 
 using namespace samara;
 
