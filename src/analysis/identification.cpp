@@ -18,6 +18,9 @@ constexpr double tie = 1e-6;
 /// Share of the energy that must be strain for a mode to be called elastic.
 constexpr double elastic_share = 0.15;
 
+/// Relative distance of two exponents that do not split.
+constexpr double degenerate = 1e-8;
+
 /// Correlation of two blades beyond which they move alike or opposite.
 constexpr double clear_correlation = 0.8;
 
@@ -76,6 +79,27 @@ std::string moving_joint(const system::PeriodicSystem& system, const Eigen::Matr
     name = unknown.name.substr(0, unknown.name.size() - std::string(" angle").size());
   }
   return name;
+}
+
+/// A stem without what it says of the blades' symmetry.
+std::string without_symmetry(const std::string& stem) {
+  for (const std::string& ending : {std::string(" antisymmetric"), std::string(" symmetric")})
+    if (stem.ends_with(ending)) return stem.substr(0, stem.size() - ending.size());
+  return stem;
+}
+
+/// Modes of equal exponents mix at will: they are symmetric or antisymmetric only where they split.
+/// Over a blade passage they do: half a revolution gives one the opposite sign, another harmonic.
+void unite_degenerate(const ModeSet& set, std::vector<std::string>& stems) {
+  for (std::size_t i = 0; i < stems.size(); ++i)
+    for (std::size_t j = i + 1; j < stems.size(); ++j) {
+      const std::complex<double> a = set.modes[i].exponent;
+      if (a == 0.0 || std::abs(a - set.modes[j].exponent) > degenerate * std::abs(a)) continue;
+      if (set.modes[i].harmonic != set.modes[j].harmonic) continue;
+      const std::string common = without_symmetry(stems[i]);
+      if (common != without_symmetry(stems[j])) continue;
+      stems[i] = stems[j] = common;
+    }
 }
 
 /// Mean strain energy by "part/motion".
@@ -216,6 +240,7 @@ void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
     const bool rests = std::abs(set.modes[i].exponent) < zero && !joint.empty();
     stems.push_back(rests ? joint : stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
   }
+  unite_degenerate(set, stems);
   for (const std::string& stem : stems) ++count[stem];
   std::map<std::string, int> number;
   for (std::size_t i = 0; i < stems.size(); ++i) {

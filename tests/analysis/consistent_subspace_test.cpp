@@ -1,13 +1,13 @@
 // The states that the paper's turbine can have: their number and the equations they obey.
 #include "samara/analysis/consistent_subspace.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 #include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/system/turbine_system.hpp"
+
 #include "small_systems.hpp"
 #include "turbines.hpp"
 
@@ -57,7 +57,7 @@ constexpr double rounding = 1e-9;
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(degrees_of_freedom_are_three_a_tower_point_six_a_blade_point_and_two) {
-  // theory.md, section 5: s (3 M + 6 N) + 2, here with an order for each beam.
+  // Of points: 3 M + 6 N + 2 for M points in the tower and N in a blade, with an order for each.
   for (const Mesh& mesh : {Mesh{4, 1, 4, 1}, Mesh{1, 1, 1, 1}, Mesh{3, 2, 5, 1}, Mesh{1, 3, 2, 2},
                            Mesh{2, 4, 1, 6}, Mesh{7, 1, 3, 3}, Mesh{2, 5, 12, 1}}) {
     const system::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);
@@ -121,8 +121,8 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_constant_soluti
         if (system.unknowns()[static_cast<std::size_t>(i)].role != UnknownRole::position)
           z_dot.row(i).setZero();
       const Eigen::MatrixXd sum = tangents.K * z + tangents.M * z_dot;
-      const Eigen::MatrixXd terms = tangents.K.cwiseAbs() * z.cwiseAbs() +
-                                    tangents.M.cwiseAbs() * z_dot.cwiseAbs();
+      const Eigen::MatrixXd terms =
+          tangents.K.cwiseAbs() * z.cwiseAbs() + tangents.M.cwiseAbs() * z_dot.cwiseAbs();
       BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < rounding);
       BOOST_TEST(defect(system, RowRole::kinematic, sum, terms) < rounding);
       // Something moves in every column.
@@ -158,6 +158,67 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_periodic_soluti
       tangents.K.cwiseAbs() * z.cwiseAbs() + tangents.M.cwiseAbs() * z_dot.cwiseAbs();
   BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < rounding);
   BOOST_TEST(defect(system, RowRole::kinematic, sum, terms) < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(nonlinear_state_obeys_constraints_and_kinematics) {
+  // At deflections of some degrees, where the equations are far from linear.
+  const system::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 1})),
+                                     PETSC_COMM_SELF);
+  const analysis::PeriodicSolution solution = trim_of(system);
+  const analysis::ConsistentSubspace subspace(system, solution);
+  const double t = 0.3;
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Vec> r = system.make_state();
+  solution.evaluate(t, z.get(), z_dot.get());
+  Eigen::VectorXd start;
+  {
+    const petsc::ReadView view(z.get());
+    start = Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+  }
+  Eigen::VectorXd eta = subspace.coordinates_of(start);
+  Eigen::VectorXd eta_dot = Eigen::VectorXd::Zero(eta.size());
+  for (Eigen::Index i = 0; i < eta.size(); ++i) {
+    eta(i) += 0.02 * std::sin(static_cast<double>(i));
+    eta_dot(i) = 0.1 * std::cos(static_cast<double>(i));
+  }
+  subspace.find_state(t, eta, eta_dot, z.get());
+  Eigen::VectorXd state;
+  {
+    const petsc::ReadView view(z.get());
+    state = Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+  }
+  BOOST_TEST((subspace.coordinates_of(state) - eta).cwiseAbs().maxCoeff() < 1e-12);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < state.size(); ++i)
+    if (system.unknowns()[static_cast<std::size_t>(i)].role == UnknownRole::position)
+      largest = std::max(largest, std::abs(state(i) - start(i)));
+  BOOST_TEST(largest > 0.05);
+  // The rates of positions by central differences of neighbouring states.
+  constexpr double step = 1e-5;
+  Eigen::VectorXd rate = Eigen::VectorXd::Zero(state.size());
+  for (const double side : {1.0, -1.0}) {
+    const petsc::Handle<Vec> near = system.make_state();
+    petsc::check(VecCopy(z.get(), near.get()));
+    subspace.find_state(t + side * step, eta + side * step * eta_dot, eta_dot, near.get());
+    const petsc::ReadView view(near.get());
+    rate += side / (2.0 * step) * Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+  }
+  {
+    const petsc::WriteView view(z_dot.get());
+    for (PetscInt i = 0; i < system.size(); ++i)
+      view[i] = system.unknowns()[static_cast<std::size_t>(i)].role == UnknownRole::position
+                    ? rate(i)
+                    : 0.0;
+  }
+  system.residual(t, z.get(), z_dot.get(), r.get());
+  const petsc::ReadView view(r.get());
+  for (std::size_t i = 0; i < system.rows().size(); ++i) {
+    const double value = std::abs(view[static_cast<PetscInt>(i)]);
+    if (system.rows()[i] == RowRole::constraint) BOOST_TEST(value < 1e-10);
+    if (system.rows()[i] == RowRole::kinematic)  // differences: step^2 and rounding / step
+      BOOST_TEST(value < 1e-7, system.unknowns()[i].name << " " << value);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(gear_carries_its_positions_and_the_load_of_its_spring) {

@@ -4,6 +4,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/base/error.hpp"
+
 #include "small_systems.hpp"
 
 using namespace samara;

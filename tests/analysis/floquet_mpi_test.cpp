@@ -1,11 +1,12 @@
 // Floquet's analysis on several ranks: every rank also does the whole work alone and compares.
-#include <boost/test/unit_test.hpp>
-
 #include <cmath>
+
+#include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/floquet.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/system/turbine_system.hpp"
+
 #include "turbines.hpp"
 
 using namespace samara;
@@ -30,8 +31,8 @@ bool is_defective(const analysis::Mode& mode, double speed) {
   return std::abs(mode.exponent) < 1e-4 * speed;
 }
 
-constexpr double regular = 1e-9;    // relative, Must hold
-constexpr double defective = 1e-4;  // in the multiplier, Must hold
+constexpr double regular = 1e-9;    // relative; rounding of other sums
+constexpr double defective = 1e-4;  // in the multiplier: the root of rounding and much to spare
 
 void require_same(const Runs& runs) {
   const analysis::ModeSet& a = runs.alone.set;

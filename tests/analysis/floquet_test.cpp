@@ -1,13 +1,14 @@
 // Floquet's analysis of systems whose multipliers are known without the program.
 #include "samara/analysis/floquet.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 #include <algorithm>
 #include <limits>
 
+#include <boost/test/unit_test.hpp>
+
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/base/error.hpp"
+
 #include "small_systems.hpp"
 
 using namespace samara;
@@ -37,13 +38,13 @@ Complex nearest(const analysis::Floquet& floquet, Complex wanted) {
 void require_order_two(const std::vector<Complex>& found, Complex exact, double slack,
                        double tolerance) {
   for (std::size_t i = 0; i + 1 < found.size(); ++i) {
-    const double slope =
-        std::log2(std::abs(found[i] - exact) / std::abs(found[i + 1] - exact));
+    const double slope = std::log2(std::abs(found[i] - exact) / std::abs(found[i + 1] - exact));
     BOOST_TEST(slope == 2.0, boost::test_tools::tolerance(slack));
   }
   const Complex coarse = found[found.size() - 2];
   const Complex limit = found.back() + (found.back() - coarse) / 3.0;
-  BOOST_TEST(std::abs(limit - exact) < tolerance * std::abs(exact), "limit " << limit << " exact " << exact);
+  BOOST_TEST(std::abs(limit - exact) < tolerance * std::abs(exact),
+             "limit " << limit << " exact " << exact);
 }
 
 /// Of slopes at the steps below, where the next term of the error is some 1e-3 of the first.
@@ -52,8 +53,8 @@ constexpr double slope_slack = 0.01;
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(mathieu_has_published_multipliers_with_slope_two) {
-  // reference/verification.md P1, all digits printed there; the two of a real pair, or one of a
-  // complex pair. Their product is 1 (no damping), which the print obeys to its last digit.
+  // Known multipliers, all digits as printed; the two of a real pair, or one of a complex pair.
+  // Their product is 1 (no damping), which the print obeys to its last digit.
   struct Case {
     double a, q;
     std::vector<Complex> multipliers;
@@ -178,10 +179,8 @@ BOOST_AUTO_TEST_CASE(ground_resonance_over_a_blade_period_is_that_over_the_full_
   for (const int blades : {2, 3, 4, 5}) {
     const GroundResonance system(blades);
     constexpr int steps = 240;
-    const analysis::Floquet full =
-        floquet_at_rest(system, steps, analysis::FloquetPeriod::full);
-    const analysis::Floquet fast =
-        floquet_at_rest(system, steps, analysis::FloquetPeriod::blade);
+    const analysis::Floquet full = floquet_at_rest(system, steps, analysis::FloquetPeriod::full);
+    const analysis::Floquet fast = floquet_at_rest(system, steps, analysis::FloquetPeriod::blade);
     BOOST_TEST(full.sectors == 1);
     BOOST_TEST(fast.sectors == blades);
     for (const analysis::Mode& mode : full.set.modes)
@@ -210,8 +209,7 @@ BOOST_AUTO_TEST_CASE(exponents_agree_between_blade_and_full_period) {
   for (const int blades : {2, 3}) {
     const GroundResonance system(blades);
     const analysis::Floquet full = floquet_at_rest(system, 240);
-    const analysis::Floquet fast =
-        floquet_at_rest(system, 240, analysis::FloquetPeriod::blade);
+    const analysis::Floquet fast = floquet_at_rest(system, 240, analysis::FloquetPeriod::blade);
     BOOST_REQUIRE(full.set.modes.size() == fast.set.modes.size());
     for (std::size_t m = 0; m < full.set.modes.size(); ++m) {
       BOOST_TEST(std::abs(full.set.modes[m].exponent - fast.set.modes[m].exponent) < 1e-9);
@@ -224,10 +222,8 @@ BOOST_AUTO_TEST_CASE(exponents_agree_between_blade_and_full_period) {
         BOOST_TEST(std::abs(full.set.participation(row, a) - fast.set.participation(row, b)) <
                    1e-9);
       }
-      BOOST_TEST(full.set.participation.row(row).sum() == 1.0,
-                 boost::test_tools::tolerance(1e-12));
-      BOOST_TEST(fast.set.participation.row(row).sum() == 1.0,
-                 boost::test_tools::tolerance(1e-12));
+      BOOST_TEST(full.set.participation.row(row).sum() == 1.0, boost::test_tools::tolerance(1e-12));
+      BOOST_TEST(fast.set.participation.row(row).sum() == 1.0, boost::test_tools::tolerance(1e-12));
     }
   }
 }
@@ -251,8 +247,7 @@ BOOST_AUTO_TEST_CASE(mode_shapes_are_solutions_of_the_equations) {
             [&form](double t, const Eigen::MatrixXd& y) { return Eigen::MatrixXd(form(t) * y); },
             Eigen::MatrixXd::Identity(system.size(), system.size()), times[k], span, 20);
         // The shape belongs to lambda without the whole turns that identification adds: any k.
-        const Eigen::VectorXcd moved =
-            transition * shape.col(static_cast<Eigen::Index>(k));
+        const Eigen::VectorXcd moved = transition * shape.col(static_cast<Eigen::Index>(k));
         const Complex principal =
             mode.exponent - Complex(0.0, mode.harmonic * GroundResonance::speed);
         const Eigen::VectorXcd next =

@@ -4,6 +4,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/base/error.hpp"
+
 #include "small_systems.hpp"
 
 using namespace samara;
@@ -25,8 +26,8 @@ Eigen::Vector2d settled(const Duffing& system) {
   const auto rate = [&system](double t, const Eigen::Vector2d& z) {
     return duffing_rate(system, t, z);
   };
-  return runge_kutta<Eigen::Vector2d>(rate, Eigen::Vector2d::Zero(), 0.0,
-                                      periods * system.period(), periods * steps);
+  return runge_kutta<Eigen::Vector2d>(rate, Eigen::Vector2d::Zero(), 0.0, periods * system.period(),
+                                      periods * steps);
 }
 
 Eigen::Vector2d state_of(const analysis::PeriodicSolution& solution, double t) {

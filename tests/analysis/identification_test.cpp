@@ -24,22 +24,32 @@ class Described final : public SmallSystem {
       add_velocity(name + " V");
       add(name + " M2", UnknownRole::internal, RowRole::balance);
       add(name + " M3", UnknownRole::internal, RowRole::balance);
-      groups_.push_back({EnergyGroup::Kind::kinetic, "blade", "", blade, Frame::rotating,
-                         {first + 1}, {2.0}});
-      groups_.push_back({EnergyGroup::Kind::strain, "blade", "flap", blade, Frame::rotating,
-                         {first + 2}, {1.0}});
-      groups_.push_back({EnergyGroup::Kind::strain, "blade", "lead-lag", blade, Frame::rotating,
-                         {first + 3}, {1.0}});
+      groups_.push_back(
+          {EnergyGroup::Kind::kinetic, "blade", "", blade, Frame::rotating, {first + 1}, {2.0}});
+      groups_.push_back(
+          {EnergyGroup::Kind::strain, "blade", "flap", blade, Frame::rotating, {first + 2}, {1.0}});
+      groups_.push_back({EnergyGroup::Kind::strain,
+                         "blade",
+                         "lead-lag",
+                         blade,
+                         Frame::rotating,
+                         {first + 3},
+                         {1.0}});
     }
     const auto first = static_cast<PetscInt>(unknowns_.size());  // 8
     add_position("tower u");
     add_velocity("tower V");
     add_velocity("tower Omega");
     add("tower M", UnknownRole::internal, RowRole::balance);
-    groups_.push_back({EnergyGroup::Kind::kinetic, "tower", "", 0, Frame::fixed,
-                       {first + 1, first + 2}, {3.0, 0.5, 0.5, 1.0}});
-    groups_.push_back({EnergyGroup::Kind::strain, "tower", "fore-aft", 0, Frame::fixed,
-                       {first + 3}, {1.0}});
+    groups_.push_back({EnergyGroup::Kind::kinetic,
+                       "tower",
+                       "",
+                       0,
+                       Frame::fixed,
+                       {first + 1, first + 2},
+                       {3.0, 0.5, 0.5, 1.0}});
+    groups_.push_back(
+        {EnergyGroup::Kind::strain, "tower", "fore-aft", 0, Frame::fixed, {first + 3}, {1.0}});
     add_position("yaw angle");
     add_velocity("yaw speed");
     add_position("teeter angle");
@@ -49,7 +59,8 @@ class Described final : public SmallSystem {
                    Eigen::MatrixXd&) const override {}
 };
 
-/// Rows of the histories, as kinetic_unknowns orders them: V of blade 1, of blade 2, tower V, Omega.
+/// Rows of the histories, as kinetic_unknowns orders them: V of blade 1, of blade 2, tower V,
+/// Omega.
 struct Identified {
   analysis::Mode mode;
   Eigen::VectorXd participation;
@@ -85,7 +96,8 @@ BOOST_AUTO_TEST_CASE(one_harmonic_is_found_at_its_place_with_odd_and_even_sample
   for (const Eigen::Index samples : {12, 13, 250, 501}) {
     for (const int k : {0, 1, -1, 3, -5, 5, -6}) {
       Eigen::MatrixXcd history = Eigen::MatrixXcd::Zero(4, samples);
-      for (Eigen::Index s = 0; s < samples; ++s) history(0, s) = Complex(0.3, 2.0) * wave(k, s, samples);
+      for (Eigen::Index s = 0; s < samples; ++s)
+        history(0, s) = Complex(0.3, 2.0) * wave(k, s, samples);
       const Identified found = identify(system, history);
       BOOST_TEST(found.mode.harmonic == k, samples << " samples");
       BOOST_TEST(found.participation.sum() == 1.0, boost::test_tools::tolerance(1e-12));
@@ -184,10 +196,10 @@ BOOST_AUTO_TEST_CASE(labels_say_part_motion_and_how_the_blades_move) {
   add({{2, 1.0}, {6, 1.0}}, 1.0);
   add({{2, 1.0}, {6, -1.0}}, 1.0);
   add({{3, 1.0}, {7, 1.0}, {2, 0.5}}, 1.0);
-  add({{3, 1.0}}, 0.5);                          // one blade alone: neither
-  add({{11, 1.0}, {2, 0.2}}, 0.5);               // the tower
-  add({{2, 1.0}, {6, 1.0}}, 1.0);                // again
-  add({{12, 1.0}, {14, 0.2}, {2, 0.1}}, 1.0);    // hardly a strain: a joint
+  add({{3, 1.0}}, 0.5);                        // one blade alone: neither
+  add({{11, 1.0}, {2, 0.2}}, 0.5);             // the tower
+  add({{2, 1.0}, {6, 1.0}}, 1.0);              // again
+  add({{12, 1.0}, {14, 0.2}, {2, 0.1}}, 1.0);  // hardly a strain: a joint
   add({{12, 0.1}, {14, 0.2}}, 1.0);
   add({{12, 1.0}, {2, 1.0}}, 1.0, Complex(1e-9, 0.0));  // counts as zero: at rest in the joint
   label_modes(system, set);

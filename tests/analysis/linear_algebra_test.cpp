@@ -1,12 +1,13 @@
 #include "samara/analysis/linear_algebra.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <Eigen/Dense>
 #include <algorithm>
 #include <random>
 
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
 #include "samara/base/error.hpp"
+
 #include "small_systems.hpp"
 
 using namespace samara;
@@ -19,8 +20,7 @@ petsc::Handle<Mat> to_petsc(const Eigen::MatrixXd& values) {
   petsc::Handle<Mat> matrix;
   const auto rows = static_cast<PetscInt>(values.rows());
   const auto columns = static_cast<PetscInt>(values.cols());
-  petsc::check(
-      MatCreateSeqAIJ(PETSC_COMM_SELF, rows, columns, columns, nullptr, matrix.fill()));
+  petsc::check(MatCreateSeqAIJ(PETSC_COMM_SELF, rows, columns, columns, nullptr, matrix.fill()));
   for (PetscInt i = 0; i < rows; ++i)
     for (PetscInt j = 0; j < columns; ++j)
       petsc::check(MatSetValue(matrix.get(), i, j, values(i, j), INSERT_VALUES));

@@ -2,11 +2,12 @@
 // them through the same interface as a turbine.
 #pragma once
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
+
+#include <Eigen/Dense>
 
 #include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -82,9 +83,7 @@ class SmallSystem : public system::PeriodicSystem {
   void add_position(const std::string& name) {
     add(name, UnknownRole::position, RowRole::kinematic);
   }
-  void add_velocity(const std::string& name) {
-    add(name, UnknownRole::velocity, RowRole::balance);
-  }
+  void add_velocity(const std::string& name) { add(name, UnknownRole::velocity, RowRole::balance); }
   void add_kinetic(const std::string& part, PetscInt unknown, double mass) {
     groups_.push_back({EnergyGroup::Kind::kinetic, part, "", 0, Frame::fixed, {unknown}, {mass}});
   }
@@ -105,8 +104,7 @@ class SmallSystem : public system::PeriodicSystem {
   }
   petsc::Handle<Mat> make_matrix() const {
     petsc::Handle<Mat> matrix;
-    petsc::check(
-        MatCreateSeqAIJ(PETSC_COMM_SELF, size(), size(), size(), nullptr, matrix.fill()));
+    petsc::check(MatCreateSeqAIJ(PETSC_COMM_SELF, size(), size(), size(), nullptr, matrix.fill()));
     return matrix;
   }
   static void put(const Eigen::MatrixXd& values, Mat matrix) {
@@ -145,8 +143,8 @@ class Mathieu final : public SmallSystem {
 };
 
 /// A mass m1 at w on a spring that carries a mass m2 by a rigid gear of changing ratio c(t),
-/// u = c(t) w. Unknowns w, u, their velocities, the spring's load F (w = f F) and the gear's load N:
-/// two constraints, one of them rigid and changing with time, and one degree of freedom.
+/// u = c(t) w. Unknowns w, u, their velocities, the spring's load F (w = f F) and the gear's load
+/// N: two constraints, one of them rigid and changing with time, and one degree of freedom.
 ///     (m1 + m2 c^2) w'' + 2 m2 c c' w' + (1 / f + m2 c c'') w = 0
 class ChangingGear final : public SmallSystem {
  public:
@@ -167,7 +165,9 @@ class ChangingGear final : public SmallSystem {
     add_kinetic("one", 2, m1);
     add_kinetic("other", 3, m2);
   }
-  static double c(double t) { return 1.0 + 0.4 * std::cos(speed * t) + 0.2 * std::sin(2.0 * speed * t); }
+  static double c(double t) {
+    return 1.0 + 0.4 * std::cos(speed * t) + 0.2 * std::sin(2.0 * speed * t);
+  }
   static double c_rate(double t) {
     return speed * (-0.4 * std::sin(speed * t) + 0.4 * std::cos(2.0 * speed * t));
   }
@@ -212,15 +212,15 @@ class TurningMass final : public SmallSystem {
     add_position("y");
     add_velocity("V1");
     add_velocity("V2");
-    groups_.push_back({EnergyGroup::Kind::kinetic, "mass", "", 0, Frame::rotating, {2, 3},
-                       {1.0, 0.0, 0.0, 1.0}});
+    groups_.push_back(
+        {EnergyGroup::Kind::kinetic, "mass", "", 0, Frame::rotating, {2, 3}, {1.0, 0.0, 0.0, 1.0}});
   }
   void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
                    Eigen::MatrixXd& M) const override {
     // V = p' + speed x p;  V' + speed x V + damping V + stiffness p = 0
-    K << 0.0, speed_, 1.0, 0.0,                 //
-        -speed_, 0.0, 0.0, 1.0,                 //
-        stiffness_, 0.0, damping_, -speed_,     //
+    K << 0.0, speed_, 1.0, 0.0,              //
+        -speed_, 0.0, 0.0, 1.0,              //
+        stiffness_, 0.0, damping_, -speed_,  //
         0.0, stiffness_, speed_, damping_;
     M.diagonal() << -1.0, -1.0, 1.0, 1.0;
   }
@@ -247,9 +247,13 @@ class GroundResonance final : public SmallSystem {
       add_position(i < blades ? "zeta " + std::to_string(i + 1) : i == blades ? "x" : "y");
     for (int i = 0; i < coordinates(); ++i) add_velocity("speed " + std::to_string(i + 1));
     for (int i = 0; i < coordinates(); ++i)
-      groups_.push_back({EnergyGroup::Kind::kinetic, i < blades ? "blade" : "hub", "",
-                         i < blades ? i + 1 : 0, i < blades ? Frame::rotating : Frame::fixed,
-                         {static_cast<PetscInt>(coordinates() + i)}, {1.0}});
+      groups_.push_back({EnergyGroup::Kind::kinetic,
+                         i < blades ? "blade" : "hub",
+                         "",
+                         i < blades ? i + 1 : 0,
+                         i < blades ? Frame::rotating : Frame::fixed,
+                         {static_cast<PetscInt>(coordinates() + i)},
+                         {1.0}});
     // Blade k + 1 of P z is blade k of z.
     symmetry_.sectors = blades;
     for (int k = 0; k < blades; ++k)

@@ -30,8 +30,8 @@ inline io::Case lee(const std::string& name, const std::vector<std::string>& set
 /// The same mesh on all beams, where there is a tower.
 inline std::vector<std::string> mesh(bool tower, int elements, int order) {
   std::vector<std::string> settings;
-  for (const std::string& beam : tower ? std::vector<std::string>{"blades", "tower"}
-                                       : std::vector<std::string>{"blades"}) {
+  for (const std::string& beam :
+       tower ? std::vector<std::string>{"blades", "tower"} : std::vector<std::string>{"blades"}) {
     settings.push_back(beam + ".elements=" + std::to_string(elements));
     settings.push_back(beam + ".order=" + std::to_string(order));
   }
@@ -62,7 +62,8 @@ inline analysis::Floquet floquet_of(
 }
 
 /// Frequencies of the modes whose labels start with `label`, ascending [rad/s].
-inline std::vector<double> frequencies(const analysis::ModeSet& set, const std::string& label = "") {
+inline std::vector<double> frequencies(const analysis::ModeSet& set,
+                                       const std::string& label = "") {
   std::vector<double> found;
   for (const analysis::Mode& mode : set.modes)
     if (mode.label.starts_with(label)) found.push_back(mode.exponent.imag());

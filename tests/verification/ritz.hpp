@@ -1,13 +1,15 @@
 // Independent solutions of the rotating uniform beam by Ritz's method in displacements with
-// polynomials over its whole length (Hamilton's principle, quadratic about the steady state; nothing
-// of the mixed element is used). With a dozen functions the first modes are exact to nine digits.
+// polynomials over its whole length (Hamilton's principle, quadratic about the steady state;
+// nothing of the mixed element is used). With a dozen functions the first modes are exact to nine
+// digits.
 #pragma once
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <vector>
+
+#include <Eigen/Dense>
 
 #include "samara/math/quadrature.hpp"
 
@@ -22,7 +24,7 @@ struct RitzBeam {
   double inertia1 = 0.0;  ///< rotary, about b1, b2, b3
   double inertia2 = 0.0;
   double inertia3 = 0.0;
-  double bending = 1.0;   ///< EI of the bending considered
+  double bending = 1.0;  ///< EI of the bending considered
 };
 
 /// What a teetering hub shares out to each of its two blades, about h1, h2, h3.
@@ -79,8 +81,7 @@ inline std::vector<double> ritz_frequencies(const RitzBeam& beam, bool lead_lag,
       w1(n - 1) = 1.0 / l;
       w2(n - 1) = 0.0;
     }
-    const double tension =
-        beam.mass * turn * (beam.hub_radius * (l - x) + 0.5 * (l * l - x * x));
+    const double tension = beam.mass * turn * (beam.hub_radius * (l - x) + 0.5 * (l * l - x * x));
     const double rotary = lead_lag ? 0.0 : (beam.inertia3 - beam.inertia1) * turn;
     K += dx * (beam.bending * w2 * w2.transpose() + (tension + rotary) * w1 * w1.transpose());
     if (lead_lag) K -= dx * beam.mass * turn * w * w.transpose();
@@ -88,16 +89,14 @@ inline std::vector<double> ritz_frequencies(const RitzBeam& beam, bool lead_lag,
                (lead_lag ? beam.inertia3 : beam.inertia2) * w1 * w1.transpose());
   }
   if (hub.teeters) {  // the last function has beta = 1 / l
-    const double root_tension =
-        beam.mass * turn * (beam.hub_radius * l + 0.5 * l * l);
-    K(n - 1, n - 1) += (0.5 * (hub.inertia2 - hub.inertia3) * turn +
-                        root_tension * beam.hub_radius) / (l * l);
+    const double root_tension = beam.mass * turn * (beam.hub_radius * l + 0.5 * l * l);
+    K(n - 1, n - 1) +=
+        (0.5 * (hub.inertia2 - hub.inertia3) * turn + root_tension * beam.hub_radius) / (l * l);
     M(n - 1, n - 1) += 0.5 * hub.inertia1 / (l * l);
   }
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
   std::vector<double> found;
-  for (const double value : solver.eigenvalues())
-    found.push_back(std::sqrt(std::max(value, 0.0)));
+  for (const double value : solver.eigenvalues()) found.push_back(std::sqrt(std::max(value, 0.0)));
   return found;
 }
 

@@ -1,8 +1,8 @@
 // A single uniform beam, at rest and turning, by the modes of constant tangents: closed forms,
 // published tables (R1-R4) and Ritz's method; the order of convergence.
-#include <boost/test/unit_test.hpp>
-
 #include <array>
+
+#include <boost/test/unit_test.hpp>
 
 #include "cases.hpp"
 #include "ritz.hpp"
@@ -23,8 +23,8 @@ std::vector<double> lead_lag(const BeamCase& beam) {
 }
 
 RitzBeam ritz_of(const BeamCase& beam, bool lag) {
-  return {beam.length, beam.hub_radius, beam.speed, beam.mass, beam.inertia(0), beam.inertia(1),
-          beam.inertia(2), beam.stiffness(lag ? 5 : 4)};
+  return {beam.length,     beam.hub_radius, beam.speed,      beam.mass,
+          beam.inertia(0), beam.inertia(1), beam.inertia(2), beam.stiffness(lag ? 5 : 4)};
 }
 
 /// The cantilever's: cos(b) cosh(b) = -1, omega = b^2 sqrt(EI / (m l^4)).
@@ -71,15 +71,15 @@ BOOST_AUTO_TEST_CASE(cantilever_at_rest_bends_at_its_closed_form) {
 }
 
 BOOST_AUTO_TEST_CASE(cantilever_errors_are_those_of_the_weak_form) {
-  // theory.md, section 2: relative errors of the first two bending modes of this weak form, found
-  // by another program and printed to two digits, which leaves 5 % of a figure.
+  // docs/theory.md, section 2.2: relative errors of the first two bending modes of this weak form,
+  // found by another program and printed to two digits, which leaves 5 % of a figure.
   struct Row {
     int order, elements;
     double first, second;
   };
-  for (const Row& row : {Row{1, 4, 2.0e-2, 2.9e-1}, Row{1, 8, 4.9e-3, 6.3e-2},
-                         Row{2, 4, 1.3e-4, 4.9e-3}, Row{3, 2, 6.8e-6, 2.8e-3},
-                         Row{3, 4, 1.1e-7, 5.1e-5}}) {
+  for (const Row& row :
+       {Row{1, 4, 2.0e-2, 2.9e-1}, Row{1, 8, 4.9e-3, 6.3e-2}, Row{2, 4, 1.3e-4, 4.9e-3},
+        Row{3, 2, 6.8e-6, 2.8e-3}, Row{3, 4, 1.1e-7, 5.1e-5}}) {
     BeamCase beam;
     beam.stiffness(5) = 2.0;
     beam.order = row.order;
@@ -160,15 +160,19 @@ BOOST_AUTO_TEST_CASE(torsion_of_a_turning_blade_is_stiffened_by_its_flatness) {
 }
 
 BOOST_AUTO_TEST_CASE(r1_turning_beam_of_wright) {
-  // Wright et al. (1982), hub radius 0; tolerance 1e-4 of verification.md.
+  // Wright et al. (1982), hub radius 0, to 1e-4; and Ritz to 1e-6.
   struct Row {
     double speed;
     std::vector<double> flap;
   };
-  const std::vector<Row> rows{{0.0, {3.5160, 22.0345, 61.697}}, {1.0, {3.6816}},
-                              {2.0, {4.1373, 22.6149, 62.273}}, {3.0, {4.7973}},
-                              {4.0, {5.5850}},                  {5.0, {6.4495}},
-                              {6.0, {7.3604, 26.8091, 66.684}}, {12.0, {13.1702, 37.6031, 79.615}}};
+  const std::vector<Row> rows{{0.0, {3.5160, 22.0345, 61.697}},
+                              {1.0, {3.6816}},
+                              {2.0, {4.1373, 22.6149, 62.273}},
+                              {3.0, {4.7973}},
+                              {4.0, {5.5850}},
+                              {5.0, {6.4495}},
+                              {6.0, {7.3604, 26.8091, 66.684}},
+                              {12.0, {13.1702, 37.6031, 79.615}}};
   for (const Row& row : rows) {
     BeamCase beam;
     beam.speed = row.speed;
@@ -204,9 +208,8 @@ BOOST_AUTO_TEST_CASE(lead_lag_is_flap_less_the_speed) {
 }
 
 BOOST_AUTO_TEST_CASE(r2_beam_on_a_hub) {
-  for (const auto& [speed, wanted] :
-       {std::pair{6.0, std::array{7.72603, 27.37965, 67.34620}},
-        std::pair{12.0, std::array{13.96920, 39.18289, 81.75091}}}) {
+  for (const auto& [speed, wanted] : {std::pair{6.0, std::array{7.72603, 27.37965, 67.34620}},
+                                      std::pair{12.0, std::array{13.96920, 39.18289, 81.75091}}}) {
     BeamCase beam;
     beam.speed = speed;
     beam.hub_radius = 0.1;
@@ -219,7 +222,7 @@ BOOST_AUTO_TEST_CASE(r2_beam_on_a_hub) {
 BOOST_AUTO_TEST_CASE(r3_string_limit) {
   // omega = Omega sqrt(k (2 k - 1)). A clamp adds a boundary layer of length l sqrt(2 e),
   // e = EI / (m Omega^2 l^4), and its energy omega_1 / Omega - 1 = 3 / (2 sqrt 2) sqrt(e) + O(e):
-  // 1.0607, which at small e is the 1.07 of verification.md. The layer is 0.014 long at e = 1e-4,
+  // 1.0607 (1.07 has been found numerically). The layer is 0.014 long at e = 1e-4,
   // an element of order 3 0.031.
   std::vector<double> rates;
   for (const double e : {4e-4, 1e-4}) {
@@ -272,8 +275,8 @@ BOOST_AUTO_TEST_CASE(r4_beam_that_stretches_and_shears) {
   beam.stiffness << 1e8, 4e7, 4e7, 8e3, 1e4, 1e4;
   beam.elements = 12;
   ShearBeam exact{10.0, 0.0, 1.0, 2e-4, 1e-4, 1e-4, 1e8, 4e7, 8e3, 1e4};
-  // BeamDyn of order 12, verification.md: 1e-4 as R1. Ritz differs from its first edge mode by
-  // 1.8e-5 and agrees with this program to 1e-6: two different formulations.
+  // BeamDyn, one element of order 12, to 1e-4: Ritz, another formulation than either, differs from
+  // its first edge mode by 1.8e-5 and from this program by 2e-6 at most.
   struct Row {
     double speed;
     std::array<double, 3> edge, flap;
