@@ -59,7 +59,7 @@ std::string other_harmonics(const ModeSet& set, std::size_t m) {
 }
 
 std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
-  if (!set.modes[m].resolved) return "unresolved*";
+  if (!set.modes[m].resolved) return "*";
   if (motion == Motion::rigid_body) return "rigid-body";
   return set.participation.size() > 0 ? other_harmonics(set, m) : "";
 }
@@ -98,8 +98,21 @@ std::string name_growing(std::vector<const Mode*> growing) {
   return text;
 }
 
+/// Whether a mode decays as fast as this one grows, in the same way. In a conservative system every
+/// growth has its decay, exponents lambda and -lambda*, but for the error of the mesh.
+bool has_partner(const ModeSet& set, const Mode& growing) {
+  constexpr double slack = 0.05;  // of the rate of growth
+  const double rate = growing.exponent.real();
+  return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& other) {
+    double apart = other.exponent.imag() - growing.exponent.imag();
+    if (set.rotor_speed > 0.0) apart = std::remainder(apart, set.rotor_speed);
+    return std::abs(other.exponent.real() + rate) < slack * rate && std::abs(apart) < slack * rate;
+  });
+}
+
 struct Tally {
   std::vector<const Mode*> growing;
+  std::vector<const Mode*> growing_alone;  ///< what the mesh makes of a conservative system
   std::vector<const Mode*> decaying;
   int undamped = 0;
   int rigid_body = 0;
@@ -112,6 +125,8 @@ Tally tally(const ModeSet& set) {
     const Motion motion = motion_of(mode, set.rotor_speed);
     if (!mode.resolved)
       ++result.unresolved;
+    else if (motion == Motion::growing && set.conservative && !has_partner(set, mode))
+      result.growing_alone.push_back(&mode);
     else if (motion == Motion::growing)
       result.growing.push_back(&mode);
     else if (motion == Motion::decaying)
@@ -180,6 +195,8 @@ std::string verdict(const ModeSet& set) {
     const int growing = static_cast<int>(result.growing.size());
     text = "unstable: " + count(growing, "mode") + (growing == 1 ? " grows: " : " grow: ") +
            name_growing(result.growing) + (rest.empty() ? "" : "\nof the others " + rest);
+  } else if (!result.growing_alone.empty()) {
+    text = "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; of the others " + rest);
   } else if (result.undamped + result.rigid_body > 0) {
     text = "neutral: no mode grows; " + rest;
   } else if (!result.decaying.empty()) {
@@ -188,6 +205,12 @@ std::string verdict(const ModeSet& set) {
     text = "no verdict: no mode is resolved";
   }
   text += "\n";
+  if (!result.growing_alone.empty())
+    text += count(static_cast<int>(result.growing_alone.size()), "mode") +
+            (result.growing_alone.size() == 1 ? " grows alone: " : " grow alone: ") +
+            name_growing(result.growing_alone) +
+            "; where nothing damps, growth and decay come in pairs, so this is an error of the mesh "
+            "(hint: a higher order of blades and tower, or more elements)\n";
   if (result.unresolved > 0)
     text +=
         "* " + std::to_string(result.unresolved) + " unresolved, left out of the verdict: " +

@@ -15,7 +15,8 @@ Motion motion_of(const analysis::Mode& mode, double rotor_speed);
 /// One line a mode. Harmonics stand there where the set has participations.
 std::string mode_table(const analysis::ModeSet& set);
 
-/// "stable: ...", "neutral: ..." or "unstable: ...", and what was left out of the verdict.
+/// "stable: ...", "neutral: ..." or "unstable: ...", and what was left out of the verdict; or "no
+/// verdict: ..." where the growth is an error of the mesh (docs/theory.md, section 5.8).
 std::string verdict(const analysis::ModeSet& set);
 
 }  // namespace samara::drivers

@@ -200,6 +200,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   ModeSet set;
   set.degrees_of_freedom = subspace.degrees_of_freedom();
   set.rotor_speed = speed;
+  set.conservative = system.is_conservative();
   set.shape_times = {0.0};
   for (const Found& found : order) {
     Mode mode;

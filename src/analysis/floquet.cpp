@@ -21,16 +21,25 @@ namespace samara::analysis {
 namespace {
 
 using Complex = std::complex<double>;
+using namespace std::complex_literals;
 
 /// Half the phase of a step beyond which a mode counts as unresolved.
 constexpr double largest_half_phase = 0.7;
 constexpr double largest_residual = 1e-6;
+/// Share of the kinetic energy of a resolved mode in harmonics beyond that phase, at the most: more
+/// is a mixture of modes so fast that they all look alike, with multipliers near -1 or 1.
+constexpr double largest_fast_share = 0.01;
+/// Numbers in the histories of the modes that are identified at a time, about.
+constexpr Eigen::Index batch_values = 1 << 24;
 /// Instants of the mode shapes a revolution, at the most.
 constexpr int shape_samples = 24;
 
 /// Of the middles of the steps on both sides of t = 0, see Analysis::smooth_velocities.
 constexpr std::array<double, 4> smoothing_weights{93.0 / 128.0, -37.0 / 128.0, 9.0 / 128.0,
                                                   -1.0 / 128.0};
+
+/// Numbers in a message, at the most.
+constexpr Eigen::Index most_values = 1 << 20;
 
 struct Ranks {
   explicit Ranks(MPI_Comm communicator) : comm(communicator) {
@@ -47,9 +56,17 @@ struct Ranks {
   }
   void sum_on(int target, Eigen::MatrixXd& values) const {
     if (size == 1) return;
-    for (Eigen::Index j = 0; j < values.cols(); ++j)  // a column stays below MPI's count limit
-      MPI_Reduce(rank == target ? MPI_IN_PLACE : values.col(j).data(), values.col(j).data(),
-                 static_cast<int>(values.rows()), MPI_DOUBLE, MPI_SUM, target, comm);
+    for (Eigen::Index i = 0; i < values.size(); i += most_values) {
+      const auto count = static_cast<int>(std::min(most_values, values.size() - i));
+      MPI_Reduce(rank == target ? MPI_IN_PLACE : values.data() + i, values.data() + i, count,
+                 MPI_DOUBLE, MPI_SUM, target, comm);
+    }
+  }
+  /// Sums pairs of columns, one for every rank, which keeps its own as the first of them.
+  void sum_and_deal(Eigen::Ref<Eigen::MatrixXd> pairs) const {
+    if (size > 1)
+      MPI_Reduce_scatter_block(MPI_IN_PLACE, pairs.data(), static_cast<int>(2 * pairs.rows()),
+                               MPI_DOUBLE, MPI_SUM, comm);
   }
 };
 
@@ -76,6 +93,7 @@ class Analysis {
     integrate();
     solve_eigenproblem();
     identify();
+    find_residuals();
     collect_shapes();
     return finish();
   }
@@ -178,6 +196,14 @@ class Analysis {
     return std::log(multiplier) * static_cast<double>(sectors_) / system_.period();
   }
 
+  bool is_zero(Complex exponent) const { return std::abs(exponent) < zero_exponent * speed_; }
+
+  /// Whether the step resolves an oscillation of its sequence of states, at omega [rad/s].
+  bool in_reach(double omega) const {
+    const double half_phase = 0.5 * std::abs(omega) * dt_;
+    return half_phase < 0.5 * std::numbers::pi && std::tan(half_phase) <= largest_half_phase;
+  }
+
   void keep(Complex multiplier, const Eigen::VectorXcd& vector) {
     multipliers_.push_back(multiplier);
     vectors_.conservativeResize(states_, vectors_.cols() + 1);
@@ -192,7 +218,7 @@ class Analysis {
       if (pairs.values[i].imag() < 0.0) continue;  // its conjugate stands for it
       const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
       const Complex exponent = principal_exponent(pairs.values[i]);
-      if (pairs.values[i].imag() > 0.0 && std::abs(exponent) < zero_exponent * speed_) {
+      if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
         // A double zero that rounding has split into a pair: two real rows, as on another day.
         keep(pairs.values[i].real(), vector.real());
         keep(pairs.values[i].real(), vector.real());
@@ -217,52 +243,53 @@ class Analysis {
 
   // ---- identification --------------------------------------------------------------------------
 
-  /// Values of the given modes in rows of `data` (columns: own initial states), on rank `target`.
-  Eigen::MatrixXcd combine(const Eigen::MatrixXd& data, const std::vector<Eigen::Index>& modes,
-                           int target) const {
+  /// Weights of the own initial states in the given modes: real part and imaginary part of one
+  /// after the other.
+  Eigen::MatrixXd weights_of(const std::vector<Eigen::Index>& modes) const {
     const auto count = static_cast<Eigen::Index>(modes.size());
-    Eigen::MatrixXd weights(static_cast<Eigen::Index>(own_.size()), 2 * count);
-    for (Eigen::Index m = 0; m < count; ++m)
-      for (std::size_t j = 0; j < own_.size(); ++j) {
-        const Complex value = vectors_(own_[j], modes[static_cast<std::size_t>(m)]);
-        weights(static_cast<Eigen::Index>(j), m) = value.real();
-        weights(static_cast<Eigen::Index>(j), count + m) = value.imag();
-      }
-    Eigen::MatrixXd values = multiply(data, weights);
-    ranks_.sum_on(target, values);
-    Eigen::MatrixXcd result;
-    if (ranks_.rank != target) return result;
-    result.resize(data.rows(), count);
-    result.real() = values.leftCols(count);
-    result.imag() = values.rightCols(count);
-    return result;
+    Eigen::MatrixXd weights =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(own_.size()), 2 * count);
+    for (Eigen::Index m = 0; m < count; ++m) {
+      const Eigen::Index mode = modes[static_cast<std::size_t>(m)];
+      weights.col(2 * m) = vectors_(own_, mode).real();
+      weights.col(2 * m + 1) = vectors_(own_, mode).imag();
+    }
+    return weights;
   }
 
   void identify() {
     const auto count = static_cast<Eigen::Index>(modes_.size());
+    const auto nk = static_cast<Eigen::Index>(kinetic_.size());
     participation_.setZero(count, steps_);
     part_shares_.setZero(static_cast<Eigen::Index>(energy_.part_names().size()), count);
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(count);
     Eigen::VectorXd energies = Eigen::VectorXd::Zero(count);
-    for (int target = 0; target < ranks_.size; ++target) {
+    // Every rank combines what its columns add to a batch of modes, and takes its share of them
+    // over.
+    const Eigen::Index batch =
+        ranks_.size *
+        std::max<Eigen::Index>(1, batch_values / (2 * history_.rows() * ranks_.size));
+    Eigen::MatrixXd values;
+    for (Eigen::Index first = 0; first < count; first += batch) {
       std::vector<Eigen::Index> modes;
-      for (Eigen::Index m = target; m < count; m += ranks_.size) modes.push_back(m);
-      const Eigen::MatrixXcd values = combine(history_, modes, target);
-      if (ranks_.rank != target) continue;
-      for (std::size_t m = 0; m < modes.size(); ++m) {
-        const auto at = static_cast<std::size_t>(modes[m]);
-        const auto nk = static_cast<Eigen::Index>(kinetic_.size());
-        const Eigen::Map<const Eigen::MatrixXcd> history(
-            values.col(static_cast<Eigen::Index>(m)).data(), nk, span_);
-        Mode mode;
+      for (Eigen::Index m = first; m < std::min(first + batch, count); ++m) modes.push_back(m);
+      while (modes.size() % static_cast<std::size_t>(ranks_.size) != 0) modes.push_back(count - 1);
+      multiply(history_, weights_of(modes), values);
+      for (std::size_t m = 0; m < modes.size(); m += static_cast<std::size_t>(ranks_.size)) {
+        const auto column = 2 * static_cast<Eigen::Index>(m);
+        ranks_.sum_and_deal(values.middleCols(column, 2 * ranks_.size));
+        const Eigen::Index mode = first + static_cast<Eigen::Index>(m) + ranks_.rank;
+        if (mode >= count) continue;
+        const Sector sector{values.col(column).data(), nk, span_, 1};
+        Mode found;
         Eigen::VectorXd participation;
-        energy_.identify(whole_period(history, exponents_[at], kinetic_, 1, span_), mode,
-                         participation);
-        harmonics(modes[m]) = mode.harmonic;
-        energies(modes[m]) = mode.kinetic_energy;
-        participation_.row(modes[m]) = participation;
-        for (std::size_t p = 0; p < mode.parts.size(); ++p)
-          part_shares_(static_cast<Eigen::Index>(p), modes[m]) = mode.parts[p].share;
+        energy_.identify(whole_period(sector, exponents_[static_cast<std::size_t>(mode)], kinetic_),
+                         found, participation);
+        harmonics(mode) = found.harmonic;
+        energies(mode) = found.kinetic_energy;
+        participation_.row(mode) = participation;
+        for (std::size_t p = 0; p < found.parts.size(); ++p)
+          part_shares_(static_cast<Eigen::Index>(p), mode) = found.parts[p].share;
       }
     }
     ranks_.sum(harmonics.data(), static_cast<std::size_t>(count));
@@ -290,18 +317,31 @@ class Analysis {
     return result;
   }
 
+  /// A mode over a sector, at every `stride`-th step.
+  struct Sector {
+    const double* values;  ///< all real parts, then all imaginary parts
+    Eigen::Index unknowns;
+    Eigen::Index columns;
+    long stride;
+  };
+
   /// Z(t) exp(-lambda t) over the whole period from its first sector, where z(t + T/Q) =
-  /// mu P^-1 z(t) and exp(-lambda T/Q) mu = 1. Every `stride`-th step of `columns`.
-  Eigen::MatrixXcd whole_period(const Eigen::Ref<const Eigen::MatrixXcd>& sector, Complex exponent,
-                                const std::vector<PetscInt>& unknowns, long stride,
-                                Eigen::Index columns) const {
-    Eigen::MatrixXcd part(sector.rows(), columns);
+  /// mu P^-1 z(t) and exp(-lambda T/Q) mu = 1.
+  Eigen::MatrixXcd whole_period(const Sector& sector, Complex exponent,
+                                const std::vector<PetscInt>& unknowns) const {
+    const Eigen::Index columns = sector.columns;
+    const Eigen::Map<const Eigen::MatrixXd> real(sector.values, sector.unknowns, columns);
+    const Eigen::Map<const Eigen::MatrixXd> imaginary(sector.values + real.size(), sector.unknowns,
+                                                      columns);
+    Eigen::MatrixXcd part(sector.unknowns, columns);
     for (Eigen::Index k = 0; k < columns; ++k) {
-      const double t = (static_cast<double>(k * stride) + 0.5) * dt_;
-      part.col(k) = sector.col(k) * std::exp(-exponent * t);
+      const double t = (static_cast<double>(k * sector.stride) + 0.5) * dt_;
+      const Complex factor = std::exp(-exponent * t);
+      part.col(k).real() = factor.real() * real.col(k) - factor.imag() * imaginary.col(k);
+      part.col(k).imag() = factor.imag() * real.col(k) + factor.real() * imaginary.col(k);
     }
     if (sectors_ == 1) return part;
-    Eigen::MatrixXcd whole(sector.rows(), columns * sectors_);
+    Eigen::MatrixXcd whole(sector.unknowns, columns * sectors_);
     for (int q = 0; q < sectors_; ++q) {
       whole.middleCols(q * columns, columns) = part;
       if (q + 1 < sectors_) part = turned_back(part, unknowns);
@@ -330,27 +370,47 @@ class Analysis {
     return size > 0.0 ? std::sqrt(defect / size) : 0.0;
   }
 
-  void collect_shapes() {
+  void find_residuals() {
     std::vector<Eigen::Index> modes(modes_.size());
     std::iota(modes.begin(), modes.end(), 0);
-    const Eigen::MatrixXcd values = combine(shapes_, modes, 0);
-    const Eigen::MatrixXcd ends = combine(end_, modes, 0);
+    const Eigen::MatrixXd weights = weights_of(modes);
+    Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), weights);
+    Eigen::MatrixXd last = multiply(end_, weights);
+    ranks_.sum_on(0, first);
+    ranks_.sum_on(0, last);
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes.size()));
     if (ranks_.rank == 0)
       for (const Eigen::Index m : modes)
-        residuals(m) = closure(values.col(m).head(system_.size()), ends.col(m),
+        residuals(m) = closure(first.col(2 * m) + 1i * first.col(2 * m + 1),
+                               last.col(2 * m) + 1i * last.col(2 * m + 1),
                                multipliers_[static_cast<std::size_t>(m)]);
     ranks_.sum(residuals.data(), modes.size());
     for (const Eigen::Index m : modes) modes_[static_cast<std::size_t>(m)].residual = residuals(m);
+  }
+
+  /// Of the modes that may count as resolved: the others' would not mean anything.
+  void collect_shapes() {
+    std::vector<Eigen::Index> modes;
+    for (std::size_t m = 0; m < modes_.size(); ++m) {
+      const Complex exponent = exponents_[m];
+      const bool may_be_rigid = exponent.imag() == 0.0 || is_zero(exponent);
+      if (modes_[m].residual <= largest_residual &&
+          (may_be_rigid || in_reach(exponent.imag() + modes_[m].harmonic * speed_)))
+        modes.push_back(static_cast<Eigen::Index>(m));
+    }
+    const Eigen::MatrixXd weights = weights_of(modes);
+    Eigen::MatrixXd values = multiply(shapes_, weights);
+    ranks_.sum_on(0, values);
     if (ranks_.rank == 0) {
-      std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
-      std::iota(all.begin(), all.end(), 0);
       const Eigen::Index n = system_.size();
-      const Eigen::Index columns = shapes_.rows() / n;
-      for (std::size_t m = 0; m < modes_.size(); ++m) {
-        const Eigen::Map<const Eigen::MatrixXcd> sector(
-            values.col(static_cast<Eigen::Index>(m)).data(), n, columns);
-        mode_shapes_.push_back(whole_period(sector, exponents_[m], all, stride_, columns));
+      std::vector<PetscInt> all(static_cast<std::size_t>(n));
+      std::iota(all.begin(), all.end(), 0);
+      mode_shapes_.resize(modes_.size());
+      for (std::size_t i = 0; i < modes.size(); ++i) {
+        const auto m = static_cast<std::size_t>(modes[i]);
+        const Sector sector{values.col(2 * static_cast<Eigen::Index>(i)).data(), n,
+                            shapes_.rows() / n, stride_};
+        mode_shapes_[m] = whole_period(sector, exponents_[m], all);
       }
     }
     settle_rigid_body_modes();
@@ -362,10 +422,9 @@ class Analysis {
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
     if (ranks_.rank == 0) {
       for (std::size_t m = 0; m < modes_.size(); ++m) {
-        const bool zero = std::abs(exponents_[m]) < zero_exponent * speed_;
-        const bool real = exponents_[m].imag() == 0.0 &&
+        const bool real = exponents_[m].imag() == 0.0 && mode_shapes_[m].size() > 0 &&
                           is_rigid_body(system_, mode_shapes_[m], modes_[m].kinetic_energy);
-        if (!zero && !real) harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
+        if (!is_zero(exponents_[m]) && !real) harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
       }
     }
     ranks_.sum(harmonics.data(), modes_.size());
@@ -375,9 +434,21 @@ class Analysis {
 
   // ---- the result ------------------------------------------------------------------------------
 
+  /// Share of the kinetic energy of mode m in harmonics that the step does not resolve.
+  double fast_share(std::size_t m) const {
+    double share = 0.0;
+    for (Eigen::Index i = 0; i < steps_; ++i) {
+      const double harmonic = static_cast<double>(i - steps_ / 2);
+      if (!in_reach(exponents_[m].imag() + harmonic * speed_))
+        share += participation_(static_cast<Eigen::Index>(m), i);
+    }
+    return share;
+  }
+
   /// Moves the dominant harmonic into the exponent and chooses the conjugate with Im >= 0.
   void settle(std::size_t m) {
     Mode& mode = modes_[m];
+    const bool slow = fast_share(m) <= largest_fast_share;
     Complex exponent = exponents_[m];
     exponent += Complex(0.0, mode.harmonic * speed_);
     if (exponent.imag() < -zero_exponent * speed_) {
@@ -394,12 +465,9 @@ class Analysis {
       if (!mode_shapes_.empty()) mode_shapes_[m] = mode_shapes_[m].conjugate().eval();
     }
     mode.exponent = exponent;
-    const double size = std::abs(exponent);
-    mode.damping_ratio = size > zero_exponent * speed_ ? -exponent.real() / size : 0.0;
-    const double half_phase = 0.5 * std::abs(exponent.imag()) * dt_;
-    const bool fine =
-        half_phase < 0.5 * std::numbers::pi && std::tan(half_phase) <= largest_half_phase;
-    mode.resolved = fine && mode.residual <= largest_residual;
+    mode.damping_ratio = is_zero(exponent) ? 0.0 : -exponent.real() / std::abs(exponent);
+    mode.resolved = slow && in_reach(exponent.imag()) && mode.residual <= largest_residual;
+    if (!mode.resolved && !mode_shapes_.empty()) mode_shapes_[m].resize(0, 0);
     for (std::size_t p = 0; p < energy_.part_names().size(); ++p)
       mode.parts.push_back({energy_.part_names()[p], part_shares_(static_cast<Eigen::Index>(p),
                                                                   static_cast<Eigen::Index>(m))});
@@ -420,6 +488,7 @@ class Analysis {
     result.step = dt_;
     result.set.degrees_of_freedom = subspace_.degrees_of_freedom();
     result.set.rotor_speed = speed_;
+    result.set.conservative = system_.is_conservative();
     result.set.first_harmonic = -steps_ / 2;
     result.set.participation.resize(participation_.rows(), participation_.cols());
     for (std::size_t i = 0; i < order.size(); ++i) {

@@ -161,16 +161,21 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
   right = solution_.array().colwise() * column_factors.array();
 }
 
-Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  Eigen::MatrixXd c(a.rows(), b.cols());
-  if (c.size() == 0) return c;
+void multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& c) {
+  c.resize(a.rows(), b.cols());
+  if (a.cols() == 0) c.setZero();
+  if (c.size() == 0 || a.cols() == 0) return;
   const auto m = static_cast<PetscBLASInt>(a.rows());
   const auto n = static_cast<PetscBLASInt>(b.cols());
   const auto k = static_cast<PetscBLASInt>(a.cols());
   const PetscScalar one = 1.0;
   const PetscScalar zero = 0.0;
-  if (k == 0) return Eigen::MatrixXd::Zero(a.rows(), b.cols());
   BLASgemm_("N", "N", &m, &n, &k, &one, a.data(), &m, b.data(), &k, &zero, c.data(), &m);
+}
+
+Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd c;
+  multiply(a, b, c);
   return c;
 }
 

@@ -1,14 +1,14 @@
 #include "samara/analysis/monodromy.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace samara::analysis {
 
-LinearizedStep::LinearizedStep(const system::PeriodicSystem& system, std::vector<bool> carried,
-                               double step, bool fixed_constraints, const std::string& prefix)
+LinearizedStep::LinearizedStep(const system::PeriodicSystem& system,
+                               const std::vector<bool>& carried, double step,
+                               bool fixed_constraints, const std::string& prefix)
     : system_(system),
-      carried_(std::move(carried)),
+      carried_(static_cast<Eigen::Index>(carried.size())),
       step_(step),
       fixed_constraints_(fixed_constraints),
       jacobian_(system.make_jacobian()),
@@ -16,6 +16,8 @@ LinearizedStep::LinearizedStep(const system::PeriodicSystem& system, std::vector
       solver_(prefix, [&system, step](Mat matrix) {
         return scale_by_role(system, matrix, 2.0 / std::abs(step));
       }) {
+  for (std::size_t i = 0; i < carried.size(); ++i)
+    carried_(static_cast<Eigen::Index>(i)) = carried[i] ? 1.0 : 0.0;
   if (!fixed_constraints_) end_jacobian_ = system.make_jacobian();
 }
 
@@ -57,13 +59,12 @@ const Eigen::MatrixXd& LinearizedStep::advance(Eigen::MatrixXd& z, const Eigen::
   if (!fixed_constraints_) middle_ += 0.5 * constraint_rows_ * z;
   if (load.size() > 0) middle_ += load;
   solver_.solve(middle_);
-  for (Eigen::Index j = 0; j < z.cols(); ++j)
-    for (Eigen::Index i = 0; i < z.rows(); ++i) z(i, j) = end_value(i, z(i, j), middle_(i, j));
+  to_end(z, middle_);
   return middle_;
 }
 
 StepPropagator::StepPropagator(const system::PeriodicSystem& system,
-                               const PeriodicSolution& solution, std::vector<bool> carried,
+                               const PeriodicSolution& solution, const std::vector<bool>& carried,
                                double step)
     : solution_(solution),
       step_(step),
@@ -71,7 +72,7 @@ StepPropagator::StepPropagator(const system::PeriodicSystem& system,
       z_dot_(system.make_state()),
       z_end_(system.make_state()),
       z_dot_end_(system.make_state()),
-      linearized_(system, std::move(carried), step,
+      linearized_(system, carried, step,
                   solution.is_constant() && system.constraints_are_autonomous(), "floquet_") {}
 
 const Eigen::MatrixXd& StepPropagator::advance(long k, Eigen::MatrixXd& z) {

@@ -190,7 +190,7 @@ class Shooting {
         throw ConvergenceError("trim: shooting, step " + std::to_string(k) +
                                " does not converge; hint: more trim.steps");
     }
-    for (Eigen::Index i = 0; i < z.size(); ++i) z(i) = linearized.end_value(i, z(i), middle(i));
+    linearized.to_end(z, middle);
   }
 
   Trim result(int revolutions) const {

@@ -1,6 +1,7 @@
 #include "hdf5_file.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "samara/base/error.hpp"
 
@@ -44,13 +45,13 @@ Hdf5File::Hdf5File() {
 }
 
 Hdf5Id Hdf5File::make_dataset(const std::string& name, hid_t type, const Shape& shape,
-                              const Meaning& meaning) {
+                              const Meaning& meaning, hid_t creation) {
   Hdf5Id own_space;
   if (!shape.empty())
     own_space = {check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)),
                  H5Sclose};
   const hid_t space = shape.empty() ? scalar_space_.get() : own_space.get();
-  Hdf5Id dataset(check(H5Dcreate2(file_.get(), name.c_str(), type, space, link_.get(), H5P_DEFAULT,
+  Hdf5Id dataset(check(H5Dcreate2(file_.get(), name.c_str(), type, space, link_.get(), creation,
                                   H5P_DEFAULT)),
                  H5Dclose);
   set_text(dataset.get(), "unit", meaning.unit);
@@ -94,7 +95,13 @@ void Hdf5File::write(const std::string& name, const std::string& text, const Mea
 }
 
 Hdf5Id Hdf5File::make_slices(const std::string& name, const Shape& shape, const Meaning& meaning) {
-  return make_dataset(name, H5T_IEEE_F32LE, shape, meaning);
+  const Hdf5Id creation(check(H5Pcreate(H5P_DATASET_CREATE)), H5Pclose);
+  Shape slice = shape;
+  slice.front() = 1;
+  check(H5Pset_chunk(creation.get(), static_cast<int>(slice.size()), slice.data()));
+  const float unwritten = std::numeric_limits<float>::quiet_NaN();
+  check(H5Pset_fill_value(creation.get(), H5T_NATIVE_FLOAT, &unwritten));
+  return make_dataset(name, H5T_IEEE_F32LE, shape, meaning, creation.get());
 }
 
 void Hdf5File::write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values) {

@@ -61,7 +61,8 @@ class Hdf5File {
              const Meaning& meaning);
   void write(const std::string& name, const std::string& text, const Meaning& meaning);
 
-  /// Makes a dataset of single precision, to be filled slice by slice along its first axis.
+  /// Makes a dataset of single precision, to be filled slice by slice along its first axis. What
+  /// is never written takes no room and reads as not-a-number.
   Hdf5Id make_slices(const std::string& name, const Shape& shape, const Meaning& meaning);
   void write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values);
 
@@ -75,7 +76,7 @@ class Hdf5File {
 
  private:
   Hdf5Id make_dataset(const std::string& name, hid_t type, const Shape& shape,
-                      const Meaning& meaning);
+                      const Meaning& meaning, hid_t creation = H5P_DEFAULT);
   void set_text(hid_t object, const std::string& name, const std::string& text);
   void set_number(const std::string& object, const std::string& name, hid_t type,
                   const void* value);

@@ -123,11 +123,11 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
   std::vector<std::string> labels;
   std::vector<int> resolved;
   for (const Mode& mode : set.modes) {
-    labels.push_back(mode.label + (mode.resolved ? "" : " (unresolved)"));
+    labels.push_back(mode.label);
     resolved.push_back(mode.resolved ? 1 : 0);
   }
   file.write(group + "/label", labels,
-             {"", no_frame, "the mode in words; (unresolved): not to be trusted"});
+             {"", no_frame, "the mode in words; unresolved: not to be trusted"});
   file.write(group + "/resolved", resolved,
              {"1", no_frame, "1: resolved by the time step, with a small residual; 0: not"});
   const std::vector<std::string> parts = part_names(set);
@@ -145,16 +145,20 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
 }
 
 void write_shapes(Hdf5File& file, const std::string& group, const ModeSet& set) {
-  if (set.shapes.empty()) return;
-  const auto size = static_cast<std::size_t>(set.shapes.front().rows());
-  const auto samples = static_cast<std::size_t>(set.shapes.front().cols());
+  const auto some = std::find_if(set.shapes.begin(), set.shapes.end(),
+                                 [](const Eigen::MatrixXcd& shape) { return shape.size() > 0; });
+  if (some == set.shapes.end()) return;
+  const auto size = static_cast<std::size_t>(some->rows());
+  const auto samples = static_cast<std::size_t>(some->cols());
   const Hdf5Id dataset = file.make_slices(
       group + "/modes", {set.shapes.size(), samples, size, 2},
       {"of /model/unknowns/unit", unknown_frame,
        "periodic mode shapes Z(t) exp(-lambda t), lambda without the harmonic, the largest "
-       "position 1; [mode, sample, unknown, re/im]"});
+       "position 1, not-a-number where the mode is not resolved; [mode, sample, unknown, "
+       "re/im]"});
   std::vector<float> slice(samples * size * 2);
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    if (set.shapes[m].size() == 0) continue;
     // Columns of the matrix are samples: its memory has the order of the file.
     const std::complex<double>* value = set.shapes[m].data();
     for (std::size_t i = 0; i < samples * size; ++i) {

@@ -149,6 +149,15 @@ const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const
   return assembly_->description.neutral;
 }
 
+bool TurbineSystem::is_conservative() const {
+  const model::Turbine& turbine = assembly_->turbine;
+  if (turbine.chain.yaw.damping != 0.0 || turbine.chain.teeter.damping != 0.0) return false;
+  for (const PlacedBeam& placed : assembly_->equations.beams())
+    for (const elements::BeamPoint& point : placed.beam->points)
+      if (!point.damping.isZero(0.0)) return false;
+  return true;
+}
+
 petsc::Handle<Vec> TurbineSystem::make_state() const { return assembly_->vector(); }
 
 petsc::Handle<Mat> TurbineSystem::make_jacobian() const {
@@ -209,6 +218,14 @@ petsc::Handle<Mat> TurbineSystem::make_mass() const {
   petsc::check(MatSetType(matrix.get(), MATAIJ));
   petsc::check(MatSeqAIJSetPreallocation(matrix.get(), 0, inside.data()));
   petsc::check(MatMPIAIJSetPreallocation(matrix.get(), 0, inside.data(), 0, outside.data()));
+  for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i) {  // sets the pattern
+    const auto& row = assembly.mass_columns[static_cast<std::size_t>(i)];
+    const std::vector<double> zeros(row.size(), 0.0);
+    petsc::check(MatSetValues(matrix.get(), 1, &i, static_cast<PetscInt>(row.size()), row.data(),
+                              zeros.data(), INSERT_VALUES));
+  }
+  petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
+  petsc::check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
   return matrix;
 }
 
@@ -254,7 +271,13 @@ void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacob
   assembly.tangents.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot));
   std::vector<double>& K = assembly.tangents.K().values();
   const std::vector<double>& M = assembly.tangents.M().values();
-  if (mass != nullptr) {
+  if (mass != nullptr && !assembly.parallel()) {
+    PetscScalar* values = nullptr;  // row after row, as the offsets
+    petsc::check(MatSeqAIJGetArrayWrite(mass, &values));
+    for (std::size_t entry = 0; entry < assembly.mass_offsets.size(); ++entry)
+      values[entry] = M[assembly.mass_offsets[entry]];
+    petsc::check(MatSeqAIJRestoreArrayWrite(mass, &values));
+  } else if (mass != nullptr) {
     std::size_t entry = 0;
     std::vector<PetscScalar> row_values;
     for (PetscInt i = 0; i < size(); ++i) {

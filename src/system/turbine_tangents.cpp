@@ -1,6 +1,7 @@
 #include "turbine_tangents.hpp"
 
 #include <array>
+#include <limits>
 #include <set>
 
 #include "samara/math/autodiff.hpp"
@@ -20,6 +21,14 @@ using PointDual = math::Dual<point_inputs>;
 using PointDualState = Eigen::Matrix<PointDual, block, 1>;
 using ChainDual = math::Dual<chain_inputs>;
 using MotionJacobian = Eigen::Matrix<double, 9, chain_motion_inputs>;
+using PointInputs = Eigen::Matrix<double, point_inputs, 1>;
+using TermJacobian = Eigen::Matrix<double, 3, point_inputs>;
+
+TermJacobian jacobian_of(const Vec3<PointDual>& term) {
+  TermJacobian j;
+  for (int i = 0; i < 3; ++i) j.row(i) = term(i).derivatives();
+  return j;
+}
 
 /// The block columns of every block row.
 class Pattern {
@@ -77,6 +86,12 @@ class Pattern {
 
 }  // namespace
 
+/// The tangents of a point's terms, and where they hold.
+struct TurbineTangents::PointTangents {
+  PointInputs inputs = PointInputs::Constant(std::numeric_limits<double>::quiet_NaN());
+  TermJacobian force_flux, force_load, moment_flux, moment_load, stretch, turn, velocity, spin;
+};
+
 /// Differentiates and adds into K and M.
 class TurbineTangents::Scatter {
  public:
@@ -84,6 +99,7 @@ class TurbineTangents::Scatter {
       : equations_(owner.equations_),
         turbine_(equations_.turbine()),
         layout_(equations_.layout()),
+        points_(owner.points_),
         K_(owner.K_),
         M_(owner.M_) {}
 
@@ -102,12 +118,13 @@ class TurbineTangents::Scatter {
       motion_jacobian.row(3 + i) = hub.omega(i).derivatives().head<chain_motion_inputs>();
       motion_jacobian.row(6 + i) = hub.gravity(i).derivatives().head<chain_motion_inputs>();
     }
+    auto point = points_.begin();
     for (const PlacedBeam& placed : equations_.beams()) {
       const Attachment<double> a = equations_.attachment(placed, motion);
       MotionJacobian root = MotionJacobian::Zero();
       if (placed.on_hub) root = placed.root_from_hub() * motion_jacobian;
       for (int p = 0; p < placed.beam->point_count(); ++p)
-        add_point_tangent(placed, p, a, root, z, z_dot);
+        add_point_tangent(placed, p, root, at_point(placed, p, a, z, z_dot, *point++));
       add_end_tangents(placed, a, root, z, z_dot);
     }
     add_chain_tangents(rows);
@@ -149,26 +166,24 @@ class TurbineTangents::Scatter {
     }
   }
 
-  static void fill_inputs(const State& z, const State& z_dot, const Attachment<double>& a,
-                          PointDualState& dual, PointDualState& dual_dot,
-                          Attachment<PointDual>& dual_a) {
-    for (int i = 0; i < block; ++i) {
-      dual(i) = math::independent<point_inputs>(z(i), i);
-      dual_dot(i) = math::independent<point_inputs>(z_dot(i), block + i);
-    }
-    for (int i = 0; i < 3; ++i) {
-      dual_a.v(i) = math::independent<point_inputs>(a.v(i), 2 * block + i);
-      dual_a.omega(i) = math::independent<point_inputs>(a.omega(i), 2 * block + 3 + i);
-      dual_a.gravity(i) = math::independent<point_inputs>(a.gravity(i), 2 * block + 6 + i);
-    }
+  static PointInputs inputs_of(const State& z, const State& z_dot, const Attachment<double>& a) {
+    PointInputs inputs;
+    inputs << z, z_dot, a.v, a.omega, a.gravity;
+    return inputs;
   }
 
-  using TermJacobian = Eigen::Matrix<double, 3, point_inputs>;
-
-  static TermJacobian jacobian_of(const Vec3<PointDual>& term) {
-    TermJacobian j;
-    for (int i = 0; i < 3; ++i) j.row(i) = term(i).derivatives();
-    return j;
+  static void fill_inputs(const PointInputs& inputs, PointDualState& dual, PointDualState& dual_dot,
+                          Attachment<PointDual>& dual_a) {
+    const auto input = [&inputs](int i) { return math::independent<point_inputs>(inputs(i), i); };
+    for (int i = 0; i < block; ++i) {
+      dual(i) = input(i);
+      dual_dot(i) = input(block + i);
+    }
+    for (int i = 0; i < 3; ++i) {
+      dual_a.v(i) = input(2 * block + i);
+      dual_a.omega(i) = input(2 * block + 3 + i);
+      dual_a.gravity(i) = input(2 * block + 6 + i);
+    }
   }
 
   /// Adds three rows that depend on the 18 unknowns from `first`, their rates and the attachment.
@@ -182,39 +197,52 @@ class TurbineTangents::Scatter {
     add_motion(row, carried);
   }
 
-  void add_point_tangent(const PlacedBeam& placed, int p, const Attachment<double>& a,
-                         const MotionJacobian& root, const std::vector<double>& z,
-                         const std::vector<double>& z_dot) {
-    const model::Beam& beam = *placed.beam;
+  /// The tangents of a point, taken again only where it moves otherwise than the last time: a rotor
+  /// whose coefficients are constant in its own axes asks for the same ones at every azimuth.
+  const PointTangents& at_point(const PlacedBeam& placed, int p, const Attachment<double>& a,
+                                const std::vector<double>& z, const std::vector<double>& z_dot,
+                                PointTangents& tangents) const {
     const int first = placed.points[static_cast<std::size_t>(p)];
+    const PointInputs inputs =
+        inputs_of(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a);
+    if (inputs == tangents.inputs) return tangents;
     PointDualState dual;
     PointDualState dual_dot;
     Attachment<PointDual> dual_a;
-    fill_inputs(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a, dual, dual_dot,
-                dual_a);
+    fill_inputs(inputs, dual, dual_dot, dual_a);
     const PointTerms<PointDual> terms = elements::beam_point_terms<PointDual>(
-        beam.points[static_cast<std::size_t>(p)], dual, dual_dot, dual_a);
-    const TermJacobian force_flux = jacobian_of(terms.force_flux);
-    const TermJacobian force_load = jacobian_of(terms.force_load);
-    const TermJacobian moment_flux = jacobian_of(terms.moment_flux);
-    const TermJacobian moment_load = jacobian_of(terms.moment_load);
+        placed.beam->points[static_cast<std::size_t>(p)], dual, dual_dot, dual_a);
+    tangents.inputs = inputs;
+    tangents.force_flux = jacobian_of(terms.force_flux);
+    tangents.force_load = jacobian_of(terms.force_load);
+    tangents.moment_flux = jacobian_of(terms.moment_flux);
+    tangents.moment_load = jacobian_of(terms.moment_load);
+    tangents.stretch = jacobian_of(terms.stretch);
+    tangents.turn = jacobian_of(terms.turn);
+    tangents.velocity = jacobian_of(terms.velocity);
+    tangents.spin = jacobian_of(terms.spin);
+    return tangents;
+  }
+
+  void add_point_tangent(const PlacedBeam& placed, int p, const MotionJacobian& root,
+                         const PointTangents& terms) {
+    const model::Beam& beam = *placed.beam;
+    const int first = placed.points[static_cast<std::size_t>(p)];
     TermJacobian u = TermJacobian::Zero();
     TermJacobian theta = TermJacobian::Zero();
     u.block<3, 3>(0, 0).setIdentity();
     theta.block<3, 3>(0, 3).setIdentity();
-    const TermJacobian stretch = jacobian_of(terms.stretch);
-    const TermJacobian turn = jacobian_of(terms.turn);
-    add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub);
-    add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub);
+    add_term(first + 6, first, terms.velocity, root, placed.on_hub);
+    add_term(first + 9, first, terms.spin, root, placed.on_hub);
     for (int node = 0; node <= beam.order; ++node) {
       const int n = p / beam.order * beam.order + node;
       const auto [slope, value] = placed.node_weights(node, p);
       const int strain = placed.strain_rows(n);
       const int force = placed.force_rows(n);
-      const TermJacobian strain_rows_j = -slope * u - value * stretch;
-      const TermJacobian curvature_rows_j = -slope * theta - value * turn;
-      const TermJacobian force_rows_j = slope * force_flux + value * force_load;
-      const TermJacobian moment_rows_j = slope * moment_flux + value * moment_load;
+      const TermJacobian strain_rows_j = -slope * u - value * terms.stretch;
+      const TermJacobian curvature_rows_j = -slope * theta - value * terms.turn;
+      const TermJacobian force_rows_j = slope * terms.force_flux + value * terms.force_load;
+      const TermJacobian moment_rows_j = slope * terms.moment_flux + value * terms.moment_load;
       add_term(strain, first, strain_rows_j, root, false);
       add_term(strain + 3, first, curvature_rows_j, root, false);
       add_term(force, first, force_rows_j, root, placed.on_hub);
@@ -234,8 +262,9 @@ class TurbineTangents::Scatter {
     PointDualState dual;
     PointDualState dual_dot;
     Attachment<PointDual> dual_a;
-    fill_inputs(TurbineResidual::at(z, placed.tip), TurbineResidual::at(z_dot, placed.tip), a, dual,
-                dual_dot, dual_a);
+    fill_inputs(
+        inputs_of(TurbineResidual::at(z, placed.tip), TurbineResidual::at(z_dot, placed.tip), a),
+        dual, dual_dot, dual_a);
     const elements::TipTerms<PointDual> terms = elements::beam_tip_terms<PointDual>(
         placed.beam->tip, placed.beam->tip_mass, dual, dual_dot, dual_a);
     add_term(placed.tip + 6, placed.tip, jacobian_of(terms.velocity), root, placed.on_hub);
@@ -287,12 +316,19 @@ class TurbineTangents::Scatter {
   const TurbineResidual& equations_;
   const model::Turbine& turbine_;
   const model::Layout& layout_;
+  std::vector<PointTangents>& points_;
   BlockMatrix& K_;
   BlockMatrix& M_;
 };
 
 TurbineTangents::TurbineTangents(const TurbineResidual& equations)
-    : equations_(equations), K_(Pattern(equations).pattern()), M_(K_.columns()) {}
+    : equations_(equations), K_(Pattern(equations).pattern()), M_(K_.columns()) {
+  std::size_t points = 0;
+  for (const PlacedBeam& placed : equations.beams()) points += placed.points.size();
+  points_.resize(points);
+}
+
+TurbineTangents::~TurbineTangents() = default;
 
 void TurbineTangents::evaluate(double t, const std::vector<double>& z,
                                const std::vector<double>& z_dot) {

@@ -12,6 +12,9 @@ namespace samara::system {
 class TurbineTangents {
  public:
   explicit TurbineTangents(const TurbineResidual& equations);
+  ~TurbineTangents();
+  TurbineTangents(const TurbineTangents&) = delete;
+  TurbineTangents& operator=(const TurbineTangents&) = delete;
 
   /// Computes K and M at (t, z, z_dot).
   void evaluate(double t, const std::vector<double>& z, const std::vector<double>& z_dot);
@@ -22,8 +25,10 @@ class TurbineTangents {
 
  private:
   class Scatter;
+  struct PointTangents;
 
   const TurbineResidual& equations_;
+  std::vector<PointTangents> points_;  ///< beam after beam
   BlockMatrix K_;
   BlockMatrix M_;  ///< of the same pattern
 };

@@ -102,8 +102,11 @@ class Floquet(ProgramTest):
                          (len(self.file["/floquet/label"]), len(times), len(unknowns), 2))
         self.assertTrue(numpy.all(numpy.diff(times[:]) > 0))
         position = self.file["/model/unknowns/role"].asstr()[:] == "position"
+        resolved = self.file["/floquet/resolved"][:] == 1
+        self.assertTrue(resolved.any() and not resolved.all())
         largest = numpy.abs(shapes[:] @ [1, 1j])[:, :, position].max(axis=(1, 2))
-        numpy.testing.assert_allclose(largest, 1.0, rtol=1e-5)
+        numpy.testing.assert_allclose(largest[resolved], 1.0, rtol=1e-5)
+        self.assertTrue(numpy.isnan(shapes[:][~resolved]).all())
 
     def test_trim_has_a_row_an_unknown(self):
         harmonics = self.file["/trim/harmonics"]
@@ -124,8 +127,8 @@ class Floquet(ProgramTest):
                 [[float(row[name + "_re"]), float(row[name + "_im"])] for row in rows],
                 group[name + "s"][:])
         labels = group["label"].asstr()[:]
-        self.assertEqual([row["label"] for row in rows],
-                         [label.removesuffix(" (unresolved)") for label in labels])
+        self.assertEqual([row["label"] for row in rows], list(labels))
+        numpy.testing.assert_array_equal(labels == "unresolved", group["resolved"][:] == 0)
 
 
 class Others(ProgramTest):

@@ -32,11 +32,12 @@ struct ModeSet {
   std::vector<Mode> modes;          ///< by identified frequency
   int degrees_of_freedom = 0;
   double rotor_speed = 0.0;         ///< Omega [rad/s]
+  bool conservative = false;        ///< multipliers should come in pairs mu, 1/mu*
   /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
   Eigen::MatrixXd participation;
   int first_harmonic = 0;
   /// Periodic mode shapes Z(t) exp(-lambda t): per mode, size x samples, at `shape_times` [s];
-  /// the largest position is 1 m or 1 rad.
+  /// the largest position is 1 m or 1 rad. Empty for a mode that is not resolved.
   std::vector<Eigen::MatrixXcd> shapes;
   std::vector<double> shape_times;
 };

@@ -23,8 +23,8 @@ class LinearizedStep {
  public:
   /// `carried`: see ConsistentSubspace. `fixed_constraints`: the rows without rates never change,
   /// and need no tangents of their own. `prefix`: of the solver's options.
-  LinearizedStep(const system::PeriodicSystem& system, std::vector<bool> carried, double step,
-                 bool fixed_constraints, const std::string& prefix);
+  LinearizedStep(const system::PeriodicSystem& system, const std::vector<bool>& carried,
+                 double step, bool fixed_constraints, const std::string& prefix);
 
   /// Tangents at the middle, and of the rows without rates at the end (t_end, z_end).
   void factor(double t_middle, Vec z_middle, Vec z_dot_middle, double t_end, Vec z_end,
@@ -37,16 +37,16 @@ class LinearizedStep {
   /// Solves J x = right for the values x at the middle, J = 2 M / dt + K.
   void solve(Eigen::MatrixXd& right) { solver_.solve(right); }
 
-  /// The end of the step from its start and middle.
-  double end_value(Eigen::Index i, double start, double middle) const {
-    return carried_[static_cast<std::size_t>(i)] ? 2.0 * middle - start : 0.0;
+  /// From the values z at the step's start and those at its middle to the values at its end.
+  void to_end(Eigen::Ref<Eigen::MatrixXd> z, const Eigen::Ref<const Eigen::MatrixXd>& middle) const {
+    z = (2.0 * middle - z).array().colwise() * carried_.array();
   }
 
  private:
   void replace_constraints(double t_end, Vec z_end, Vec z_dot_end);
 
   const system::PeriodicSystem& system_;
-  std::vector<bool> carried_;
+  Eigen::VectorXd carried_;  ///< 1 where the end of a step follows from its middle, else 0
   double step_;
   bool fixed_constraints_;
   petsc::Handle<Mat> jacobian_;
@@ -61,7 +61,7 @@ class LinearizedStep {
 class StepPropagator {
  public:
   StepPropagator(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                 std::vector<bool> carried, double step);
+                 const std::vector<bool>& carried, double step);
 
   /// From z at the start of step k (t = k step) to its end; returns the values at the middle, which
   /// stand until the next call.

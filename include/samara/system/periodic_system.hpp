@@ -83,6 +83,10 @@ class PeriodicSystem {
   /// True where the constraint rows do not depend on t other than through z.
   virtual bool constraints_are_autonomous() const = 0;
 
+  /// True where nothing dissipates or feeds energy but the prescribed motion and loads that derive
+  /// from a potential: multipliers then come in pairs mu, 1/mu* (docs/theory.md, section 5.8).
+  virtual bool is_conservative() const { return false; }
+
   virtual const RotorSymmetry& symmetry() const = 0;
   virtual const std::vector<EnergyGroup>& energy_groups() const = 0;
   virtual const std::vector<NeutralCoordinate>& neutral_coordinates() const = 0;

@@ -33,6 +33,7 @@ class TurbineSystem final : public PeriodicSystem {
   const std::vector<RowRole>& rows() const override;
   const std::vector<bool>& differential() const override;
   bool constraints_are_autonomous() const override { return true; }
+  bool is_conservative() const override;
   const RotorSymmetry& symmetry() const override;
   const std::vector<EnergyGroup>& energy_groups() const override;
   const std::vector<NeutralCoordinate>& neutral_coordinates() const override;
