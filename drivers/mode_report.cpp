@@ -59,7 +59,7 @@ std::string other_harmonics(const ModeSet& set, std::size_t m) {
 }
 
 std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
-  if (!set.modes[m].resolved) return "*";
+  if (!set.modes[m].resolved) return "unresolved*";
   if (motion == Motion::rigid_body) return "rigid-body";
   return set.participation.size() > 0 ? other_harmonics(set, m) : "";
 }

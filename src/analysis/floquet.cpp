@@ -33,6 +33,8 @@ constexpr double largest_fast_share = 0.01;
 constexpr Eigen::Index batch_values = 1 << 24;
 /// Instants of the mode shapes a revolution, at the most.
 constexpr int shape_samples = 24;
+/// Instants a sector that name a mode which is not resolved.
+constexpr Eigen::Index label_samples = 3;
 
 /// Of the middles of the steps on both sides of t = 0, see Analysis::smooth_velocities.
 constexpr std::array<double, 4> smoothing_weights{93.0 / 128.0, -37.0 / 128.0, 9.0 / 128.0,
@@ -388,32 +390,39 @@ class Analysis {
     for (const Eigen::Index m : modes) modes_[static_cast<std::size_t>(m)].residual = residuals(m);
   }
 
-  /// Of the modes that may count as resolved: the others' would not mean anything.
+  /// Of the modes that may count as resolved; of the others as much as their names need.
   void collect_shapes() {
-    std::vector<Eigen::Index> modes;
+    std::vector<Eigen::Index> trusted;
+    std::vector<Eigen::Index> others;
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       const Complex exponent = exponents_[m];
       const bool may_be_rigid = exponent.imag() == 0.0 || is_zero(exponent);
-      if (modes_[m].residual <= largest_residual &&
-          (may_be_rigid || in_reach(exponent.imag() + modes_[m].harmonic * speed_)))
-        modes.push_back(static_cast<Eigen::Index>(m));
+      const bool fine = may_be_rigid || in_reach(exponent.imag() + modes_[m].harmonic * speed_);
+      (fine && modes_[m].residual <= largest_residual ? trusted : others)
+          .push_back(static_cast<Eigen::Index>(m));
     }
-    const Eigen::MatrixXd weights = weights_of(modes);
-    Eigen::MatrixXd values = multiply(shapes_, weights);
-    ranks_.sum_on(0, values);
-    if (ranks_.rank == 0) {
-      const Eigen::Index n = system_.size();
-      std::vector<PetscInt> all(static_cast<std::size_t>(n));
-      std::iota(all.begin(), all.end(), 0);
-      mode_shapes_.resize(modes_.size());
-      for (std::size_t i = 0; i < modes.size(); ++i) {
-        const auto m = static_cast<std::size_t>(modes[i]);
-        const Sector sector{values.col(2 * static_cast<Eigen::Index>(i)).data(), n,
-                            shapes_.rows() / n, stride_};
-        mode_shapes_[m] = whole_period(sector, exponents_[m], all);
-      }
-    }
+    const Eigen::Index instants = shapes_.rows() / system_.size();
+    mode_shapes_.resize(ranks_.rank == 0 ? modes_.size() : 0);
+    expand_shapes(trusted, instants);
+    expand_shapes(others, std::min(instants, label_samples));
     settle_rigid_body_modes();
+  }
+
+  /// The first `instants` of a sector, continued over the period.
+  void expand_shapes(const std::vector<Eigen::Index>& modes, Eigen::Index instants) {
+    const Eigen::Index n = system_.size();
+    Eigen::MatrixXd values;
+    multiply(shapes_.topRows(n * instants), weights_of(modes), values);
+    ranks_.sum_on(0, values);
+    if (ranks_.rank != 0) return;
+    std::vector<PetscInt> all(static_cast<std::size_t>(n));
+    std::iota(all.begin(), all.end(), 0);
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const auto m = static_cast<std::size_t>(modes[i]);
+      const Sector sector{values.col(2 * static_cast<Eigen::Index>(i)).data(), n, instants,
+                          stride_};
+      mode_shapes_[m] = whole_period(sector, exponents_[m], all);
+    }
   }
 
   /// A real growth or decay of the joints alone, and what counts as zero, is no oscillation: the
@@ -422,7 +431,7 @@ class Analysis {
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
     if (ranks_.rank == 0) {
       for (std::size_t m = 0; m < modes_.size(); ++m) {
-        const bool real = exponents_[m].imag() == 0.0 && mode_shapes_[m].size() > 0 &&
+        const bool real = exponents_[m].imag() == 0.0 &&
                           is_rigid_body(system_, mode_shapes_[m], modes_[m].kinetic_energy);
         if (!is_zero(exponents_[m]) && !real) harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
       }
@@ -467,7 +476,6 @@ class Analysis {
     mode.exponent = exponent;
     mode.damping_ratio = is_zero(exponent) ? 0.0 : -exponent.real() / std::abs(exponent);
     mode.resolved = slow && in_reach(exponent.imag()) && mode.residual <= largest_residual;
-    if (!mode.resolved && !mode_shapes_.empty()) mode_shapes_[m].resize(0, 0);
     for (std::size_t p = 0; p < energy_.part_names().size(); ++p)
       mode.parts.push_back({energy_.part_names()[p], part_shares_(static_cast<Eigen::Index>(p),
                                                                   static_cast<Eigen::Index>(m))});
@@ -504,6 +512,8 @@ class Analysis {
                                          dt_);
     label_modes(system_, result.set);
     scale_shapes(system_, result.set);
+    for (std::size_t m = 0; m < result.set.shapes.size(); ++m)
+      if (!result.set.modes[m].resolved) result.set.shapes[m].resize(0, 0);
     share_labels(result.set);
     return result;
   }

@@ -94,7 +94,7 @@ void unite_degenerate(const ModeSet& set, std::vector<std::string>& stems) {
   for (std::size_t i = 0; i < stems.size(); ++i)
     for (std::size_t j = i + 1; j < stems.size(); ++j) {
       const std::complex<double> a = set.modes[i].exponent;
-      if (stems[i].empty() || a == 0.0 || std::abs(a - set.modes[j].exponent) > degenerate * std::abs(a)) continue;
+      if (a == 0.0 || std::abs(a - set.modes[j].exponent) > degenerate * std::abs(a)) continue;
       if (set.modes[i].harmonic != set.modes[j].harmonic) continue;
       const std::string common = without_symmetry(stems[i]);
       if (common != without_symmetry(stems[j])) continue;
@@ -221,7 +221,6 @@ void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     Eigen::MatrixXcd& shape = set.shapes[m];
-    if (shape.size() == 0) continue;
     double largest = 0.0;
     for (Eigen::Index i = 0; i < shape.rows(); ++i)
       if (system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
@@ -237,10 +236,6 @@ void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   std::vector<std::string> stems;
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   for (std::size_t i = 0; i < set.shapes.size(); ++i) {
-    if (set.shapes[i].size() == 0) {
-      stems.emplace_back();
-      continue;
-    }
     const std::string joint = moving_joint(system, set.shapes[i]);
     const bool rests = std::abs(set.modes[i].exponent) < zero && !joint.empty();
     stems.push_back(rests ? joint : stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
@@ -250,10 +245,6 @@ void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   std::map<std::string, int> number;
   for (std::size_t i = 0; i < stems.size(); ++i) {
     const std::string& stem = stems[i];
-    if (stem.empty()) {
-      set.modes[i].label = "unresolved";
-      continue;
-    }
     set.modes[i].label = count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
   }
 }

@@ -161,16 +161,18 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
   right = solution_.array().colwise() * column_factors.array();
 }
 
-void multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& c) {
+void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
+              Eigen::MatrixXd& c) {
   c.resize(a.rows(), b.cols());
   if (a.cols() == 0) c.setZero();
   if (c.size() == 0 || a.cols() == 0) return;
   const auto m = static_cast<PetscBLASInt>(a.rows());
   const auto n = static_cast<PetscBLASInt>(b.cols());
   const auto k = static_cast<PetscBLASInt>(a.cols());
+  const auto lda = static_cast<PetscBLASInt>(a.outerStride());
   const PetscScalar one = 1.0;
   const PetscScalar zero = 0.0;
-  BLASgemm_("N", "N", &m, &n, &k, &one, a.data(), &m, b.data(), &k, &zero, c.data(), &m);
+  BLASgemm_("N", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &k, &zero, c.data(), &m);
 }
 
 Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

@@ -123,11 +123,11 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
   std::vector<std::string> labels;
   std::vector<int> resolved;
   for (const Mode& mode : set.modes) {
-    labels.push_back(mode.label);
+    labels.push_back(mode.label + (mode.resolved ? "" : " (unresolved)"));
     resolved.push_back(mode.resolved ? 1 : 0);
   }
   file.write(group + "/label", labels,
-             {"", no_frame, "the mode in words; unresolved: not to be trusted"});
+             {"", no_frame, "the mode in words; (unresolved): not to be trusted"});
   file.write(group + "/resolved", resolved,
              {"1", no_frame, "1: resolved by the time step, with a small residual; 0: not"});
   const std::vector<std::string> parts = part_names(set);

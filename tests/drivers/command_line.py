@@ -148,7 +148,7 @@ class Tables(ProgramTest):
         self.write("case.yaml", MINIMAL)
         text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
         self.assertRegex(text, r"(?m)^\* \d+ unresolved, left out of the verdict: ")
-        self.assertRegex(text, r"(?m)^ *\d+ +unresolved .* \*$")
+        self.assertIn("unresolved*", text)
 
     def test_trim_shows_harmonics_of_deflections_and_loads(self):
         text = self.succeed("trim", BASELINE, *QUICK, "--set", "gravity=9.81").stdout

@@ -87,7 +87,7 @@ analysis::Floquet small_floquet() {
   real.multiplier = 1.5;
   real.exponent = 0.2;
   real.damping_ratio = -1.0;
-  real.label = "unresolved";
+  real.label = "yaw";
   real.resolved = false;
   real.parts = {{"tower", 0.75}, {"blade", 0.25}};
   set.modes = {real, pair};
@@ -313,7 +313,7 @@ BOOST_AUTO_TEST_CASE(modes_are_rows_in_their_order) {
 BOOST_AUTO_TEST_CASE(an_unresolved_mode_says_so) {
   const Folder folder;
   const Reader reader(write_floquet(folder));
-  require_equal(reader.words("/floquet/label"), {"unresolved", "blade flap 1"});
+  require_equal(reader.words("/floquet/label"), {"yaw (unresolved)", "blade flap 1"});
   require_equal(reader.values("/floquet/resolved"), {0.0, 1.0});
 }
 
@@ -503,7 +503,7 @@ BOOST_AUTO_TEST_CASE(a_table_of_modes_has_a_line_a_mode) {
   BOOST_TEST(found[0] ==
              "number,label,frequency_per_rev,frequency_hz,damping_ratio,exponent_re,exponent_im,"
              "multiplier_re,multiplier_im,harmonic,resolved,residual");
-  BOOST_TEST(found[1] == "1,unresolved,0,0,-1,0.20000000000000001,0,1.5,0,0,0,0");
+  BOOST_TEST(found[1] == "1,yaw,0,0,-1,0.20000000000000001,0,1.5,0,0,0,0");
   BOOST_TEST(found[2].starts_with("2,blade flap 1,1.5,0.4774648292756"));
   BOOST_TEST(folder.count() == 1u);
 }

@@ -42,7 +42,7 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
 
 /// Names modes by where their strain energy is, or by the joint that moves where nothing strains,
 /// with symmetric or antisymmetric for two blades, numbered by frequency. Needs the shapes: where
-/// there are none, labels stay empty; one that is empty belongs to an unresolved mode.
+/// there are none, labels stay empty.
 void label_modes(const system::PeriodicSystem& system, ModeSet& set);
 
 }  // namespace samara::analysis

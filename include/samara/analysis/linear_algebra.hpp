@@ -53,7 +53,8 @@ class DirectSolver {
 
 /// A B by BLAS; `c` is resized where it must be.
 Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-void multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& c);
+void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
+              Eigen::MatrixXd& c);
 
 /// The rows of a PETSc matrix on one rank as an Eigen sparse matrix.
 Eigen::SparseMatrix<double> to_sparse(Mat matrix);
