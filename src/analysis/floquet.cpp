@@ -355,19 +355,17 @@ class Analysis {
   /// of a step and the one a sector later.
   double closure(const Eigen::Ref<const Eigen::VectorXcd>& begin,
                  const Eigen::Ref<const Eigen::VectorXcd>& end, Complex multiplier) const {
-    std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
-    std::iota(all.begin(), all.end(), 0);
-    Eigen::MatrixXcd expected = multiplier * begin;
-    if (sectors_ > 1) expected = turned_back(expected, all);
     double size = 0.0;
     double defect = 0.0;
     for (Eigen::Index i = 0; i < system_.size(); ++i) {
-      const system::UnknownRole role = system_.unknowns()[static_cast<std::size_t>(i)].role;
-      const bool state = system_.differential()[static_cast<std::size_t>(i)];
-      if (role == system::UnknownRole::internal || !state) continue;
+      const auto at = static_cast<std::size_t>(i);
+      const system::UnknownRole role = system_.unknowns()[at].role;
+      if (role == system::UnknownRole::internal || !system_.differential()[at]) continue;
       const double weight = role == system::UnknownRole::position ? speed_ * speed_ : 1.0;
       size += weight * std::norm(begin(i));
-      defect += weight * std::norm(end(i) - expected(i, 0));
+      const Complex image =
+          sectors_ == 1 ? end(i) : system_.symmetry().sign[at] * end(system_.symmetry().source[at]);
+      defect += weight * std::norm(image - multiplier * begin(i));
     }
     return size > 0.0 ? std::sqrt(defect / size) : 0.0;
   }
