@@ -24,9 +24,10 @@ constexpr double same_blade = 1e-12;
 
 constexpr int blade_elements = 12;
 constexpr int tower_elements = 8;
-constexpr int element_order = 2;
+constexpr int blade_order = 3;
+constexpr int tower_order = 2;
 
-constexpr int integration_steps = 4000;
+constexpr int integration_steps = 2000;
 
 /// The coefficients of a mode shape add up to 1 within this.
 constexpr double shape_tolerance = 0.015;
@@ -50,8 +51,8 @@ double compute_shape_frequency(const std::array<double, 5>& coefficients, const 
     const double x = (i + 0.5) * h;
     const Station station{x, false};
     double curvature = 0.0;
-    for (int k = 2; k <= 6; ++k)
-      curvature += coefficients[static_cast<std::size_t>(k - 2)] * k * (k - 1) * std::pow(x, k - 2);
+    for (int k = 6; k >= 2; --k)
+      curvature = curvature * x + coefficients[static_cast<std::size_t>(k - 2)] * k * (k - 1);
     const std::complex<double> turned =
         curvature * std::polar(1.0, interpolate(twist, station) * std::numbers::pi / 180.0);
     const std::complex<double> middle = place + 0.5 * h * slope + 0.125 * h * h * turned;
@@ -153,7 +154,7 @@ class Importer {
     if (main_.number_or("NRotors", 1.0) != 1.0)
       errors_.add(main_.place_of("NRotors"), "NRotors: a case has one rotor");
     elastodyn_ = open(name);
-    if (main_.has("CompSub") && main_.number("CompSub") != 0.0) {
+    if (main_.number("CompSub") != 0.0) {
       if (options_.tower_only)
         say(main_, "CompSub", Fate::ignored,
             "--tower-only: the tower is clamped at TowerBsHt, the substructure is left out");
@@ -200,7 +201,7 @@ class Importer {
       lock(key, "the platform", "a case has no platform; the tower is clamped at TowerBsHt");
     note("nacelle.yaw", "YawDOF: the yaw drive of ServoDyn is not read");
     note("shaft.torsion", "DrTrDOF, GenDOF: the rotor turns at constant speed");
-    if (deck.flag_or("Furling", false))
+    if (deck.flag("Furling"))
       errors_.add(deck.place_of("Furling"),
                   "Furling: a furling turbine cannot be imported; only False");
   }
@@ -217,11 +218,10 @@ class Importer {
     draft_.hub_radius = take(deck, "HubRad", "hub.radius");
     require(draft_.hub_radius >= 0.0, deck, "HubRad", "expected a number >= 0");
     const double start = deck.number("Azimuth");
-    const double up = deck.number_or("AzimB1Up", 0.0);
+    const double up = deck.number("AzimB1Up");
     draft_.azimuth_deg = start - up;
     say(deck, "Azimuth", Fate::derived, "shaft.azimuth_deg = Azimuth - AzimB1Up");
-    if (deck.has("AzimB1Up"))
-      say(deck, "AzimB1Up", Fate::derived, "shaft.azimuth_deg = Azimuth - AzimB1Up");
+    say(deck, "AzimB1Up", Fate::derived, "shaft.azimuth_deg = Azimuth - AzimB1Up");
     note("shaft.azimuth_deg", "Azimuth - AzimB1Up");
     tip_radius_ = deck.number("TipRad");
 
@@ -301,7 +301,7 @@ class Importer {
     // OpenFAST measures UndSling from the teeter pin to the apex upwind, HubCM from the apex
     // downwind: pin to apex = -UndSling, apex to centre = HubCM.
     const double sling = deck.number("UndSling");
-    const double delta = deck.number_or("Delta3", 0.0) * std::numbers::pi / 180.0;
+    const double delta = deck.number("Delta3") * std::numbers::pi / 180.0;
     draft_.hub_center = center - sling;
     say(deck, "HubCM", Fate::derived, "hub.center_of_mass = HubCM - UndSling, from the teeter pin");
     note("hub.center_of_mass", "HubCM - UndSling");
@@ -340,7 +340,7 @@ class Importer {
     say(deck, "UndSling", Fate::derived,
         "hub.teeter.undersling = -UndSling (OpenFAST counts the apex upwind of the pin)");
     note("hub.teeter.undersling", "-UndSling: OpenFAST counts it upwind");
-    draft_.delta3_deg = deck.number_or("Delta3", 0.0);
+    draft_.delta3_deg = deck.number("Delta3");
     if (deck.has("Delta3")) {
       say(deck, "Delta3", Fate::taken, "hub.teeter.delta3_deg");
       require(std::abs(draft_.delta3_deg) < 90.0, deck, "Delta3",
@@ -507,7 +507,7 @@ class Importer {
         tower, {"TwSSM1Sh", "TwSSM2Sh"}, {"TwrSSDmp(1)", "TwrSSDmp(2)"},
         {"SSStTunr(1)", "SSStTunr(2)"}, mass, ss, no_twist, length, "tower.damping of bending 3");
     draft_.tower.elements = tower_elements;
-    draft_.tower.order = element_order;
+    draft_.tower.order = tower_order;
     note("tower.elements", "chosen by the importer");
     note("tower.damping", "from the first fore-aft and side-side mode, 2 zeta/omega");
     note("tower.sections",
@@ -603,7 +603,7 @@ class Importer {
     if (!errors_.empty() || blades.empty()) return;
     draft_.blade = blades[0].beam;
     draft_.blade.elements = blade_elements;
-    draft_.blade.order = element_order;
+    draft_.blade.order = blade_order;
     note("blades.elements", "chosen by the importer");
     for (std::size_t k = 1; k < blades.size(); ++k) compare_blade(blades, k);
     const double flexible = tip_radius_ - draft_.hub_radius;
@@ -922,6 +922,10 @@ class Importer {
         matrices->push_back(matrix);
       }
     }
+    if (!rows.empty() && deck.ends_inside(rows.back().line))
+      errors_.add(deck.place(rows.back().line),
+                  "the file ends inside this line, perhaps in a number; hint: if it is whole, end "
+                  "it with a new line");
     if (count >= 0 && static_cast<int>(lines.size()) != count)
       errors_.add(deck.place_of("station_total"), "station_total: " + std::to_string(count) +
                                                       ", the file has " +
@@ -965,7 +969,8 @@ class Importer {
     if (is({"PreCone(3)", "BlPitch(3)", "TipMass(3)", "BldFile(3)", "PreCone(2)", "BlPitch(2)",
             "TipMass(2)", "BldFile(2)", "BDBldFile(1)", "BDBldFile(2)", "BDBldFile(3)"}))
       return "this rotor does not use it";
-    if (key.ends_with("File")) return "of a module that describes no structure of a case";
+    if (key.starts_with("Comp") || (key.ends_with("File") && key != "OutFile"))
+      return "of a module that describes no structure of a case";
     return "a setting of the simulation or its output, no part of the structure";
   }
 

@@ -24,7 +24,8 @@ constexpr double most_mass = 1e5;
 
 constexpr int blade_elements = 12;
 constexpr int tower_elements = 8;
-constexpr int element_order = 2;
+constexpr int blade_order = 3;
+constexpr int tower_order = 2;
 constexpr double degrees = 180.0 / std::numbers::pi;
 
 struct Material {
@@ -42,6 +43,10 @@ std::string read_text(const std::string& path) {
   if (!stream) throw InputError(path + ": cannot be opened for reading");
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  if (!text.empty() && text.back() != '\n' && text.back() != '\r')
+    throw InputError(path + ":" + std::to_string(1 + std::count(text.begin(), text.end(), '\n')) +
+                     ": the file ends inside this line, perhaps in a number; hint: if it is "
+                     "whole, end it with a new line");
   return text;
 }
 
@@ -148,6 +153,12 @@ class Importer {
   }
 
   void note(const std::string& key, const std::string& words) { draft_.notes[key] = words; }
+
+  /// What a deck may leave out is 0 in the case.
+  void missing(const std::string& what, const std::string& key) {
+    note(key, "not in the deck");
+    report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
+  }
 
   double number_at(const std::string& path, const YamlNode& node) {
     const std::optional<double> value = parse_number(node);
@@ -299,9 +310,7 @@ class Importer {
           number({torque}, Fate::derived, "shaft.speed_rpm, from rad/s") * 30.0 / std::numbers::pi;
       note("shaft.speed_rpm", "control.torque.VS_maxspd, from rad/s");
     } else {
-      note("shaft.speed_rpm", "not in the deck: parked; --set shaft.speed_rpm=... turns it");
-      report_.push_back(
-          {path_, "control", Fate::ignored, "no rated rotor speed: shaft.speed_rpm is 0"});
+      missing("the rated rotor speed", "shaft.speed_rpm");
     }
     const double sign = is_upwind_ ? -1.0 : 1.0;
     const double tilt = to_degrees(number(
@@ -402,13 +411,15 @@ class Importer {
     if (!yaw.empty()) {
       draft_.tower.tip_mass = number({yaw}, Fate::taken, "tower.tip_mass");
       note("tower.tip_mass", yaw.substr(yaw.find('.') + 1));
+    } else {
+      missing("the mass of the yaw bearing", "tower.tip_mass");
     }
     const std::string generator =
         choose({"components.drivetrain.generator.elastic_properties.inertia",
                 "components.drivetrain.generator.elastic_properties_mb.rotor_inertia",
                 "components.nacelle.generator.elastic_properties_mb.rotor_inertia"});
     if (generator.empty()) {
-      note("shaft.inertia", "no inertia of the generator in the deck");
+      missing("the inertia of the generator", "shaft.inertia.axial");
       return;
     }
     const std::string ratio_path = choose(
@@ -499,7 +510,7 @@ class Importer {
 
   void read_damping(const std::string& path, DraftBeam& beam, const std::string& key) {
     if (path.empty()) {
-      note(key, "not in the deck");
+      missing("structural_damping", key);
       return;
     }
     const YamlNode* node = find(path);
@@ -584,7 +595,7 @@ class Importer {
                  "tower.damping");
     if (!elastic.empty()) compare_tower(elastic);
     draft_.tower.elements = tower_elements;
-    draft_.tower.order = element_order;
+    draft_.tower.order = tower_order;
     note("tower.elements", "chosen by the importer");
     note("tower.sections",
          "rings of the layers of the wall; mass and inertia times "
@@ -732,7 +743,7 @@ class Importer {
     read_blade_sections(elastic, twist);
     read_damping(choose({elastic + ".structural_damping"}), draft_.blade, "blades.damping");
     draft_.blade.elements = blade_elements;
-    draft_.blade.order = element_order;
+    draft_.blade.order = blade_order;
     note("blades.elements", "chosen by the importer");
     note("blades.sections", "matrices of windIO, turned to b1 = z, b2 = -y, b3 = x");
   }

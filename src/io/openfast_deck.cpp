@@ -146,7 +146,9 @@ std::optional<double> parse_deck_number(const std::string& word) {
 }
 
 Deck::Deck(std::string path, DeckErrors& errors) : path_(std::move(path)), errors_(errors) {
-  const std::vector<std::string> lines = split_lines(read_text(path_));
+  const std::string text = read_text(path_);
+  ends_with_line_ = text.empty() || text.back() == '\n' || text.back() == '\r';
+  const std::vector<std::string> lines = split_lines(text);
   bool in_output_list = false;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     lines_.push_back(split(lines[i]));

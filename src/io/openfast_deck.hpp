@@ -79,6 +79,10 @@ class Deck {
   DeckTable table(const std::vector<std::string>& names, int count, const std::string& count_key);
   /// The line that has this word, without case; 0 where there is none.
   int find_line(const std::string& word) const;
+  /// Whether the file ends inside its last line, and that is `line`: it may be cut off in a number.
+  bool ends_inside(int line) const {
+    return !ends_with_line_ && line == static_cast<int>(lines_.size());
+  }
   /// Rows of one or six numbers behind a line, to the end of the file.
   std::vector<DeckRow> rows_after(int line);
 
@@ -94,6 +98,7 @@ class Deck {
   std::string title_;
   std::vector<std::vector<DeckWord>> lines_;  ///< from line 1
   std::vector<DeckEntry> entries_;
+  bool ends_with_line_ = true;
 };
 
 }  // namespace samara::io
