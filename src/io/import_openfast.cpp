@@ -877,7 +877,7 @@ class Importer {
 
   /// The line above the first station.
   int find_body(Deck& deck) {
-    const int heading = deck.find_line("DISTRIBUTED");
+    const int heading = deck.find_heading("DISTRIBUTED");
     if (heading == 0)
       errors_.add(deck.path(), "missing heading \"DISTRIBUTED PROPERTIES\" above the stations");
     return heading;

@@ -22,6 +22,9 @@ constexpr double straight_tolerance = 1e-9;
 /// More mass per length [kg/m] than any tower or monopile of steel has.
 constexpr double most_mass = 1e5;
 
+/// Of the hub, stated and found [m].
+constexpr double height_tolerance = 1e-3;
+
 constexpr int blade_elements = 12;
 constexpr int tower_elements = 8;
 constexpr int blade_order = 3;
@@ -306,9 +309,11 @@ class Importer {
       draft_.speed_rpm = number({speed}, Fate::taken, "shaft.speed_rpm, the rated one");
       note("shaft.speed_rpm", "control.rated_rotor_speed");
     } else if (const std::string torque = choose({"control.torque.VS_maxspd"}); !torque.empty()) {
-      draft_.speed_rpm =
-          number({torque}, Fate::derived, "shaft.speed_rpm, from rad/s") * 30.0 / std::numbers::pi;
-      note("shaft.speed_rpm", "control.torque.VS_maxspd, from rad/s");
+      const double value = number({torque}, is_first_ ? Fate::derived : Fate::taken,
+                                  is_first_ ? "shaft.speed_rpm, from rad/s" : "shaft.speed_rpm");
+      draft_.speed_rpm = is_first_ ? value * 30.0 / std::numbers::pi : value;
+      note("shaft.speed_rpm",
+           is_first_ ? "control.torque.VS_maxspd, from rad/s" : "control.torque.VS_maxspd");
     } else {
       missing("the rated rotor speed", "shaft.speed_rpm");
     }
@@ -535,9 +540,12 @@ class Importer {
       const YamlNode* own = node.find("name");
       if (own == nullptr || own->text != name) continue;
       Material material;
-      for (const auto& [key, value] : {std::pair<const char*, double*>{"rho", &material.density},
-                                       {"E", &material.young},
-                                       {"G", &material.shear}}) {
+      double poisson = 0.0;
+      const bool has_shear = node.find("G") != nullptr;  // else it follows from nu
+      for (const auto& [key, value] :
+           {std::pair<const char*, double*>{"rho", &material.density},
+            {"E", &material.young},
+            {has_shear ? "G" : "nu", has_shear ? &material.shear : &poisson}}) {
         const YamlNode* entry = node.find(key);
         const std::string where = "materials." + name + "." + key;
         if (entry == nullptr) {
@@ -548,6 +556,7 @@ class Importer {
         if (!(*value > 0.0)) errors_.add(place(*entry), where + ": expected a number > 0");
         report_.push_back({place(*entry), where, Fate::derived, "sections of the tower"});
       }
+      if (!has_shear) material.shear = material.young / (2.0 * (1.0 + poisson));
       return material;
     }
     refuse(user, "there is no material \"" + name + "\" in materials");
@@ -574,6 +583,7 @@ class Importer {
     note("tower.length", "reference_axis, from its foot at z = " + rounded(foot(2)));
     note("tower.reference_line", "reference_axis from its foot, [-y, x, z]");
 
+    compare_height(foot(2) + draft_.tower.length);
     const Curve diameter = curve(diameter_path);
     say(diameter_path, Fate::derived, "tower.sections");
     const std::string outfitting = choose({structure + ".outfitting_factor"});
@@ -600,6 +610,19 @@ class Importer {
     note("tower.sections",
          "rings of the layers of the wall; mass and inertia times "
          "outfitting_factor");
+  }
+
+  /// The deck states the height of the hub twice; what the parts add up to counts.
+  void compare_height(double top) {
+    const std::string path = choose({"assembly.hub_height"});
+    if (path.empty()) return;
+    const double stated = number_at(path, *find(path));
+    const double hub = top + draft_.height + draft_.overhang * std::sin(draft_.tilt_deg / degrees);
+    say(path, Fate::ignored,
+        "the parts put the hub at " + rounded(hub) + " m" +
+            (std::abs(hub - stated) > height_tolerance
+                 ? ", which differs by " + rounded(hub - stated, 3) + " m"
+                 : ", as stated"));
   }
 
   /// Rings one inside the other, the first layer outside.

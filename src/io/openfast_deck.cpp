@@ -279,10 +279,12 @@ std::string Deck::file(const std::string& key) {
   return "";
 }
 
-int Deck::find_line(const std::string& word) const {
-  for (std::size_t i = 0; i < lines_.size(); ++i)
+int Deck::find_heading(const std::string& word) const {
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (lines_[i].empty() || !is_heading(lines_[i][0].text)) continue;
     for (const DeckWord& candidate : lines_[i])
       if (fold(candidate.text) == fold(word)) return static_cast<int>(i + 1);
+  }
   return 0;
 }
 

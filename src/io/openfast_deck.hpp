@@ -43,7 +43,7 @@ struct DeckTable {
   std::vector<int> lines;                    ///< of the rows
 };
 
-/// One number or two groups of six, with their line: the body of BeamDyn's blade file.
+/// A row of numbers of the body of BeamDyn's blade file.
 struct DeckRow {
   int line = 0;
   std::vector<double> numbers;
@@ -77,8 +77,8 @@ class Deck {
 
   /// The table that has the column `names[0]`; `count` rows, which the key `count_key` has said.
   DeckTable table(const std::vector<std::string>& names, int count, const std::string& count_key);
-  /// The line that has this word, without case; 0 where there is none.
-  int find_line(const std::string& word) const;
+  /// The heading (a line of dashes) that has this word, without case; 0 where there is none.
+  int find_heading(const std::string& word) const;
   /// Whether the file ends inside its last line, and that is `line`: it may be cut off in a number.
   bool ends_inside(int line) const {
     return !ends_with_line_ && line == static_cast<int>(lines_.size());

@@ -158,6 +158,19 @@ class RealDecks(ProgramTest):
             found = float(re.search(rf"^{part} +(\S+)", text, re.MULTILINE).group(1))
             self.assertLess(abs(found / mass - 1), tolerance, part)
 
+    def test_frequencies_of_the_5_mw_turbine(self):
+        # NREL/TP-500-38060, table 9-1 (FAST, ADAMS), parked. There the shaft twists and yaw is
+        # elastic, so only modes that these do not enter are compared.
+        self.import_openfast(self.five_megawatts(1), "case.yaml")
+        self.succeed("modes", "case.yaml", "--set", "shaft.speed_rpm=0", "--csv", "modes.csv")
+        with open(self.folder / "modes.csv", encoding="utf-8") as file:
+            rows = [(float(row["frequency_hz"]), row["label"]) for row in csv.DictReader(file)]
+        for label, published in (("tower lateral", 0.3120), ("tower fore-aft", 0.3195),
+                                 ("blade flap", 0.6675), ("blade lead-lag", 1.0793)):
+            found = [f for f, name in rows if f > 0 and name.startswith(label)]
+            nearest = min(found, key=lambda f: abs(f - published))
+            self.assertLess(abs(nearest / published - 1), 0.03, label)
+
     def frequencies(self, blade):
         """First two flap and first edge frequency of a clamped blade [Hz]."""
         self.write("blade.yaml", blade)
