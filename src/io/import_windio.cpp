@@ -77,6 +77,7 @@ class Importer {
   Import run() {
     if (root_.find("components") == nullptr)
       throw InputError(path_ + ": missing key \"components\": not a turbine of windIO");
+    refuse_duplicates(root_, "");
     read_version();
     read_top();
     read_supports();
@@ -157,9 +158,21 @@ class Importer {
 
   void note(const std::string& key, const std::string& words) { draft_.notes[key] = words; }
 
+  /// A key given twice would be read once, whichever was meant.
+  void refuse_duplicates(const YamlNode& node, const std::string& path) {
+    for (const YamlNode& child : node.children) {
+      const std::string below =
+          child.key.empty() ? path : (path.empty() ? child.key : path + "." + child.key);
+      if (node.kind == YamlNode::Kind::map && node.find(child.key) != &child)
+        errors_.add(place(child), below + ": given twice, first in line " +
+                                      std::to_string(node.find(child.key)->place.line));
+      refuse_duplicates(child, below);
+    }
+  }
+
   /// What a deck may leave out is 0 in the case.
   void missing(const std::string& what, const std::string& key) {
-    note(key, "not in the deck");
+    note(key == "shaft.inertia.axial" ? "shaft.inertia" : key, "not in the deck");
     report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
   }
 
@@ -427,10 +440,9 @@ class Importer {
       missing("the inertia of the generator", "shaft.inertia.axial");
       return;
     }
-    const std::string ratio_path = choose(
-        {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"});
-    const double ratio =
-        ratio_path.empty() ? 1.0 : number({ratio_path}, Fate::derived, "shaft.inertia.axial");
+    const double ratio = number(
+        {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
+        Fate::derived, "shaft.inertia.axial");
     const Vector3 inertia =
         inertia_of(generator, "shaft.inertia.axial = Ixx gear_ratio^2; its mass is the nacelle's");
     draft_.shaft_inertia = inertia(0) * ratio * ratio;
@@ -452,8 +464,11 @@ class Importer {
         require({"components.hub.elastic_properties", "components.hub.elastic_properties_mb"});
     if (block.empty()) return;
     draft_.hub_mass = number({block + ".mass", block + ".system_mass"}, Fate::taken, "hub.mass");
-    const Vector3 center = point_of(choose({block + ".location", block + ".system_center_mass"}),
-                                    "hub.center_of_mass (x from the apex toward the nacelle)");
+    const std::string location = choose({block + ".location", block + ".system_center_mass"});
+    if (location.empty() && !is_first_) require({block + ".location"});
+    if (location.empty() && is_first_) missing("the hub's centre of mass", "hub.center_of_mass");
+    const Vector3 center =
+        point_of(location, "hub.center_of_mass (x from the apex toward the nacelle)");
     const Vector3 inertia =
         inertia_of(require({block + ".inertia", block + ".system_inertia"}),
                    "hub.inertia = [Iyy, Ixx, Izz] - mass x^2 across the shaft: from the apex to "
@@ -466,7 +481,7 @@ class Importer {
     if (inertia(1) < shift || inertia(2) < shift)
       refuse(block, "the inertia across the shaft is less than mass x^2 = " + rounded(shift) +
                         ", which no body has");
-    note("hub.center_of_mass", "from the apex");
+    if (!location.empty()) note("hub.center_of_mass", "from the apex");
     note("hub.inertia", "Iyy, Ixx, Izz, moved from the apex to its own centre");
   }
 
@@ -586,11 +601,9 @@ class Importer {
     compare_height(foot(2) + draft_.tower.length);
     const Curve diameter = curve(diameter_path);
     say(diameter_path, Fate::derived, "tower.sections");
-    const std::string outfitting = choose({structure + ".outfitting_factor"});
+    const std::string outfitting = structure + ".outfitting_factor";
     const double factor =
-        outfitting.empty()
-            ? 1.0
-            : number({outfitting}, Fate::derived, "multiplies mass and inertia of all sections");
+        number({outfitting}, Fate::derived, "multiplies mass and inertia of all sections");
     if (!(factor > 0.0)) refuse(outfitting, "expected a number > 0");
     const YamlNode* layers = find(structure + ".layers");
     if (layers == nullptr || layers->kind != YamlNode::Kind::list || layers->children.empty()) {

@@ -271,8 +271,7 @@ std::string Deck::file(const std::string& key) {
   std::replace(name.begin(), name.end(), '\\', '/');
   const fs::path path(name);
   const fs::path folder = fs::path(path_).parent_path();
-  const std::string full =
-      (path.is_absolute() ? path : (folder / path)).lexically_normal().string();
+  std::string full = (path.is_absolute() ? path : (folder / path)).lexically_normal().string();
   std::error_code error;
   if (fs::exists(full, error)) return full;
   errors_.add(place_of(key), key + ": no such file " + full);
@@ -383,10 +382,9 @@ std::vector<DeckRow> Deck::rows_after(int line) {
       const std::optional<double> value = parse_deck_number(word.text);
       if (!value) {
         // Text behind one or six numbers is a comment.
-        if (row.numbers.size() != 1 && row.numbers.size() != 6)
-          errors_.add(place(row.line), "expected a number" + got(word.text));
-        else if (std::isalpha(static_cast<unsigned char>(word.text[0])) == 0)
-          errors_.add(place(row.line), "expected a number" + got(word.text));
+        const bool is_row = row.numbers.size() == 1 || row.numbers.size() == 6;
+        const bool is_text = std::isalpha(static_cast<unsigned char>(word.text[0])) != 0;
+        if (!is_row || !is_text) errors_.add(place(row.line), "expected a number" + got(word.text));
         break;
       }
       row.numbers.push_back(*value);

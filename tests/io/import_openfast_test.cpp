@@ -3,6 +3,7 @@
 #include <numbers>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 #include "import_test.hpp"
 
@@ -483,6 +484,38 @@ BOOST_AUTO_TEST_CASE(a_truncated_deck_gives_no_wrong_number) {
         } catch (const InputError&) {
         }
       }
+      folder.write(file, text);
+    }
+  }
+}
+
+// Without one of its lines, or with one given twice, a deck is refused or gives the same case.
+BOOST_AUTO_TEST_CASE(a_line_too_few_or_too_many_gives_no_wrong_number) {
+  for (const auto& [name, main, files] :
+       {std::tuple<std::string, std::string, std::vector<std::string>>{
+            "three", "Main.fst", {"Main.fst", "ElastoDyn.dat", "Tower.dat", "Blade.dat"}},
+        {"three", "Main_BeamDyn.fst", {"Main_BeamDyn.fst", "BeamDyn.dat", "BeamDyn_Blade.dat"}},
+        {"teeter", "Main.fst", {"ElastoDyn.dat", "Blade_heavy.dat"}}}) {
+    const DeckFolder folder(name);
+    const std::string expected = import_main(folder, main).text;
+    for (const std::string& file : files) {
+      const std::string text = folder.text(file);
+      const std::vector<std::string> lines = lines_of(text);
+      for (std::size_t i = 2; i < lines.size(); ++i)  // behind the title
+        for (const bool twice : {false, true}) {
+          if (twice && i % 4 != 0) continue;  // spares time
+          std::vector<std::string> mangled = lines;
+          if (twice)
+            mangled.insert(mangled.begin() + static_cast<long>(i), lines[i]);
+          else
+            mangled.erase(mangled.begin() + static_cast<long>(i));
+          folder.write(file, join(mangled));
+          try {
+            BOOST_TEST(import_main(folder, main).text == expected, file + ": " + lines[i]);
+          } catch (const InputError& error) {
+            BOOST_TEST(holds(error.what(), folder.path.string()));
+          }
+        }
       folder.write(file, text);
     }
   }

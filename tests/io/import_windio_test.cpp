@@ -228,6 +228,36 @@ BOOST_AUTO_TEST_CASE(line_ends_do_not_matter) {
   BOOST_TEST(import_windio(folder / "second.yaml", tower_only).text == expected);
 }
 
+BOOST_AUTO_TEST_CASE(a_key_given_twice_is_refused) {
+  const DeckFolder folder("windio");
+  folder.replace("second.yaml", "  yaw:\n", "  yaw:\n  yaw:\n");
+  BOOST_TEST(holds(message_of([&] { import_windio(folder / "second.yaml", tower_only); }),
+                   "components.yaw: given twice"));
+}
+
+// A deck may lack what is said to be 0; without any other line it is refused.
+BOOST_AUTO_TEST_CASE(a_missing_line_gives_no_wrong_number) {
+  const DeckFolder folder("windio");
+  const std::string text = folder.text("second.yaml");
+  const std::string expected = import_windio(folder / "second.yaml", tower_only).text;
+  std::size_t start = text.find('\n') + 1;
+  while (start < text.size()) {
+    const std::size_t end = text.find('\n', start) + 1;
+    const std::string line = text.substr(start, end - start);
+    folder.write("second.yaml", text.substr(0, start) + text.substr(end));
+    try {
+      const Import import = import_windio(folder / "second.yaml", tower_only);
+      const bool is_said =
+          std::any_of(import.report.begin(), import.report.end(), [](const auto& entry) {
+            return holds(entry.words, "not in the deck") && holds(entry.words, "is 0");
+          });
+      BOOST_TEST((import.text == expected || is_said || holds(line, "name:")), line);
+    } catch (const InputError&) {
+    }
+    start = end;
+  }
+}
+
 // Cut off inside a line it is refused; cut off between lines it may lack only what is said to be
 // missing: the rotor speed stands last.
 BOOST_AUTO_TEST_CASE(a_truncated_deck_gives_no_wrong_number) {
