@@ -139,7 +139,7 @@ class Importer {
 
   /// The first spelling that is there; none is an error that names the last one.
   std::string require(const Paths& paths) {
-    const std::string path = choose(paths);
+    std::string path = choose(paths);
     if (path.empty()) {
       std::string words;
       for (const std::string& candidate : paths)
