@@ -519,6 +519,7 @@ class Importer {
       }
     }
     std::vector<Vector3> line;
+    line.reserve(points.size());
     for (const Vector3& point : points) line.push_back(turn(point));
     if (across <= straight_tolerance * points.back()(2)) {
       beam.length = points.back()(2);

@@ -159,7 +159,7 @@ Deck::Deck(std::string path, DeckErrors& errors) : path_(std::move(path)), error
       const bool could_be_value =
           words[0].quoted || parse_deck_number(words[0].text) || parse_flag(words[0].text);
       if (!could_be_value) {
-        title_ = lines[i].substr(lines[i].find_first_not_of(" \t"));
+        if (!is_heading(words[0].text)) title_ = lines[i].substr(lines[i].find_first_not_of(" \t"));
         continue;
       }
     }
