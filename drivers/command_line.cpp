@@ -233,9 +233,8 @@ class Parser {
     if (!line_.petsc_options.empty())
       throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
     if (line_.result_path.empty() && !line_.report)
-      throw InputError("missing -o CASE.yaml; hint: --report writes no case, only the report");
-    if (!line_.result_path.empty() && line_.report)
-      throw InputError("--report writes no case; leave it or -o out, the report is printed anyway");
+      throw InputError(
+          "missing -o CASE.yaml; hint: --report alone prints the report and writes no case");
   }
 
   const std::vector<std::string>& arguments_;
@@ -247,7 +246,7 @@ class Parser {
 constexpr char import_lines[] =
     R"(options
   -o CASE.yaml      the case file; only a case of samara is ever overwritten
-  --report          prints the report and writes nothing
+  --report          makes -o optional: the report alone, nothing is written
   --tower-only      leaves out what carries the tower, which is clamped at its foot
   --help            this text
 )";

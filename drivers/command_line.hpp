@@ -34,7 +34,7 @@ struct CommandLine {
   std::string format;                ///< of a deck
   std::string case_path;             ///< or the deck
   bool tower_only = false;
-  bool report = false;  ///< only
+  bool report = false;  ///< is wanted, if need be without a case
   std::vector<std::string> settings;
   std::string result_path;  ///< empty: not given
   std::string csv_path;     ///< empty: none wanted
