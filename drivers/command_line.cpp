@@ -4,6 +4,7 @@
 #include <cctype>
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "samara/base/error.hpp"
@@ -118,6 +119,10 @@ class Parser {
       line_.request = Request::version;
     else if (name == "--set")
       line_.settings.push_back(value_of(name, "key=value, e.g. --set blades.elements=8", value));
+    else if (word == "--tower-only")
+      line_.tower_only = true;
+    else if (word == "--report")
+      line_.report = true;
     else if (name == "--csv")
       set_once(line_.csv_path, name, value_of(name, "a path, e.g. --csv modes.csv", value));
     else
@@ -125,7 +130,8 @@ class Parser {
   }
 
   static std::string unknown_option_words(const std::string& name) {
-    const std::string suggestion = suggest(name, {"--set", "--csv", "--help", "--version"});
+    const std::string suggestion =
+        suggest(name, {"--set", "--csv", "--tower-only", "--report", "--help", "--version"});
     return suggestion.empty() ? "; hint: samara --help; options of PETSc have one dash"
                               : suggestion;
   }
@@ -158,12 +164,28 @@ class Parser {
                                       [&](const Command& c) { return c.name == word; });
       if (found == commands_.end()) throw InputError(unknown_command(word));
       line_.command = &*found;
+    } else if (line_.command->formats != nullptr && line_.format.empty()) {
+      require_format(word);
+      line_.format = word;
     } else if (line_.case_path.empty() && !word.empty()) {
       line_.case_path = word;
     } else {
-      throw InputError("unexpected argument \"" + word + "\": the case is " + line_.case_path +
-                       ", one a run; hint: samara " + std::string(line_.command->name) + " --help");
+      throw InputError("unexpected argument \"" + word + "\": the " +
+                       (line_.command->formats == nullptr ? "case" : "deck") + " is " +
+                       line_.case_path + ", one a run; hint: samara " +
+                       std::string(line_.command->name) + " --help");
     }
+  }
+
+  void require_format(const std::string& word) const {
+    std::vector<std::string> formats;
+    std::istringstream words(line_.command->formats);
+    for (std::string format; std::getline(words, format, '|');) formats.push_back(format);
+    if (std::find(formats.begin(), formats.end(), word) != formats.end()) return;
+    const std::string suggestion = suggest(word, formats);
+    throw InputError(
+        "unknown format \"" + word + "\"" +
+        (suggestion.empty() ? "; hint: the formats are " + join(formats, ", ") : suggestion));
   }
 
   std::string unknown_command(const std::string& word) const {
@@ -178,6 +200,13 @@ class Parser {
       throw InputError("missing command; hint: the commands are " +
                        join(names_of(commands_), ", ") + "; samara --help explains them");
     const std::string name = line_.command->name;
+    if (line_.command->formats != nullptr) {
+      require_deck(name);
+      return;
+    }
+    if (line_.tower_only || line_.report)
+      throw InputError(std::string(line_.tower_only ? "--tower-only" : "--report") + ": samara " +
+                       name + " has no use for it, samara import has");
     if (line_.case_path.empty()) {
       std::string hint = "samara " + name + " --help shows an example";
       for (std::size_t i = 1; i < line_.petsc_options.size(); ++i)
@@ -192,11 +221,35 @@ class Parser {
       throw InputError("-o and --csv name the same file; give each its own");
   }
 
+  void require_deck(const std::string& name) const {
+    const std::string usage =
+        "samara " + name + " " + line_.command->formats + " DECK -o CASE.yaml";
+    if (line_.format.empty()) throw InputError("missing format of the deck: " + usage);
+    if (line_.case_path.empty()) throw InputError("missing deck: " + usage);
+    if (!line_.settings.empty() || !line_.csv_path.empty())
+      throw InputError(std::string(line_.csv_path.empty() ? "--set" : "--csv") + ": samara " +
+                       name +
+                       " has no use for it; hint: it serves the commands that read the case");
+    if (!line_.petsc_options.empty())
+      throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
+    if (line_.result_path.empty() && !line_.report)
+      throw InputError(
+          "missing -o CASE.yaml; hint: --report alone prints the report and writes no case");
+  }
+
   const std::vector<std::string>& arguments_;
   std::span<const Command> commands_;
   std::size_t next_ = 0;
   CommandLine line_;
 };
+
+constexpr char import_lines[] =
+    R"(options
+  -o CASE.yaml      the case file; only a case of samara is ever overwritten
+  --report          makes -o optional: the report alone, nothing is written
+  --tower-only      leaves out what carries the tower, which is clamped at its foot
+  --help            this text
+)";
 
 constexpr char option_lines[] =
     R"(options
@@ -224,13 +277,19 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
   const std::string options = " CASE.yaml [options]";
   if (line.command != nullptr) {
     const Command& command = *line.command;
+    if (command.formats != nullptr)
+      return std::string("samara ") + command.name + " " + command.formats +
+             " DECK -o CASE.yaml [options]\n\n" + command.description + "\nexample\n  samara " +
+             command.name + " " + command.example + "\n\n" + import_lines;
     return std::string("samara ") + command.name + options + "\n\n" + command.description +
            "\nexample\n  samara " + command.name + " " + command.example + "\n\n" + option_lines;
   }
-  std::string text = "samara " + std::string(version) +
-                     ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" +
-                     "  samara <command>" + options + "\n  mpirun -n 4 samara <command>" + options +
-                     "\n\ncommands\n";
+  std::string text =
+      "samara " + std::string(version) +
+      ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" + "  samara <command>" +
+      options +
+      "\n  samara import openfast|windio DECK -o CASE.yaml\n  mpirun -n 4 samara <command>" +
+      options + "\n\ncommands\n";
   for (const Command& command : commands)
     text += "  " + padded(command.name, 10) + command.summary + "\n";
   return text + "\nexample\n  samara floquet inputs/lee2002/baseline.yaml --set shaft.speed=5\n\n" +

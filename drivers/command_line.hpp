@@ -9,7 +9,9 @@
 
 namespace samara::drivers {
 
-/// A sub-command.
+struct CommandLine;
+
+/// A sub-command. One with `formats` reads the deck of another program, not a case.
 struct Command {
   const char* name;
   const char* summary;
@@ -19,6 +21,8 @@ struct Command {
   bool has_csv;
   void (*require)(const io::Case&);  ///< refuses before anything is solved; may be null
   void (*run)(const Job&);
+  const char* formats = nullptr;  ///< of decks, with bars between: the word before the path
+  void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`
 };
 
 enum class Request { run, help, version };
@@ -27,7 +31,10 @@ struct CommandLine {
   Request request = Request::run;
   const Command* command = nullptr;  ///< null only for --help and --version of the program
   std::string text;                  ///< as typed, quoted for a shell
-  std::string case_path;
+  std::string format;                ///< of a deck
+  std::string case_path;             ///< or the deck
+  bool tower_only = false;
+  bool report = false;  ///< is wanted, if need be without a case
   std::vector<std::string> settings;
   std::string result_path;  ///< empty: not given
   std::string csv_path;     ///< empty: none wanted

@@ -22,7 +22,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 4> commands{{
+constexpr std::array<Command, 5> commands{{
     {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
      "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
      "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
@@ -40,6 +40,12 @@ constexpr std::array<Command, 4> commands{{
      "frequencies, damping, harmonics, and where the energy is.\n",
      "inputs/lee2002/baseline.yaml --set blades.elements=8 --csv modes.csv", true, true,
      require_speed, run_floquet},
+    {"import", "a case file from a turbine of OpenFAST or windIO",
+     "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it as a\n"
+     "case file, and reports key by key what was taken, derived or ignored, and why. See\n"
+     "docs/import.md.\n",
+     "openfast Main.fst -o turbine.yaml", true, false, nullptr, nullptr, "openfast|windio",
+     run_import},
 }};
 
 /// How a piece of work ended.
@@ -121,13 +127,19 @@ int run(const std::vector<std::string>& arguments) {
     print_text(line);
     return 0;
   }
-  if (outcome.code == 0) outcome = attempt(line.case_path, [&] { job = prepare(line); });
+  const bool converts = outcome.code == 0 && line.command->convert != nullptr;
+  if (converts && Session::launch_rank() == 0)
+    outcome = attempt("", [&] { line.command->convert(line); });
+  if (outcome.code == 0 && !converts)
+    outcome = attempt(line.case_path, [&] { job = prepare(line); });
+  if (converts && outcome.code == 0 && !Session::is_launched()) return 0;
   if (outcome.code != 0 && !Session::is_launched()) {
     std::fputs(outcome.message.c_str(), stderr);
     return outcome.code;
   }
   const Session session(line.petsc_options);
   if (const int code = session.agree(outcome.code, outcome.message)) return code;
+  if (converts) return 0;
   outcome = attempt(line.case_path, [&] { line.command->run(job); });
   const int code = session.agree(outcome.code, outcome.message);
   if (code == 0 && Session::rank() == 0) report_unused_options();

@@ -591,10 +591,14 @@ std::string read_file(const std::string& path) {
 }  // namespace
 
 Case read_case(const std::string& path, const std::vector<std::string>& settings) {
+  return parse_case(path, read_file(path), settings);
+}
+
+Case parse_case(const std::string& path, const std::string& text,
+                const std::vector<std::string>& settings) {
   Case result;
   result.path = path;
   result.settings = settings;
-  const std::string text = read_file(path);
   for (const std::string& setting : settings) result.text += "# --set " + setting + "\n";
   result.text += text;
 

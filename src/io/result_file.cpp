@@ -194,34 +194,6 @@ void write_participation(Hdf5File& file, const std::string& group, const ModeSet
              {"1", no_frame, "k of the columns of participation, in the count of harmonic"});
 }
 
-/// The folder that will hold `path`; "." for a bare name.
-fs::path folder_of(const std::string& path) {
-  const fs::path parent = fs::path(path).parent_path();
-  return parent.empty() ? fs::path(".") : parent;
-}
-
-/// Refuses a path where no file can be made. False: nothing is there yet.
-bool require_writable(const std::string& path) {
-  std::error_code error;
-  const fs::path folder = folder_of(path);
-  const fs::file_status above = fs::status(folder, error);
-  if (above.type() == fs::file_type::not_found)
-    throw InputError(path + ": there is no folder " + folder.string() + "; hint: make it first");
-  if (!fs::is_directory(above))
-    throw InputError(path + ": " + folder.string() + " is not a folder; hint: -o names a file");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw InputError(path + ": no permission to write in " + folder.string() +
-                     "; hint: -o names another place");
-  const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status))
-    throw InputError(path + ": a folder; hint: give the name of a file in it");
-  if (!fs::exists(status)) return false;
-  if (!fs::is_regular_file(status)) throw InputError(path + ": not a plain file");
-  if (::access(path.c_str(), W_OK) != 0)
-    throw InputError(path + ": write-protected; hint: give another name");
-  return true;
-}
-
 bool has_hdf5_signature(const std::string& path) {
   constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
   std::array<char, 8> start{};

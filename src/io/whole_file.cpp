@@ -13,6 +13,16 @@ namespace samara::io {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The folder that will hold `path`; "." for a bare name.
+fs::path folder_of(const std::string& path) {
+  const fs::path parent = fs::path(path).parent_path();
+  return parent.empty() ? fs::path(".") : parent;
+}
+
+}  // namespace
+
 void write_whole_file(const std::string& path, std::span<const char> content) {
   const fs::path target(path);
   const std::string name = "." + target.filename().string() + "." + std::to_string(::getpid());
@@ -30,6 +40,27 @@ void write_whole_file(const std::string& path, std::span<const char> content) {
   std::error_code ignored;
   fs::remove(temporary, ignored);
   throw InternalError(path + ": cannot be written: " + error.message());
+}
+
+bool require_writable(const std::string& path) {
+  std::error_code error;
+  const fs::path folder = folder_of(path);
+  const fs::file_status above = fs::status(folder, error);
+  if (above.type() == fs::file_type::not_found)
+    throw InputError(path + ": there is no folder " + folder.string() + "; hint: make it first");
+  if (!fs::is_directory(above))
+    throw InputError(path + ": " + folder.string() + " is not a folder; hint: -o names a file");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(path + ": no permission to write in " + folder.string() +
+                     "; hint: -o names another place");
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status))
+    throw InputError(path + ": a folder; hint: give the name of a file in it");
+  if (!fs::exists(status)) return false;
+  if (!fs::is_regular_file(status)) throw InputError(path + ": not a plain file");
+  if (::access(path.c_str(), W_OK) != 0)
+    throw InputError(path + ": write-protected; hint: give another name");
+  return true;
 }
 
 }  // namespace samara::io

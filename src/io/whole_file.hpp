@@ -11,4 +11,8 @@ namespace samara::io {
 /// @throws InternalError
 void write_whole_file(const std::string& path, std::span<const char> content);
 
+/// False: nothing is at `path` yet.
+/// @throws InputError where no file can be written there, whatever it holds
+bool require_writable(const std::string& path);
+
 }  // namespace samara::io

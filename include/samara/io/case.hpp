@@ -23,4 +23,8 @@ struct Case {
 /// @throws InputError with every error found, one a line, `path:line:column: where: what`.
 Case read_case(const std::string& path, const std::vector<std::string>& settings);
 
+/// The same of a text; `path` is its name in errors.
+Case parse_case(const std::string& path, const std::string& text,
+                const std::vector<std::string>& settings);
+
 }  // namespace samara::io

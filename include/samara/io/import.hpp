@@ -1,0 +1,47 @@
+// Reads turbines in the formats of other programs and states them as case files (docs/import.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace samara::io {
+
+/// What became of a key of the deck.
+enum class Fate {
+  taken,    ///< the value stands in the case as it is, or in another unit or axis
+  derived,  ///< the case holds what follows from it
+  ignored   ///< the case holds nothing of it
+};
+
+struct ImportLine {
+  std::string place;  ///< file, and line where there is one
+  std::string key;    ///< as the deck names it
+  Fate fate = Fate::taken;
+  std::string words;  ///< where it went, or why it did not
+};
+
+struct ImportOptions {
+  bool tower_only = false;  ///< leave out what carries the tower, which is clamped at its foot
+};
+
+struct Import {
+  std::string text;  ///< a complete, commented case file
+  std::vector<ImportLine> report;
+};
+
+/// Reads the main file of OpenFAST (8.16 to 5.0) and the files of ElastoDyn and BeamDyn it names.
+/// @throws InputError with every error found, one a line, `file:line: key: what`.
+Import import_openfast(const std::string& path, const ImportOptions& options);
+
+/// Reads a turbine of windIO 1.0 or 2.0.
+/// @throws InputError as above
+Import import_windio(const std::string& path, const ImportOptions& options);
+
+/// @throws InputError where a case cannot be written at `path`: no such folder, no permission, or
+/// something there that is no case file of this program.
+void require_case_path(const std::string& path);
+
+/// Writes the case as a whole or not at all.
+void write_case(const std::string& path, const Import& import);
+
+}  // namespace samara::io

@@ -1,0 +1,64 @@
+// What the importers share: the report, functions along a beam, section axes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/io/import.hpp"
+#include "samara/math/types.hpp"
+
+#include "case_writer.hpp"
+#include "openfast_deck.hpp"
+
+namespace samara::io {
+
+/// A property along a beam, linear between its points. A place given twice is a jump.
+struct Curve {
+  std::vector<double> grid;  ///< 0 to 1, not falling
+  std::vector<double> values;
+};
+
+/// A place on a beam where something may jump: just before or just behind it.
+struct Station {
+  double place = 0.0;
+  bool behind = false;  ///< of a jump
+};
+
+/// All places of the grids, from 0 to 1; a jump of any of them gives two stations. Where places of
+/// several grids are the same to rounding, that of the first grid counts.
+std::vector<Station> merge_grids(const std::vector<const std::vector<double>*>& grids);
+
+/// Linear between the points, constant outside.
+double interpolate(const Curve& curve, const Station& station);
+
+/// `at` of a section: the one behind a jump stands as close as a double allows without risk.
+double place_of(const Station& station);
+
+/// From the axes of BeamDyn and windIO (x to the suction side, y to the trailing edge, z to the
+/// tip; order shear x, shear y, axial, bending x, bending y, torsion) to b1 b2 b3.
+Matrix6 turn_to_section_axes(const Matrix6& matrix);
+Vector3 turn_to_section_axes(const Vector3& vector);
+Vector6 turn_damping(const Vector6& mu);
+
+/// A section's mass matrix without offsets.
+Matrix6 build_mass_matrix(double mass, const Vector3& inertia);
+
+/// Adds what is wrong with the sections of a beam, each by its place.
+void check_sections(const DraftBeam& beam, const std::string& what,
+                    const std::vector<std::string>& places, DeckErrors& errors);
+
+/// Mass [kg] and first moment [kg m] of a beam along its line.
+struct BeamMass {
+  double mass = 0.0;
+  double moment = 0.0;
+};
+BeamMass integrate_mass(const DraftBeam& beam, double length);
+
+/// Reads the case back: what it states may be refused as a case.
+/// @throws InputError
+void check_import(const Import& import);
+
+/// Texts of a deck may be in any encoding; the case is UTF-8.
+std::string clean_text(const std::string& text);
+
+}  // namespace samara::io

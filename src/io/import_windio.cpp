@@ -1,0 +1,953 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "samara/base/error.hpp"
+#include "samara/model/definition.hpp"
+
+#include "import_common.hpp"
+#include "yaml_tree.hpp"
+
+namespace samara::io {
+namespace {
+
+constexpr double straight_tolerance = 1e-9;
+
+/// More mass per length [kg/m] than any tower or monopile of steel has.
+constexpr double most_mass = 1e5;
+
+/// Of the hub, stated and found [m].
+constexpr double height_tolerance = 1e-3;
+
+constexpr int blade_elements = 12;
+constexpr int tower_elements = 8;
+constexpr int blade_order = 3;
+constexpr int tower_order = 2;
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+struct Material {
+  double density = 0.0;
+  double young = 0.0;
+  double shear = 0.0;
+};
+
+std::string read_text(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) throw InputError(path + ": no such file");
+  if (std::filesystem::is_directory(path, error))
+    throw InputError(path + ": a directory, expected a file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened for reading");
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  if (!text.empty() && text.back() != '\n' && text.back() != '\r')
+    throw InputError(path + ":" + std::to_string(1 + std::count(text.begin(), text.end(), '\n')) +
+                     ": the file ends inside this line, perhaps in a number; hint: if it is "
+                     "whole, end it with a new line");
+  return text;
+}
+
+YamlNode parse_deck(const std::string& path) {
+  try {
+    return parse_yaml(read_text(path));
+  } catch (const YamlError& error) {
+    const std::string line =
+        error.place.line > 0 ? ":" + std::to_string(error.place.line) : std::string();
+    throw InputError(path + line + ": " + error.what());
+  }
+}
+
+/// YAML 1.1 has "15.e+6" and "+1."; from_chars reads all but the sign.
+std::optional<double> parse_number(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::scalar || node.quoted) return {};
+  return parse_deck_number(node.text);
+}
+
+class Importer {
+ public:
+  Importer(std::string path, const ImportOptions& options)
+      : path_(std::move(path)), options_(options), root_(parse_deck(path_)) {}
+
+  Import run() {
+    if (root_.find("components") == nullptr)
+      throw InputError(path_ + ": missing key \"components\": not a turbine of windIO");
+    refuse_duplicates(root_, "");
+    read_version();
+    read_top();
+    read_supports();
+    read_rotor();
+    read_nacelle();
+    read_hub();
+    read_tower();
+    read_blade();
+    errors_.throw_if_any();
+    report_rest(root_, "");
+    Import result;
+    draft_.head = {
+        "Imported by samara from windIO " + std::string(is_first_ ? "1.0" : "2.0") + ", " +
+            clean_text(std::filesystem::path(path_).filename().string()) + ".",
+        "Every key is explained in docs/case_file.md, the import in docs/import.md. SI units."};
+    const BeamMass tower = integrate_mass(draft_.tower, draft_.tower.length);
+    const BeamMass blade = integrate_mass(draft_.blade, draft_.blade.length);
+    draft_.head.push_back("Masses [kg]: tower " + rounded(tower.mass) + ", each blade " +
+                          rounded(blade.mass) + ", hub " + rounded(draft_.hub_mass) + ", nacelle " +
+                          rounded(draft_.nacelle_mass) + ".");
+    result.text = write_case_text(draft_);
+    result.report = std::move(report_);
+    check_import(result);
+    return result;
+  }
+
+ private:
+  // ---- the tree
+
+  using Paths = std::vector<std::string>;
+
+  const YamlNode* find(const std::string& path) const {
+    const YamlNode* node = &root_;
+    std::size_t start = 0;
+    while (node != nullptr && start <= path.size()) {
+      const std::size_t end = std::min(path.find('.', start), path.size());
+      node = node->find(path.substr(start, end - start));
+      start = end + 1;
+    }
+    return node;
+  }
+
+  /// The first of several spellings; empty where the deck has none of them.
+  std::string choose(const Paths& paths) const {
+    for (const std::string& path : paths)
+      if (const YamlNode* node = find(path); node != nullptr && node->kind != YamlNode::Kind::empty)
+        return path;
+    return "";
+  }
+
+  std::string place(const YamlNode& node) const {
+    return path_ + (node.place.line > 0 ? ":" + std::to_string(node.place.line) : std::string());
+  }
+
+  void refuse(const std::string& path, const std::string& what) {
+    const YamlNode* node = find(path);
+    errors_.add(node == nullptr ? path_ : place(*node), path + ": " + what);
+  }
+
+  /// The first spelling that is there; none is an error that names the last one.
+  std::string require(const Paths& paths) {
+    std::string path = choose(paths);
+    if (path.empty()) {
+      std::string words;
+      for (const std::string& candidate : paths)
+        words += (words.empty() ? "\"" : " or \"") + candidate + "\"";
+      errors_.add(path_, "missing key " + words);
+    }
+    return path;
+  }
+
+  void say(const std::string& path, Fate fate, const std::string& words) {
+    const YamlNode* node = find(path);
+    if (node == nullptr) return;
+    used_.insert(path);
+    report_.push_back({place(*node), path, fate, words});
+  }
+
+  void note(const std::string& key, const std::string& words) { draft_.notes[key] = words; }
+
+  /// A key given twice would be read once, whichever was meant.
+  void refuse_duplicates(const YamlNode& node, const std::string& path) {
+    for (const YamlNode& child : node.children) {
+      const std::string below =
+          child.key.empty() ? path : (path.empty() ? child.key : path + "." + child.key);
+      if (node.kind == YamlNode::Kind::map && node.find(child.key) != &child)
+        errors_.add(place(child), below + ": given twice, first in line " +
+                                      std::to_string(node.find(child.key)->place.line));
+      refuse_duplicates(child, below);
+    }
+  }
+
+  /// What a deck may leave out is 0 in the case.
+  void missing(const std::string& what, const std::string& key) {
+    note(key == "shaft.inertia.axial" ? "shaft.inertia" : key, "not in the deck");
+    report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
+  }
+
+  double number_at(const std::string& path, const YamlNode& node) {
+    const std::optional<double> value = parse_number(node);
+    if (!value)
+      errors_.add(place(node),
+                  path + ": expected a number" +
+                      (node.kind == YamlNode::Kind::scalar ? ", got \"" + node.text + "\""
+                                                           : std::string()));
+    return value.value_or(0.0);
+  }
+
+  double number(const Paths& paths, Fate fate, const std::string& words) {
+    const std::string path = require(paths);
+    if (path.empty()) return 0.0;
+    const double value = number_at(path, *find(path));
+    say(path, fate, words);
+    return value;
+  }
+
+  std::vector<double> numbers_at(const std::string& path, const YamlNode& node) {
+    std::vector<double> values;
+    if (node.kind != YamlNode::Kind::list) {
+      errors_.add(place(node), path + ": expected a list of numbers");
+      return values;
+    }
+    for (const YamlNode& child : node.children) values.push_back(number_at(path, child));
+    return values;
+  }
+
+  /// `grid` and a list of the same size.
+  Curve curve(const std::string& path, const std::string& values_key = "values") {
+    Curve result;
+    const YamlNode* node = find(path);
+    const YamlNode* grid = node == nullptr ? nullptr : node->find("grid");
+    const YamlNode* values = node == nullptr ? nullptr : node->find(values_key);
+    if (grid == nullptr || values == nullptr) {
+      errors_.add(node == nullptr ? path_ : place(*node),
+                  path + ": missing key \"" + (grid == nullptr ? "grid" : values_key) + "\"");
+      return {{0.0, 1.0}, {0.0, 0.0}};
+    }
+    result.grid = numbers_at(path + ".grid", *grid);
+    result.values = numbers_at(path + "." + values_key, *values);
+    if (result.grid.size() != result.values.size() || result.grid.empty()) {
+      errors_.add(place(*values), path + ": grid has " + std::to_string(result.grid.size()) +
+                                      " places, " + values_key + " " +
+                                      std::to_string(result.values.size()));
+      return {{0.0, 1.0}, {0.0, 0.0}};
+    }
+    for (std::size_t i = 0; i < result.grid.size(); ++i)
+      if (result.grid[i] < 0.0 || result.grid[i] > 1.0 ||
+          (i > 0 && result.grid[i] < result.grid[i - 1])) {
+        errors_.add(place(*grid), path +
+                                      ".grid: expected places from 0 to 1, none before the "
+                                      "one in front of it, got " +
+                                      rounded(result.grid[i]));
+        return {{0.0, 1.0}, {0.0, 0.0}};
+      }
+    return result;
+  }
+
+  // ---- the top
+
+  void read_version() {
+    const YamlNode* version = root_.find("windIO_version");
+    is_first_ = version == nullptr || version->text.starts_with("1");
+    if (!is_first_ && !version->text.starts_with("2"))
+      errors_.add(place(*version),
+                  "windIO_version: 1.0 and 2.0 can be read, got \"" + version->text + "\"");
+    if (version != nullptr)
+      say("windIO_version", Fate::derived,
+          is_first_ ? "angles are in radians" : "angles are in degrees");
+  }
+
+  double to_degrees(double angle) const { return is_first_ ? angle * degrees : angle; }
+
+  void read_top() {
+    if (const YamlNode* name = root_.find("name")) {
+      draft_.title = clean_text(name->text);
+      say("name", Fate::taken, "title");
+    }
+    if (find("environment.gravity") != nullptr) {
+      draft_.gravity = number({"environment.gravity"}, Fate::taken, "gravity");
+      note("gravity", "environment.gravity");
+    } else {
+      note("gravity", "not in the deck");
+    }
+    const std::string orientation = require({"assembly.rotor_orientation"});
+    if (orientation.empty()) return;
+    std::string word = find(orientation)->text;
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](char c) { return static_cast<char>(std::tolower(c)); });
+    if (word != "upwind" && word != "downwind")
+      refuse(orientation, "expected Upwind or Downwind, got \"" + find(orientation)->text + "\"");
+    is_upwind_ = word != "downwind";
+    say(orientation, Fate::derived,
+        is_upwind_ ? "overhang, tilt and precone are negative"
+                   : "overhang, tilt, precone positive");
+  }
+
+  /// What carries the tower cannot be imported.
+  void read_supports() {
+    for (const char* name : {"monopile", "jacket", "floating_platform"}) {
+      const std::string path = std::string("components.") + name;
+      if (find(path) == nullptr) continue;
+      if (options_.tower_only) {
+        say(path, Fate::ignored, "--tower-only: the tower is clamped at its foot");
+        continue;
+      }
+      refuse_implausible(path);
+      refuse(path,
+             "a foundation cannot be imported; hint: --tower-only leaves it out and clamps "
+             "the tower at its foot");
+    }
+  }
+
+  void refuse_implausible(const std::string& path) {
+    const std::string inertia = choose({path + ".structure.elastic_properties.inertia_matrix",
+                                        path + ".elastic_properties.inertia_matrix"});
+    if (inertia.empty() || find(inertia + ".mass") == nullptr) return;
+    const Curve mass = curve(inertia, "mass");
+    const YamlNode& values = *find(inertia + ".mass");
+    for (std::size_t i = 0; i < mass.values.size(); ++i)
+      if (std::abs(mass.values[i]) > most_mass)
+        errors_.add(place(values), inertia + ".mass: " + rounded(mass.values[i]) + " kg/m at " +
+                                       rounded(mass.grid[i]) +
+                                       " of the length is implausible (more than " +
+                                       rounded(most_mass) + "); hint: --tower-only leaves the " +
+                                       path.substr(path.find('.') + 1) + " out");
+  }
+
+  // ---- bodies
+
+  void read_rotor() {
+    const std::string count = require({"assembly.number_of_blades"});
+    if (!count.empty()) {
+      const double value = number_at(count, *find(count));
+      if (!(value >= 1.0 && value <= 100.0 && value == std::floor(value)))
+        refuse(count, "expected an integer from 1 to 100");
+      else
+        draft_.blades = static_cast<int>(value);
+      say(count, Fate::taken, "blades.count");
+      note("blades.count", "assembly.number_of_blades");
+    }
+    if (const std::string speed = choose({"control.rated_rotor_speed"}); !speed.empty()) {
+      draft_.speed_rpm = number({speed}, Fate::taken, "shaft.speed_rpm, the rated one");
+      note("shaft.speed_rpm", "control.rated_rotor_speed");
+    } else if (const std::string torque = choose({"control.torque.VS_maxspd"}); !torque.empty()) {
+      const double value = number({torque}, is_first_ ? Fate::derived : Fate::taken,
+                                  is_first_ ? "shaft.speed_rpm, from rad/s" : "shaft.speed_rpm");
+      draft_.speed_rpm = is_first_ ? value * 30.0 / std::numbers::pi : value;
+      note("shaft.speed_rpm",
+           is_first_ ? "control.torque.VS_maxspd, from rad/s" : "control.torque.VS_maxspd");
+    } else {
+      missing("the rated rotor speed", "shaft.speed_rpm");
+    }
+    const double sign = is_upwind_ ? -1.0 : 1.0;
+    const double tilt = to_degrees(number(
+        {"components.drivetrain.outer_shape.uptilt", "components.drivetrain.outer_shape_bem.uptilt",
+         "components.nacelle.drivetrain.uptilt", "components.nacelle.outer_shape_bem.uptilt_angle",
+         "components.nacelle.outer_shape_bem.uptilt"},
+        Fate::derived, "shaft.tilt_deg, < 0 upwind"));
+    const double overhang = number(
+        {"components.drivetrain.outer_shape.overhang",
+         "components.drivetrain.outer_shape_bem.overhang", "components.nacelle.drivetrain.overhang",
+         "components.nacelle.outer_shape_bem.overhang"},
+        Fate::derived, "shaft.overhang = overhang/cos(uptilt), < 0 upwind");
+    const double rise =
+        number({"components.drivetrain.outer_shape.distance_tt_hub",
+                "components.drivetrain.outer_shape_bem.distance_tt_hub",
+                "components.nacelle.drivetrain.distance_tt_hub",
+                "components.nacelle.outer_shape_bem.distance_tt_hub"},
+               Fate::derived, "shaft.height = distance_tt_hub - overhang tan(uptilt)");
+    if (std::abs(tilt) >= 90.0) {
+      errors_.add(path_,
+                  "uptilt: expected an angle between -90 and 90 degrees, got " + rounded(tilt));
+      return;
+    }
+    draft_.tilt_deg = sign * tilt;
+    draft_.overhang = sign * overhang / std::cos(tilt / degrees);
+    draft_.height = rise - overhang * std::tan(tilt / degrees);
+    note("shaft.tilt_deg", "uptilt");
+    note("shaft.overhang", "overhang/cos(uptilt)");
+    note("shaft.height", "distance_tt_hub - overhang tan(uptilt)");
+    note("shaft.azimuth_deg", "not in the deck");
+    note("shaft.torsion", "the rotor turns at constant speed");
+    for (const char* key : {"spring_constant", "damping_coefficient"})
+      for (const char* block : {"components.drivetrain.elastic_properties.",
+                                "components.nacelle.elastic_properties_mb."})
+        say(std::string(block) + key, Fate::ignored, "shaft torsion is locked");
+  }
+
+  /// The moments of inertia Ixx, Iyy, Izz of a body; products are reported as left out.
+  Vector3 inertia_of(const std::string& path, const std::string& words) {
+    Vector3 inertia = Vector3::Zero();
+    if (path.empty()) return inertia;
+    const std::vector<double> values = numbers_at(path, *find(path));
+    if (values.size() != 3 && values.size() != 6) {
+      refuse(path, "expected 3 or 6 numbers");
+      return inertia;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      inertia(static_cast<Eigen::Index>(i)) = values[i];
+      if (values[i] < 0.0) refuse(path, "expected moments of inertia >= 0");
+    }
+    double products = 0.0;
+    for (std::size_t i = 3; i < values.size(); ++i)
+      products = std::max(products, std::abs(values[i]));
+    say(path, Fate::derived,
+        words + (products > 0.0 ? "; the products of inertia, up to " + rounded(products) +
+                                      " kg m^2, are left out: a case has none"
+                                : ""));
+    return inertia;
+  }
+
+  Vector3 point_of(const std::string& path, const std::string& words) {
+    Vector3 point = Vector3::Zero();
+    if (path.empty()) return point;
+    const YamlNode& node = *find(path);
+    const std::vector<double> values = node.kind == YamlNode::Kind::scalar
+                                           ? std::vector<double>{number_at(path, node)}
+                                           : numbers_at(path, node);
+    if (values.empty() || values.size() > 3) refuse(path, "expected up to 3 numbers");
+    for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 3); ++i)
+      point(static_cast<Eigen::Index>(i)) = values[i];
+    say(path, Fate::derived, words);
+    return point;
+  }
+
+  void read_nacelle() {
+    const Paths blocks = {"components.drivetrain.elastic_properties",
+                          "components.drivetrain.elastic_properties_mb",
+                          "components.nacelle.elastic_properties_mb"};
+    const std::string block = require(blocks);
+    if (!block.empty()) {
+      draft_.nacelle_mass =
+          number({block + ".mass", block + ".system_mass"}, Fate::taken, "nacelle.mass");
+      const Vector3 center = point_of(require({block + ".location", block + ".system_center_mass"}),
+                                      "nacelle.center_of_mass = [-y, x, z] (y is to the left)");
+      draft_.nacelle_center = {-center(1), center(0), center(2)};
+      const Vector3 inertia = inertia_of(require({block + ".inertia", block + ".system_inertia"}),
+                                         "nacelle.inertia = [Iyy, Ixx, Izz], about its own centre");
+      draft_.nacelle_inertia = {inertia(1), inertia(0), inertia(2)};
+      for (const char* key : {".inertia_tt", ".system_inertia_tt"})
+        say(block + key, Fate::ignored, "the same body about the tower top");
+      note("nacelle.mass", "without the yaw bearing");
+      note("nacelle.center_of_mass", "-y, x, z of windIO");
+      note("nacelle.inertia", "Iyy, Ixx, Izz, about its own centre");
+    }
+    note("nacelle.yaw", "the yaw drive is not in the deck");
+    const std::string yaw = choose({"components.yaw.elastic_properties.mass",
+                                    "components.nacelle.elastic_properties_mb.yaw_mass"});
+    if (!yaw.empty()) {
+      draft_.tower.tip_mass = number({yaw}, Fate::taken, "tower.tip_mass");
+      note("tower.tip_mass", yaw.substr(yaw.find('.') + 1));
+    } else {
+      missing("the mass of the yaw bearing", "tower.tip_mass");
+    }
+    const std::string generator =
+        choose({"components.drivetrain.generator.elastic_properties.inertia",
+                "components.drivetrain.generator.elastic_properties_mb.rotor_inertia",
+                "components.nacelle.generator.elastic_properties_mb.rotor_inertia"});
+    if (generator.empty()) {
+      missing("the inertia of the generator", "shaft.inertia.axial");
+      return;
+    }
+    const double ratio = number(
+        {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
+        Fate::derived, "shaft.inertia.axial");
+    const Vector3 inertia =
+        inertia_of(generator, "shaft.inertia.axial = Ixx gear_ratio^2; its mass is the nacelle's");
+    draft_.shaft_inertia = inertia(0) * ratio * ratio;
+    note("shaft.inertia", "generator Ixx gear_ratio^2");
+  }
+
+  void read_hub() {
+    const double cone = to_degrees(
+        number({"components.hub.cone_angle"}, Fate::derived, "blades.precone_deg, < 0 upwind"));
+    if (std::abs(cone) >= 90.0)
+      refuse("components.hub.cone_angle", "expected an angle between -90 and 90 degrees");
+    draft_.precone_deg = is_upwind_ ? -cone : cone;
+    note("blades.precone_deg", "hub.cone_angle");
+    note("blades.pitch_deg", "not in the deck");
+    draft_.hub_radius =
+        0.5 * number({"components.hub.diameter"}, Fate::derived, "hub.radius, half of it");
+    note("hub.radius", "half of hub.diameter");
+    const std::string block =
+        require({"components.hub.elastic_properties", "components.hub.elastic_properties_mb"});
+    if (block.empty()) return;
+    draft_.hub_mass = number({block + ".mass", block + ".system_mass"}, Fate::taken, "hub.mass");
+    const std::string location = choose({block + ".location", block + ".system_center_mass"});
+    if (location.empty() && !is_first_) require({block + ".location"});
+    if (location.empty() && is_first_) missing("the hub's centre of mass", "hub.center_of_mass");
+    const Vector3 center =
+        point_of(location, "hub.center_of_mass (x from the apex toward the nacelle)");
+    const Vector3 inertia =
+        inertia_of(require({block + ".inertia", block + ".system_inertia"}),
+                   "hub.inertia = [Iyy, Ixx, Izz] - mass x^2 across the shaft: from the apex to "
+                   "its own centre");
+    if (center(1) != 0.0 || center(2) != 0.0)
+      refuse(block, "the centre of mass is off the shaft, which a case cannot state");
+    draft_.hub_center = is_upwind_ ? center(0) : -center(0);
+    const double shift = draft_.hub_mass * center(0) * center(0);
+    draft_.hub_inertia = {inertia(1) - shift, inertia(0), inertia(2) - shift};
+    if (inertia(1) < shift || inertia(2) < shift)
+      refuse(block, "the inertia across the shaft is less than mass x^2 = " + rounded(shift) +
+                        ", which no body has");
+    if (!location.empty()) note("hub.center_of_mass", "from the apex");
+    note("hub.inertia", "Iyy, Ixx, Izz, moved from the apex to its own centre");
+  }
+
+  // ---- beams
+
+  /// Points [x, y, z] of windIO on the union of the three grids.
+  std::vector<Vector3> read_axis(const std::string& path) {
+    const Curve x = curve(path + ".x");
+    const Curve y = curve(path + ".y");
+    const Curve z = curve(path + ".z");
+    std::vector<Vector3> line;
+    for (const Station& station : merge_grids({&z.grid, &x.grid, &y.grid})) {
+      const Vector3 point(interpolate(x, station), interpolate(y, station),
+                          interpolate(z, station));
+      if (!station.behind) line.push_back(point);
+    }
+    return line;
+  }
+
+  /// Fills length or reference_line from points whose last component runs along the beam;
+  /// `turn` gives the axes of the case.
+  template <class Turn>
+  void set_line(const std::string& path, const std::vector<Vector3>& points, const Turn& turn,
+                DraftBeam& beam) {
+    if (points.size() < 2) {
+      refuse(path, "expected at least two points");
+      return;
+    }
+    double across = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      across = std::max(across, std::hypot(points[i](0), points[i](1)));
+      if (i > 0 && !(points[i](2) > points[i - 1](2))) {
+        refuse(path, "z must rise from point to point");
+        return;
+      }
+    }
+    std::vector<Vector3> line;
+    line.reserve(points.size());
+    for (const Vector3& point : points) line.push_back(turn(point));
+    if (across <= straight_tolerance * points.back()(2)) {
+      beam.length = points.back()(2);
+      return;
+    }
+    beam.reference_line = line;
+    beam.length = model::compute_arc_length(line);
+  }
+
+  void read_damping(const std::string& path, DraftBeam& beam, const std::string& key) {
+    if (path.empty()) {
+      missing("structural_damping", key);
+      return;
+    }
+    const YamlNode* node = find(path);
+    const YamlNode* list = node->find("mu") != nullptr ? node->find("mu") : node;
+    const std::vector<double> mu = numbers_at(path, *list);
+    if (mu.size() != 6 || *std::min_element(mu.begin(), mu.end()) < 0.0) {
+      refuse(path, "expected 6 numbers >= 0");
+      return;
+    }
+    beam.damping = turn_damping(Eigen::Map<const Vector6>(mu.data()));
+    say(path, Fate::taken, key + ", turned to b1 = z, b2 = -y, b3 = x");
+    note(key, "structural_damping.mu, in the order of a case");
+  }
+
+  std::optional<Material> find_material(const std::string& name, const std::string& user) {
+    const YamlNode* list = root_.find("materials");
+    if (list == nullptr) {
+      errors_.add(path_, "missing key \"materials\"");
+      return {};
+    }
+    for (const YamlNode& node : list->children) {
+      const YamlNode* own = node.find("name");
+      if (own == nullptr || own->text != name) continue;
+      Material material;
+      double poisson = 0.0;
+      const bool has_shear = node.find("G") != nullptr;  // else it follows from nu
+      for (const auto& [key, value] :
+           {std::pair<const char*, double*>{"rho", &material.density},
+            {"E", &material.young},
+            {has_shear ? "G" : "nu", has_shear ? &material.shear : &poisson}}) {
+        const YamlNode* entry = node.find(key);
+        const std::string where = "materials." + name + "." + key;
+        if (entry == nullptr) {
+          errors_.add(place(node), where + ": missing, " + user + " needs it");
+          continue;
+        }
+        *value = number_at(where, *entry);
+        if (!(*value > 0.0)) errors_.add(place(*entry), where + ": expected a number > 0");
+        report_.push_back({place(*entry), where, Fate::derived, "sections of the tower"});
+      }
+      if (!has_shear) material.shear = material.young / (2.0 * (1.0 + poisson));
+      return material;
+    }
+    refuse(user, "there is no material \"" + name + "\" in materials");
+    return {};
+  }
+
+  void read_tower() {
+    const std::string axis =
+        require({"components.tower.reference_axis", "components.tower.outer_shape.reference_axis",
+                 "components.tower.outer_shape_bem.reference_axis"});
+    const std::string diameter_path = require({"components.tower.outer_shape.outer_diameter",
+                                               "components.tower.outer_shape_bem.outer_diameter"});
+    const std::string structure =
+        require({"components.tower.structure", "components.tower.internal_structure_2d_fem"});
+    if (axis.empty() || diameter_path.empty() || structure.empty()) return;
+    draft_.has_tower = true;
+    std::vector<Vector3> points = read_axis(axis);
+    const Vector3 foot = points.empty() ? Vector3::Zero() : points[0];
+    for (Vector3& point : points) point -= foot;
+    set_line(
+        axis, points, [](const Vector3& p) { return Vector3(-p(1), p(0), p(2)); }, draft_.tower);
+    say(axis, Fate::derived,
+        "tower, from its foot at z = " + rounded(foot(2)) + " m, where it is clamped");
+    note("tower.length", "reference_axis, from its foot at z = " + rounded(foot(2)));
+    note("tower.reference_line", "reference_axis from its foot, [-y, x, z]");
+
+    compare_height(foot(2) + draft_.tower.length);
+    const Curve diameter = curve(diameter_path);
+    say(diameter_path, Fate::derived, "tower.sections");
+    const std::string outfitting = structure + ".outfitting_factor";
+    const double factor =
+        number({outfitting}, Fate::derived, "multiplies mass and inertia of all sections");
+    if (!(factor > 0.0)) refuse(outfitting, "expected a number > 0");
+    const YamlNode* layers = find(structure + ".layers");
+    if (layers == nullptr || layers->kind != YamlNode::Kind::list || layers->children.empty()) {
+      errors_.add(path_, "missing key \"" + structure + ".layers\", a list");
+      return;
+    }
+    read_layers(structure + ".layers", *layers, diameter, factor);
+    const std::string elastic =
+        choose({structure + ".elastic_properties", "components.tower.elastic_properties",
+                "components.tower.elastic_properties_mb"});
+    read_damping(elastic.empty() ? "" : choose({elastic + ".structural_damping"}), draft_.tower,
+                 "tower.damping");
+    if (!elastic.empty()) compare_tower(elastic);
+    draft_.tower.elements = tower_elements;
+    draft_.tower.order = tower_order;
+    note("tower.elements", "chosen by the importer");
+    note("tower.sections",
+         "rings of the layers of the wall; mass and inertia times "
+         "outfitting_factor");
+  }
+
+  /// The deck states the height of the hub twice; what the parts add up to counts.
+  void compare_height(double top) {
+    const std::string path = choose({"assembly.hub_height"});
+    if (path.empty()) return;
+    const double stated = number_at(path, *find(path));
+    const double hub = top + draft_.height + draft_.overhang * std::sin(draft_.tilt_deg / degrees);
+    say(path, Fate::ignored,
+        "the parts put the hub at " + rounded(hub) + " m" +
+            (std::abs(hub - stated) > height_tolerance
+                 ? ", which differs by " + rounded(hub - stated, 3) + " m"
+                 : ", as stated"));
+  }
+
+  /// Rings one inside the other, the first layer outside.
+  void read_layers(const std::string& path, const YamlNode& layers, const Curve& diameter,
+                   double factor) {
+    std::vector<Curve> thickness;
+    std::vector<Material> materials;
+    std::vector<const std::vector<double>*> grids{&diameter.grid};
+    for (const YamlNode& layer : layers.children) {
+      const YamlNode* material = layer.find("material");
+      const YamlNode* thick = layer.find("thickness");
+      if (material == nullptr || thick == nullptr || thick->find("grid") == nullptr ||
+          thick->find("values") == nullptr) {
+        errors_.add(place(layer), path +
+                                      ": a layer needs material, thickness.grid and "
+                                      "thickness.values");
+        return;
+      }
+      Curve values{numbers_at(path, *thick->find("grid")),
+                   numbers_at(path, *thick->find("values"))};
+      if (values.grid.size() != values.values.size() || values.grid.empty() ||
+          !std::is_sorted(values.grid.begin(), values.grid.end()) || values.grid.front() < 0.0 ||
+          values.grid.back() > 1.0) {
+        errors_.add(place(*thick), path +
+                                       ".thickness: grid and values must be of one size, the "
+                                       "grid rising from 0 to 1");
+        return;
+      }
+      thickness.push_back(std::move(values));
+      const std::optional<Material> found = find_material(material->text, path);
+      if (!found) return;
+      materials.push_back(*found);
+    }
+    if (!errors_.empty()) return;
+    for (const Curve& values : thickness) grids.push_back(&values.grid);
+    say(path, Fate::derived, "tower.sections, exact rings");
+    for (const Station& station : merge_grids(grids)) {
+      double outer = interpolate(diameter, station);
+      DraftSection section;
+      section.at = place_of(station);
+      Vector6 stiffness = Vector6::Zero();
+      double mass = 0.0;
+      double inertia = 0.0;
+      for (std::size_t i = 0; i < thickness.size(); ++i) {
+        const double inner = outer - 2.0 * interpolate(thickness[i], station);
+        if (!(inner >= 0.0 && inner < outer)) {
+          refuse(path, "at " + rounded(station.place) + " of the length the wall, " +
+                           rounded(0.5 * (outer - inner)) + " m, does not fit into the diameter " +
+                           rounded(outer));
+          return;
+        }
+        add_ring(outer, inner, materials[i], stiffness, mass, inertia);
+        outer = inner;
+      }
+      mass *= factor;
+      inertia *= factor;
+      if (mass > most_mass)
+        refuse(path, rounded(mass) + " kg/m at " + rounded(station.place) +
+                         " of the tower is implausible (more than " + rounded(most_mass) +
+                         "); hint: diameters and thickness are in m, rho in kg/m^3");
+      section.stiffness.diagonal() = stiffness;
+      section.mass = build_mass_matrix(mass, Vector3(2.0 * inertia, inertia, inertia));
+      draft_.tower.sections.push_back(section);
+    }
+  }
+
+  static void add_ring(double outer, double inner, const Material& material, Vector6& stiffness,
+                       double& mass, double& inertia) {
+    const double area = 0.25 * std::numbers::pi * (outer * outer - inner * inner);
+    const double second = std::numbers::pi / 64.0 * (std::pow(outer, 4) - std::pow(inner, 4));
+    // Cowper (1966), hollow circle.
+    const double poisson = 0.5 * material.young / material.shear - 1.0;
+    const double m2 = (inner / outer) * (inner / outer);
+    const double k =
+        6.0 * (1.0 + poisson) * (1.0 + m2) * (1.0 + m2) /
+        ((7.0 + 6.0 * poisson) * (1.0 + m2) * (1.0 + m2) + (20.0 + 12.0 * poisson) * m2);
+    Vector6 ring;
+    ring << material.young * area, k * material.shear * area, k * material.shear * area,
+        2.0 * material.shear * second, material.young * second, material.young * second;
+    stiffness += ring;
+    mass += material.density * area;
+    inertia += material.density * second;
+  }
+
+  /// The deck may state sections as well; how far are they from the rings?
+  void compare_tower(const std::string& elastic) {
+    const std::string inertia = elastic + ".inertia_matrix";
+    if (find(inertia + ".mass") == nullptr || !errors_.empty()) return;
+    const Curve mass = curve(inertia, "mass");
+    double furthest = 0.0;
+    for (std::size_t i = 0; i < mass.grid.size(); ++i) {
+      const auto& sections = draft_.tower.sections;
+      const auto near = std::find_if(sections.begin(), sections.end(), [&](const auto& section) {
+        return std::abs(section.at - mass.grid[i]) < straight_tolerance;
+      });
+      if (near != sections.end() && mass.values[i] > 0.0)
+        furthest = std::max(furthest, std::abs(near->mass(0, 0) / mass.values[i] - 1.0));
+    }
+    const std::string words =
+        "the sections follow from the layers; mass per length differs by up "
+        "to " +
+        rounded(100.0 * furthest, 3) + " %";
+    say(inertia, Fate::ignored, words);
+    say(elastic + ".stiffness_matrix", Fate::ignored, "the sections follow from the layers");
+  }
+
+  void read_blade() {
+    const std::string blade = "components.blade";
+    const std::string elastic =
+        require({blade + ".structure.elastic_properties", blade + ".elastic_properties",
+                 blade + ".elastic_properties_mb.six_x_six", blade + ".elastic_properties_mb"});
+    const std::string axis =
+        require({elastic + ".reference_axis", blade + ".reference_axis",
+                 blade + ".outer_shape.reference_axis", blade + ".outer_shape_bem.reference_axis"});
+    const std::string twist_path = require(
+        {elastic + ".twist", blade + ".outer_shape.twist", blade + ".outer_shape_bem.twist"});
+    if (elastic.empty() || axis.empty() || twist_path.empty()) return;
+    const std::vector<Vector3> points = read_axis(axis);
+    if (!points.empty() && !points[0].isZero(straight_tolerance))
+      refuse(axis, "the first point must be 0, 0, 0, the root of the blade");
+    else
+      set_line(
+          axis, points, [](const Vector3& p) { return turn_to_section_axes(p); }, draft_.blade);
+    say(axis, Fate::taken,
+        draft_.blade.reference_line.empty() ? "blades.length"
+                                            : "blades.reference_line, [z, -y, x]");
+    note("blades.length", "reference_axis");
+    note("blades.reference_line", "reference_axis, [z, -y, x]");
+    Curve twist = curve(twist_path);
+    say(twist_path, is_first_ ? Fate::derived : Fate::taken,
+        std::string("twist_deg of the sections") + (is_first_ ? ", from radians" : ""));
+    for (double& angle : twist.values) {
+      angle = to_degrees(angle);
+      if (std::abs(angle) > 180.0) {
+        refuse(twist_path, rounded(angle) +
+                               " degrees is implausible; hint: radians without "
+                               "windIO_version or in 1.0, degrees in 2.0");
+        break;
+      }
+    }
+    read_blade_sections(elastic, twist);
+    read_damping(choose({elastic + ".structural_damping"}), draft_.blade, "blades.damping");
+    draft_.blade.elements = blade_elements;
+    draft_.blade.order = blade_order;
+    note("blades.elements", "chosen by the importer");
+    note("blades.sections", "matrices of windIO, turned to b1 = z, b2 = -y, b3 = x");
+  }
+
+  /// One curve for each of the 21 entries of a symmetric matrix, by rows.
+  using Entries = std::array<Curve, 21>;
+
+  void read_blade_sections(const std::string& elastic, const Curve& twist) {
+    Entries stiffness;
+    Entries mass;
+    const std::string new_stiffness = choose({elastic + ".stiffness_matrix"});
+    if (!new_stiffness.empty()) {
+      std::size_t entry = 0;
+      for (int i = 1; i <= 6; ++i)
+        for (int j = i; j <= 6; ++j)
+          stiffness[entry++] = curve(new_stiffness, "K" + std::to_string(i) + std::to_string(j));
+      say(new_stiffness, Fate::taken, "stiffness_matrix of blades.sections");
+    } else {
+      const std::string path = require({elastic + ".stiffness_matrix", elastic + ".stiff_matrix"});
+      if (path.empty()) return;
+      stiffness = read_rows(path);
+      say(path, Fate::taken, "stiffness_matrix of blades.sections");
+    }
+    const std::string inertia = require({elastic + ".inertia_matrix"});
+    if (inertia.empty()) return;
+    if (find(inertia + ".mass") != nullptr)
+      mass = read_inertia(inertia);
+    else
+      mass = read_rows(inertia);
+    say(inertia, Fate::taken, "mass_matrix of blades.sections");
+    if (!errors_.empty()) return;
+    std::vector<std::string> places;
+    for (const Station& station : merge_grids({&mass[0].grid, &stiffness[0].grid, &twist.grid})) {
+      DraftSection section;
+      section.at = place_of(station);
+      section.stiffness = turn_to_section_axes(assemble(stiffness, station));
+      section.mass = turn_to_section_axes(assemble(mass, station));
+      section.twist_deg = interpolate(twist, station);
+      draft_.blade.sections.push_back(section);
+    }
+    places.push_back(place(*find(inertia)));
+    check_sections(draft_.blade, "blade", places, errors_);
+  }
+
+  static Matrix6 assemble(const Entries& entries, const Station& station) {
+    Matrix6 matrix;
+    std::size_t entry = 0;
+    for (Eigen::Index i = 0; i < 6; ++i)
+      for (Eigen::Index j = i; j < 6; ++j)
+        matrix(i, j) = matrix(j, i) = interpolate(entries[entry++], station);
+    return matrix;
+  }
+
+  /// windIO 1.0: a list of 21 numbers at each place.
+  Entries read_rows(const std::string& path) {
+    Entries entries;
+    const YamlNode* grid = find(path + ".grid");
+    const YamlNode* values = find(path + ".values");
+    if (grid == nullptr || values == nullptr) {
+      refuse(path, std::string("missing key \"") + (grid == nullptr ? "grid" : "values") + "\"");
+      return entries;
+    }
+    const std::vector<double> places = numbers_at(path + ".grid", *grid);
+    if (places.size() != values->children.size() || places.empty() ||
+        !std::is_sorted(places.begin(), places.end()) || places.front() < 0.0 ||
+        places.back() > 1.0) {
+      errors_.add(place(*values), path +
+                                      ": grid and values must be of one size, the grid rising "
+                                      "from 0 to 1");
+      return entries;
+    }
+    for (std::size_t row = 0; row < places.size(); ++row) {
+      const std::vector<double> numbers = numbers_at(path + ".values", values->children[row]);
+      if (numbers.size() != entries.size()) {
+        errors_.add(place(values->children[row]),
+                    path + ".values: expected 21 numbers, got " + std::to_string(numbers.size()));
+        return entries;
+      }
+      for (std::size_t k = 0; k < entries.size(); ++k) {
+        entries[k].grid.push_back(places[row]);
+        entries[k].values.push_back(numbers[k]);
+      }
+    }
+    return entries;
+  }
+
+  /// windIO 2.0: mass, centre and moments. Entries of the matrix as in its 1.0 form.
+  Entries read_inertia(const std::string& path) {
+    const Curve mass = curve(path, "mass");
+    const Curve x = curve(path, "cm_x");
+    const Curve y = curve(path, "cm_y");
+    const Curve edge = curve(path, "i_edge");
+    const Curve flap = curve(path, "i_flap");
+    const Curve polar = curve(path, "i_plr");
+    const Curve cross = curve(path, "i_cp");
+    Entries entries;
+    for (Curve& entry : entries) entry = {mass.grid, std::vector<double>(mass.grid.size(), 0.0)};
+    for (const Curve* other : {&x, &y, &edge, &flap, &polar, &cross})
+      if (other->grid.size() != mass.grid.size()) return entries;
+    for (std::size_t i = 0; i < mass.grid.size(); ++i) {
+      const double m = mass.values[i];
+      for (const std::size_t k : {0u, 6u, 11u}) entries[k].values[i] = m;
+      entries[5].values[i] = -m * y.values[i];
+      entries[10].values[i] = m * x.values[i];
+      entries[12].values[i] = m * y.values[i];
+      entries[13].values[i] = -m * x.values[i];
+      entries[15].values[i] = edge.values[i];
+      entries[16].values[i] = -cross.values[i];
+      entries[18].values[i] = flap.values[i];
+      entries[20].values[i] = polar.values[i];
+    }
+    return entries;
+  }
+
+  // ---- what is left
+
+  static std::string reason(const std::string& path) {
+    const auto starts = [&](const char* word) { return path.starts_with(word); };
+    if (starts("airfoils") || path.find("airfoil") != std::string::npos ||
+        path.find("chord") != std::string::npos || path.find("thick") != std::string::npos ||
+        path.find(".cd") != std::string::npos || path.find("drag") != std::string::npos)
+      return "aerodynamics";
+    if (starts("control")) return "a controller is no part of a case";
+    if (starts("materials")) return "of another component, whose matrices the deck states";
+    if (starts("environment") || starts("assembly") || starts("bos") || starts("costs"))
+      return "a statement about the site or the machine, no part of the structure";
+    if (path.find("webs") != std::string::npos || path.find("layers") != std::string::npos ||
+        path.find("anchors") != std::string::npos)
+      return "the deck states the matrices that follow from it";
+    return "no part of the structure of a case";
+  }
+
+  bool is_used_below(const std::string& path) const {
+    const auto next = used_.lower_bound(path);
+    return next != used_.end() && (*next == path || next->starts_with(path + "."));
+  }
+
+  bool is_used(const std::string& path) const { return used_.contains(path); }
+
+  /// Names what nothing has read, as high in the tree as it can.
+  void report_rest(const YamlNode& node, const std::string& path) {
+    if (node.kind != YamlNode::Kind::map) return;
+    for (const YamlNode& child : node.children) {
+      const std::string below = path.empty() ? child.key : path + "." + child.key;
+      if (is_used(below) || below == "materials") continue;
+      if (is_used_below(below) || below == "components")
+        report_rest(child, below);
+      else
+        report_.push_back({place(child), below, Fate::ignored, reason(below)});
+    }
+  }
+
+  std::string path_;
+  ImportOptions options_;
+  YamlNode root_;
+  DeckErrors errors_;
+  CaseDraft draft_;
+  std::vector<ImportLine> report_;
+  std::set<std::string> used_;
+  bool is_first_ = false;
+  bool is_upwind_ = true;
+};
+
+}  // namespace
+
+Import import_windio(const std::string& path, const ImportOptions& options) {
+  return Importer(path, options).run();
+}
+
+}  // namespace samara::io

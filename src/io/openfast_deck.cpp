@@ -1,0 +1,397 @@
+#include "openfast_deck.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "samara/base/error.hpp"
+
+namespace samara::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_file_size = 64u << 20;
+
+char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+/// The name of a key as it is compared: no case, no parentheses.
+std::string fold(const std::string& key) {
+  std::string folded;
+  for (const char c : key)
+    if (c != '(' && c != ')') folded += lower(c);
+  return folded;
+}
+
+bool is_key(const std::string& word) {
+  if (word.empty() || (std::isalpha(static_cast<unsigned char>(word[0])) == 0)) return false;
+  return std::all_of(word.begin(), word.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '(' || c == ')';
+  });
+}
+
+std::optional<bool> parse_flag(const std::string& word) {
+  const std::string folded = fold(word);
+  if (folded == "true" || folded == "t" || folded == ".true.") return true;
+  if (folded == "false" || folded == "f" || folded == ".false.") return false;
+  return {};
+}
+
+/// Lines that hold no values: rules, headings, comments.
+bool is_heading(const std::string& word) {
+  return word.starts_with("--") || word.starts_with("==") || word.starts_with("!") ||
+         word.starts_with("#") || word.starts_with("%");
+}
+
+std::vector<DeckWord> split(const std::string& line) {
+  std::vector<DeckWord> words;
+  std::size_t i = 0;
+  while (i < line.size()) {
+    const char c = line[i];
+    if (c == ' ' || c == '\t' || c == '\f' || c == '\v') {
+      ++i;
+    } else if (c == ',') {
+      if (!words.empty()) words.back().comma = true;
+      ++i;
+    } else if (c == '"' || c == '\'') {
+      const std::size_t end = line.find(c, i + 1);
+      const std::size_t stop = end == std::string::npos ? line.size() : end;
+      words.push_back({line.substr(i + 1, stop - i - 1), true, false});
+      i = stop + 1;
+    } else {
+      const std::size_t end = line.find_first_of(" \t\f\v,\"", i);
+      const std::size_t stop = end == std::string::npos ? line.size() : end;
+      words.push_back({line.substr(i, stop - i), false, false});
+      i = stop;
+    }
+  }
+  return words;
+}
+
+std::string read_text(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw InputError(path + ": no such file");
+  if (fs::is_directory(status)) throw InputError(path + ": a directory, expected a file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened for reading");
+  std::string text;
+  std::array<char, 65536> buffer;
+  while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0) {
+    text.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > max_file_size) throw InputError(path + ": more than 64 MB");
+  }
+  if (text.find('\0') != std::string::npos)
+    throw InputError(path + ": not a plain text file; hint: UTF-16 must be saved as UTF-8");
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  return text;
+}
+
+/// Lines end with LF, CR LF or CR.
+std::vector<std::string> split_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::string line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\r' || text[i] == '\n') {
+      if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') ++i;
+      lines.push_back(std::exchange(line, {}));
+    } else {
+      line += text[i];
+    }
+  }
+  if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+std::string got(const std::string& word) { return ", got \"" + word + "\""; }
+
+}  // namespace
+
+void DeckErrors::add(const std::string& place, const std::string& what) {
+  add_message(place + ": " + what);
+}
+
+void DeckErrors::add_message(const std::string& message) {
+  if (std::find(messages_.begin(), messages_.end(), message) == messages_.end())
+    messages_.push_back(message);
+}
+
+void DeckErrors::throw_if_any() const {
+  if (messages_.empty()) return;
+  std::string text;
+  for (const std::string& message : messages_) text += (text.empty() ? "" : "\n") + message;
+  throw InputError(text);
+}
+
+std::optional<double> parse_deck_number(const std::string& word) {
+  std::string text = word;
+  for (char& c : text)
+    if (c == 'd' || c == 'D') c = 'e';
+  const char* first = text.data();
+  const char* last = first + text.size();
+  if (first != last && *first == '+') {
+    ++first;
+    if (first != last && *first == '-') return {};
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(first, last, value);
+  if (error != std::errc{} || end != last || !std::isfinite(value)) return {};
+  return value;
+}
+
+Deck::Deck(std::string path, DeckErrors& errors) : path_(std::move(path)), errors_(errors) {
+  const std::string text = read_text(path_);
+  ends_with_line_ = text.empty() || text.back() == '\n' || text.back() == '\r';
+  const std::vector<std::string> lines = split_lines(text);
+  bool in_output_list = false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    lines_.push_back(split(lines[i]));
+    const std::vector<DeckWord>& words = lines_.back();
+    if (words.empty()) continue;
+    // The second line is free text; it could look like a key.
+    if (i == 1 && is_heading(lines_[0].empty() ? "" : lines_[0][0].text)) {
+      const bool could_be_value =
+          words[0].quoted || parse_deck_number(words[0].text) || parse_flag(words[0].text);
+      if (!could_be_value) {
+        if (!is_heading(words[0].text)) title_ = lines[i].substr(lines[i].find_first_not_of(" \t"));
+        continue;
+      }
+    }
+    if (in_output_list) {
+      in_output_list = fold(words[0].text) != "end";
+      continue;
+    }
+    if (!words[0].quoted && fold(words[0].text) == "outlist") {
+      in_output_list = true;
+      continue;
+    }
+    parse_line(lines[i], static_cast<int>(i + 1));
+  }
+}
+
+void Deck::parse_line(const std::string&, int number) {
+  const std::vector<DeckWord>& words = lines_[static_cast<std::size_t>(number - 1)];
+  if (!words[0].quoted && is_heading(words[0].text)) return;
+  DeckEntry entry;
+  entry.line = number;
+  entry.values.push_back(words[0]);
+  std::size_t i = 1;
+  while (i < words.size() && (words[i].quoted || words[i - 1].comma ||
+                              parse_deck_number(words[i].text) || parse_flag(words[i].text)))
+    entry.values.push_back(words[i++]);
+  if (i == words.size() || words[i].quoted || !is_key(words[i].text)) return;
+  entry.key = words[i++].text;
+  if (i < words.size()) {
+    const char c = words[i].text.empty() ? ' ' : words[i].text[0];
+    const bool ends_key = words[i].quoted || c == '-' || c == '!' || c == '#' || c == '(' ||
+                          c == '{' || c == '[' || c == ':' || c == '=';
+    if (!ends_key) return;
+  }
+  entries_.push_back(std::move(entry));
+}
+
+DeckEntry* Deck::find(const std::string& key, bool required) {
+  DeckEntry* found = nullptr;
+  for (DeckEntry& entry : entries_) {
+    if (fold(entry.key) != fold(key)) continue;
+    if (found != nullptr) {
+      errors_.add(place(entry.line), key + ": given twice, first in line " +
+                                         std::to_string(found->line) + "; leave one of them out");
+      continue;
+    }
+    found = &entry;
+    found->used = true;
+  }
+  if (found == nullptr && required) errors_.add(path_, "missing key \"" + key + "\"");
+  return found;
+}
+
+bool Deck::has(const std::string& key) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const DeckEntry& entry) { return fold(entry.key) == fold(key); });
+}
+
+std::string Deck::place_of(const std::string& key) const {
+  for (const DeckEntry& entry : entries_)
+    if (fold(entry.key) == fold(key)) return place(entry.line);
+  return path_;
+}
+
+double Deck::number(const std::string& key) {
+  const DeckEntry* entry = find(key, true);
+  if (entry == nullptr) return 0.0;
+  const DeckWord& word = entry->values[0];
+  const std::optional<double> value = parse_deck_number(word.text);
+  if (!value) errors_.add(place(entry->line), key + ": expected a number" + got(word.text));
+  if (value && entry->values.size() > 1)
+    errors_.add(place(entry->line), key + ": expected one number, got " +
+                                        std::to_string(entry->values.size()) + " values");
+  return value.value_or(0.0);
+}
+
+int Deck::integer(const std::string& key, int low, int high) {
+  const std::size_t before = has(key) ? 1 : 0;
+  const double value = number(key);
+  if (before == 0) return low;
+  if (value >= low && value <= high && value == std::floor(value)) return static_cast<int>(value);
+  errors_.add(place_of(key), key + ": expected an integer from " + std::to_string(low) + " to " +
+                                 std::to_string(high) + got(find(key, true)->values[0].text));
+  return low;
+}
+
+bool Deck::flag(const std::string& key) {
+  const DeckEntry* entry = find(key, true);
+  if (entry == nullptr) return false;
+  const std::optional<bool> value = parse_flag(entry->values[0].text);
+  if (!value)
+    errors_.add(place(entry->line), key + ": expected True or False" + got(entry->values[0].text));
+  return value.value_or(false);
+}
+
+std::string Deck::text(const std::string& key) {
+  const DeckEntry* entry = find(key, true);
+  return entry == nullptr ? "" : entry->values[0].text;
+}
+
+double Deck::number_or(const std::string& key, double value) {
+  return has(key) ? number(key) : value;
+}
+
+bool Deck::flag_or(const std::string& key, bool value) { return has(key) ? flag(key) : value; }
+
+std::string Deck::file(const std::string& key) {
+  std::string name = text(key);
+  if (name.empty()) return name;
+  std::replace(name.begin(), name.end(), '\\', '/');
+  const fs::path path(name);
+  const fs::path folder = fs::path(path_).parent_path();
+  std::string full = (path.is_absolute() ? path : (folder / path)).lexically_normal().string();
+  std::error_code error;
+  if (fs::exists(full, error)) return full;
+  errors_.add(place_of(key), key + ": no such file " + full);
+  return "";
+}
+
+int Deck::find_heading(const std::string& word) const {
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (lines_[i].empty() || !is_heading(lines_[i][0].text)) continue;
+    for (const DeckWord& candidate : lines_[i])
+      if (fold(candidate.text) == fold(word)) return static_cast<int>(i + 1);
+  }
+  return 0;
+}
+
+DeckTable Deck::table(const std::vector<std::string>& names, int count,
+                      const std::string& count_key) {
+  DeckTable table;
+  table.columns.resize(names.size());
+  // The line that has most of the names, for one of them could stand in a comment.
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    std::size_t matches = 0;
+    for (const std::string& name : names)
+      for (const DeckWord& word : lines_[i])
+        if (fold(word.text) == fold(name)) {
+          ++matches;
+          break;
+        }
+    if (matches <= most) continue;
+    most = matches;
+    table.line = static_cast<int>(i + 1);
+  }
+  if (table.line == 0) {
+    std::string words;
+    for (const std::string& name : names) words += (words.empty() ? "" : ", ") + name;
+    errors_.add(path_, "missing table with the columns " + words);
+    return table;
+  }
+  const auto header = static_cast<std::size_t>(table.line - 1);
+  for (const DeckWord& word : lines_[header]) {
+    if (is_heading(word.text)) break;
+    table.names.push_back(word.text);
+  }
+  std::vector<std::size_t> which;
+  for (const std::string& name : names) {
+    const auto found =
+        std::find_if(table.names.begin(), table.names.end(),
+                     [&](const std::string& word) { return fold(word) == fold(name); });
+    if (found == table.names.end())
+      errors_.add(place(table.line), "the table has no column \"" + name + "\"");
+    else
+      which.push_back(static_cast<std::size_t>(found - table.names.begin()));
+  }
+  if (which.size() < names.size()) return table;
+
+  std::size_t i = header + 1;
+  if (i < lines_.size() && !lines_[i].empty() && lines_[i][0].text.starts_with("(")) ++i;
+  for (; i < lines_.size(); ++i) {
+    const std::vector<DeckWord>& words = lines_[i];
+    if (words.empty()) continue;
+    if (is_heading(words[0].text)) break;
+    const bool is_complete = static_cast<int>(table.lines.size()) >= count;
+    // A number and the name of its key: the table is over.
+    if (words.size() > 1 && is_key(words[1].text) && !parse_deck_number(words[1].text)) break;
+    if (is_complete && !parse_deck_number(words[0].text)) break;
+    const int line = static_cast<int>(i + 1);
+    std::vector<double> row;
+    std::string bad;
+    for (std::size_t k = 0; k < table.names.size(); ++k) {
+      const std::optional<double> value =
+          k < words.size() ? parse_deck_number(words[k].text) : std::nullopt;
+      if (!value) {
+        bad = k < words.size()
+                  ? "column " + table.names[k] + ": expected a number" + got(words[k].text)
+                  : "expected " + std::to_string(table.names.size()) +
+                        " numbers in this row of the table, got " + std::to_string(words.size());
+        break;
+      }
+      row.push_back(*value);
+    }
+    if (bad.empty() && words.size() > table.names.size() &&
+        parse_deck_number(words[table.names.size()].text))
+      bad = "expected " + std::to_string(table.names.size()) +
+            " numbers in this row of the table, got more";
+    if (!bad.empty()) {
+      errors_.add(place(line), bad);
+      return table;
+    }
+    for (std::size_t c = 0; c < which.size(); ++c) table.columns[c].push_back(row[which[c]]);
+    table.lines.push_back(line);
+  }
+  if (count >= 0 && static_cast<int>(table.lines.size()) != count)
+    errors_.add(place(table.line), "the table has " + std::to_string(table.lines.size()) +
+                                       " rows, " + count_key + " says " + std::to_string(count));
+  return table;
+}
+
+std::vector<DeckRow> Deck::rows_after(int line) {
+  std::vector<DeckRow> rows;
+  for (auto i = static_cast<std::size_t>(line); i < lines_.size(); ++i) {
+    const std::vector<DeckWord>& words = lines_[i];
+    if (words.empty() || is_heading(words[0].text)) continue;
+    DeckRow row;
+    row.line = static_cast<int>(i + 1);
+    for (const DeckWord& word : words) {
+      if (is_heading(word.text)) break;
+      const std::optional<double> value = parse_deck_number(word.text);
+      if (!value) {
+        // Text behind one or six numbers is a comment.
+        const bool is_row = row.numbers.size() == 1 || row.numbers.size() == 6;
+        const bool is_text = std::isalpha(static_cast<unsigned char>(word.text[0])) != 0;
+        if (!is_row || !is_text) errors_.add(place(row.line), "expected a number" + got(word.text));
+        break;
+      }
+      row.numbers.push_back(*value);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace samara::io

@@ -1,0 +1,104 @@
+// The text files of OpenFAST: a value, then the name of its key, then a description; tables with a
+// line of column names. Everything is found by its name, never by the number of its line.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace samara::io {
+
+/// What is wrong with a deck of several files, in the order found.
+class DeckErrors {
+ public:
+  void add(const std::string& place, const std::string& what);
+  /// A whole line.
+  void add_message(const std::string& message);
+  bool empty() const { return messages_.empty(); }
+  /// @throws InputError with one error a line, if there are any.
+  void throw_if_any() const;
+
+ private:
+  std::vector<std::string> messages_;
+};
+
+struct DeckWord {
+  std::string text;
+  bool quoted = false;
+  bool comma = false;  ///< a comma follows
+};
+
+struct DeckEntry {
+  std::string key;  ///< as written
+  std::vector<DeckWord> values;
+  int line = 0;
+  bool used = false;
+};
+
+/// Rows of numbers under a line of names.
+struct DeckTable {
+  int line = 0;                              ///< of the names
+  std::vector<std::string> names;            ///< as written
+  std::vector<std::vector<double>> columns;  ///< those that were asked for, in that order
+  std::vector<int> lines;                    ///< of the rows
+};
+
+/// A row of numbers of the body of BeamDyn's blade file.
+struct DeckRow {
+  int line = 0;
+  std::vector<double> numbers;
+};
+
+/// Reads "1.5", "-2.D+03", ".5e1"; nothing where the word is not a finite number.
+std::optional<double> parse_deck_number(const std::string& word);
+
+class Deck {
+ public:
+  /// @throws InputError where the file cannot be read or is no text
+  Deck(std::string path, DeckErrors& errors);
+
+  const std::string& path() const { return path_; }
+  const std::string& title() const { return title_; }
+  std::string place(int line) const { return path_ + ":" + std::to_string(line); }
+  std::string place_of(const std::string& key) const;
+
+  /// Keys are compared without case, and `Key(1)` is `Key1`.
+  bool has(const std::string& key) const;
+  /// First value of the key; a missing key is an error.
+  double number(const std::string& key);
+  int integer(const std::string& key, int low, int high);
+  bool flag(const std::string& key);
+  std::string text(const std::string& key);
+  /// The same where the key may be missing.
+  double number_or(const std::string& key, double value);
+  bool flag_or(const std::string& key, bool value);
+  /// The path of a file, relative to this one.
+  std::string file(const std::string& key);
+
+  /// The table that has the column `names[0]`; `count` rows, which the key `count_key` has said.
+  DeckTable table(const std::vector<std::string>& names, int count, const std::string& count_key);
+  /// The heading (a line of dashes) that has this word, without case; 0 where there is none.
+  int find_heading(const std::string& word) const;
+  /// Whether the file ends inside its last line, and that is `line`: it may be cut off in a number.
+  bool ends_inside(int line) const {
+    return !ends_with_line_ && line == static_cast<int>(lines_.size());
+  }
+  /// Rows of one or six numbers behind a line, to the end of the file.
+  std::vector<DeckRow> rows_after(int line);
+
+  std::vector<DeckEntry>& entries() { return entries_; }
+  DeckErrors& errors() { return errors_; }
+
+ private:
+  DeckEntry* find(const std::string& key, bool required);
+  void parse_line(const std::string& line, int number);
+
+  std::string path_;
+  DeckErrors& errors_;
+  std::string title_;
+  std::vector<std::vector<DeckWord>> lines_;  ///< from line 1
+  std::vector<DeckEntry> entries_;
+  bool ends_with_line_ = true;
+};
+
+}  // namespace samara::io
