@@ -146,9 +146,13 @@ class Writer {
     add("shaft", 2, "tilt_deg", exact(draft_.tilt_deg), "");
     add("shaft", 2, "height", exact(draft_.height), "m");
     add("shaft", 2, "azimuth_deg", exact(draft_.azimuth_deg), "");
-    add("shaft", 2, "inertia", "{axial: " + exact(draft_.shaft_inertia) + ", lateral: 0}",
-        "kg m^2");
-    add("shaft", 2, "torsion", "{joint: locked}", "");
+    add("shaft", 2, "torsion",
+        draft_.has_torsion ? "{joint: free, stiffness: " + exact(draft_.torsion_stiffness) +
+                                 ", damping: " + exact(draft_.torsion_damping) + "}"
+                           : "{joint: locked}",
+        "");
+    add("shaft", 2, "generator",
+        "{joint: locked, inertia: " + exact(draft_.generator_inertia) + "}", "kg m^2");
   }
 
   void add_hub() {

@@ -52,7 +52,10 @@ struct CaseDraft {
   double tilt_deg = 0.0;
   double height = 0.0;
   double azimuth_deg = 0.0;
-  double shaft_inertia = 0.0;  ///< about the shaft
+  double generator_inertia = 0.0;  ///< about the shaft, at its speed
+  bool has_torsion = false;
+  double torsion_stiffness = 0.0;
+  double torsion_damping = 0.0;
   double hub_mass = 0.0;
   double hub_center = 0.0;
   Vector3 hub_inertia = Vector3::Zero();

@@ -191,7 +191,18 @@ class Importer {
           deck.flag(key) ? "True, but " + what + " is locked: " + why
                          : "False: " + what + " is locked");
     };
-    lock("DrTrDOF", "shaft torsion", "a case has no shaft torsion yet");
+    draft_.has_torsion = deck.flag("DrTrDOF");
+    if (draft_.has_torsion) {
+      say(deck, "DrTrDOF", Fate::taken, "shaft.torsion");
+      draft_.torsion_stiffness = take(deck, "DTTorSpr", "shaft.torsion");
+      draft_.torsion_damping = take(deck, "DTTorDmp", "shaft.torsion");
+      require(draft_.torsion_stiffness > 0.0, deck, "DTTorSpr", "expected a number > 0");
+      require(draft_.torsion_damping >= 0.0, deck, "DTTorDmp", "expected a number >= 0");
+      note("shaft.torsion", "DTTorSpr, DTTorDmp");
+    } else {
+      lock("DrTrDOF", "shaft torsion", "");
+      note("shaft.torsion", "DrTrDOF");
+    }
     lock("GenDOF", "the rotor speed",
          "the generator torque (ServoDyn) is not read; the rotor turns at RotSpeed");
     lock("YawDOF", "yaw", "the yaw spring and damper (ServoDyn) are not read");
@@ -200,7 +211,6 @@ class Importer {
          {"PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF", "PtfmPDOF", "PtfmYDOF"})
       lock(key, "the platform", "a case has no platform; the tower is clamped at TowerBsHt");
     note("nacelle.yaw", "YawDOF: the yaw drive of ServoDyn is not read");
-    note("shaft.torsion", "DrTrDOF, GenDOF: the rotor turns at constant speed");
     if (deck.flag("Furling"))
       errors_.add(deck.place_of("Furling"),
                   "Furling: a furling turbine cannot be imported; only False");
@@ -266,12 +276,12 @@ class Importer {
 
     const double generator = deck.number("GenIner");
     const double ratio = deck.number("GBRatio");
-    draft_.shaft_inertia = generator * ratio * ratio;
+    draft_.generator_inertia = generator * ratio * ratio;
     const std::string sum =
-        "shaft.inertia.axial = GenIner GBRatio^2 = " + rounded(draft_.shaft_inertia) + " kg m^2";
+        "shaft.generator.inertia = GenIner GBRatio^2 = " + rounded(draft_.generator_inertia) + " kg m^2";
     say(deck, "GenIner", Fate::derived, sum);
     say(deck, "GBRatio", Fate::derived, sum);
-    note("shaft.inertia", "GenIner GBRatio^2");
+    note("shaft.generator", "GenIner GBRatio^2; GenDOF: the torque of ServoDyn is not read");
 
     draft_.tower.tip_mass = take(deck, "YawBrMass", "tower.tip_mass");
     read_hub();
@@ -958,7 +968,8 @@ class Importer {
     if (starts("Ptfm")) return "the tower is clamped, there is no platform";
     if (is({"OoPDefl", "IPDefl", "TeetDefl", "TTDspFA", "TTDspSS", "NacYaw"}))
       return "an initial state; the steady state is computed, and yaw is locked at 0";
-    if (is({"DTTorSpr", "DTTorDmp", "GBoxEff"})) return "shaft torsion is locked";
+    if (is({"DTTorSpr", "DTTorDmp"})) return "shaft torsion is locked";
+    if (is({"GBoxEff"})) return "losses of the gearbox are no part of a case";
     if (starts("PBrIner") || starts("BlPIner")) return "pitch is locked";
     if (is({"YawFrctMod", "M_CSmax", "M_FCSmax", "M_MCSmax", "M_CD", "M_FCD", "M_MCD", "sig_v",
             "sig_v2", "OmgCut"}))

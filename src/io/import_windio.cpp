@@ -172,7 +172,7 @@ class Importer {
 
   /// What a deck may leave out is 0 in the case.
   void missing(const std::string& what, const std::string& key) {
-    note(key == "shaft.inertia.axial" ? "shaft.inertia" : key, "not in the deck");
+    note(key == "shaft.generator.inertia" ? "shaft.inertia" : key, "not in the deck");
     report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
   }
 
@@ -437,16 +437,16 @@ class Importer {
                 "components.drivetrain.generator.elastic_properties_mb.rotor_inertia",
                 "components.nacelle.generator.elastic_properties_mb.rotor_inertia"});
     if (generator.empty()) {
-      missing("the inertia of the generator", "shaft.inertia.axial");
+      missing("the inertia of the generator", "shaft.generator.inertia");
       return;
     }
     const double ratio = number(
         {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
-        Fate::derived, "shaft.inertia.axial");
+        Fate::derived, "shaft.generator.inertia");
     const Vector3 inertia =
-        inertia_of(generator, "shaft.inertia.axial = Ixx gear_ratio^2; its mass is the nacelle's");
-    draft_.shaft_inertia = inertia(0) * ratio * ratio;
-    note("shaft.inertia", "generator Ixx gear_ratio^2");
+        inertia_of(generator, "shaft.generator.inertia = Ixx gear_ratio^2; its mass is the nacelle's");
+    draft_.generator_inertia = inertia(0) * ratio * ratio;
+    note("shaft.generator", "generator Ixx gear_ratio^2");
   }
 
   void read_hub() {

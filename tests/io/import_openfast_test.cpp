@@ -86,7 +86,7 @@ BOOST_AUTO_TEST_CASE(bodies_keep_their_masses_and_moments) {
   BOOST_TEST(is_near(t.nacelle.inertia(2) + 9000.0 * (0.6 * 0.6 + 0.2 * 0.2), 18500.0));
   BOOST_TEST(t.nacelle.inertia(0) == 0.0);
   BOOST_TEST(t.tower.tip_mass == 450.0);
-  BOOST_TEST(is_near(t.shaft.inertia_axial, 14.25 * 22.0 * 22.0));
+  BOOST_TEST(is_near(t.shaft.generator.inertia, 14.25 * 22.0 * 22.0));
   BOOST_TEST(t.hub.mass == 2500.0);
   BOOST_TEST(t.hub.center_of_mass == 0.15);
   BOOST_TEST(t.hub.inertia == Vector3(0.0, 1900.0, 0.0));
@@ -159,9 +159,20 @@ BOOST_AUTO_TEST_CASE(freedoms_without_their_driver_are_locked_and_said) {
   folder.replace("ElastoDyn.dat", "False         YawDOF", "True          YawDOF");
   const Import import = import_main(folder);
   BOOST_TEST((parse(import).turbine.nacelle.yaw.kind == model::JointKind::locked));
-  for (const char* key : {"YawDOF", "GenDOF", "DrTrDOF"})
+  for (const char* key : {"YawDOF", "GenDOF"})
     BOOST_TEST(holds(find_line(import, key)->words, "locked"));
   BOOST_TEST(holds(find_line(import, "YawDOF")->words, "ServoDyn"));
+}
+
+BOOST_AUTO_TEST_CASE(shaft_torsion_is_taken_with_its_spring_or_locked) {
+  const DeckFolder folder("three");
+  for (const bool free : {true, false}) {
+    if (!free) folder.replace("ElastoDyn.dat", "True          DrTrDOF", "False         DrTrDOF");
+    const model::JointDefinition torsion = parse(import_main(folder)).turbine.shaft.torsion;
+    BOOST_TEST((torsion.kind == (free ? model::JointKind::free : model::JointKind::locked)));
+    BOOST_TEST(torsion.stiffness == (free ? 8.5e6 : 0.0));
+    BOOST_TEST(torsion.damping == (free ? 6.2e4 : 0.0));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_direction_without_freedoms_is_rigid) {
