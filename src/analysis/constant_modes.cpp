@@ -97,10 +97,19 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   for (std::size_t i = 0; i < pairs.values.size(); ++i) {
     const Complex exponent = sigma * (1.0 - 1.0 / pairs.values[i]);
     if (exponent.imag() < 0.0) continue;
-    spectrum.exponents.push_back(exponent);
-    spectrum.shapes.conservativeResize(system.size(), spectrum.shapes.cols() + 1);
-    spectrum.shapes.col(spectrum.shapes.cols() - 1) =
-        shapes * pairs.vectors.col(static_cast<Eigen::Index>(i));
+    const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
+    const auto keep = [&](Complex value, const Eigen::VectorXcd& combination) {
+      spectrum.exponents.push_back(value);
+      spectrum.shapes.conservativeResize(system.size(), spectrum.shapes.cols() + 1);
+      spectrum.shapes.col(spectrum.shapes.cols() - 1) = shapes * combination;
+    };
+    if (exponent.imag() > 0.0 && std::abs(exponent) < zero_to_shift * sigma) {
+      // A double zero that rounding has split into a pair: two real rows, as on another day.
+      keep(exponent.real(), real_part(vector));
+      keep(exponent.real(), real_part(vector));
+    } else {
+      keep(exponent, vector);
+    }
   }
   return spectrum;
 }
@@ -192,8 +201,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   collect(border);
   // A mode at the border that the two shifts see on different sides is lost or found twice.
   if (exponents != 2 * subspace.degrees_of_freedom()) collect(-1.0);
-  std::stable_sort(order.begin(), order.end(), [](const Found& a, const Found& b) {
-    return a.exponent.imag() < b.exponent.imag();
+  std::stable_sort(order.begin(), order.end(), [speed](const Found& a, const Found& b) {
+    return sorting_frequency(a.exponent, speed) < sorting_frequency(b.exponent, speed);
   });
   const std::vector<PetscInt> kinetic = kinetic_unknowns(system);
   const HarmonicEnergy energy(system, kinetic);

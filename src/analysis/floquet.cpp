@@ -166,11 +166,13 @@ class Analysis {
       target.block(row, own_[j], eta.rows(), 1) = eta.col(static_cast<Eigen::Index>(j));
   }
 
-  /// P on eta: the coordinates are unknowns, and P renames and signs unknowns.
+  /// P on eta: the coordinates are unknowns, each by a scale of its own, and P renames and signs
+  /// unknowns.
   Eigen::MatrixXd turned(const Eigen::MatrixXd& pairs) const {
     if (sectors_ == 1) return pairs;
     const system::RotorSymmetry& symmetry = system_.symmetry();
     const std::vector<PetscInt>& coordinates = subspace_.coordinates();
+    const std::vector<double>& scale = subspace_.scale();
     const auto d = static_cast<Eigen::Index>(coordinates.size());
     Eigen::MatrixXd result(pairs.rows(), pairs.cols());
     for (Eigen::Index i = 0; i < d; ++i) {
@@ -178,8 +180,10 @@ class Analysis {
       const auto source =
           std::find(coordinates.begin(), coordinates.end(), symmetry.source[unknown]) -
           coordinates.begin();
-      result.row(i) = symmetry.sign[unknown] * pairs.row(source);
-      result.row(d + i) = symmetry.sign[unknown] * pairs.row(d + source);
+      const double factor = symmetry.sign[unknown] * scale[static_cast<std::size_t>(source)] /
+                            scale[static_cast<std::size_t>(i)];
+      result.row(i) = factor * pairs.row(source);
+      result.row(d + i) = factor * pairs.row(d + source);
     }
     return result;
   }
@@ -222,8 +226,8 @@ class Analysis {
       const Complex exponent = principal_exponent(pairs.values[i]);
       if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
         // A double zero that rounding has split into a pair: two real rows, as on another day.
-        keep(pairs.values[i].real(), vector.real());
-        keep(pairs.values[i].real(), vector.real());
+        keep(pairs.values[i].real(), real_part(vector));
+        keep(pairs.values[i].real(), real_part(vector));
       } else {
         keep(pairs.values[i], vector);
       }
@@ -269,8 +273,7 @@ class Analysis {
     // Every rank combines what its columns add to a batch of modes, and takes its share of them
     // over.
     const Eigen::Index batch =
-        ranks_.size *
-        std::max<Eigen::Index>(1, batch_values / (2 * history_.rows() * ranks_.size));
+        ranks_.size * std::max<Eigen::Index>(1, batch_values / (2 * history_.rows() * ranks_.size));
     Eigen::MatrixXd values;
     for (Eigen::Index first = 0; first < count; first += batch) {
       std::vector<Eigen::Index> modes;
@@ -429,9 +432,12 @@ class Analysis {
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
     if (ranks_.rank == 0) {
       for (std::size_t m = 0; m < modes_.size(); ++m) {
-        const bool real = exponents_[m].imag() == 0.0 &&
-                          is_rigid_body(system_, mode_shapes_[m], modes_[m].kinetic_energy);
-        if (!is_zero(exponents_[m]) && !real) harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
+        Mode mode = modes_[m];
+        mode.exponent = exponents_[m];
+        const bool real =
+            exponents_[m].imag() == 0.0 && is_rigid_body(system_, mode_shapes_[m], mode);
+        if (!is_zero(exponents_[m]) && !real)
+          harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
       }
     }
     ranks_.sum(harmonics.data(), modes_.size());
@@ -473,7 +479,9 @@ class Analysis {
     }
     mode.exponent = exponent;
     mode.damping_ratio = is_zero(exponent) ? 0.0 : -exponent.real() / std::abs(exponent);
-    mode.resolved = slow && in_reach(exponent.imag()) && mode.residual <= largest_residual;
+    const bool moderate = 0.5 * std::abs(exponent.real()) * dt_ <= largest_half_phase;
+    mode.resolved =
+        slow && moderate && in_reach(exponent.imag()) && mode.residual <= largest_residual;
     for (std::size_t p = 0; p < energy_.part_names().size(); ++p)
       mode.parts.push_back({energy_.part_names()[p], part_shares_(static_cast<Eigen::Index>(p),
                                                                   static_cast<Eigen::Index>(m))});
@@ -486,7 +494,8 @@ class Analysis {
     std::vector<std::size_t> order(modes_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
-      return modes_[a].exponent.imag() < modes_[b].exponent.imag();
+      return sorting_frequency(modes_[a].exponent, speed_) <
+             sorting_frequency(modes_[b].exponent, speed_);
     });
     Floquet result;
     result.steps = steps_;

@@ -113,13 +113,13 @@ std::map<std::string, double> strain_energies(const system::PeriodicSystem& syst
 }
 
 std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
-                    double kinetic) {
+                    const Mode& mode) {
   const std::map<std::string, double> strain = strain_energies(system, shape);
   const auto largest_entry =
       std::max_element(strain.begin(), strain.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string joint = moving_joint(system, shape);
-  if (!joint.empty() && is_rigid_body(system, shape, kinetic)) return joint;
+  if (!joint.empty() && is_rigid_body(system, shape, mode)) return joint;
   if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
   const std::string& largest = largest_entry->first;
   int blades = 0;
@@ -137,11 +137,18 @@ std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd
 }  // namespace
 
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
-                   double kinetic_energy) {
+                   const Mode& mode) {
   double strained = 0.0;
-  for (const auto& [name, energy] : strain_energies(system, shape))
-    if (!name.starts_with("joint/")) strained += energy;
-  return strained < elastic_share * (strained + kinetic_energy);
+  for (const EnergyGroup& group : system.energy_groups())
+    if (group.kind == EnergyGroup::Kind::strain && group.part != "joint")
+      strained +=
+          (1.0 + group.damping * std::abs(mode.exponent)) * mean_strain_energy(group, shape);
+  return strained < elastic_share * (strained + mode.kinetic_energy);
+}
+
+double sorting_frequency(std::complex<double> exponent, double rotor_speed) {
+  const double slow = rotor_speed > 0.0 ? rotor_speed : 1.0;
+  return exponent.imag() == 0.0 && std::abs(exponent) < slow ? 0.0 : std::abs(exponent);
 }
 
 std::vector<PetscInt> kinetic_unknowns(const system::PeriodicSystem& system) {
@@ -238,7 +245,7 @@ void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   for (std::size_t i = 0; i < set.shapes.size(); ++i) {
     const std::string joint = moving_joint(system, set.shapes[i]);
     const bool rests = std::abs(set.modes[i].exponent) < zero && !joint.empty();
-    stems.push_back(rests ? joint : stem_of(system, set.shapes[i], set.modes[i].kinetic_energy));
+    stems.push_back(rests ? joint : stem_of(system, set.shapes[i], set.modes[i]));
   }
   unite_degenerate(set, stems);
   for (const std::string& stem : stems) ++count[stem];

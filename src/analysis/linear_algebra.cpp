@@ -181,6 +181,13 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
   right = solution_.array().colwise() * column_factors.array();
 }
 
+Eigen::VectorXd real_part(const Eigen::VectorXcd& vector) {
+  Eigen::Index largest = 0;
+  const double size = vector.cwiseAbs().maxCoeff(&largest);
+  if (size == 0.0) return vector.real();
+  return (vector * (std::conj(vector(largest)) / size)).real();
+}
+
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c) {
   c.resize(a.rows(), b.cols());

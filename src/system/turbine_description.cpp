@@ -140,7 +140,8 @@ class Describer {
                                 blade,
                                 frame,
                                 {first + 12 + i},
-                                {length * point.compliance(i, i)}});
+                                {length * point.compliance(i, i)},
+                                point.damping(i)});
     }
   }
 
@@ -249,8 +250,14 @@ class Describer {
 
   void add_spring(const elements::Hinge& hinge, const std::string& name, Frame frame, int angle) {
     if (!hinge.free || hinge.stiffness == 0.0) return;
-    result_.groups.push_back(
-        {EnergyGroup::Kind::strain, "joint", name, 0, frame, {angle}, {hinge.stiffness}});
+    result_.groups.push_back({EnergyGroup::Kind::strain,
+                              "joint",
+                              name,
+                              0,
+                              frame,
+                              {angle},
+                              {hinge.stiffness},
+                              hinge.damping / hinge.stiffness});
   }
 
   /// Why the rotor does not look the same after 1/B of a turn; empty where it does.

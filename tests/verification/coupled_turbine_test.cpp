@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(full_and_blade_period_have_the_same_multipliers) {
     const bool loose = is_defective(mode, full.set.rotor_speed);
     if (!mode.resolved && !loose) continue;
     const double off = multiplier_distance(mode.multiplier, baseline().set);
-    BOOST_TEST(off < (loose ? defective : 1e-8), mode.label << " " << off);
+    BOOST_TEST(off < (loose ? defective : 1e-7), mode.label << " " << off);
     // The identified exponent too: T = 1.04 s.
     if (!loose)
       BOOST_TEST(distance(mode.exponent, baseline().set) < 1e-8,
@@ -173,9 +173,10 @@ BOOST_AUTO_TEST_CASE(three_blades_tell_the_direction_of_renaming) {
       const bool loose = is_defective(mode, full.set.rotor_speed);
       if (!mode.resolved && !loose) continue;
       ++seen;
-      // The wrong direction is off by tenths; 1e-8 is asked of the paper's turbine, above.
+      // The wrong direction is off by tenths. Blades of different azimuth have different scales of
+      // their coordinates under gravity: 1e-6 where P forgets them.
       const double off = multiplier_distance(mode.multiplier, fast.set);
-      BOOST_TEST(off < (loose ? defective : 1e-5),
+      BOOST_TEST(off < (loose ? defective : 1e-7),
                  "gravity " << gravity << " " << mode.label << " " << off);
     }
     BOOST_TEST(seen > 8);

@@ -6,8 +6,9 @@
 // it is counted, not guessed from a rank.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "samara/analysis/periodic_solution.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -24,6 +25,8 @@ class ConsistentSubspace {
 
   /// The unknowns that are eta.
   const std::vector<PetscInt>& coordinates() const { return coordinates_; }
+  /// Entry i of eta is unknown coordinates()[i] divided by scale()[i].
+  const std::vector<double>& scale() const { return scale_; }
 
   /// eta of the columns of z, scaled: d x columns.
   Eigen::MatrixXd coordinates_of(const Eigen::MatrixXd& z) const;
@@ -48,12 +51,12 @@ class ConsistentSubspace {
   const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;
   std::vector<PetscInt> coordinates_;
-  std::vector<double> scale_;           ///< eta = z / scale
+  std::vector<double> scale_;  ///< eta = z / scale
   std::vector<bool> carried_;
-  std::vector<PetscInt> constraints_;   ///< rows
-  std::vector<PetscInt> tied_;          ///< positions in constraint rows
-  std::vector<PetscInt> kinematic_;     ///< rows
-  std::vector<PetscInt> velocities_;    ///< unknowns
+  std::vector<PetscInt> constraints_;  ///< rows
+  std::vector<PetscInt> tied_;         ///< positions in constraint rows
+  std::vector<PetscInt> kinematic_;    ///< rows
+  std::vector<PetscInt> velocities_;   ///< unknowns
   bool fixed_constraints_ = false;
 };
 

@@ -11,7 +11,6 @@ namespace samara::analysis {
 /// All modes about the constant `solution`; options prefix `modes_`. Serial: every rank of a run
 /// computes the same. Mode::multiplier and participation stay empty, shapes have one sample.
 /// @throws InputError where the tangents depend on time (hint: samara floquet)
-ModeSet find_constant_modes(const system::PeriodicSystem& system,
-                            const PeriodicSolution& solution);
+ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution);
 
 }  // namespace samara::analysis

@@ -11,9 +11,9 @@ namespace samara::analysis {
 
 struct Floquet {
   ModeSet set;
-  int steps = 0;             ///< a revolution, as used
-  int sectors = 1;           ///< Q: integrated over T / Q
-  double step = 0.0;         ///< dt [s]
+  int steps = 0;      ///< a revolution, as used
+  int sectors = 1;    ///< Q: integrated over T / Q
+  double step = 0.0;  ///< dt [s]
 };
 
 /// Integrates about `solution`, finds and identifies all modes. `system` is a serial copy on every

@@ -1,5 +1,5 @@
-// From the history of a mode over a period to its frequency, its parts and its name (docs/theory.md,
-// section 5; Lee, Hodges & Patil (2002), eq. (20), (21)).
+// From the history of a mode over a period to its frequency, its parts and its name
+// (docs/theory.md, section 5; Lee, Hodges & Patil (2002), eq. (20), (21)).
 #pragma once
 
 #include "samara/analysis/mode.hpp"
@@ -33,9 +33,14 @@ class HarmonicEnergy {
   std::vector<Group> groups_;
 };
 
-/// True where almost nothing strains: a rigid-body motion of the free joints.
+/// True where almost nothing strains: a rigid-body motion of the free joints. A strain's damping
+/// counts with it: an overdamped motion of a beam is none of its joints.
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
-                   double kinetic_energy);
+                   const Mode& mode);
+
+/// What modes are sorted by: |lambda| [rad/s], and 0 for real exponents slower than the rotor (or
+/// 1 rad/s), which come in pairs that rounding must not sort.
+double sorting_frequency(std::complex<double> exponent, double rotor_speed);
 
 /// Scales every shape so that its largest position is 1, and its kinetic energy with it.
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);

@@ -55,6 +55,9 @@ class DirectSolver {
   Eigen::Index probe_ = 0;
 };
 
+/// The real part of an eigenvector, whose phase is free, where its largest entry is real.
+Eigen::VectorXd real_part(const Eigen::VectorXcd& vector);
+
 /// A B by BLAS; `c` is resized where it must be.
 Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,

@@ -1,10 +1,11 @@
 // A mode of a linearized system, identified (docs/theory.md, section 5).
 #pragma once
 
-#include <Eigen/Core>
 #include <complex>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace samara::analysis {
 
@@ -20,19 +21,19 @@ struct Mode {
   int harmonic = 0;                 ///< k, relative to the principal exponent
   double damping_ratio = 0.0;       ///< -Re / |lambda|; 0 where |lambda| counts as zero
   std::string label;
-  bool resolved = true;             ///< omega dt / 2 <= 0.7 and the residual is small
+  bool resolved = true;  ///< omega dt / 2 <= 0.7 and the residual is small
   /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
   /// tangents: relative difference of the exponent found with two shifts.
   double residual = 0.0;
-  std::vector<PartShare> parts;     ///< descending
-  double kinetic_energy = 0.0;      ///< mean, of the shape as it is scaled [J]
+  std::vector<PartShare> parts;  ///< descending
+  double kinetic_energy = 0.0;   ///< mean, of the shape as it is scaled [J]
 };
 
 struct ModeSet {
-  std::vector<Mode> modes;          ///< by identified frequency
+  std::vector<Mode> modes;  ///< by identified frequency
   int degrees_of_freedom = 0;
-  double rotor_speed = 0.0;         ///< Omega [rad/s]
-  bool conservative = false;        ///< multipliers should come in pairs mu, 1/mu*
+  double rotor_speed = 0.0;   ///< Omega [rad/s]
+  bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*
   /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
   Eigen::MatrixXd participation;
   int first_harmonic = 0;

@@ -7,9 +7,10 @@
 // keeps rigid strains exactly unstrained.
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/linear_algebra.hpp"
@@ -38,7 +39,8 @@ class LinearizedStep {
   void solve(Eigen::MatrixXd& right) { solver_.solve(right); }
 
   /// From the values z at the step's start and those at its middle to the values at its end.
-  void to_end(Eigen::Ref<Eigen::MatrixXd> z, const Eigen::Ref<const Eigen::MatrixXd>& middle) const {
+  void to_end(Eigen::Ref<Eigen::MatrixXd> z,
+              const Eigen::Ref<const Eigen::MatrixXd>& middle) const {
     z = (2.0 * middle - z).array().colwise() * carried_.array();
   }
 

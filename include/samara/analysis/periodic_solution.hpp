@@ -1,8 +1,9 @@
 // A periodic steady state as a Fourier series, eq. (15).
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "samara/petsc/handle.hpp"
 

@@ -22,10 +22,10 @@ struct Trim {
   PeriodicSolution solution;
   TrimMethod method = TrimMethod::harmonic_balance;
   int newton_steps = 0;
-  std::string convergence;         ///< PETSc's reason in words
-  double residual = 0.0;           ///< largest balance row at the samples [N, N m]
-  double residual_between = 0.0;   ///< largest balance row between the samples [N, N m]
-  double load_level = 0.0;         ///< largest internal load of the solution [N, N m]
+  std::string convergence;        ///< PETSc's reason in words
+  double residual = 0.0;          ///< largest balance row at the samples [N, N m]
+  double residual_between = 0.0;  ///< largest balance row between the samples [N, N m]
+  double load_level = 0.0;        ///< largest internal load of the solution [N, N m]
   std::vector<HeldCoordinate> held;
   /// Harmonics tried and the residual between the samples that each left (more than one: auto).
   std::vector<std::pair<int, double>> history;

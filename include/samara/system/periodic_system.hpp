@@ -43,6 +43,7 @@ struct EnergyGroup {
   Frame frame = Frame::fixed;
   std::vector<PetscInt> unknowns;
   std::vector<double> weight;  ///< row by row, unknowns x unknowns, symmetric
+  double damping = 0.0;  ///< mu [s] of a strain: its load is the elastic one times 1 + mu d/dt
 };
 
 /// A coordinate whose mean nothing restores, and the row of the load that would hold it.
