@@ -13,4 +13,7 @@ void run_floquet(const Job& job);
 /// Floquet's theory needs a period.
 void require_speed(const io::Case& input);
 
+/// A steady state needs loads that are constant or go with the rotor.
+void require_repeating_loads(const io::Case& input);
+
 }  // namespace samara::drivers

@@ -30,11 +30,12 @@ constexpr std::array<Command, 4> commands{{
     {"modes", "modes of a parked rotor, or of a balanced one in its own axes",
      "Finds all modes about the steady state where the coefficients do not depend on the azimuth:\n"
      "a parked rotor, or a balanced one in its own axes. Elsewhere use samara floquet.\n",
-     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, nullptr, run_modes},
+     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, require_repeating_loads,
+     run_modes},
     {"trim", "the periodic steady state",
      "Finds the periodic steady state: deflections and loads as harmonics of the rotor speed.\n",
-     "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true, nullptr,
-     run_trim},
+     "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true,
+     require_repeating_loads, run_trim},
     {"floquet", "the stability of the periodic steady state: all modes",
      "Finds the periodic steady state, and all modes about it by Floquet's theory: multipliers,\n"
      "frequencies, damping, harmonics, and where the energy is.\n",

@@ -155,6 +155,12 @@ bool TurbineSystem::is_conservative() const {
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const elements::BeamPoint& point : placed.beam->points)
       if (!point.damping.isZero(0.0)) return false;
+  // A dead force has a potential where the axes that it is fixed in move as prescribed.
+  const bool hub_moves = turbine.has_tower || turbine.chain.yaw.free || turbine.chain.teeter.free;
+  for (const PlacedBeam& placed : assembly_->equations.beams())
+    for (const model::BeamLoad& load : placed.beam->loads)
+      if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub && hub_moves))
+        return false;
   return true;
 }
 

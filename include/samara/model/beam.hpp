@@ -7,6 +7,7 @@
 
 #include "samara/elements/beam_point.hpp"
 #include "samara/model/definition.hpp"
+#include "samara/model/load.hpp"
 
 namespace samara::model {
 
@@ -27,6 +28,7 @@ struct Beam {
   std::vector<double> fractions;              ///< of the length, of each point
   Vector3 tip = Vector3::Zero();              ///< undeformed tip, components in a [m]
   double tip_mass = 0.0;                      ///< [kg]
+  std::vector<BeamLoad> loads;
 
   int point_count() const { return elements * order; }
 
