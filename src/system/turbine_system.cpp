@@ -262,6 +262,14 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   for (PetscInt i = first; i < last; ++i) view[i - first] = values[static_cast<std::size_t>(i)];
 }
 
+std::unique_ptr<PeriodicSystem> TurbineSystem::unloaded() const {
+  model::Turbine bare = turbine();
+  bare.chain.gravity = 0.0;
+  bare.tower.loads.clear();
+  for (model::Beam& blade : bare.blades) blade.loads.clear();
+  return std::make_unique<TurbineSystem>(bare, comm());
+}
+
 void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {
   const Assembly& assembly = *assembly_;
   std::vector<double> values(static_cast<std::size_t>(size()));
