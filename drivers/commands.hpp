@@ -6,12 +6,16 @@
 namespace samara::drivers {
 
 void run_check(const Job& job);
+void run_static(const Job& job);
 void run_modes(const Job& job);
 void run_trim(const Job& job);
 void run_floquet(const Job& job);
 
 /// Floquet's theory needs a period.
 void require_speed(const io::Case& input);
+
+/// Statics is of what stands still.
+void require_rest(const io::Case& input);
 
 /// A steady state needs loads that are constant or go with the rotor.
 void require_repeating_loads(const io::Case& input);

@@ -22,11 +22,17 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 4> commands{{
+constexpr std::array<Command, 5> commands{{
     {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
      "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
      "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
      "inputs/lee2002/baseline.yaml", false, false, nullptr, run_check},
+    {"static", "the turbine or beam at rest under gravity and loads",
+     "Finds the equilibrium at rest under gravity and prescribed loads, which grow step by step "
+     "from\n"
+     "nothing; with static.method=arc_length also through limit points.\n",
+     "inputs/lee2002/baseline.yaml --set shaft.speed=0 --set gravity=9.81", true, true,
+     require_rest, run_static},
     {"modes", "modes of a parked rotor, or of a balanced one in its own axes",
      "Finds all modes about the steady state where the coefficients do not depend on the azimuth:\n"
      "a parked rotor, or a balanced one in its own axes. Elsewhere use samara floquet.\n",

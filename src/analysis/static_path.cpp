@@ -23,8 +23,11 @@ constexpr int patient_newton_steps = 3;
 /// How often a step is halved before the path is given up.
 constexpr int most_halvings = 20;
 
-/// A remainder of the load factor that is rounding.
+/// A remainder of the load factor, or a motion [m, rad], that is rounding.
 constexpr double rounding = 1e-12;
+
+/// Cosine between the tangents at both ends of an arc; below it the step may have changed branches.
+constexpr double least_cosine = 0.3;
 
 /// A point of the path: the state, in which a neutral coordinate gives its place to the load that
 /// holds it, and the load factor.
@@ -293,8 +296,20 @@ class PathFollower {
 
   // ---- prescribed factors --------------------------------------------------------------------
 
+  /// Newton may end on another branch of equilibria, where the motion of the step, or what comes
+  /// next, goes back against the tangent.
+  void refuse_jump(const Point& point, const Direction& slope, const Point& next,
+                   const Direction& next_slope) const {
+    const Eigen::VectorXd motion = next.x - point.x;
+    if (std::sqrt(equilibrium_.product(motion, motion)) < rounding) return;
+    if (equilibrium_.product(motion, slope.x) < 0.0 ||
+        equilibrium_.product(motion, next_slope.x) < 0.0)
+      throw ConvergenceError("the state jumps, or turns back: there may be another branch");
+  }
+
   void follow_loads(Point point) {
     double step = first_step_;
+    Direction slope = slope_at(point);
     while (point.factor < 1.0) {
       // Cut steps end on the next multiple of the first step, too.
       const double multiple =
@@ -302,8 +317,16 @@ class PathFollower {
       Point next = point;
       next.factor = std::min(point.factor + step, multiple);
       if (next.factor > 1.0 - rounding) next.factor = 1.0;
-      if (attempt([&] { accept(next, correct(next, nullptr)); })) {
+      Direction next_slope;
+      const bool found = attempt([&] {
+        const int newton_steps = correct(next, nullptr);
+        next_slope = slope_at(next);
+        refuse_jump(point, slope, next, next_slope);
+        accept(next, newton_steps);
+      });
+      if (found) {
         point = next;
+        slope = next_slope;
         halvings_ = std::max(halvings_ - 1, 0);
         step = std::min(2.0 * step, first_step_);
       } else {
@@ -358,6 +381,8 @@ class PathFollower {
           newton_steps += correct(next, nullptr);
         }
         ahead = tangent_at(next, tangent);
+        if (product(tangent, ahead) < least_cosine)
+          throw ConvergenceError("the path bends too sharply, or leaves for another branch");
         accept(next, newton_steps);
       });
       if (!found) {
