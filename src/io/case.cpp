@@ -33,6 +33,9 @@ constexpr int max_load_steps = 100000;
 /// `length` beside `reference_line` must agree to this, relative.
 constexpr double length_tolerance = 1e-3;
 
+constexpr NumberRule beyond_the_root{"a number above 0, to 1", std::numeric_limits<double>::min(),
+                                     1.0};
+
 constexpr double to_radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 /// Reads an angle key in degrees into radians.
@@ -282,6 +285,30 @@ void read_length(MapReader& map, const Matrix3& to_a, model::BeamDefinition& bea
   }
 }
 
+void read_point_masses(MapReader& map, std::vector<model::PointMassDefinition>& masses) {
+  const YamlNode* list = map.find("point_masses");
+  if (list == nullptr) return;
+  if (list->kind != YamlNode::Kind::list) {
+    map.refuse(*list, "point_masses", "expected a list, " + describe(*list));
+    return;
+  }
+  for (std::size_t i = 0; i < list->children.size(); ++i) {
+    const YamlNode& node = list->children[i];
+    MapReader entry(node, join_path(map.where("point_masses"), i), map.errors());
+    model::PointMassDefinition lump;
+    entry.require("at");
+    entry.require("mass");
+    entry.read("at", lump.at, beyond_the_root);
+    entry.read("mass", lump.mass, positive);
+    entry.read("center", {lump.center.data(), 3}, any_number);
+    entry.read("inertia", {lump.inertia.data(), 3}, non_negative);
+    entry.finish();
+    masses.push_back(lump);
+  }
+  std::stable_sort(masses.begin(), masses.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+}
+
 /// Reads the keys that the tower and the blades have in common.
 void read_beam(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam) {
   read_length(map, to_a, beam);
@@ -290,6 +317,7 @@ void read_beam(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam)
   read_sections(map, beam.sections);
   read_damping(map, beam.damping);
   map.read("tip_mass", beam.tip_mass, non_negative);
+  read_point_masses(map, beam.point_masses);
 }
 
 void read_tower(const YamlNode& node, model::TurbineDefinition& turbine, ErrorList& errors) {
@@ -368,11 +396,7 @@ void read_teeter(const YamlNode& node, const std::string& where, model::HubDefin
   if (word == nullptr) hub.teeter.kind = JointKind::free;
   read_joint(map, hub.teeter, word);
   map.read("undersling", hub.undersling, any_number);
-  double delta3 = 0.0;
-  if (map.read("delta3_deg", delta3, half_turn) && delta3 != 0.0) {
-    const YamlNode& entry = *node.find("delta3_deg");
-    map.refuse(entry, "delta3_deg", "delta-3 is not available yet; only 0, " + describe(entry));
-  }
+  read_angle(map, "delta3_deg", hub.delta3, quarter_turn);
   map.finish();
 }
 

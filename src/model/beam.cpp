@@ -1,5 +1,6 @@
 #include "samara/model/beam.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -7,9 +8,13 @@
 #include "samara/base/error.hpp"
 #include "samara/math/quadrature.hpp"
 #include "samara/math/rotation.hpp"
+#include "samara/model/reference_line.hpp"
 
 namespace samara::model {
 namespace {
+
+/// Shortest element that point masses may leave, of an even one.
+constexpr double least_element = 0.25;
 
 TestFunctions test_functions(const math::QuadratureRule& rule) {
   const int order = static_cast<int>(rule.points.size());
@@ -27,6 +32,26 @@ TestFunctions test_functions(const math::QuadratureRule& rule) {
     functions.slope.push_back(slope);
   }
   return functions;
+}
+
+/// Evenly spaced, but that a point mass draws the nearest end to its place.
+std::vector<double> element_ends(const std::string& name, const BeamDefinition& definition) {
+  std::vector<double> ends;
+  const int n = definition.elements;
+  for (int e = 0; e <= n; ++e) ends.push_back(static_cast<double>(e) / n);
+  int last = 0;
+  for (const PointMassDefinition& lump : definition.point_masses) {
+    if (lump.at == 1.0 || lump.at == ends[static_cast<std::size_t>(last)]) continue;
+    const int nearest = std::min(static_cast<int>(std::lround(lump.at * n)), n - 1);
+    last = std::max(nearest, last + 1);
+    if (last >= n) break;
+    ends[static_cast<std::size_t>(last)] = lump.at;
+  }
+  for (std::size_t e = 1; e < ends.size(); ++e)
+    if (last >= n || !(ends[e] - ends[e - 1] >= least_element / n))
+      throw InputError(name + ".point_masses: the mesh of " + std::to_string(n) +
+                       " elements is too coarse for their places; hint: more elements");
+  return ends;
 }
 
 }  // namespace
@@ -50,27 +75,37 @@ Matrix6 compliance_of(const SectionDefinition& section) {
   return compliance;
 }
 
+Matrix6 rigid_mass(double mass, const Vector3& center, const Matrix3& inertia_about_center) {
+  const Matrix3 across = mass * math::skew<double>(center);
+  Matrix6 matrix;
+  matrix << mass * Matrix3::Identity(), -across, across,
+      inertia_about_center - across * math::skew<double>(center);
+  return matrix;
+}
+
 Beam build_beam(const std::string& name, const BeamDefinition& definition, double mass_factor,
                 double stiffness_factor) {
-  if (!definition.reference_line.empty())
-    throw InputError(name +
-                     ": a reference_line is not available yet; hint: give length (straight)");
   const math::QuadratureRule rule = math::gauss_rule(definition.order);
+  const ReferenceLine line(name, definition);
   Beam beam;
   beam.name = name;
   beam.elements = definition.elements;
   beam.order = definition.order;
-  beam.element_length = definition.length / definition.elements;
+  beam.length = definition.length;
+  beam.ends = element_ends(name, definition);
   beam.functions = test_functions(rule);
-  beam.tip = Vector3(definition.length, 0.0, 0.0);
-  beam.tip_mass = definition.tip_mass;
+  beam.tip = line.at(1.0).x;
+  beam.tip_mass = rigid_mass(definition.tip_mass, Vector3::Zero(), Matrix3::Zero());
   for (int e = 0; e < definition.elements; ++e) {
+    const double start = beam.ends[static_cast<std::size_t>(e)];
+    const double span = beam.ends[static_cast<std::size_t>(e) + 1] - start;
     for (const double xi : rule.points) {
-      const double fraction = (e + xi) / definition.elements;
+      const double fraction = start + span * xi;
       const SectionDefinition section = interpolate_section(definition, fraction);
+      const ReferenceLine::Station station = line.at(fraction, section.twist);
       elements::BeamPoint point;
-      point.x = Vector3(fraction * definition.length, 0.0, 0.0);
-      point.C_ab = math::turn_about<double>(-Vector3::UnitX(), section.twist);
+      point.x = station.x;
+      point.C_ab = station.C_ab;
       point.compliance = compliance_of(section) / stiffness_factor;
       point.mass = section.mass * mass_factor;
       for (int i = 0; i < 6; ++i)
@@ -78,6 +113,22 @@ Beam build_beam(const std::string& name, const BeamDefinition& definition, doubl
       beam.points.push_back(point);
       beam.fractions.push_back(fraction);
     }
+  }
+  for (const PointMassDefinition& lump : definition.point_masses) {
+    const ReferenceLine::Station station =
+        line.at(lump.at, interpolate_section(definition, lump.at).twist);
+    const Matrix3 C = station.C_ab;
+    const Matrix3 inertia = C * lump.inertia.asDiagonal() * C.transpose();
+    const Matrix6 mass = rigid_mass(lump.mass, C * lump.center, inertia);
+    if (lump.at == 1.0) {
+      beam.tip_mass += mass;
+      continue;
+    }
+    const auto end = std::find(beam.ends.begin(), beam.ends.end(), lump.at) - beam.ends.begin();
+    if (!beam.mass_nodes.empty() && beam.mass_nodes.back().end == end)
+      beam.mass_nodes.back().mass += mass;
+    else
+      beam.mass_nodes.push_back({static_cast<int>(end), station.x, mass});
   }
   return beam;
 }

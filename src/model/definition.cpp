@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "samara/base/error.hpp"
+#include "samara/math/spline.hpp"
 
 namespace samara::model {
 namespace {
@@ -135,26 +136,6 @@ std::string find_mass_fault(const SectionDefinition& section) {
   return find_massless_fault(section, null_share.cwiseSqrt());
 }
 
-/// Second derivatives at the points of the natural cubic spline through `points` over the
-/// parameters `t` (Thomas' algorithm).
-std::vector<Vector3> compute_spline_curvatures(const std::vector<Vector3>& points,
-                                               const std::vector<double>& t) {
-  const std::size_t n = points.size();
-  std::vector<Vector3> curvature(n, Vector3::Zero());
-  std::vector<double> upper(n, 0.0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double before = t[i] - t[i - 1];
-    const double after = t[i + 1] - t[i];
-    const Vector3 slope_change =
-        (points[i + 1] - points[i]) / after - (points[i] - points[i - 1]) / before;
-    const double pivot = 2.0 * (before + after) - before * upper[i - 1];
-    upper[i] = after / pivot;
-    curvature[i] = (6.0 * slope_change - before * curvature[i - 1]) / pivot;
-  }
-  for (std::size_t i = n - 1; i-- > 1;) curvature[i] -= upper[i] * curvature[i + 1];
-  return curvature;
-}
-
 }  // namespace
 
 SectionDefinition interpolate_section(const BeamDefinition& beam, double fraction) {
@@ -199,32 +180,10 @@ std::string find_section_fault(const SectionDefinition& section) {
 
 double compute_arc_length(const std::vector<Vector3>& reference_line) {
   if (reference_line.size() < 2) return 0.0;
-  std::vector<double> t(1, 0.0);
-  for (std::size_t i = 1; i < reference_line.size(); ++i) {
-    t.push_back(t.back() + (reference_line[i] - reference_line[i - 1]).norm());
-    if (!(t[i] > t[i - 1])) return std::numeric_limits<double>::quiet_NaN();
-  }
-  const std::vector<Vector3> curvature = compute_spline_curvatures(reference_line, t);
-
-  // Gauss rule of 5 points on (0, 1): exact to rounding for the mild curves of blades and towers.
-  constexpr double place[] = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155,
-                              0.953089922969332};
-  constexpr double share[] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
-                              0.23931433524968324, 0.11846344252809454};
-  double length = 0.0;
-  for (std::size_t i = 1; i < reference_line.size(); ++i) {
-    const double h = t[i] - t[i - 1];
-    const Vector3 chord = (reference_line[i] - reference_line[i - 1]) / h;
-    for (int j = 0; j < 5; ++j) {
-      const double b = place[j];
-      const double a = 1.0 - b;
-      const Vector3 tangent =
-          chord +
-          h / 6.0 * ((3.0 * b * b - 1.0) * curvature[i] - (3.0 * a * a - 1.0) * curvature[i - 1]);
-      length += share[j] * h * tangent.norm();
-    }
-  }
-  return length;
+  for (std::size_t i = 1; i < reference_line.size(); ++i)
+    if (!((reference_line[i] - reference_line[i - 1]).norm() > 0.0))
+      return std::numeric_limits<double>::quiet_NaN();
+  return math::NaturalSpline(reference_line).length();
 }
 
 }  // namespace samara::model

@@ -2,12 +2,22 @@
 
 namespace samara::model {
 
+Layout::Chain::Chain(const Beam& beam) {
+  for (int p = 0; p < beam.point_count(); ++p) {
+    points.push_back(size += block);
+    const auto next = masses.size();
+    if (next < beam.mass_nodes.size() && p + 1 == beam.mass_nodes[next].end * beam.order)
+      masses.push_back(size += block);
+  }
+  size += block;  // the tip
+}
+
 Layout::Layout(const Turbine& turbine)
-    : blade_count_(static_cast<int>(turbine.blades.size())),
-      blade_points_(turbine.blades.front().point_count()),
-      tower_points_(turbine.has_tower ? turbine.tower.point_count() : 0) {
-  tower_first_ = block * (blade_points_ + 1) * blade_count_;
-  joints_ = tower_first_ + (turbine.has_tower ? block * (tower_points_ + 1) : 0);
+    : blade_(turbine.blades.front()),
+      tower_(turbine.tower),
+      blade_count_(static_cast<int>(turbine.blades.size())) {
+  tower_first_ = blade_.size * blade_count_;
+  joints_ = tower_first_ + (turbine.has_tower ? tower_.size : 0);
   padding_ = joints_ + 6 + 6 * blade_count_ + (turbine.has_tower ? 6 : 0);
   size_ = (padding_ + block - 1) / block * block;
 }

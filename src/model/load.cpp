@@ -5,18 +5,11 @@
 #include <cstddef>
 
 #include "samara/math/quadrature.hpp"
-#include "samara/math/rotation.hpp"
 #include "samara/model/beam.hpp"
+#include "samara/model/reference_line.hpp"
 
 namespace samara::model {
 namespace {
-
-/// Fractions of the arc length where the elements end, the root first.
-std::vector<double> element_ends(const Beam& beam) {
-  std::vector<double> ends;
-  for (int e = 0; e <= beam.elements; ++e) ends.push_back(static_cast<double>(e) / beam.elements);
-  return ends;
-}
 
 /// Test functions and the polynomials that carry the rotations of the Gauss points.
 class Interpolation {
@@ -65,15 +58,14 @@ BeamLoad build_load(const LoadDefinition& load, const BeamDefinition& definition
   result.history = load.history;
   result.at_tip = load.from == load.to && load.to == 1.0;
   if (result.at_tip) {
-    const SectionDefinition section = interpolate_section(definition, 1.0);
-    result.tip_axes = math::turn_about<double>(-Vector3::UnitX(), section.twist);
+    const double twist = interpolate_section(definition, 1.0).twist;
+    result.tip_axes = ReferenceLine(beam.name, definition).at(1.0, twist).C_ab;
     return result;
   }
   const Interpolation interpolation(beam.order);
-  const std::vector<double> ends = element_ends(beam);
   for (int e = 0; e < beam.elements; ++e) {
-    const double start = ends[static_cast<std::size_t>(e)];
-    const double end = ends[static_cast<std::size_t>(e) + 1];
+    const double start = beam.ends[static_cast<std::size_t>(e)];
+    const double end = beam.ends[static_cast<std::size_t>(e) + 1];
     Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(beam.order + 1, beam.order);
     if (load.from == load.to) {
       if (!(load.from >= start && load.from < end)) continue;
@@ -85,7 +77,7 @@ BeamLoad build_load(const LoadDefinition& load, const BeamDefinition& definition
       const math::QuadratureRule& rule = interpolation.rule();
       for (std::size_t q = 0; q < rule.points.size(); ++q)
         interpolation.add((low + span * rule.points[q] - start) / (end - start),
-                          definition.length * span * rule.weights[q], weights);
+                          beam.length * span * rule.weights[q], weights);
     }
     if (result.weights.empty()) result.first_element = e;
     result.weights.push_back(weights);

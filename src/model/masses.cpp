@@ -4,6 +4,7 @@
 
 #include "samara/math/quadrature.hpp"
 #include "samara/math/rotation.hpp"
+#include "samara/model/reference_line.hpp"
 
 namespace samara::model {
 namespace {
@@ -40,23 +41,32 @@ MassProperties beam_mass(const BeamDefinition& beam, double mass_factor) {
   for (const SectionDefinition& section : beam.sections) ends.push_back(section.at);
   std::sort(ends.begin(), ends.end());
   const math::QuadratureRule rule = math::gauss_rule(quadrature_points);
-  MassProperties sum = point_mass(beam.tip_mass, Vector3(beam.length, 0.0, 0.0));
+  const ReferenceLine line("beam", beam);
+  MassProperties sum = point_mass(beam.tip_mass, line.at(1.0).x);
+  for (const PointMassDefinition& lump : beam.point_masses) {
+    const ReferenceLine::Station station =
+        line.at(lump.at, interpolate_section(beam, lump.at).twist);
+    sum += section_mass(rigid_mass(lump.mass, lump.center, lump.inertia.asDiagonal()), 1.0,
+                        station.C_ab, station.x);
+  }
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double span = ends[i + 1] - ends[i];
     if (span <= 0.0) continue;
     for (std::size_t q = 0; q < rule.points.size(); ++q) {
       const double fraction = ends[i] + span * rule.points[q];
       const SectionDefinition section = interpolate_section(beam, fraction);
-      const Matrix3 C_ab = math::turn_about<double>(-Vector3::UnitX(), section.twist);
-      sum += section_mass(section.mass, mass_factor * beam.length * span * rule.weights[q], C_ab,
-                          Vector3(fraction * beam.length, 0.0, 0.0));
+      const ReferenceLine::Station station = line.at(fraction, section.twist);
+      sum += section_mass(section.mass, mass_factor * beam.length * span * rule.weights[q],
+                          station.C_ab, station.x);
     }
   }
   return sum;
 }
 
 MassProperties beam_mass(const Beam& beam) {
-  MassProperties sum = point_mass(beam.tip_mass, beam.tip);
+  MassProperties sum = section_mass(beam.tip_mass, 1.0, Matrix3::Identity(), beam.tip);
+  for (const MassNode& node : beam.mass_nodes)
+    sum += section_mass(node.mass, 1.0, Matrix3::Identity(), node.x);
   for (int p = 0; p < beam.point_count(); ++p) {
     const elements::BeamPoint& point = beam.points[static_cast<std::size_t>(p)];
     sum += section_mass(point.mass, beam.point_length(p), point.C_ab, point.x);
@@ -73,7 +83,7 @@ Matrix3 tower_axes() {
 
 MassProperties whole_mass(const Turbine& turbine, const Masses& masses) {
   const elements::RigidChain& chain = turbine.chain;
-  const Vector3 top(0.0, 0.0, turbine.has_tower ? turbine.tower.tip.x() : 0.0);
+  const Vector3 top = tower_axes() * turbine.tower.tip;
   const Matrix3 C_YS = math::turn_about<double>(Vector3::UnitX(), chain.tilt) *
                        math::turn_about<double>(Vector3::UnitY(), turbine.azimuth);
   const Vector3 bearing(0.0, 0.0, chain.height);

@@ -37,20 +37,23 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.tilt = shaft.tilt;
   chain.overhang = shaft.overhang;
   chain.undersling = hub.undersling;
+  chain.teeter_axis = Vector3(std::cos(hub.delta3), 0.0, std::sin(hub.delta3));
   return chain;
 }
 
-/// A point mass at the tower's top is one at the nacelle's reference point.
-void add_top_mass(double mass, elements::RigidBody& nacelle) {
-  const double total = nacelle.mass + mass;
-  if (mass == 0.0) return;
-  const Vector3 center = nacelle.center * nacelle.mass / total;
-  const auto about = [](double m, const Vector3& r) {
-    return Matrix3(m * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose()));
-  };
-  nacelle.inertia += about(nacelle.mass, nacelle.center - center) + about(mass, center);
-  nacelle.mass = total;
-  nacelle.center = center;
+/// What the tower's end carries, in t1 t2 t3: the tower's axes are a = (t3, t1, t2).
+elements::RigidBody tower_top_of(const Matrix6& mass) {
+  Matrix3 C_Ta;
+  C_Ta << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  elements::RigidBody body;
+  body.mass = mass(0, 0);
+  if (body.mass == 0.0) return body;
+  const Vector3 center = Vector3(mass(5, 1), mass(3, 2), mass(4, 0)) / body.mass;
+  const Matrix3 across = math::skew<double>(center);
+  const Matrix3 inertia = mass.bottomRightCorner<3, 3>() + body.mass * across * across;
+  body.center = C_Ta * center;
+  body.inertia = C_Ta * inertia * C_Ta.transpose();
+  return body;
 }
 
 /// Blade axes: b1 root to tip, b3 = s2 and b2 = b3 x b1 at zero cone and pitch; azimuth turns about
@@ -115,7 +118,7 @@ Turbine build_turbine(const TurbineDefinition& definition) {
   }
   add_loads(definition, turbine);
   turbine.chain = chain_of(definition);
-  if (definition.has_tower) add_top_mass(definition.tower.tip_mass, turbine.chain.nacelle);
+  if (definition.has_tower) turbine.chain.tower_top = tower_top_of(turbine.tower.tip_mass);
   turbine.speed = definition.shaft.speed;
   turbine.azimuth = definition.shaft.azimuth;
   turbine.degrees_of_freedom = definition.has_tower ? elastic_strains(turbine.tower) : 0;

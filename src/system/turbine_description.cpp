@@ -87,14 +87,23 @@ class Describer {
       add_energies(beam, p, layout_.blade_point(k, p), "blade", k + 1, Frame::rotating,
                    {"axial", "lead-lag shear", "flap shear", "torsion", "flap", "lead-lag"});
     }
+    for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+      const int first = layout_.blade_mass(k, static_cast<int>(m));
+      name_block(first, beam.name + " mass " + std::to_string(m + 1));
+      add_mass(first, beam.mass_nodes[m].mass, "blade", k + 1, Frame::rotating);
+    }
     name_block(layout_.blade_tip(k), beam.name + " tip");
     name_root(layout_.blade_root(k), beam.name);
-    if (beam.tip_mass > 0.0) {
-      EnergyGroup group{EnergyGroup::Kind::kinetic, "blade", "", k + 1, Frame::rotating, {}, {}};
-      for (int i = 0; i < 3; ++i) group.unknowns.push_back(layout_.blade_tip(k) + 6 + i);
-      group.weight = {beam.tip_mass, 0, 0, 0, beam.tip_mass, 0, 0, 0, beam.tip_mass};
-      result_.groups.push_back(group);
-    }
+    add_mass(layout_.blade_tip(k), beam.tip_mass, "blade", k + 1, Frame::rotating);
+  }
+
+  /// A rigid mass whose velocities are those of the block at `first`.
+  void add_mass(int first, const Matrix6& mass, const std::string& part, int blade, Frame frame) {
+    if (mass(0, 0) == 0.0) return;
+    EnergyGroup group{EnergyGroup::Kind::kinetic, part, "", blade, frame, {}, {}};
+    for (int i = 0; i < 6; ++i) group.unknowns.push_back(first + 6 + i);
+    group.weight.assign(mass.data(), mass.data() + mass.size());
+    result_.groups.push_back(group);
   }
 
   /// The tower's b2 is lateral (n1), its b3 downwind (n2): bending about b2 moves it along b3.
@@ -105,7 +114,13 @@ class Describer {
       add_energies(beam, p, layout_.tower_point(p), "tower", 0, Frame::fixed,
                    {"axial", "lateral shear", "fore-aft shear", "torsion", "fore-aft", "lateral"});
     }
+    for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+      const int first = layout_.tower_mass(static_cast<int>(m));
+      name_block(first, "tower mass " + std::to_string(m + 1));
+      add_mass(first, beam.mass_nodes[m].mass, "tower", 0, Frame::fixed);
+    }
     name_block(layout_.tower_tip(), "tower top");
+    add_mass(layout_.tower_tip(), beam.tip_mass, "tower", 0, Frame::fixed);
     name_root(layout_.tower_root(), "tower");
   }
 
@@ -269,10 +284,9 @@ class Describer {
     symmetry.broken_by = symmetry_fault();
     if (!symmetry.broken_by.empty()) return;
     symmetry.sectors = count;
-    const int blade_size = block * (turbine_.blades.front().point_count() + 1);
     for (int k = 0; k < count; ++k) {
       const int before = (k + count - 1) % count;  // blade k + 1 of P z is blade k of z
-      for (int i = 0; i < blade_size; ++i)
+      for (int i = 0; i < layout_.blade_size(); ++i)
         symmetry.source[static_cast<std::size_t>(layout_.blade_tip(k) + i)] =
             layout_.blade_tip(before) + i;
       for (int i = 0; i < 6; ++i)

@@ -25,7 +25,33 @@ std::array<double, 2> PlacedBeam::node_weights(int a, int p) const {
   const auto node = static_cast<std::size_t>(a);
   const double w = beam->functions.weights[j];
   return {w * beam->functions.slope[node][j],
-          w * beam->element_length * beam->functions.value[node][j]};
+          w * beam->element_length(p / beam->order) * beam->functions.value[node][j]};
+}
+
+int PlacedBeam::mass_at(int e) const {
+  for (std::size_t m = 0; m < beam->mass_nodes.size(); ++m)
+    if (beam->mass_nodes[m].end == e) return masses[m];
+  return -1;
+}
+
+int PlacedBeam::strain_rows(int p, int a) const {
+  const int e = p / beam->order;
+  if (a == beam->order) {
+    if (e + 1 == beam->elements) return tip;
+    const int mass = mass_at(e + 1);
+    if (mass >= 0) return mass;
+  }
+  return points[static_cast<std::size_t>(e * beam->order + a)];
+}
+
+int PlacedBeam::force_rows(int p, int a) const {
+  const int e = p / beam->order;
+  if (a == 0) {
+    if (e == 0) return root;
+    const int mass = mass_at(e);
+    if (mass >= 0) return mass + 12;
+  }
+  return points[static_cast<std::size_t>(e * beam->order + a - 1)] + 12;
 }
 
 TurbineResidual::TurbineResidual(const model::Turbine& turbine)
@@ -45,6 +71,8 @@ void TurbineResidual::place_beams() {
     placed.beam = &turbine_.blades[k];
     for (int p = 0; p < placed.beam->point_count(); ++p)
       placed.points.push_back(layout_.blade_point(number, p));
+    for (std::size_t m = 0; m < placed.beam->mass_nodes.size(); ++m)
+      placed.masses.push_back(layout_.blade_mass(number, static_cast<int>(m)));
     placed.tip = layout_.blade_tip(number);
     placed.root = layout_.blade_root(number);
     placed.on_hub = true;
@@ -57,6 +85,8 @@ void TurbineResidual::place_beams() {
   placed.beam = &turbine_.tower;
   for (int p = 0; p < placed.beam->point_count(); ++p)
     placed.points.push_back(layout_.tower_point(p));
+  for (std::size_t m = 0; m < placed.beam->mass_nodes.size(); ++m)
+    placed.masses.push_back(layout_.tower_mass(static_cast<int>(m)));
   placed.tip = layout_.tower_tip();
   placed.root = layout_.tower_root();
   beams_.push_back(placed);

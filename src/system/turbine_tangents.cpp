@@ -51,16 +51,21 @@ class Pattern {
       for (int p = 0; p < beam.point_count(); ++p) {
         const int first = placed.points[static_cast<std::size_t>(p)];
         for (int node = 0; node <= beam.order; ++node) {
-          const int n = p / beam.order * beam.order + node;
-          for (const int row : {placed.strain_rows(n), placed.force_rows(n)}) {
+          for (const int row : {placed.strain_rows(p, node), placed.force_rows(p, node)}) {
             couple(row, first);
             if (placed.on_hub) couple_to_motion(couple, row);
           }
         }
       }
-      couple(placed.force_rows(0), placed.root);
-      couple(placed.force_rows(beam.point_count()), placed.tip);
+      couple(placed.root, placed.root);
+      couple(placed.points.back(), placed.tip);
       if (placed.on_hub) couple_to_motion(couple, placed.tip);
+      for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+        const auto next = static_cast<std::size_t>(beam.mass_nodes[m].end * beam.order);
+        couple(placed.points[next - 1], placed.masses[m]);
+        couple(placed.points[next], placed.masses[m]);
+        if (placed.on_hub) couple_to_motion(couple, placed.masses[m]);
+      }
     }
     if (turbine_.has_tower) {
       for (int j = hub_first; j < layout_.size(); j += block) couple(layout_.tower_tip(), j);
@@ -237,10 +242,9 @@ class TurbineTangents::Scatter {
     add_term(first + 6, first, terms.velocity, root, placed.on_hub);
     add_term(first + 9, first, terms.spin, root, placed.on_hub);
     for (int node = 0; node <= beam.order; ++node) {
-      const int n = p / beam.order * beam.order + node;
       const auto [slope, value] = placed.node_weights(node, p);
-      const int strain = placed.strain_rows(n);
-      const int force = placed.force_rows(n);
+      const int strain = placed.strain_rows(p, node);
+      const int force = placed.force_rows(p, node);
       const TermJacobian strain_rows_j = -slope * u - value * terms.stretch;
       const TermJacobian curvature_rows_j = -slope * theta - value * terms.turn;
       const TermJacobian force_rows_j = slope * terms.force_flux + value * terms.force_load;
@@ -255,25 +259,36 @@ class TurbineTangents::Scatter {
   void add_end_tangents(const PlacedBeam& placed, const Attachment<double>& a,
                         const MotionJacobian& root, const std::vector<double>& z,
                         const std::vector<double>& z_dot) {
-    const int last = placed.beam->point_count();
-    for (int i = 0; i < 6; ++i) {
-      add(K_, placed.force_rows(0) + i, placed.root + i, 1.0);
-      add(K_, placed.strain_rows(last) + i, placed.tip + i, 1.0);
-      add(K_, placed.force_rows(last) + i, placed.tip + 12 + i, -1.0);
+    const model::Beam& beam = *placed.beam;
+    for (int i = 0; i < 6; ++i) add(K_, placed.root + i, placed.root + i, 1.0);
+    const auto add_end = [&](int first, int point, const Vector3& x, const Matrix6& mass,
+                             bool balance) {
+      for (int i = 0; i < 6; ++i) {
+        add(K_, first + i, first + i, 1.0);
+        add(K_, placed.points[static_cast<std::size_t>(point)] + 12 + i, first + 12 + i, -1.0);
+      }
+      PointDualState dual;
+      PointDualState dual_dot;
+      Attachment<PointDual> dual_a;
+      fill_inputs(inputs_of(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a),
+                  dual, dual_dot, dual_a);
+      const elements::TipTerms<PointDual> terms =
+          elements::beam_tip_terms<PointDual>(x, mass, dual, dual_dot, dual_a);
+      add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub);
+      add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub);
+      if (!balance) return;
+      add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub);
+      add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub);
+    };
+    add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass, placed.on_hub);
+    for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+      const model::MassNode& node = beam.mass_nodes[m];
+      const int next = node.end * beam.order;
+      const int first = placed.masses[m];
+      add_end(first, next - 1, node.x, node.mass, true);
+      for (int i = 0; i < 6; ++i)
+        add(K_, placed.points[static_cast<std::size_t>(next)] + i, first + i, -1.0);
     }
-    PointDualState dual;
-    PointDualState dual_dot;
-    Attachment<PointDual> dual_a;
-    fill_inputs(
-        inputs_of(TurbineResidual::at(z, placed.tip), TurbineResidual::at(z_dot, placed.tip), a),
-        dual, dual_dot, dual_a);
-    const elements::TipTerms<PointDual> terms = elements::beam_tip_terms<PointDual>(
-        placed.beam->tip, placed.beam->tip_mass, dual, dual_dot, dual_a);
-    add_term(placed.tip + 6, placed.tip, jacobian_of(terms.velocity), root, placed.on_hub);
-    add_term(placed.tip + 9, placed.tip, jacobian_of(terms.spin), root, placed.on_hub);
-    if (!placed.on_hub) return;
-    add_term(placed.tip + 12, placed.tip, jacobian_of(terms.force), root, true);
-    add_term(placed.tip + 15, placed.tip, jacobian_of(terms.moment), root, true);
   }
 
   /// Only what turns with the sections depends on the state.
@@ -283,7 +298,7 @@ class TurbineTangents::Scatter {
       if (!load.follower) continue;
       const Vector6 value = load.at(t, turbine_.speed);
       if (load.at_tip)
-        add_follower(placed.force_rows(beam.point_count()), placed.tip, 1.0,
+        add_follower(placed.force_rows(beam.point_count() - 1, beam.order), placed.tip, 1.0,
                      follower_tangent(z, placed.tip, load.tip_axes, value));
       for (std::size_t e = 0; e < load.weights.size(); ++e) {
         const int start = (load.first_element + static_cast<int>(e)) * beam.order;
@@ -292,7 +307,7 @@ class TurbineTangents::Scatter {
           const LoadJacobian tangent =
               follower_tangent(z, placed.points[p], beam.points[p].C_ab, value);
           for (int node = 0; node <= beam.order; ++node)
-            add_follower(placed.force_rows(start + node), placed.points[p],
+            add_follower(placed.force_rows(start, node), placed.points[p],
                          load.weights[e](node, j), tangent);
         }
       }

@@ -126,10 +126,13 @@ class Physics(ProgramTest):
     def test_modes_need_constant_coefficients(self):
         self.refuse("modes", BASELINE, words=["periodic", "use samara floquet"])
 
-    def test_what_is_not_available_yet(self):
-        text = MINIMAL.replace("length: 10", "reference_line: [[0, 0, 0], [10, 0, 0.3]]")
+    def test_a_line_that_turns_back_and_masses_too_near(self):
+        text = MINIMAL.replace("length: 10", "reference_line: [[0, 0, 0], [-10, 0, 0.3]]")
         self.write("case.yaml", text)
-        self.refuse("check", "case.yaml", words=["reference_line", "not available yet"])
+        self.refuse("check", "case.yaml", words=["reference_line", "turns back"])
+        masses = "length: 10\n  point_masses: [{at: 0.5, mass: 1}, {at: 0.51, mass: 1}]"
+        self.write("case.yaml", MINIMAL.replace("length: 10", masses))
+        self.refuse("check", "case.yaml", words=["point_masses", "more elements"])
 
 
 class Results(ProgramTest):

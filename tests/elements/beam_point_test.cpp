@@ -460,7 +460,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(beam_tip)
 
-BOOST_AUTO_TEST_CASE(the_end_load_of_a_tip_mass_is_newtons_law_in_any_moving_frame) {
+BOOST_AUTO_TEST_CASE(the_load_behind_a_rigid_mass_is_newtons_and_eulers_law_in_any_moving_frame) {
   std::minstd_rand random(11);
   for (int trial = 0; trial < 10; ++trial) {
     Trajectory path = random_trajectory(random);
@@ -468,26 +468,33 @@ BOOST_AUTO_TEST_CASE(the_end_load_of_a_tip_mass_is_newtons_law_in_any_moving_fra
     Moment now = moment_of(path);
     now.a.gravity = random_array<3>(random, 10.0);
     now.z.tail<6>() = random_array<6>(random, 5.0);
-    const double mass = 2.5;
+    // Particles make a rigid body of any centre and inertia.
+    std::vector<Particle> particles;
+    for (int i = 0; i < 4; ++i) particles.push_back({1.0 + 0.5 * i, random_array<3>(random, 0.7)});
     const TipTerms<double> terms =
-        beam_tip_terms<double>(path.point.x, mass, now.z, now.z_dot, now.a);
+        beam_tip_terms<double>(path.point.x, mass_of(particles), now.z, now.z_dot, now.a);
     BOOST_TEST(terms.velocity.norm() < rounding);
     BOOST_TEST(terms.spin.norm() < rounding);
-    const Vector3 acceleration =
-        path.from_a<double>(0.0).transpose() * acceleration_of(path, Vector3::Zero());
-    // The mass feels -F_hat and its weight.
-    const Vector3 load = mass * (now.a.gravity - acceleration);
-    BOOST_TEST((terms.force - (now.z.segment<3>(12) - load)).norm() <
-               rounding * (1.0 + load.norm()));
-    BOOST_TEST((terms.moment - now.z.tail<3>()).norm() == 0.0);
+    const Matrix3 C_an = path.from_a<double>(0.0).transpose();
+    const Matrix3 R = turned_by<double>(Vector3(now.z.segment<3>(3)));
+    Vector3 force = now.z.segment<3>(12);
+    Vector3 moment = now.z.tail<3>();
+    for (const Particle& p : particles) {  // each feels minus the load and its weight
+      const Vector3 asked = p.mass * (C_an * acceleration_of(path, p.c) - now.a.gravity);
+      force += asked;
+      moment += Vector3(R * p.c).cross(asked);
+    }
+    BOOST_TEST((terms.force - force).norm() < rounding * (1.0 + force.norm()));
+    BOOST_TEST((terms.moment - moment).norm() < rounding * (1.0 + moment.norm()));
   }
 }
 
 BOOST_AUTO_TEST_CASE(a_free_end_carries_no_load) {
   std::minstd_rand random(12);
   const State<double> z = random_array<point_size>(random, 1.0);
-  const TipTerms<double> terms = beam_tip_terms<double>(
-      Vector3::UnitX(), 0.0, z, random_array<point_size>(random, 1.0), random_attachment(random));
+  const TipTerms<double> terms =
+      beam_tip_terms<double>(Vector3::UnitX(), Matrix6::Zero(), z,
+                             random_array<point_size>(random, 1.0), random_attachment(random));
   BOOST_TEST((terms.force - z.segment<3>(12)).norm() == 0.0);
   BOOST_TEST((terms.moment - z.segment<3>(15)).norm() == 0.0);
 }
@@ -496,9 +503,11 @@ BOOST_AUTO_TEST_CASE(tangents_are_those_of_the_complex_step) {
   std::minstd_rand random(13);
   for (int trial = 0; trial < 5; ++trial) {
     const Vector3 x = random_array<3>(random, 3.0);
-    const double error =
-        tangent_error(random_inputs(random), [&x](const auto& z, const auto& z_dot, const auto& a) {
-          return beam_tip_terms(x, 2.5, z, z_dot, a);
+    const Matrix6 mass =
+        mass_of({{2.5, random_array<3>(random, 0.5)}, {1.5, random_array<3>(random, 0.5)}});
+    const double error = tangent_error(
+        random_inputs(random), [&x, &mass](const auto& z, const auto& z_dot, const auto& a) {
+          return beam_tip_terms(x, mass, z, z_dot, a);
         });
     BOOST_TEST(error < tangent_tolerance);
   }

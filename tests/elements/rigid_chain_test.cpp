@@ -69,6 +69,7 @@ RigidChain random_chain(std::minstd_rand& random, bool yaw, bool teeter) {
   chain.gravity = 9.81;
   chain.yaw = {yaw, 300.0, 20.0};
   chain.teeter = {teeter, 500.0, 30.0};
+  chain.tower_top = random_body(random, 2.0);
   chain.nacelle = random_body(random, 7.0);
   chain.shaft = random_body(random, 3.0);
   chain.hub = random_body(random, 5.0);
@@ -136,7 +137,7 @@ Vec3<T> in_N(const Vec3<T>& a) {
 /// Places and bases of all bodies in N; the columns of a basis are its unit vectors.
 template <class T>
 struct Configuration {
-  Vec3<T> top, nacelle_center, shaft_center, hub_center, apex;
+  Vec3<T> top, top_center, nacelle_center, shaft_center, hub_center, apex;
   Mat3<T> R_T, R_Y, R_S, R_H;
 };
 
@@ -155,6 +156,7 @@ Configuration<T> configuration_of(const RigidChain& chain, const Prescribed& pre
   if (chain.teeter.free) c.R_H = c.R_S * about<T>(chain.teeter_axis, q(at_teeter));
   const Vec3<T> bearing = c.top + c.R_Y * fixed(Vector3(0.0, 0.0, chain.height));
   const Vec3<T> pin = bearing + c.R_S * fixed(Vector3(0.0, chain.overhang, 0.0));
+  c.top_center = c.top + c.R_T * fixed(chain.tower_top.center);
   c.nacelle_center = c.top + c.R_Y * fixed(chain.nacelle.center);
   c.shaft_center = bearing + c.R_S * fixed(chain.shaft.center);
   c.hub_center = pin + c.R_H * fixed(chain.hub.center);
@@ -190,7 +192,8 @@ template <class T>
 T kinetic_energy(const RigidChain& chain, const Prescribed& prescribed, const Coordinates<T>& q,
                  const Coordinates<T>& q_dot, const T& t) {
   const Configuration<Jet<T>> c = moving<T>(chain, prescribed, q, q_dot, t);
-  return kinetic_energy<T>(chain.nacelle, c.nacelle_center, c.R_Y) +
+  return kinetic_energy<T>(chain.tower_top, c.top_center, c.R_T) +
+         kinetic_energy<T>(chain.nacelle, c.nacelle_center, c.R_Y) +
          kinetic_energy<T>(chain.shaft, c.shaft_center, c.R_S) +
          kinetic_energy<T>(chain.hub, c.hub_center, c.R_H);
 }
@@ -199,9 +202,10 @@ template <class T>
 T potential_energy(const RigidChain& chain, const Prescribed& prescribed, const Coordinates<T>& q,
                    const T& t) {
   const Configuration<T> c = configuration_of<T>(chain, prescribed, q, t);
-  T energy = (c.nacelle_center(2) * T(chain.nacelle.mass) +
-              c.shaft_center(2) * T(chain.shaft.mass) + c.hub_center(2) * T(chain.hub.mass)) *
-             T(chain.gravity);
+  T energy =
+      (c.top_center(2) * T(chain.tower_top.mass) + c.nacelle_center(2) * T(chain.nacelle.mass) +
+       c.shaft_center(2) * T(chain.shaft.mass) + c.hub_center(2) * T(chain.hub.mass)) *
+      T(chain.gravity);
   if (chain.yaw.free) energy += q(at_yaw) * q(at_yaw) * T(0.5 * chain.yaw.stiffness);
   if (chain.teeter.free) energy += q(at_teeter) * q(at_teeter) * T(0.5 * chain.teeter.stiffness);
   return energy;
@@ -518,7 +522,8 @@ BOOST_AUTO_TEST_CASE(the_tower_top_carries_the_weight_of_all_bodies_at_rest) {
   ChainState<double> state = state_at_rest();
   state.speed = 0.0;
   HubMotion<double> hub;
-  const double weight = chain.gravity * (chain.nacelle.mass + chain.shaft.mass + chain.hub.mass);
+  const double weight = chain.gravity * (chain.tower_top.mass + chain.nacelle.mass +
+                                         chain.shaft.mass + chain.hub.mass);
   state.top_load.head<3>() = Vector3(-weight, 0.0, 0.0);  // along n3
   const ChainRows<double> rows = rigid_chain<double>(chain, state, hub);
   BOOST_TEST(rows.top.head<3>().norm() < rounding * weight);

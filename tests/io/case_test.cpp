@@ -218,11 +218,27 @@ BOOST_AUTO_TEST_CASE(degrees_and_rpm_become_radians) {
 
 BOOST_AUTO_TEST_CASE(a_teeter_map_without_a_joint_is_a_free_hinge) {
   const model::HubDefinition hub =
-      read_text(minimal + "hub: {teeter: {undersling: 0.3, stiffness: 4, delta3_deg: 0}}\n")
+      read_text(minimal + "hub: {teeter: {undersling: 0.3, stiffness: 4, delta3_deg: 30}}\n")
           .turbine.hub;
   BOOST_TEST((hub.teeter.kind == JointKind::free));
   BOOST_TEST(hub.teeter.stiffness == 4.0);
   BOOST_TEST(hub.undersling == 0.3);
+  BOOST_TEST(hub.delta3 == 30 * degree, boost::test_tools::tolerance(rounding));
+}
+
+BOOST_AUTO_TEST_CASE(point_masses_are_sorted_by_their_place) {
+  const model::BeamDefinition beam =
+      read_text(minimal +
+                "  point_masses:\n    - {at: 1, mass: 5}\n"
+                "    - {at: 0.25, mass: 2, center: [0, 0.1, -0.2], inertia: [1, 2, 3]}\n")
+          .turbine.blades.beam;
+  BOOST_REQUIRE(beam.point_masses.size() == 2u);
+  BOOST_TEST(beam.point_masses[0].at == 0.25);
+  BOOST_TEST(beam.point_masses[0].mass == 2.0);
+  BOOST_TEST((beam.point_masses[0].center == Vector3(0, 0.1, -0.2)));
+  BOOST_TEST((beam.point_masses[0].inertia == Vector3(1, 2, 3)));
+  BOOST_TEST(beam.point_masses[1].at == 1.0);
+  BOOST_TEST((beam.point_masses[1].center == Vector3::Zero()));
 }
 
 BOOST_AUTO_TEST_CASE(a_mass_center_couples_forces_and_rotations) {
@@ -655,9 +671,6 @@ BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
   check_error(minimal + "hub:\n  teeter: {joint: prescribed}\n",
               "case.yaml:10:12: hub.teeter.joint: \"prescribed\" is not available yet; use free or "
               "locked");
-  check_error(
-      minimal + "hub:\n  teeter: {delta3_deg: 5}\n",
-      "case.yaml:10:12: hub.teeter.delta3_deg: delta-3 is not available yet; only 0, got 5");
   check_error(minimal + "shaft:\n  torsion: {joint: free, stiffness: 1e6}\n",
               "case.yaml:10:13: shaft.torsion.joint: \"free\" is not available yet; use locked");
   check_error(minimal + "floquet:\n  time_order: 4\n",
@@ -824,6 +837,18 @@ BOOST_AUTO_TEST_CASE(loads_are_checked) {
          {"case.yaml:10:45: loads[0].harmonic: missing key \"per_rev\" (or \"frequency\")"});
   refuse("{beam: blades, at: 1, force: [0, 0, 1], table: [[0, 1], [0, 2]]}",
          {"case.yaml:10:61: loads[0].table[1]: t must be more than in the entry before"});
+}
+
+BOOST_AUTO_TEST_CASE(point_masses_are_checked) {
+  const std::string masses = minimal + "  point_masses:\n    - ";
+  const std::string where = "blades.point_masses[0]";
+  check_error(masses + "{at: 0, mass: 1}\n",
+              "case.yaml:10:8: " + where + ".at: expected a number above 0, to 1, got 0");
+  check_error(masses + "{at: 0.5, mass: 0}\n",
+              "case.yaml:10:17: " + where + ".mass: expected a number > 0, got 0");
+  check_error(masses + "{mass: 1}\n", "case.yaml:10:7: " + where + ": missing key \"at\"");
+  check_error(masses + "{at: 0.5, mass: 1, inertia: [1, -1, 0]}\n",
+              "case.yaml:10:39: " + where + ".inertia[1]: expected a number >= 0, got -1");
 }
 
 BOOST_AUTO_TEST_CASE(reference_lines_are_checked) {

@@ -4,6 +4,7 @@ it was written on. The one exception is the line of .ci/run that looks for the t
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,7 +16,7 @@ EXCEPTION = ".ci/run"  # one line
 def list_files(root):
     """The files that are, or would be, in the repository; without git, all but builds."""
     git = ["git", "-c", f"safe.directory={root}", "-C", str(root)]
-    if (root / ".git").exists():
+    if (root / ".git").exists() and shutil.which("git"):
         listing = subprocess.run(
             git + ["ls-files", "-z", "--cached", "--others", "--exclude-standard"],
             capture_output=True,

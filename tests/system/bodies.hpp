@@ -109,13 +109,45 @@ class BodyBuilder {
       add_point(definition_.tower, beam, p, layout_.tower_point(p), Vector3::Zero(), tower_axes_,
                 {}, -1);
     const int tip = layout_.tower_tip();
-    const Vector3 straight(definition_.tower.length, 0.0, 0.0);
-    bodies_.top = tower_axes_ * (straight + three(tip));
+    bodies_.top = tower_axes_ * (undeformed(definition_.tower, 1.0) + three(tip));
     bodies_.R_T = turned(Vector3(tower_axes_ * three(tip + 3)));
     // Components along (t3, t1, t2) are those along the turned tower axes.
     top_velocity_ = bodies_.R_T * tower_axes_ * three(tip + 6);
     top_spin_ = bodies_.R_T * tower_axes_ * three(tip + 9);
     add_particle(definition_.tower.tip_mass, bodies_.top, top_velocity_, -1);
+    add_lumps(definition_.tower, Vector3::Zero(), tower_axes_, -1);
+  }
+
+  /// Undeformed place on a line of no or two points, in the beam's axes.
+  static Vector3 undeformed(const model::BeamDefinition& beam, double fraction) {
+    if (beam.reference_line.empty()) return {fraction * beam.length, 0.0, 0.0};
+    return fraction * beam.reference_line.back();
+  }
+
+  /// Section axes there: twist turns b2 toward -b3, as pitch does.
+  static Matrix3 undeformed_axes(const model::BeamDefinition& beam, double fraction) {
+    const double twist = model::interpolate_section(beam, fraction).twist;
+    const Vector3 along = undeformed(beam, 1.0);
+    return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitX(), along).toRotationMatrix() *
+           turned(Vector3::UnitX(), -twist);
+  }
+
+  /// Masses on the beam; `number` of the blade from 0, -1: tower.
+  void add_lumps(const model::BeamDefinition& beam, const Vector3& root, const Matrix3& axes,
+                 int number) {
+    int inner = 0;
+    for (const model::PointMassDefinition& lump : beam.point_masses) {
+      int first = number < 0 ? layout_.tower_tip() : layout_.blade_tip(number);
+      if (lump.at < 1.0) {
+        first = number < 0 ? layout_.tower_mass(inner) : layout_.blade_mass(number, inner);
+        ++inner;
+      }
+      const Matrix3 R = axes * turned(three(first + 3));
+      const Vector3 place = root + axes * (undeformed(beam, lump.at) + three(first));
+      add_body(lump.mass, lump.center, lump.inertia, place, R * three(first + 6),
+               R * undeformed_axes(beam, lump.at), R * three(first + 9));
+      bodies_.pieces.back().blade = number;
+    }
   }
 
   void add_nacelle_and_rotor() {
@@ -149,8 +181,10 @@ class BodyBuilder {
     const Vector3 pin_velocity = velocity + spin.cross(pin - place);
     bodies_.R_H = R_S;
     if (teeters) {
-      bodies_.R_H = R_S * turned(Vector3::UnitX(), teeter);
-      spin += R_S.col(0) * (z_(layout_.teeter() + 1) - R_S.col(0).dot(spin));
+      const Vector3 axis(std::cos(hub.delta3), 0.0, std::sin(hub.delta3));
+      const Vector3 hinge = R_S * axis;
+      bodies_.R_H = R_S * turned(axis, teeter);
+      spin += hinge * (z_(layout_.teeter() + 1) - hinge.dot(spin));
       bodies_.joint_energy += 0.5 * hub.teeter.stiffness * teeter * teeter;
     }
     add_body(hub.mass, Vector3(0.0, hub.center_of_mass, 0.0), hub.inertia, pin, pin_velocity,
@@ -186,10 +220,11 @@ class BodyBuilder {
     for (int p = 0; p < beam.point_count(); ++p)
       add_point(definition_.blades.beam, beam, p, layout_.blade_point(k, p), root, axes, own, k);
     const int tip = layout_.blade_tip(k);
-    const Vector3 straight(definition_.blades.beam.length, 0.0, 0.0);
     const Vector3 velocity = axes * turned(three(tip + 3)) * three(tip + 6);
-    add_particle(definition_.blades.beam.tip_mass, root + axes * (straight + three(tip)), velocity,
+    add_particle(definition_.blades.beam.tip_mass,
+                 root + axes * (undeformed(definition_.blades.beam, 1.0) + three(tip)), velocity,
                  k);
+    add_lumps(definition_.blades.beam, root, axes, k);
   }
 
   void add_particle(double mass, const Vector3& place, const Vector3& velocity, int blade) {
@@ -212,11 +247,9 @@ class BodyBuilder {
     const Matrix6 mass = own.mass_factor * section.mass;
     const Matrix6 compliance = model::compliance_of(section) / own.stiffness_factor;
     const double length = beam.point_length(p);
-    // Twist turns b2 toward -b3, as pitch does.
     const Matrix3 section_axes =
-        axes * turned(three(first + 3)) * turned(Vector3::UnitX(), -section.twist);
-    const Vector3 place =
-        root + axes * (Vector3(fraction * definition.length, 0.0, 0.0) + three(first));
+        axes * turned(three(first + 3)) * undeformed_axes(definition, fraction);
+    const Vector3 place = root + axes * (undeformed(definition, fraction) + three(first));
     const Vector3 center(0.0, mass(0, 5) == 0.0 ? 0.0 : -mass(0, 5) / mass(0, 0),
                          mass(0, 4) / mass(0, 0));
     const Vector6 velocity = z_.segment<6>(first + 6);

@@ -88,11 +88,17 @@ Eigen::VectorXcd complex_residual(const system::TurbineSystem& system, double t,
   return Eigen::Map<const Eigen::VectorXcd>(r.data(), z.size());
 }
 
+/// First row of the force balance of node n, counted from the root.
+int force_row(const system::PlacedBeam& placed, int n) {
+  const int order = placed.beam->order;
+  return n == 0 ? placed.force_rows(0, 0) : placed.force_rows(n - 1, (n - 1) % order + 1);
+}
+
 /// First rows of the force balances of a blade's nodes, root to tip.
 std::vector<int> force_rows(const system::TurbineSystem& system, int blade) {
   const system::PlacedBeam& placed = system.equations().beams()[static_cast<std::size_t>(blade)];
   std::vector<int> rows;
-  for (int n = 0; n <= placed.beam->point_count(); ++n) rows.push_back(placed.force_rows(n));
+  for (int n = 0; n <= placed.beam->point_count(); ++n) rows.push_back(force_row(placed, n));
   return rows;
 }
 
@@ -143,7 +149,7 @@ BOOST_AUTO_TEST_CASE(follower_loads_turn_with_the_deformed_section_and_its_twist
     };
     // The tower is of order 2: its points carry R by their polynomials.
     const Eigen::VectorXd tip = load_rows(choice, {at_tip}, 0.0, state);
-    const int last = placed.force_rows(placed.beam->point_count());
+    const int last = force_row(placed, placed.beam->point_count());
     BOOST_TEST((tip.segment<3>(last) + turned(placed.tip, 0.0, at_tip.force)).norm() < 1e-9);
     BOOST_TEST((tip.segment<3>(last + 3) + turned(placed.tip, 0.0, at_tip.moment)).norm() < 1e-9);
     if (tower) continue;
@@ -151,7 +157,7 @@ BOOST_AUTO_TEST_CASE(follower_loads_turn_with_the_deformed_section_and_its_twist
     const double twist = 0.3 * (1.0 - 0.25);
     Vector6 sum = Vector6::Zero();
     for (int n = 0; n <= placed.beam->point_count(); ++n)
-      sum += rows.segment<6>(placed.force_rows(n));
+      sum += rows.segment<6>(force_row(placed, n));
     BOOST_TEST((sum.head<3>() + turned(placed.points[0], twist, at_point.force)).norm() < 1e-9);
     BOOST_TEST((sum.tail<3>() + turned(placed.points[0], twist, at_point.moment)).norm() < 1e-9);
   }

@@ -23,14 +23,17 @@ struct Choice {
   bool teeter = true;
   bool damped = true;
   bool rigid_shear = false;  ///< and rigid extension, as in the paper
+  bool full = false;         ///< beams that lean, masses on them, delta-3
 };
 
 /// Every combination that meets another branch of the assembly.
 inline std::vector<Choice> choices() {
-  return {{2, 1, true, true, true, true, false},  {2, 2, true, true, true, false, true},
-          {3, 1, true, true, false, true, false}, {3, 3, true, false, false, false, false},
-          {2, 3, true, false, true, true, true},  {1, 2, true, true, false, false, false},
-          {2, 2, false, true, true, true, false}, {3, 2, false, false, false, true, true}};
+  return {
+      {2, 1, true, true, true, true, false},       {2, 2, true, true, true, false, true},
+      {3, 1, true, true, false, true, false},      {3, 3, true, false, false, false, false},
+      {2, 3, true, false, true, true, true},       {1, 2, true, true, false, false, false},
+      {2, 2, false, true, true, true, false},      {3, 2, false, false, false, true, true},
+      {2, 1, true, true, true, true, false, true}, {3, 2, true, false, false, true, true, true}};
 }
 
 /// Section mass per length `m` with its centre at (0, c2, c3) and inertias about the centre.
@@ -118,6 +121,17 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
                             section(1.0, 1.2, 0.6 * blade, choice)};
   if (choice.damped) d.blades.beam.damping = damping;
   d.blades.beam.tip_mass = choice.order == 2 ? 0.0 : 0.7;
+  if (!choice.full) return d;
+  // Two points make a line that leans from the root on.
+  d.tower.reference_line = {Vector3::Zero(), Vector3(4.8, 0.9, -1.1)};
+  d.blades.beam.reference_line = {Vector3::Zero(), Vector3(2.7, -0.8, 0.6)};
+  for (model::BeamDefinition* beam : {&d.tower, &d.blades.beam})
+    beam->length = beam->reference_line.back().norm();
+  d.tower.point_masses = {{0.4, 1.2, Vector3(0.1, -0.2, 0.3), Vector3(0.2, 0.3, 0.4)},
+                          {1.0, 0.9, Vector3(-0.1, 0.2, 0.1), Vector3(0.3, 0.1, 0.2)}};
+  d.blades.beam.point_masses = {{0.55, 0.6, Vector3(0.05, 0.1, -0.1), Vector3(0.1, 0.05, 0.08)},
+                                {1.0, 0.3, Vector3(0.0, 0.1, 0.2), Vector3(0.02, 0.03, 0.01)}};
+  d.hub.delta3 = 0.5;
   return d;
 }
 

@@ -257,6 +257,42 @@ BOOST_AUTO_TEST_CASE(a_composite_beam_obeys_the_differential_equations) {
   BOOST_TEST(end.u(2) > 3.0);
 }
 
+BOOST_AUTO_TEST_CASE(a_bend_of_45_degrees_leaves_its_plane_as_published) {
+  // Bathe and Bolourchi, Int. J. Numer. Methods Eng. 14 (1979) 961-986: radius 100, section 1 x 1,
+  // E = 1e7, nu = 0, 600 across the plane at the end; their end is at (-23.5, -13.4, 53.4).
+  // GXBeam, 16 elements of lowest order with straight chords: the second line of figures.
+  constexpr double radius = 100.0;
+  constexpr double E = 1e7;
+  model::TurbineDefinition definition = definition_of(BeamCase{});
+  model::BeamDefinition& beam = definition.blades.beam;
+  constexpr int pieces =
+      256;  // the natural ends of the spline reach no further than a piece or two
+  for (int i = 0; i <= pieces; ++i) {
+    const double angle = 0.25 * pi * i / pieces;
+    beam.reference_line.emplace_back(radius * std::sin(angle), radius * (1.0 - std::cos(angle)),
+                                     0.0);
+  }
+  beam.length = model::compute_arc_length(beam.reference_line);
+  BOOST_TEST(std::abs(beam.length - 0.25 * pi * radius) < 1e-6 * radius);
+  beam.sections[0].stiffness =
+      Vector6(E, 0.5 * E, 0.5 * E, E / 12.0, E / 12.0, E / 12.0).asDiagonal();
+  beam.sections[0].rigid = {};
+  definition.loads = {force_at(1.0, Vector3(0.0, 0.0, 600.0))};
+  const auto end_with = [&](int elements, int order) {
+    beam.elements = elements;
+    beam.order = order;
+    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    return end_of(statics_of(system).states.back().z, system).u;
+  };
+  const Vector3 coarse = end_with(16, 1);
+  const Vector3 fine = end_with(8, 3);
+  const Vector3 bathe(-23.5, -13.4, 53.4);
+  const Vector3 chords(-23.545303, -13.577384, 53.458008);
+  BOOST_TEST((fine - bathe).norm() < 0.25);
+  BOOST_TEST((coarse - chords).norm() < 5e-3);  // chords against arcs: O(L^2), L^2/(8 R) = 0.03
+  BOOST_TEST((fine - chords).norm() < 0.04);    // their error, which is ours of order 1
+}
+
 BOOST_AUTO_TEST_CASE(a_load_on_a_part_of_a_cantilever_deflects_it_as_beam_theory_says) {
   // q on a stretch between a and b from the free end, linear theory.
   constexpr double EI = 1e9;
@@ -321,7 +357,7 @@ BOOST_AUTO_TEST_CASE(the_root_carries_all_loads_and_their_moments_in_the_deforme
       const Vector6 strain = compliance * z.segment<6>(first + 12);
       tangent.push_back(R.back() * (Vector3::UnitX() + strain.head<3>()));
     }
-    const double length = beam.element_length;
+    const double length = beam.element_length(0);
     const auto integral_of = [&](int j, double xi) {  // of l_j from 0 to xi
       double sum = 0.0;
       for (std::size_t q = 0; q < fine.points.size(); ++q)

@@ -2,12 +2,13 @@
 // dense product and the dense eigenproblem.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/SparseCore>
 #include <complex>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -39,10 +40,13 @@ class DirectSolver {
   void factor(Mat matrix);
 
   /// Solves for all columns of `right`, which is overwritten by the solution.
-  /// @throws ConvergenceError where the residual of a probing column is not small.
+  /// @throws ConvergenceError where the residual of a probing column is not small, even after some
+  /// steps of iterative refinement.
   void solve(Eigen::MatrixXd& right);
 
  private:
+  double compute_residual(const Eigen::MatrixXd& right) const;
+
   std::string prefix_;
   std::function<Equilibration(Mat)> scale_;
   petsc::Handle<KSP> solver_;

@@ -1,4 +1,4 @@
-// A load that turns with its section (docs/theory.md, section 2.5).
+// A load that turns with its section (docs/theory.md, section 2.6).
 #pragma once
 
 #include "samara/math/rotation.hpp"

@@ -1,4 +1,4 @@
-// The free or loaded end of a beam, which may carry a point mass (docs/theory.md, section 2).
+// The end of a beam or of a part of it, which may carry a rigid mass (docs/theory.md, section 2).
 //
 // Unknowns, in the order of a Gauss point: u_hat(3), theta_hat(3) in a; V_hat(3), Omega_hat(3) in a
 // turned by C(theta_hat); F_hat(3), M_hat(3), the section loads at the end, in a.
@@ -12,12 +12,13 @@ template <class T>
 struct TipTerms {
   Vec3<T> velocity;  ///< f_P at the end
   Vec3<T> spin;      ///< f_H at the end
-  Vec3<T> force;     ///< F_hat + m (acceleration - gravity): what the end mass asks for, in a
-  Vec3<T> moment;    ///< M_hat
+  Vec3<T> force;     ///< F_hat + R (P_dot + Omega x P) - f: the load behind the mass, in a
+  Vec3<T> moment;    ///< M_hat + R (H_dot + Omega x H + V x P) - m
 };
 
+/// `mass`: I6 of (3) about x, momenta from velocities, in the basis of V_hat and Omega_hat.
 template <class T>
-TipTerms<T> beam_tip_terms(const Vector3& x, double mass,
+TipTerms<T> beam_tip_terms(const Vector3& x, const Matrix6& mass,
                            const Eigen::Matrix<T, point_size, 1>& z,
                            const Eigen::Matrix<T, point_size, 1>& z_dot, const Attachment<T>& a) {
   const Mat3<T> R = math::direction_cosines(Vec3<T>(z.template segment<3>(3))).transpose();
@@ -26,12 +27,23 @@ TipTerms<T> beam_tip_terms(const Vector3& x, double mass,
                     z.template segment<6>(6), a, R, terms.velocity, terms.spin);
   terms.force = z.template segment<3>(12);
   terms.moment = z.template segment<3>(15);
-  if (mass > 0.0) {
+  if (mass(0, 0) > 0.0) {
     const Vec3<T> V = z.template segment<3>(6);
     const Vec3<T> Omega = z.template segment<3>(9);
-    const Vec3<T> V_dot = z_dot.template segment<3>(6);
-    const Vec3<T> acceleration = R * (V_dot + math::cross(Omega, V));
-    terms.force += (acceleration - a.gravity) * T(mass);
+    const Mat6<T> inertia = mass.cast<T>();
+    const Vec6<T> momentum = inertia * z.template segment<6>(6);
+    const Vec6<T> momentum_dot = inertia * z_dot.template segment<6>(6);
+    Vec6<T> fall = Vec6<T>::Zero();
+    fall.template head<3>() = R.transpose() * a.gravity;
+    const Vec6<T> weight = inertia * fall;
+    const Vec3<T> P = momentum.template head<3>();
+    const Vec3<T> H = momentum.template tail<3>();
+    const Vec3<T> force = Vec3<T>(momentum_dot.template head<3>()) + math::cross(Omega, P) -
+                          Vec3<T>(weight.template head<3>());
+    const Vec3<T> moment = Vec3<T>(momentum_dot.template tail<3>()) + math::cross(Omega, H) +
+                           math::cross(V, P) - Vec3<T>(weight.template tail<3>());
+    terms.force += R * force;
+    terms.moment += R * moment;
   }
   return terms;
 }

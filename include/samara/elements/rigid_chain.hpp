@@ -17,9 +17,9 @@ namespace samara::elements {
 
 /// A rigid body; its frame is that of the body it belongs to.
 struct RigidBody {
-  double mass = 0.0;                         ///< [kg]
-  Vector3 center = Vector3::Zero();          ///< from the body's reference point [m]
-  Matrix3 inertia = Matrix3::Zero();         ///< about its own centre [kg m^2]
+  double mass = 0.0;                  ///< [kg]
+  Vector3 center = Vector3::Zero();   ///< from the body's reference point [m]
+  Matrix3 inertia = Matrix3::Zero();  ///< about its own centre [kg m^2]
 };
 
 struct Hinge {
@@ -29,32 +29,33 @@ struct Hinge {
 };
 
 struct RigidChain {
-  double gravity = 0.0;                          ///< along -n3 [m/s^2]
+  double gravity = 0.0;  ///< along -n3 [m/s^2]
   Hinge yaw;
   Hinge teeter;
-  RigidBody nacelle;                             ///< reference point: tower top; axes y1 y2 y3
-  RigidBody shaft;                               ///< reference: yaw axis on the shaft; axes s1 s2 s3
-  RigidBody hub;                                 ///< reference: teeter pin; axes h1 h2 h3
-  double height = 0.0;                           ///< tower top to shaft axis, along y3 [m]
-  double tilt = 0.0;                             ///< > 0 raises s2 [rad]
-  double overhang = 0.0;                         ///< yaw axis to teeter pin along s2 [m]
-  double undersling = 0.0;                       ///< teeter pin to apex along h2 [m]
-  Vector3 teeter_axis = Vector3::UnitX();        ///< e, fixed in S and in H
+  RigidBody tower_top;                     ///< reference point: tower top; axes t1 t2 t3
+  RigidBody nacelle;                       ///< reference point: tower top; axes y1 y2 y3
+  RigidBody shaft;                         ///< reference: yaw axis on the shaft; axes s1 s2 s3
+  RigidBody hub;                           ///< reference: teeter pin; axes h1 h2 h3
+  double height = 0.0;                     ///< tower top to shaft axis, along y3 [m]
+  double tilt = 0.0;                       ///< > 0 raises s2 [rad]
+  double overhang = 0.0;                   ///< yaw axis to teeter pin along s2 [m]
+  double undersling = 0.0;                 ///< teeter pin to apex along h2 [m]
+  Vector3 teeter_axis = Vector3::UnitX();  ///< e, fixed in S and in H
 };
 
 /// Coordinates, speeds and their rates. The tower-top quantities are in the order of a beam's tip:
 /// components along (t3, t1, t2), as the tower's axes are (n3, n1, n2).
 template <class T>
 struct ChainState {
-  Vec3<T> theta;             ///< Rodrigues parameters of T, components in the tower's a
-  Vec6<T> top_velocity;      ///< V, Omega of T: (U8, U6, U7, U5, U3, U4)
+  Vec3<T> theta;         ///< Rodrigues parameters of T, components in the tower's a
+  Vec6<T> top_velocity;  ///< V, Omega of T: (U8, U6, U7, U5, U3, U4)
   Vec6<T> top_velocity_dot;
   T yaw, yaw_speed, yaw_dot, yaw_speed_dot;              ///< q_y, U1 and rates
   T teeter, teeter_speed, teeter_dot, teeter_speed_dot;  ///< q_h, U2 and rates
-  Vec6<T> top_load;          ///< F_hat, M_hat at the tower tip, components in the tower's a
-  Vec6<T> hub_load;          ///< sum of the blade-root loads: force, moment about the apex, in H
-  double azimuth = 0.0;      ///< psi [rad]
-  double speed = 0.0;        ///< psi_dot [rad/s]
+  Vec6<T> top_load;      ///< F_hat, M_hat at the tower tip, components in the tower's a
+  Vec6<T> hub_load;      ///< sum of the blade-root loads: force, moment about the apex, in H
+  double azimuth = 0.0;  ///< psi [rad]
+  double speed = 0.0;    ///< psi_dot [rad/s]
 };
 
 /// The hub as the blades see it, components in H.
@@ -68,11 +69,11 @@ struct HubMotion {
 /// Residual rows. A locked joint has the row U - (speed it is carried with) instead of Kane's.
 template <class T>
 struct ChainRows {
-  Vec6<T> top;        ///< Kane's rows of (U8, U6, U7, U5, U3, U4) [N, N m]
-  T yaw_kinematic;    ///< q_y_dot - (U1 - U5), or of a locked joint U1 - U5
-  T yaw_balance;      ///< Kane's row of U1 [N m]; unused where locked
-  T teeter_kinematic; ///< q_h_dot - (U2 - omega_S.e), or of a locked joint U2 - omega_S.e
-  T teeter_balance;   ///< Kane's row of U2 [N m]; unused where locked
+  Vec6<T> top;         ///< Kane's rows of (U8, U6, U7, U5, U3, U4) [N, N m]
+  T yaw_kinematic;     ///< q_y_dot - (U1 - U5), or of a locked joint U1 - U5
+  T yaw_balance;       ///< Kane's row of U1 [N m]; unused where locked
+  T teeter_kinematic;  ///< q_h_dot - (U2 - omega_S.e), or of a locked joint U2 - omega_S.e
+  T teeter_balance;    ///< Kane's row of U2 [N m]; unused where locked
 };
 
 namespace detail {
@@ -178,8 +179,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
 
   const Matrix3 C_YS_tilt = math::turn_about<double>(Vector3::UnitX(), chain.tilt);
   const Matrix3 C_SY_turn =
-      math::turn_about<double>(Vector3::UnitY(), state.azimuth).transpose() *
-      C_YS_tilt.transpose();
+      math::turn_about<double>(Vector3::UnitY(), state.azimuth).transpose() * C_YS_tilt.transpose();
   const Mat3<T> C_SY = C_SY_turn.cast<T>();
   const Vec3<T> bearing(T(0), T(0), T(chain.height));
   const Motion<T> carried_S = detail::seen_from<T>(C_SY, detail::moved_to<T>(bearing, nacelle));
@@ -214,8 +214,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   w.moment += root_moment + cross(apex, root_force);
   rows.teeter_balance = T(0);
   if (chain.teeter.free) {
-    const T spring =
-        -(state.teeter * chain.teeter.stiffness + teeter_rate * chain.teeter.damping);
+    const T spring = -(state.teeter * chain.teeter.stiffness + teeter_rate * chain.teeter.damping);
     const T about = dot(e, w.moment);
     rows.teeter_balance = about + spring;
     for (int i = 0; i < 3; ++i) w.moment(i) -= e(i) * (about + spring);
@@ -237,8 +236,9 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
     rows.yaw_balance = about + spring;
     w.moment(2) -= about + spring;
   }
-  const Vec3<T> top_force = C_YT.transpose() * w.force;
-  const Vec3<T> top_moment = C_YT.transpose() * w.moment;
+  const Wrench<T> fixed = detail::active_and_inertia<T>(chain.tower_top, top, g_T);
+  const Vec3<T> top_force = C_YT.transpose() * w.force + fixed.force;
+  const Vec3<T> top_moment = C_YT.transpose() * w.moment + fixed.moment;
   const Vec3<T> F_hat = C_top * Vec3<T>(state.top_load.template head<3>());
   const Vec3<T> M_hat = C_top * Vec3<T>(state.top_load.template tail<3>());
   rows.top.template head<3>() = to_top(top_force) - F_hat;

@@ -13,34 +13,53 @@ namespace samara::model {
 
 /// Test functions of an element of order s at its Gauss points, by local node 0..s.
 struct TestFunctions {
-  std::vector<double> weights;              ///< w_j, sum 1
-  std::vector<std::vector<double>> value;   ///< N_a(xi_j), [a][j]
-  std::vector<std::vector<double>> slope;   ///< N_a'(xi_j) per unit xi, [a][j]
+  std::vector<double> weights;             ///< w_j, sum 1
+  std::vector<std::vector<double>> value;  ///< N_a(xi_j), [a][j]
+  std::vector<std::vector<double>> slope;  ///< N_a'(xi_j) per unit xi, [a][j]
+};
+
+/// A mass at the common end of two elements.
+struct MassNode {
+  int end = 0;                     ///< of element `end` - 1, start of element `end`
+  Vector3 x = Vector3::Zero();     ///< undeformed, components in a [m]
+  Matrix6 mass = Matrix6::Zero();  ///< about x, momenta from velocities, axes a
 };
 
 struct Beam {
-  std::string name;                           ///< "tower", "blade 1"
+  std::string name;  ///< "tower", "blade 1"
   int elements = 0;
   int order = 0;
-  double element_length = 0.0;                ///< L [m]
+  double length = 0.0;       ///< of the arc [m]
+  std::vector<double> ends;  ///< of the elements, fractions of the length, from 0
   TestFunctions functions;
-  std::vector<elements::BeamPoint> points;    ///< elements * order, root to tip
-  std::vector<double> fractions;              ///< of the length, of each point
-  Vector3 tip = Vector3::Zero();              ///< undeformed tip, components in a [m]
-  double tip_mass = 0.0;                      ///< [kg]
+  std::vector<elements::BeamPoint> points;  ///< elements * order, root to tip
+  std::vector<double> fractions;            ///< of the length, of each point
+  Vector3 tip = Vector3::Zero();            ///< undeformed tip, components in a [m]
+  Matrix6 tip_mass = Matrix6::Zero();       ///< at the tip, as MassNode::mass
+  std::vector<MassNode> mass_nodes;         ///< root to tip, without the tip
   std::vector<BeamLoad> loads;
 
   int point_count() const { return elements * order; }
 
+  /// L of element e [m].
+  double element_length(int e) const {
+    const auto at = static_cast<std::size_t>(e);
+    return (ends[at + 1] - ends[at]) * length;
+  }
+
   /// What point p gives of its length to integrals over the beam [m].
   double point_length(int p) const {
-    return element_length * functions.weights[static_cast<std::size_t>(p % order)];
+    return element_length(p / order) * functions.weights[static_cast<std::size_t>(p % order)];
   }
 };
 
 /// Cuts a beam. Mass and stiffness are multiplied by the factors (blades that differ).
-Beam build_beam(const std::string& name, const BeamDefinition& definition,
-                double mass_factor = 1.0, double stiffness_factor = 1.0);
+Beam build_beam(const std::string& name, const BeamDefinition& definition, double mass_factor = 1.0,
+                double stiffness_factor = 1.0);
+
+/// Momenta from velocities of a rigid body about a point: the velocity of the point, then the
+/// angular velocity.
+Matrix6 rigid_mass(double mass, const Vector3& center, const Matrix3& inertia_about_center);
 
 /// S^-1 of (4) with zero rows and columns in the rigid strains.
 Matrix6 compliance_of(const SectionDefinition& section);

@@ -14,21 +14,31 @@ namespace samara::model {
 
 /// Properties of a beam section. Strain order: axial, shear2, shear3, torsion, bend2, bend3.
 struct SectionDefinition {
-  double at = 0.0;                          ///< fraction of the beam length, 0 (root) to 1 (tip)
-  Matrix6 stiffness = Matrix6::Zero();      ///< S of (4) [N, N m, N m^2]; rigid rows, columns are 0
-  std::array<bool, 6> rigid{};              ///< strain components that cannot strain
-  Matrix6 mass = Matrix6::Zero();           ///< I6 of (3) about the reference line [kg/m, kg, kg m]
-  double twist = 0.0;                       ///< structural twist [rad], about -b1 (toward feather)
+  double at = 0.0;                      ///< fraction of the beam length, 0 (root) to 1 (tip)
+  Matrix6 stiffness = Matrix6::Zero();  ///< S of (4) [N, N m, N m^2]; rigid rows, columns are 0
+  std::array<bool, 6> rigid{};          ///< strain components that cannot strain
+  Matrix6 mass = Matrix6::Zero();       ///< I6 of (3) about the reference line [kg/m, kg, kg m]
+  double twist = 0.0;                   ///< structural twist [rad], about -b1 (toward feather)
+};
+
+/// A mass on a beam, with its rotary inertia.
+struct PointMassDefinition {
+  double at = 1.0;                    ///< fraction of the beam length, above 0, to 1
+  double mass = 0.0;                  ///< [kg], > 0
+  Vector3 center = Vector3::Zero();   ///< from the line, section axes b [m]
+  Vector3 inertia = Vector3::Zero();  ///< about its own centre, section axes [kg m^2]
 };
 
 struct BeamDefinition {
   double length = 0.0;                      ///< arc length [m], > 0
   std::vector<Vector3> reference_line;      ///< points in axes a [m]; empty = straight along b1
-  int elements = 4;                         ///< >= 1, evenly spaced in arc length
+  int elements = 4;                         ///< >= 1, evenly spaced in arc length but for the
+                                            ///< ends that point masses draw to them
   int order = 1;                            ///< Gauss points an element, 1 to 6
   std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
   Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component
   double tip_mass = 0.0;                    ///< [kg], >= 0
+  std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`
 };
 
 enum class JointKind { free, locked };
@@ -47,24 +57,26 @@ struct NacelleDefinition {
 };
 
 struct ShaftDefinition {
-  double speed = 0.0;           ///< Omega0 >= 0 [rad/s], about +s2
-  double overhang = 0.0;        ///< yaw axis to teeter pin or apex, along s2 [m]
-  double tilt = 0.0;            ///< > 0 raises the downwind end [rad]
-  double height = 0.0;          ///< tower top to shaft axis along y3 [m]
-  double azimuth = 0.0;         ///< of blade 1 at t = 0 [rad]
-  double mass = 0.0;            ///< [kg]
-  double center_of_mass = 0.0;  ///< along s2 from the yaw axis [m]
-  double inertia_axial = 0.0;   ///< [kg m^2]
-  double inertia_lateral = 0.0; ///< [kg m^2]
+  double speed = 0.0;            ///< Omega0 >= 0 [rad/s], about +s2
+  double overhang = 0.0;         ///< yaw axis to teeter pin or apex, along s2 [m]
+  double tilt = 0.0;             ///< > 0 raises the downwind end [rad]
+  double height = 0.0;           ///< tower top to shaft axis along y3 [m]
+  double azimuth = 0.0;          ///< of blade 1 at t = 0 [rad]
+  double mass = 0.0;             ///< [kg]
+  double center_of_mass = 0.0;   ///< along s2 from the yaw axis [m]
+  double inertia_axial = 0.0;    ///< [kg m^2]
+  double inertia_lateral = 0.0;  ///< [kg m^2]
 };
 
 struct HubDefinition {
-  double mass = 0.0;                  ///< [kg]
-  double center_of_mass = 0.0;        ///< along s2 from the teeter pin [m]
-  Vector3 inertia = Vector3::Zero();  ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
-  double radius = 0.0;                ///< shaft axis to blade root [m]
-  JointDefinition teeter;             ///< locked = rigid hub
-  double undersling = 0.0;            ///< along s2 from teeter pin to rotor apex [m]
+  double mass = 0.0;            ///< [kg]
+  double center_of_mass = 0.0;  ///< along s2 from the teeter pin [m]
+  Vector3 inertia =
+      Vector3::Zero();      ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
+  double radius = 0.0;      ///< shaft axis to blade root [m]
+  JointDefinition teeter;   ///< locked = rigid hub
+  double undersling = 0.0;  ///< along s2 from teeter pin to rotor apex [m]
+  double delta3 = 0.0;      ///< teeter axis from h1 toward h3 [rad]
 };
 
 /// What differs on one blade.

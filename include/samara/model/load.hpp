@@ -1,4 +1,4 @@
-// A prescribed load as the elements of a beam take it (docs/theory.md, section 2.5).
+// A prescribed load as the elements of a beam take it (docs/theory.md, section 2.6).
 #pragma once
 
 #include <vector>

@@ -19,8 +19,9 @@ namespace samara::system {
 struct PlacedBeam {
   const model::Beam* beam = nullptr;
   std::vector<int> points;  ///< first unknown of each point
+  std::vector<int> masses;  ///< first unknown of each mass node
   int tip = 0;
-  int root = 0;             ///< first of F_hat_0, M_hat_0
+  int root = 0;  ///< first of F_hat_0, M_hat_0
   bool on_hub = false;
   Vector3 position = Vector3::Zero();  ///< root from the apex, in H
   Matrix3 C_Ha = Matrix3::Identity();
@@ -31,16 +32,17 @@ struct PlacedBeam {
   /// Force and moment about the apex in H of a blade's root load.
   Matrix6 hub_from_root() const;
 
-  /// First row of the strain and curvature balance of node n.
-  int strain_rows(int n) const {
-    return n < beam->point_count() ? points[static_cast<std::size_t>(n)] : tip;
-  }
-  /// First row of the force and moment balance of node n.
-  int force_rows(int n) const {
-    return n == 0 ? root : points[static_cast<std::size_t>(n - 1)] + 12;
-  }
+  /// First row of the strain and curvature balance of local node a of the element of point p. A
+  /// mass node has a balance of its own for the element before it.
+  int strain_rows(int p, int a) const;
+  /// First row of the force and moment balance. A mass node has one for the element behind it.
+  int force_rows(int p, int a) const;
   /// Weights of point p in the balances of local node a: w N_a' and w L N_a.
   std::array<double, 2> node_weights(int a, int p) const;
+
+ private:
+  /// The mass node at end e of the elements, -1 where there is none.
+  int mass_at(int e) const;
 };
 
 // Inputs of the rigid chain, in this order.
@@ -97,8 +99,8 @@ class TurbineResidual {
   void add_point(const PlacedBeam& placed, int p, const elements::Attachment<T>& a,
                  const std::vector<T>& z, const std::vector<T>& z_dot, std::vector<T>& r) const;
   template <class T>
-  void add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a,
-                const std::vector<T>& z, const std::vector<T>& z_dot, std::vector<T>& r) const;
+  void add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a, const std::vector<T>& z,
+                const std::vector<T>& z_dot, std::vector<T>& r) const;
   template <class T>
   void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
                  std::vector<T>& r) const;
@@ -217,12 +219,11 @@ void TurbineResidual::add_point(const PlacedBeam& placed, int p, const elements:
   Rows(r.data() + first + 6) += terms.velocity;
   Rows(r.data() + first + 9) += terms.spin;
   for (int node = 0; node <= beam.order; ++node) {
-    const int n = p / beam.order * beam.order + node;
     const auto [slope, value] = placed.node_weights(node, p);
     const T by_slope(slope);
     const T by_value(value);
-    const int strain = placed.strain_rows(n);
-    const int force = placed.force_rows(n);
+    const int strain = placed.strain_rows(p, node);
+    const int force = placed.force_rows(p, node);
     Rows(r.data() + strain) -= state.template segment<3>(0) * by_slope + terms.stretch * by_value;
     Rows(r.data() + strain + 3) -= state.template segment<3>(3) * by_slope + terms.turn * by_value;
     Rows(r.data() + force) += terms.force_flux * by_slope + terms.force_load * by_value;
@@ -230,26 +231,41 @@ void TurbineResidual::add_point(const PlacedBeam& placed, int p, const elements:
   }
 }
 
-/// The boundary quantities of a beam: reactions at the root, the loads and the motion at the tip.
+/// The boundary quantities of a beam: reactions at the root, the loads and the motion at the tip,
+/// and where a mass sits between two elements, the end of one and the start of the other.
 template <class T>
 void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a,
                                const std::vector<T>& z, const std::vector<T>& z_dot,
                                std::vector<T>& r) const {
   using Rows = Eigen::Map<Vec3<T>>;
   using LongRows = Eigen::Map<Vec6<T>>;
-  const int last = placed.beam->point_count();
-  const State<T> tip = at(z, placed.tip);
-  check_rotation(Vector3(tip.template segment<3>(3).real()), placed.beam->name + " tip");
-  LongRows(r.data() + placed.force_rows(0)) += Eigen::Map<const Vec6<T>>(z.data() + placed.root);
-  LongRows(r.data() + placed.strain_rows(last)) += tip.template head<6>();
-  LongRows(r.data() + placed.force_rows(last)) -= tip.template tail<6>();
-  const elements::TipTerms<T> terms = elements::beam_tip_terms<T>(
-      placed.beam->tip, placed.beam->tip_mass, tip, at(z_dot, placed.tip), a);
-  Rows(r.data() + placed.tip + 6) += terms.velocity;
-  Rows(r.data() + placed.tip + 9) += terms.spin;
-  if (!placed.on_hub) return;  // the tower top's loads are Kane's rows
-  Rows(r.data() + placed.tip + 12) += terms.force;
-  Rows(r.data() + placed.tip + 15) += terms.moment;
+  LongRows(r.data() + placed.root) += Eigen::Map<const Vec6<T>>(z.data() + placed.root);
+  const auto add_end = [&](int first, int point, const Vector3& x, const Matrix6& mass,
+                           const std::string& name, bool balance) {
+    const State<T> end = at(z, first);
+    check_rotation(Vector3(end.template segment<3>(3).real()), placed.beam->name + name);
+    LongRows(r.data() + first) += end.template head<6>();
+    LongRows(r.data() + placed.points[static_cast<std::size_t>(point)] + 12) -=
+        end.template tail<6>();
+    const elements::TipTerms<T> terms =
+        elements::beam_tip_terms<T>(x, mass, end, at(z_dot, first), a);
+    Rows(r.data() + first + 6) += terms.velocity;
+    Rows(r.data() + first + 9) += terms.spin;
+    if (!balance) return;
+    Rows(r.data() + first + 12) += terms.force;
+    Rows(r.data() + first + 15) += terms.moment;
+  };
+  const model::Beam& beam = *placed.beam;
+  // The tower top's loads are Kane's rows.
+  add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass, " tip", placed.on_hub);
+  for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+    const model::MassNode& node = beam.mass_nodes[m];
+    const int next = node.end * beam.order;  // the first point behind it
+    const int first = placed.masses[m];
+    add_end(first, next - 1, node.x, node.mass, " mass " + std::to_string(m + 1), true);
+    LongRows(r.data() + placed.points[static_cast<std::size_t>(next)]) -=
+        at(z, first).template head<6>();
+  }
 }
 
 /// The prescribed loads: -f, -m of the force and moment balances.
@@ -266,7 +282,7 @@ void TurbineResidual::add_loads(const PlacedBeam& placed, double t, const std::v
   for (const model::BeamLoad& load : beam.loads) {
     const Vector6 value = load.at(t, turbine_.speed);
     if (load.at_tip)
-      Rows(r.data() + placed.force_rows(beam.point_count())) -=
+      Rows(r.data() + placed.force_rows(beam.point_count() - 1, beam.order)) -=
           turned(load, value, placed.tip, load.tip_axes);
     for (std::size_t e = 0; e < load.weights.size(); ++e) {
       const int start = (load.first_element + static_cast<int>(e)) * beam.order;
@@ -274,7 +290,7 @@ void TurbineResidual::add_loads(const PlacedBeam& placed, double t, const std::v
         const auto p = static_cast<std::size_t>(start + j);
         const Vec6<T> part = turned(load, value, placed.points[p], beam.points[p].C_ab);
         for (int node = 0; node <= beam.order; ++node)
-          Rows(r.data() + placed.force_rows(start + node)) -= part * T(load.weights[e](node, j));
+          Rows(r.data() + placed.force_rows(start, node)) -= part * T(load.weights[e](node, j));
       }
     }
   }
