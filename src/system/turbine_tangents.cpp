@@ -307,8 +307,8 @@ class TurbineTangents::Scatter {
           const LoadJacobian tangent =
               follower_tangent(z, placed.points[p], beam.points[p].C_ab, value);
           for (int node = 0; node <= beam.order; ++node)
-            add_follower(placed.force_rows(start, node), placed.points[p],
-                         load.weights[e](node, j), tangent);
+            add_follower(placed.force_rows(start, node), placed.points[p], load.weights[e](node, j),
+                         tangent);
         }
       }
     }
