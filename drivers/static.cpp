@@ -59,8 +59,7 @@ std::string beam_table(const StaticPath& path, const model::Beam& beam, int tip,
     for (int j = 0; j < 3; ++j) add(state.z(tip + j), small_length);
     const double angle = 2.0 * std::atan(0.5 * state.z.segment<3>(tip + 3).norm());
     words.push_back(fixed(angle * to_degrees, 3));
-    for (int j = 0; j < 3; ++j) add(state.z(root + j), small_load);
-    for (int j = 3; j < 6; ++j) add(state.z(root + j), small_load * beam.tip.norm());
+    for (int j = 0; j < 6; ++j) add(state.z(root + j), small_load);
     table.add_row(words);
   }
   return beam.name + ": deflection and rotation of the end, loads on the root\n" + table.text() +
