@@ -97,8 +97,10 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
        system.symmetry().sectors > 1
            ? "repeats every 1/" + std::to_string(system.symmetry().sectors) + " revolution"
            : "none, the period is a whole revolution");
-  line("joints",
-       "yaw " + joint_words(turbine.chain.yaw) + "; teeter " + joint_words(turbine.chain.teeter));
+  line("joints", "yaw " + joint_words(turbine.chain.yaw) + "; teeter " +
+                     joint_words(turbine.chain.teeter) + "; shaft torsion " +
+                     joint_words(turbine.chain.torsion) + "; generator " +
+                     joint_words(turbine.chain.generator));
   line("gravity", general(definition.gravity, 6) + " m/s^2");
   if (!definition.loads.empty())
     line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));

@@ -206,11 +206,12 @@ std::string verdict(const ModeSet& set) {
   }
   text += "\n";
   if (!result.growing_alone.empty())
-    text += count(static_cast<int>(result.growing_alone.size()), "mode") +
-            (result.growing_alone.size() == 1 ? " grows alone: " : " grow alone: ") +
-            name_growing(result.growing_alone) +
-            "; where nothing damps, growth and decay come in pairs, so this is an error of the mesh "
-            "(hint: a higher order of blades and tower, or more elements)\n";
+    text +=
+        count(static_cast<int>(result.growing_alone.size()), "mode") +
+        (result.growing_alone.size() == 1 ? " grows alone: " : " grow alone: ") +
+        name_growing(result.growing_alone) +
+        "; where nothing damps, growth and decay come in pairs, so this is an error of the mesh "
+        "(hint: a higher order of blades and tower, or more elements)\n";
   if (result.unresolved > 0)
     text +=
         "* " + std::to_string(result.unresolved) + " unresolved, left out of the verdict: " +

@@ -104,6 +104,7 @@ std::string summary(const io::Case& input, const system::TurbineSystem& system,
   };
   joint("yaw", system.turbine().chain.yaw, layout.yaw());
   joint("teeter", system.turbine().chain.teeter, layout.teeter());
+  joint("shaft twist", system.turbine().chain.torsion, layout.shaft_torsion());
   return text + "\n";
 }
 

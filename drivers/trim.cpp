@@ -61,6 +61,8 @@ std::vector<Output> outputs_of(const system::TurbineSystem& system, double load_
   }
   if (turbine.chain.teeter.free) add_angle("teeter", layout.teeter());
   if (turbine.chain.yaw.free) add_angle("yaw", layout.yaw());
+  if (turbine.chain.torsion.free) add_angle("shaft torsion", layout.shaft_torsion());
+  if (turbine.chain.generator.free) add_angle("generator", layout.generator());
   if (!turbine.has_tower) return outputs;
   add_three("tower top", layout.tower_tip(), "m", rounding * turbine.tower.tip.norm(),
             {"along n3 (up)", "along n1 (lateral)", "along n2 (downwind)"});

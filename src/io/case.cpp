@@ -358,13 +358,22 @@ void read_speed(MapReader& map, double& speed) {
   }
 }
 
-void read_torsion(const YamlNode& node, const std::string& where, ErrorList& errors) {
+void read_torsion(const YamlNode& node, const std::string& where, model::JointDefinition& torsion,
+                  ErrorList& errors) {
   MapReader map(node, where, errors);
-  const YamlNode* word = map.require("joint", "locked");
-  model::JointDefinition torsion;
-  if (read_joint(map, torsion, word) && torsion.kind == JointKind::free) {
-    map.refuse(*word, "joint", "\"free\" is not available yet; use locked");
-  }
+  const YamlNode* word = map.require("joint", "free or locked");
+  if (read_joint(map, torsion, word) && torsion.kind == JointKind::free && torsion.stiffness == 0.0)
+    map.refuse(*word, "joint", "a shaft that may twist needs a stiffness > 0");
+  map.finish();
+}
+
+void read_generator(const YamlNode& node, const std::string& where,
+                    model::GeneratorDefinition& generator, ErrorList& errors) {
+  MapReader map(node, where, errors);
+  map.require("joint", "free or locked");
+  map.read("joint", generator.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
+  map.read("inertia", generator.inertia, non_negative);
+  map.read("torque_slope", generator.torque_slope, any_number);
   map.finish();
 }
 
@@ -384,7 +393,14 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
     inertia.finish();
   }
   if (const YamlNode* entry = map.find("torsion")) {
-    read_torsion(*entry, map.where("torsion"), errors);
+    read_torsion(*entry, map.where("torsion"), shaft.torsion, errors);
+  }
+  if (const YamlNode* entry = map.find("generator")) {
+    read_generator(*entry, map.where("generator"), shaft.generator, errors);
+    if (shaft.generator.kind == JointKind::free && shaft.torsion.kind == JointKind::free &&
+        shaft.generator.inertia == 0.0)
+      map.refuse(*entry, "generator",
+                 "a free generator behind a shaft that may twist needs an inertia > 0");
   }
   map.finish();
 }

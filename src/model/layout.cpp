@@ -18,8 +18,10 @@ Layout::Layout(const Turbine& turbine)
       blade_count_(static_cast<int>(turbine.blades.size())) {
   tower_first_ = blade_.size * blade_count_;
   joints_ = tower_first_ + (turbine.has_tower ? tower_.size : 0);
-  padding_ = joints_ + 6 + 6 * blade_count_ + (turbine.has_tower ? 6 : 0);
-  size_ = (padding_ + block - 1) / block * block;
+  const int end = tower_root() + (turbine.has_tower ? 6 : 0);
+  size_ = (end + block - 1) / block * block;
+  for (int i = generator() + 2; i < blade_root(0); ++i) padding_.push_back(i);
+  for (int i = end; i < size_; ++i) padding_.push_back(i);
 }
 
 }  // namespace samara::model

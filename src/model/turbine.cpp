@@ -33,6 +33,9 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.hub.center = Vector3(0.0, hub.center_of_mass, 0.0);
   chain.hub.inertia = hub.inertia.asDiagonal();
   chain.teeter = hinge_of(hub.teeter);
+  chain.torsion = hinge_of(shaft.torsion);
+  chain.generator = {shaft.generator.kind == JointKind::free, 0.0, shaft.generator.torque_slope};
+  chain.generator_inertia = shaft.generator.inertia;
   chain.height = shaft.height;
   chain.tilt = shaft.tilt;
   chain.overhang = shaft.overhang;
@@ -123,8 +126,9 @@ Turbine build_turbine(const TurbineDefinition& definition) {
   turbine.azimuth = definition.shaft.azimuth;
   turbine.degrees_of_freedom = definition.has_tower ? elastic_strains(turbine.tower) : 0;
   for (const Beam& blade : turbine.blades) turbine.degrees_of_freedom += elastic_strains(blade);
-  if (turbine.chain.yaw.free) ++turbine.degrees_of_freedom;
-  if (turbine.chain.teeter.free) ++turbine.degrees_of_freedom;
+  const elements::RigidChain& chain = turbine.chain;
+  for (const elements::Hinge* hinge : {&chain.yaw, &chain.teeter, &chain.torsion, &chain.generator})
+    if (hinge->free) ++turbine.degrees_of_freedom;
   return turbine;
 }
 

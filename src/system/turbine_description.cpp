@@ -157,8 +157,9 @@ class Describer {
     const elements::RigidChain& chain = turbine_.chain;
     name_joint(layout_.yaw(), "yaw", chain.yaw.free);
     name_joint(layout_.teeter(), "teeter", chain.teeter.free);
-    name_joint(layout_.shaft_torsion(), "shaft torsion", false);
-    for (int i = layout_.padding(); i < layout_.size(); ++i) {
+    name_joint(layout_.shaft_torsion(), "shaft torsion", chain.torsion.free);
+    name_joint(layout_.generator(), "generator", chain.generator.free);
+    for (const int i : layout_.padding()) {
       result_.unknowns[static_cast<std::size_t>(i)] = {"padding", "", UnknownRole::position};
       result_.rows[static_cast<std::size_t>(i)] = RowRole::constraint;
     }
@@ -166,8 +167,12 @@ class Describer {
       result_.neutral.push_back({"yaw", layout_.yaw(), layout_.yaw() + 1, "N m"});
     if (chain.teeter.free && chain.teeter.stiffness == 0.0 && turbine_.speed == 0.0)
       result_.neutral.push_back({"teeter", layout_.teeter(), layout_.teeter() + 1, "N m"});
+    if (chain.generator.free)
+      result_.neutral.push_back({"generator", layout_.generator(), layout_.generator() + 1, "N m"});
     add_rigid_energies();
   }
+
+  bool turns_freely() const { return turbine_.chain.torsion.free || turbine_.chain.generator.free; }
 
   /// What the tower top carries, at zero yaw and azimuth: nacelle and shaft, and the hub, of which
   /// a free teeter leaves only the mass at the pin; what turns about the hinge is the hub's own.
@@ -189,7 +194,9 @@ class Describer {
       add(body.mass, reference + C * body.center, C * body.inertia * C.transpose());
     };
     add_body(chain.nacelle, Matrix3::Identity(), Vector3::Zero());
-    add_body(chain.shaft, tilted, bearing);
+    elements::RigidBody shaft = chain.shaft;
+    if (turns_freely()) shaft.inertia(1, 1) = 0.0;  // counted with its own speed
+    add_body(shaft, tilted, bearing);
     if (chain.teeter.free)
       add(chain.hub.mass, pin, Matrix3::Zero());
     else
@@ -224,22 +231,27 @@ class Describer {
                                   {layout_.teeter() + 1},
                                   {inertia}});
     }
-    if (chain.yaw.free && chain.yaw.stiffness > 0.0)
-      result_.groups.push_back({EnergyGroup::Kind::strain,
-                                "joint",
-                                "yaw",
-                                0,
-                                Frame::fixed,
-                                {layout_.yaw()},
-                                {chain.yaw.stiffness}});
-    if (chain.teeter.free && chain.teeter.stiffness > 0.0)
-      result_.groups.push_back({EnergyGroup::Kind::strain,
-                                "joint",
-                                "teeter",
-                                0,
-                                Frame::rotating,
-                                {layout_.teeter()},
-                                {chain.teeter.stiffness}});
+    const auto add_shaft = [this](int speed, double shaft_inertia) {
+      if (shaft_inertia > 0.0)
+        result_.groups.push_back({EnergyGroup::Kind::kinetic,
+                                  "drivetrain",
+                                  "",
+                                  0,
+                                  Frame::rotating,
+                                  {speed},
+                                  {shaft_inertia}});
+    };
+    if (turns_freely()) add_shaft(layout_.shaft_torsion() + 1, chain.shaft.inertia(1, 1));
+    if (chain.generator.free) add_shaft(layout_.generator() + 1, chain.generator_inertia);
+    add_spring(chain.yaw, "yaw", Frame::fixed, layout_.yaw());
+    add_spring(chain.teeter, "teeter", Frame::rotating, layout_.teeter());
+    add_spring(chain.torsion, "shaft torsion", Frame::rotating, layout_.shaft_torsion());
+  }
+
+  void add_spring(const elements::Hinge& hinge, const std::string& name, Frame frame, int angle) {
+    if (!hinge.free || hinge.stiffness == 0.0) return;
+    result_.groups.push_back(
+        {EnergyGroup::Kind::strain, "joint", name, 0, frame, {angle}, {hinge.stiffness}});
   }
 
   /// Why the rotor does not look the same after 1/B of a turn; empty where it does.

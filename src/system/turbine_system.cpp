@@ -151,12 +151,15 @@ const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const
 
 bool TurbineSystem::is_conservative() const {
   const model::Turbine& turbine = assembly_->turbine;
-  if (turbine.chain.yaw.damping != 0.0 || turbine.chain.teeter.damping != 0.0) return false;
+  const elements::RigidChain& chain = turbine.chain;
+  for (const elements::Hinge* hinge : {&chain.yaw, &chain.teeter, &chain.torsion, &chain.generator})
+    if (hinge->free && hinge->damping != 0.0) return false;
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const elements::BeamPoint& point : placed.beam->points)
       if (!point.damping.isZero(0.0)) return false;
   // A dead force has a potential where the axes that it is fixed in move as prescribed.
-  const bool hub_moves = turbine.has_tower || turbine.chain.yaw.free || turbine.chain.teeter.free;
+  const bool hub_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free ||
+                         chain.torsion.free || chain.generator.free;
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const model::BeamLoad& load : placed.beam->loads)
       if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub && hub_moves))
@@ -241,19 +244,24 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   std::vector<double> values(n, 0.0);
   const std::vector<double> rates(n, 0.0);
   // With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The
-  // teeter's row asks for the same of its speed; the motion of the hub does not depend on it yet.
+  // rows of free joints ask for the same of their speeds, one after the other from the tower
+  // outward.
   std::vector<double> r(n, 0.0);
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0; pass < 5; ++pass) {
     assembly.equations.evaluate(t, values, rates, r);
     const std::vector<RowRole>& roles = assembly.description.rows;
     for (std::size_t i = 0; i < n; ++i) {
       if (assembly.description.unknowns[i].role != UnknownRole::velocity) continue;
       if (roles[i] == RowRole::kinematic) values[i] -= r[i];
     }
-    if (assembly.turbine.chain.teeter.free) {
-      const auto teeter = static_cast<std::size_t>(assembly.layout.teeter());
-      values[teeter + 1] += r[teeter];
-    }
+    const elements::RigidChain& chain = assembly.turbine.chain;
+    const auto set_speed = [&](bool free, int first) {
+      const auto at = static_cast<std::size_t>(first);
+      if (free) values[at + 1] += r[at];
+    };
+    set_speed(chain.generator.free, assembly.layout.generator());
+    set_speed(chain.torsion.free, assembly.layout.shaft_torsion());
+    set_speed(chain.teeter.free, assembly.layout.teeter());
   }
   PetscInt first = 0;
   PetscInt last = 0;

@@ -80,8 +80,7 @@ class Pattern {
  private:
   template <class Couple>
   void couple_to_motion(const Couple& couple, int row) const {
-    couple(row, layout_.yaw());
-    couple(row, layout_.teeter() + 1);
+    couple(row, layout_.joints());
     if (turbine_.has_tower) couple(row, layout_.tower_tip());
   }
 
@@ -148,16 +147,14 @@ class TurbineTangents::Scatter {
     int unknown = -1;
     if (i < at_top_velocity) {
       unknown = top + 3 + i;
-    } else if (i < at_yaw) {
+    } else if (i < at_joints) {
       unknown = top + 6 + i - at_top_velocity;
     } else if (i < at_top_velocity_dot) {
-      unknown = i < at_yaw + 2 ? layout_.yaw() + i - at_yaw : layout_.teeter() + i - at_yaw - 2;
-    } else if (i < at_yaw_speed_dot) {
+      unknown = layout_.joints() + i - at_joints;
+    } else if (i < at_joint_rates) {
       unknown = top + 6 + i - at_top_velocity_dot;
     } else if (i < at_top_load) {
-      const std::array<int, 4> rates{layout_.yaw() + 1, layout_.teeter() + 1, layout_.yaw(),
-                                     layout_.teeter()};
-      unknown = rates[static_cast<std::size_t>(i - at_yaw_speed_dot)];
+      unknown = layout_.joints() + i - at_joint_rates;
     } else if (i < at_hub_load) {
       unknown = top + 12 + i - at_top_load;
     }
@@ -348,23 +345,21 @@ class TurbineTangents::Scatter {
   void add_chain_tangents(const elements::ChainRows<ChainDual>& rows) {
     if (turbine_.has_tower)
       for (int i = 0; i < 6; ++i) add_chain_row(layout_.tower_tip() + 12 + i, rows.top(i));
-    add_joint_tangents(layout_.yaw(), turbine_.chain.yaw.free, rows.yaw_kinematic,
-                       rows.yaw_balance);
-    add_joint_tangents(layout_.teeter(), turbine_.chain.teeter.free, rows.teeter_kinematic,
-                       rows.teeter_balance);
-    add(K_, layout_.shaft_torsion(), layout_.shaft_torsion(), 1.0);
-    add(K_, layout_.shaft_torsion() + 1, layout_.shaft_torsion() + 1, 1.0);
-    for (int i = layout_.padding(); i < layout_.size(); ++i) add(K_, i, i, 1.0);
+    const elements::RigidChain& chain = turbine_.chain;
+    add_joint_tangents(layout_.yaw(), chain.yaw.free, rows.yaw);
+    add_joint_tangents(layout_.teeter(), chain.teeter.free, rows.teeter);
+    add_joint_tangents(layout_.shaft_torsion(), chain.torsion.free, rows.torsion);
+    add_joint_tangents(layout_.generator(), chain.generator.free, rows.generator);
+    for (const int i : layout_.padding()) add(K_, i, i, 1.0);
   }
 
-  void add_joint_tangents(int first, bool free, const ChainDual& kinematic,
-                          const ChainDual& balance) {
+  void add_joint_tangents(int first, bool free, const elements::JointRows<ChainDual>& rows) {
     if (free) {
-      add_chain_row(first, kinematic);
-      add_chain_row(first + 1, balance);
+      add_chain_row(first, rows.kinematic);
+      add_chain_row(first + 1, rows.balance);
     } else {
       add(K_, first, first, 1.0);
-      add_chain_row(first + 1, kinematic);
+      add_chain_row(first + 1, rows.kinematic);
     }
   }
 

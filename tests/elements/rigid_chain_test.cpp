@@ -8,6 +8,7 @@
 #include <complex>
 #include <cstddef>
 #include <random>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
@@ -29,14 +30,17 @@ constexpr double rounding = 1e-12;
 constexpr double tangent_tolerance = 1e-11;
 constexpr double complex_step = 1e-30;
 
-/// Coordinates: u_hat and theta_hat of the tower top, components along (n3, n1, n2); q_y; q_h.
-constexpr int coordinates = 8;
+/// Coordinates: u_hat and theta_hat of the tower top, components along (n3, n1, n2); q_y; q_h; q_s;
+/// q_g.
+constexpr int coordinates = 10;
 constexpr int at_yaw = 6;
 constexpr int at_teeter = 7;
+constexpr int at_torsion = 8;
+constexpr int at_generator = 9;
 template <class T>
 using Coordinates = Eigen::Matrix<T, coordinates, 1>;
 
-/// In the order of ChainRows: U8 U6 U7, U5 U3 U4, U1, U2.
+/// In the order of ChainRows: U8 U6 U7, U5 U3 U4, U1, U2, U_s, U_g.
 template <class T>
 using Speeds = Eigen::Matrix<T, coordinates, 1>;
 
@@ -63,12 +67,30 @@ RigidBody random_body(std::minstd_rand& random, double mass) {
   return body;
 }
 
+/// Which joints are free.
+struct Joints {
+  bool yaw = true;
+  bool teeter = true;
+  bool torsion = true;
+  bool generator = true;
+};
+
+std::vector<Joints> all_joints() {
+  std::vector<Joints> all;
+  for (int i = 0; i < 16; ++i)
+    all.push_back({(i & 1) != 0, (i & 2) != 0, (i & 4) != 0, (i & 8) != 0});
+  return all;
+}
+
 /// Every mass, centre, inertia, angle, spring and damper is there, and the hinge is tilted.
-RigidChain random_chain(std::minstd_rand& random, bool yaw, bool teeter) {
+RigidChain random_chain(std::minstd_rand& random, const Joints& joints) {
   RigidChain chain;
   chain.gravity = 9.81;
-  chain.yaw = {yaw, 300.0, 20.0};
-  chain.teeter = {teeter, 500.0, 30.0};
+  chain.yaw = {joints.yaw, 300.0, 20.0};
+  chain.teeter = {joints.teeter, 500.0, 30.0};
+  chain.torsion = {joints.torsion, 700.0, 40.0};
+  chain.generator = {joints.generator, 0.0, 50.0};
+  chain.generator_inertia = 6.0;
   chain.tower_top = random_body(random, 2.0);
   chain.nacelle = random_body(random, 7.0);
   chain.shaft = random_body(random, 3.0);
@@ -138,7 +160,7 @@ Vec3<T> in_N(const Vec3<T>& a) {
 template <class T>
 struct Configuration {
   Vec3<T> top, top_center, nacelle_center, shaft_center, hub_center, apex;
-  Mat3<T> R_T, R_Y, R_S, R_H;
+  Mat3<T> R_T, R_Y, R_G, R_S, R_H;
 };
 
 template <class T>
@@ -150,7 +172,10 @@ Configuration<T> configuration_of(const RigidChain& chain, const Prescribed& pre
   c.R_T = turned_by<T>(in_N<T>(q.template segment<3>(3)));
   c.R_Y = c.R_T;
   if (chain.yaw.free) c.R_Y = c.R_T * about_3<T>(q(at_yaw));
-  const T azimuth = T(prescribed.azimuth) + T(prescribed.speed) * t;
+  T azimuth = T(prescribed.azimuth) + T(prescribed.speed) * t;
+  if (chain.generator.free) azimuth += q(at_generator);
+  c.R_G = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth);
+  if (chain.torsion.free) azimuth += q(at_torsion);
   c.R_S = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth);
   c.R_H = c.R_S;
   if (chain.teeter.free) c.R_H = c.R_S * about<T>(chain.teeter_axis, q(at_teeter));
@@ -192,7 +217,10 @@ template <class T>
 T kinetic_energy(const RigidChain& chain, const Prescribed& prescribed, const Coordinates<T>& q,
                  const Coordinates<T>& q_dot, const T& t) {
   const Configuration<Jet<T>> c = moving<T>(chain, prescribed, q, q_dot, t);
-  return kinetic_energy<T>(chain.tower_top, c.top_center, c.R_T) +
+  RigidBody generator;
+  generator.inertia(1, 1) = chain.generator_inertia;
+  return kinetic_energy<T>(generator, c.top, c.R_G) +
+         kinetic_energy<T>(chain.tower_top, c.top_center, c.R_T) +
          kinetic_energy<T>(chain.nacelle, c.nacelle_center, c.R_Y) +
          kinetic_energy<T>(chain.shaft, c.shaft_center, c.R_S) +
          kinetic_energy<T>(chain.hub, c.hub_center, c.R_H);
@@ -208,6 +236,8 @@ T potential_energy(const RigidChain& chain, const Prescribed& prescribed, const 
       T(chain.gravity);
   if (chain.yaw.free) energy += q(at_yaw) * q(at_yaw) * T(0.5 * chain.yaw.stiffness);
   if (chain.teeter.free) energy += q(at_teeter) * q(at_teeter) * T(0.5 * chain.teeter.stiffness);
+  if (chain.torsion.free)
+    energy += q(at_torsion) * q(at_torsion) * T(0.5 * chain.torsion.stiffness);
   return energy;
 }
 
@@ -217,7 +247,7 @@ Vec3<T> spin_of(const Mat3<Jet<T>>& basis) {
   return axial<T>(Mat3<T>(value_of<T, 3, 3>(basis).transpose() * rate_of<T, 3, 3>(basis)));
 }
 
-/// The generalized speeds (8) by their definitions.
+/// The generalized speeds (8) and those of the shaft by their definitions.
 template <class T>
 Speeds<T> speeds_of(const RigidChain& chain, const Prescribed& prescribed, const Coordinates<T>& q,
                     const Coordinates<T>& q_dot, const T& t) {
@@ -226,7 +256,8 @@ Speeds<T> speeds_of(const RigidChain& chain, const Prescribed& prescribed, const
   const Vec3<T> omega_T = spin_of<T>(c.R_T);
   const Vec3<T> omega_H = spin_of<T>(c.R_H);
   Speeds<T> U;
-  U << v_T(2), v_T(0), v_T(1), omega_T(2), omega_T(0), omega_T(1), spin_of<T>(c.R_Y)(2), T(0.0);
+  U << v_T(2), v_T(0), v_T(1), omega_T(2), omega_T(0), omega_T(1), spin_of<T>(c.R_Y)(2), T(0.0),
+      spin_of<T>(c.R_S)(1), spin_of<T>(c.R_G)(1);
   for (int i = 0; i < 3; ++i) U(7) += omega_H(i) * T(chain.teeter_axis(i));
   return U;
 }
@@ -261,6 +292,9 @@ Instant random_instant(std::minstd_rand& random, const RigidChain& chain) {
   now.hub_load = random_array<6>(random, 100.0);
   if (!chain.yaw.free) now.q(at_yaw) = now.q_dot(at_yaw) = now.q_ddot(at_yaw) = 0.0;
   if (!chain.teeter.free) now.q(at_teeter) = now.q_dot(at_teeter) = now.q_ddot(at_teeter) = 0.0;
+  if (!chain.torsion.free) now.q(at_torsion) = now.q_dot(at_torsion) = now.q_ddot(at_torsion) = 0.0;
+  if (!chain.generator.free)
+    now.q(at_generator) = now.q_dot(at_generator) = now.q_ddot(at_generator) = 0.0;
   return now;
 }
 
@@ -292,15 +326,19 @@ ChainState<double> state_of(const RigidChain& chain, const Instant& now, std::mi
     state.top_velocity(i) = U(i).value.value;
     state.top_velocity_dot(i) = U(i).rate.value;
   }
-  state.yaw_speed = U(6).value.value;
-  state.yaw_speed_dot = U(6).rate.value;
-  state.teeter_speed = U(7).value.value;
-  state.teeter_speed_dot = U(7).rate.value;
   // A locked joint's own coordinate must not matter.
-  state.yaw = chain.yaw.free ? now.q(at_yaw) : uniform(random, 1.0);
-  state.yaw_dot = chain.yaw.free ? now.q_dot(at_yaw) : uniform(random, 1.0);
-  state.teeter = chain.teeter.free ? now.q(at_teeter) : uniform(random, 1.0);
-  state.teeter_dot = chain.teeter.free ? now.q_dot(at_teeter) : uniform(random, 1.0);
+  const auto joint = [&](bool free, int i) {
+    JointState<double> own;
+    own.speed = U(i).value.value;
+    own.speed_dot = U(i).rate.value;
+    own.angle = free ? now.q(i) : uniform(random, 1.0);
+    own.angle_dot = free ? now.q_dot(i) : uniform(random, 1.0);
+    return own;
+  };
+  state.yaw = joint(chain.yaw.free, at_yaw);
+  state.teeter = joint(chain.teeter.free, at_teeter);
+  state.torsion = joint(chain.torsion.free, at_torsion);
+  state.generator = joint(chain.generator.free, at_generator);
   state.top_load = now.top_load;
   state.hub_load = now.hub_load;
   state.azimuth = now.prescribed.azimuth + now.prescribed.speed * now.t;
@@ -333,6 +371,8 @@ Balance lagrange(const RigidChain& chain, const Instant& now, int i) {
   balance.add(potential_energy<Inner>(chain, now.prescribed, q, Inner(now.t)).rate);
   if (i == at_yaw) balance.add(chain.yaw.damping * now.q_dot(i));
   if (i == at_teeter) balance.add(chain.teeter.damping * now.q_dot(i));
+  if (i == at_torsion) balance.add(chain.torsion.damping * now.q_dot(i));
+  if (i == at_generator) balance.add(chain.generator.damping * now.q_dot(i));
 
   q(i).rate = 0.0;
   q_dot(i).rate = 1.0;
@@ -357,21 +397,26 @@ double kane(const RigidChain& chain, const Instant& now, const ChainRows<double>
   const Speeds<double> partial = rate_of<double, coordinates, 1>(
       speeds_of<Inner>(chain, now.prescribed, q, q_dot, Inner(now.t)));
   double sum = partial.head<6>().dot(rows.top);
-  if (chain.yaw.free) sum += partial(6) * rows.yaw_balance;
-  if (chain.teeter.free) sum += partial(7) * rows.teeter_balance;
+  if (chain.yaw.free) sum += partial(6) * rows.yaw.balance;
+  if (chain.teeter.free) sum += partial(7) * rows.teeter.balance;
+  if (chain.torsion.free) sum += partial(8) * rows.torsion.balance;
+  // The generator's is that of its rate against the nacelle.
+  if (chain.generator.free && i == at_generator) sum += rows.generator.balance;
   return sum;
 }
 
 bool moves(const RigidChain& chain, int i) {
   if (i == at_yaw) return chain.yaw.free;
   if (i == at_teeter) return chain.teeter.free;
+  if (i == at_torsion) return chain.torsion.free;
+  if (i == at_generator) return chain.generator.free;
   return true;
 }
 
-void compare_with_lagrange(bool yaw, bool teeter) {
-  std::minstd_rand random(yaw ? 1 : 2);
-  for (int trial = 0; trial < 10; ++trial) {
-    const RigidChain chain = random_chain(random, yaw, teeter);
+void compare_with_lagrange(const Joints& joints) {
+  std::minstd_rand random(1);
+  for (int trial = 0; trial < 4; ++trial) {
+    const RigidChain chain = random_chain(random, joints);
     const Instant now = random_instant(random, chain);
     HubMotion<double> hub;
     const ChainRows<double> rows = rigid_chain<double>(chain, state_of(chain, now, random), hub);
@@ -386,30 +431,26 @@ void compare_with_lagrange(bool yaw, bool teeter) {
 }
 
 /// A chain state as one array, so that every quantity can be stepped.
-constexpr int chain_inputs = 35;
+constexpr int chain_inputs = 43;
 template <class T>
 ChainState<T> chain_state_of(const Eigen::Matrix<T, chain_inputs, 1>& x) {
   ChainState<T> state;
   state.theta = x.template segment<3>(0);
   state.top_velocity = x.template segment<6>(3);
   state.top_velocity_dot = x.template segment<6>(9);
-  state.yaw = x(15);
-  state.yaw_speed = x(16);
-  state.yaw_dot = x(17);
-  state.yaw_speed_dot = x(18);
-  state.teeter = x(19);
-  state.teeter_speed = x(20);
-  state.teeter_dot = x(21);
-  state.teeter_speed_dot = x(22);
+  state.yaw = {x(15), x(16), x(17), x(18)};
+  state.teeter = {x(19), x(20), x(21), x(22)};
   state.top_load = x.template segment<6>(23);
   state.hub_load = x.template segment<6>(29);
+  state.torsion = {x(35), x(36), x(37), x(38)};
+  state.generator = {x(39), x(40), x(41), x(42)};
   state.azimuth = 0.8;
   state.speed = 2.3;
   return state;
 }
 
-/// All results of the chain as one array: 10 rows and the hub's motion.
-constexpr int chain_results = 19;
+/// All results of the chain as one array: 14 rows and the hub's motion.
+constexpr int chain_results = 23;
 template <class T>
 Eigen::Matrix<T, chain_results, 1> chain_results_of(const RigidChain& chain,
                                                     const Eigen::Matrix<T, chain_inputs, 1>& x) {
@@ -417,13 +458,17 @@ Eigen::Matrix<T, chain_results, 1> chain_results_of(const RigidChain& chain,
   const ChainRows<T> rows = rigid_chain<T>(chain, chain_state_of<T>(x), hub);
   Eigen::Matrix<T, chain_results, 1> all;
   all.template head<6>() = rows.top;
-  all(6) = rows.yaw_kinematic;
-  all(7) = rows.yaw_balance;
-  all(8) = rows.teeter_kinematic;
-  all(9) = rows.teeter_balance;
-  all.template segment<3>(10) = hub.velocity;
-  all.template segment<3>(13) = hub.omega;
-  all.template segment<3>(16) = hub.gravity;
+  all(6) = rows.yaw.kinematic;
+  all(7) = rows.yaw.balance;
+  all(8) = rows.teeter.kinematic;
+  all(9) = rows.teeter.balance;
+  all(10) = rows.torsion.kinematic;
+  all(11) = rows.torsion.balance;
+  all(12) = rows.generator.kinematic;
+  all(13) = rows.generator.balance;
+  all.template segment<3>(14) = hub.velocity;
+  all.template segment<3>(17) = hub.omega;
+  all.template segment<3>(20) = hub.gravity;
   return all;
 }
 
@@ -436,55 +481,53 @@ ChainState<double> state_at_rest() {
 
 BOOST_AUTO_TEST_SUITE(rigid_chain_rows)
 
-BOOST_AUTO_TEST_CASE(kane_is_lagrange_with_all_joints_free) { compare_with_lagrange(true, true); }
+BOOST_AUTO_TEST_CASE(kane_is_lagrange_with_all_joints_free) { compare_with_lagrange({}); }
 
-BOOST_AUTO_TEST_CASE(kane_is_lagrange_with_yaw_locked) { compare_with_lagrange(false, true); }
-
-BOOST_AUTO_TEST_CASE(kane_is_lagrange_with_teeter_locked) { compare_with_lagrange(true, false); }
-
-BOOST_AUTO_TEST_CASE(kane_is_lagrange_with_all_joints_locked) {
-  compare_with_lagrange(false, false);
+BOOST_AUTO_TEST_CASE(kane_is_lagrange_whichever_joints_are_locked) {
+  for (const Joints& joints : all_joints()) compare_with_lagrange(joints);
 }
 
 BOOST_AUTO_TEST_CASE(kinematic_rows_vanish_in_every_motion) {
   std::minstd_rand random(3);
-  for (const bool yaw : {true, false}) {
-    for (const bool teeter : {true, false}) {
-      const RigidChain chain = random_chain(random, yaw, teeter);
-      const Instant now = random_instant(random, chain);
-      ChainState<double> state = state_of(chain, now, random);
-      HubMotion<double> hub;
-      ChainRows<double> rows = rigid_chain<double>(chain, state, hub);
-      BOOST_TEST(std::abs(rows.yaw_kinematic) < rounding);
-      BOOST_TEST(std::abs(rows.teeter_kinematic) < rounding);
-      // Free: q_dot - (U - ...); locked: U - ....
-      state.yaw_speed += 0.25;
-      rows = rigid_chain<double>(chain, state, hub);
-      BOOST_TEST(std::abs(rows.yaw_kinematic - (yaw ? -0.25 : 0.25)) < rounding);
-      state = state_of(chain, now, random);
-      state.teeter_speed += 0.25;
-      rows = rigid_chain<double>(chain, state, hub);
-      BOOST_TEST(std::abs(rows.teeter_kinematic - (teeter ? -0.25 : 0.25)) < rounding);
-    }
+  for (const Joints& joints : all_joints()) {
+    const RigidChain chain = random_chain(random, joints);
+    const Instant now = random_instant(random, chain);
+    HubMotion<double> hub;
+    const ChainState<double> still = state_of(chain, now, random);
+    const ChainRows<double> rows = rigid_chain<double>(chain, still, hub);
+    BOOST_TEST(std::abs(rows.yaw.kinematic) < rounding);
+    BOOST_TEST(std::abs(rows.teeter.kinematic) < rounding);
+    BOOST_TEST(std::abs(rows.torsion.kinematic) < rounding);
+    BOOST_TEST(std::abs(rows.generator.kinematic) < rounding);
+    // Free: q_dot - (U - ...); locked: U - ....
+    const auto check = [&](JointState<double> ChainState<double>::*joint,
+                           JointRows<double> ChainRows<double>::*row, bool free) {
+      ChainState<double> state = still;
+      (state.*joint).speed += 0.25;
+      const ChainRows<double> changed = rigid_chain<double>(chain, state, hub);
+      BOOST_TEST(std::abs((changed.*row).kinematic - (free ? -0.25 : 0.25)) < rounding);
+    };
+    check(&ChainState<double>::yaw, &ChainRows<double>::yaw, joints.yaw);
+    check(&ChainState<double>::teeter, &ChainRows<double>::teeter, joints.teeter);
+    check(&ChainState<double>::torsion, &ChainRows<double>::torsion, joints.torsion);
+    check(&ChainState<double>::generator, &ChainRows<double>::generator, joints.generator);
   }
 }
 
 BOOST_AUTO_TEST_CASE(the_hub_moves_as_its_differentiated_position) {
   std::minstd_rand random(4);
-  for (const bool yaw : {true, false}) {
-    for (const bool teeter : {true, false}) {
-      const RigidChain chain = random_chain(random, yaw, teeter);
-      const Instant now = random_instant(random, chain);
-      HubMotion<double> hub;
-      rigid_chain<double>(chain, state_of(chain, now, random), hub);
-      const Eigen::Matrix<double, 12, 1> speeds =
-          load_speeds<double>(chain, now.prescribed, now.q, now.q_dot, now.t);
-      const Configuration<double> c = configuration_of<double>(chain, now.prescribed, now.q, now.t);
-      BOOST_TEST((hub.velocity - speeds.segment<3>(6)).norm() < rounding * hub.velocity.norm());
-      BOOST_TEST((hub.omega - speeds.segment<3>(9)).norm() < rounding * hub.omega.norm());
-      const Vector3 gravity = c.R_H.transpose() * Vector3(0.0, 0.0, -chain.gravity);
-      BOOST_TEST((hub.gravity - gravity).norm() < rounding * chain.gravity);
-    }
+  for (const Joints& joints : all_joints()) {
+    const RigidChain chain = random_chain(random, joints);
+    const Instant now = random_instant(random, chain);
+    HubMotion<double> hub;
+    rigid_chain<double>(chain, state_of(chain, now, random), hub);
+    const Eigen::Matrix<double, 12, 1> speeds =
+        load_speeds<double>(chain, now.prescribed, now.q, now.q_dot, now.t);
+    const Configuration<double> c = configuration_of<double>(chain, now.prescribed, now.q, now.t);
+    BOOST_TEST((hub.velocity - speeds.segment<3>(6)).norm() < rounding * hub.velocity.norm());
+    BOOST_TEST((hub.omega - speeds.segment<3>(9)).norm() < rounding * hub.omega.norm());
+    const Vector3 gravity = c.R_H.transpose() * Vector3(0.0, 0.0, -chain.gravity);
+    BOOST_TEST((hub.gravity - gravity).norm() < rounding * chain.gravity);
   }
 }
 
@@ -518,7 +561,7 @@ BOOST_AUTO_TEST_CASE(positive_azimuth_turns_h3_from_up_toward_n1) {
 
 BOOST_AUTO_TEST_CASE(the_tower_top_carries_the_weight_of_all_bodies_at_rest) {
   std::minstd_rand random(5);
-  RigidChain chain = random_chain(random, false, false);
+  RigidChain chain = random_chain(random, {false, false, false, false});
   ChainState<double> state = state_at_rest();
   state.speed = 0.0;
   HubMotion<double> hub;
@@ -566,40 +609,39 @@ BOOST_AUTO_TEST_CASE(a_yaw_spring_pulls_back_on_the_nacelle_and_forward_on_the_t
   ChainState<double> state = state_at_rest();
   state.azimuth = 0.0;
   state.speed = 0.0;
-  state.yaw = 0.2;
-  state.yaw_speed = 0.3;
+  state.yaw.angle = 0.2;
+  state.yaw.speed = 0.3;
   HubMotion<double> hub;
   const ChainRows<double> rows = rigid_chain<double>(chain, state, hub);
-  BOOST_TEST(std::abs(rows.yaw_balance + 23.0) < rounding * 23.0);
+  BOOST_TEST(std::abs(rows.yaw.balance + 23.0) < rounding * 23.0);
   BOOST_TEST(std::abs(rows.top(3) - 23.0) < rounding * 23.0);  // row of U5, about t3
 }
 
 BOOST_AUTO_TEST_CASE(tangents_are_those_of_the_complex_step) {
   std::minstd_rand random(6);
   using Dual = math::Dual<chain_inputs>;
-  for (const bool yaw : {true, false}) {
-    for (const bool teeter : {true, false}) {
-      const RigidChain chain = random_chain(random, yaw, teeter);
-      Eigen::Matrix<double, chain_inputs, 1> x = random_array<chain_inputs>(random, 2.0);
-      x.head<3>() = 2.0 * random_array<3>(random, 1.0).normalized();
-      Eigen::Matrix<Dual, chain_inputs, 1> dual;
-      for (int i = 0; i < chain_inputs; ++i) dual(i) = math::independent<chain_inputs>(x(i), i);
-      const Eigen::Matrix<Dual, chain_results, 1> by_dual = chain_results_of<Dual>(chain, dual);
-      Eigen::Matrix<double, chain_results, chain_inputs> by_step;
-      for (int i = 0; i < chain_inputs; ++i) {
-        Eigen::Matrix<Complex, chain_inputs, 1> stepped = x.cast<Complex>();
-        stepped(i) += Complex(0.0, complex_step);
-        by_step.col(i) = chain_results_of<Complex>(chain, stepped).imag() / complex_step;
-      }
-      for (int row = 0; row < chain_results; ++row) {
-        const Eigen::Matrix<double, chain_inputs, 1> expected = by_step.row(row).transpose();
-        const Eigen::Matrix<double, chain_inputs, 1> found = by_dual(row).derivatives();
-        const double scale = expected.cwiseAbs().maxCoeff();
-        const bool unused = (row == 7 && !yaw) || (row == 9 && !teeter);
-        BOOST_TEST((scale > 0.0) == !unused, "row " << row);
-        BOOST_TEST((found - expected).cwiseAbs().maxCoeff() <= tangent_tolerance * scale,
-                   "row " << row);
-      }
+  for (const Joints& joints : all_joints()) {
+    const RigidChain chain = random_chain(random, joints);
+    Eigen::Matrix<double, chain_inputs, 1> x = random_array<chain_inputs>(random, 2.0);
+    x.head<3>() = 2.0 * random_array<3>(random, 1.0).normalized();
+    Eigen::Matrix<Dual, chain_inputs, 1> dual;
+    for (int i = 0; i < chain_inputs; ++i) dual(i) = math::independent<chain_inputs>(x(i), i);
+    const Eigen::Matrix<Dual, chain_results, 1> by_dual = chain_results_of<Dual>(chain, dual);
+    Eigen::Matrix<double, chain_results, chain_inputs> by_step;
+    for (int i = 0; i < chain_inputs; ++i) {
+      Eigen::Matrix<Complex, chain_inputs, 1> stepped = x.cast<Complex>();
+      stepped(i) += Complex(0.0, complex_step);
+      by_step.col(i) = chain_results_of<Complex>(chain, stepped).imag() / complex_step;
+    }
+    for (int row = 0; row < chain_results; ++row) {
+      const Eigen::Matrix<double, chain_inputs, 1> expected = by_step.row(row).transpose();
+      const Eigen::Matrix<double, chain_inputs, 1> found = by_dual(row).derivatives();
+      const double scale = expected.cwiseAbs().maxCoeff();
+      const bool unused = (row == 7 && !joints.yaw) || (row == 9 && !joints.teeter) ||
+                          (row == 11 && !joints.torsion) || (row == 13 && !joints.generator);
+      BOOST_TEST((scale > 0.0) == !unused, "row " << row);
+      BOOST_TEST((found - expected).cwiseAbs().maxCoeff() <= tangent_tolerance * scale,
+                 "row " << row);
     }
   }
 }

@@ -226,6 +226,20 @@ BOOST_AUTO_TEST_CASE(a_teeter_map_without_a_joint_is_a_free_hinge) {
   BOOST_TEST(hub.delta3 == 30 * degree, boost::test_tools::tolerance(rounding));
 }
 
+BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
+  const model::ShaftDefinition shaft =
+      read_text(minimal +
+                "shaft:\n  torsion: {joint: free, stiffness: 8e8, damping: 6e6}\n"
+                "  generator: {joint: free, inertia: 5e6, torque_slope: -3}\n")
+          .turbine.shaft;
+  BOOST_TEST((shaft.torsion.kind == JointKind::free));
+  BOOST_TEST(shaft.torsion.stiffness == 8e8);
+  BOOST_TEST(shaft.torsion.damping == 6e6);
+  BOOST_TEST((shaft.generator.kind == JointKind::free));
+  BOOST_TEST(shaft.generator.inertia == 5e6);
+  BOOST_TEST(shaft.generator.torque_slope == -3.0);
+}
+
 BOOST_AUTO_TEST_CASE(point_masses_are_sorted_by_their_place) {
   const model::BeamDefinition beam =
       read_text(minimal +
@@ -671,8 +685,13 @@ BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
   check_error(minimal + "hub:\n  teeter: {joint: prescribed}\n",
               "case.yaml:10:12: hub.teeter.joint: \"prescribed\" is not available yet; use free or "
               "locked");
-  check_error(minimal + "shaft:\n  torsion: {joint: free, stiffness: 1e6}\n",
-              "case.yaml:10:13: shaft.torsion.joint: \"free\" is not available yet; use locked");
+  check_error(minimal + "shaft:\n  torsion: {joint: free}\n",
+              "case.yaml:10:13: shaft.torsion.joint: a shaft that may twist needs a stiffness > 0");
+  check_error(minimal +
+                  "shaft:\n  torsion: {joint: free, stiffness: 1}\n"
+                  "  generator: {joint: free}\n",
+              "case.yaml:11:3: shaft.generator: a free generator behind a shaft that may twist "
+              "needs an inertia > 0");
   check_error(minimal + "floquet:\n  time_order: 4\n",
               "case.yaml:10:3: floquet.time_order: only 2 is available, got 4");
 }

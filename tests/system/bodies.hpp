@@ -169,11 +169,25 @@ class BodyBuilder {
     add_body(nacelle.mass, nacelle.center_of_mass, nacelle.inertia, bodies_.top, top_velocity_, R_Y,
              spin);
     const Matrix3 bearing = R_Y * turned(Vector3::UnitX(), shaft.tilt);
-    const double azimuth = shaft.azimuth + shaft.speed * time_;
-    const Matrix3 R_S = bearing * turned(Vector3::UnitY(), azimuth);
+    double azimuth = shaft.azimuth + shaft.speed * time_;
+    const Vector3 along = bearing.col(1);
     const Vector3 place = bodies_.top + R_Y.col(2) * shaft.height;
     const Vector3 velocity = top_velocity_ + spin.cross(place - bodies_.top);
-    spin += R_S.col(1) * shaft.speed;
+    const auto turn_on = [&](model::JointKind kind, int joint, double rate) {
+      if (kind == model::JointKind::free) {
+        azimuth += z_(joint);
+        rate = z_(joint + 1) - along.dot(spin);
+      }
+      spin += along * rate;
+    };
+    turn_on(shaft.generator.kind, layout_.generator(), shaft.speed);
+    add_body(0.0, Vector3::Zero(), Vector3(0.0, shaft.generator.inertia, 0.0), place, velocity,
+             bearing, spin);
+    turn_on(shaft.torsion.kind, layout_.shaft_torsion(), 0.0);
+    const double twist = z_(layout_.shaft_torsion());
+    if (shaft.torsion.kind == model::JointKind::free)
+      bodies_.joint_energy += 0.5 * shaft.torsion.stiffness * twist * twist;
+    const Matrix3 R_S = bearing * turned(Vector3::UnitY(), azimuth);
     add_body(shaft.mass, Vector3(0.0, shaft.center_of_mass, 0.0),
              Vector3(shaft.inertia_lateral, shaft.inertia_axial, shaft.inertia_lateral), place,
              velocity, R_S, spin);

@@ -23,7 +23,7 @@ struct Choice {
   bool teeter = true;
   bool damped = true;
   bool rigid_shear = false;  ///< and rigid extension, as in the paper
-  bool full = false;         ///< beams that lean, masses on them, delta-3
+  bool full = false;         ///< beams that lean, masses on them, delta-3, a free drivetrain
 };
 
 /// Every combination that meets another branch of the assembly.
@@ -132,6 +132,8 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
   d.blades.beam.point_masses = {{0.55, 0.6, Vector3(0.05, 0.1, -0.1), Vector3(0.1, 0.05, 0.08)},
                                 {1.0, 0.3, Vector3(0.0, 0.1, 0.2), Vector3(0.02, 0.03, 0.01)}};
   d.hub.delta3 = 0.5;
+  d.shaft.torsion = {model::JointKind::free, 250.0, 15.0};
+  d.shaft.generator = {model::JointKind::free, 1.5, 4.0};
   return d;
 }
 

@@ -45,6 +45,7 @@ model::TurbineDefinition parked(sample::Choice choice) {
   choice.damped = false;
   model::TurbineDefinition definition = sample::turbine_definition(choice);
   definition.shaft.speed = 0.0;
+  definition.shaft.generator.kind = model::JointKind::locked;  // or nothing holds the rotor
   return definition;
 }
 

@@ -1,11 +1,13 @@
 // The rigid bodies between tower and blades by Kane's method (docs/theory.md, section 3; Lee,
 // Hodges & Patil (2002), eq. (8), (9)): tower top T, yaw q_y about t3, nacelle Y, tilted shaft
-// bearing, azimuth psi about s2, shaft S, teeter q_h about the hinge axis e of S and H, hub H.
+// bearing, generator G turned by psi + q_g about s2, shaft S turned by q_s more (torsion), teeter
+// q_h about the hinge axis e of S and H, hub H. psi is the azimuth at constant speed.
 //
 // Generalized speeds: U1 = omega_Y.y3, U2 = omega_H.e, U3..5 = omega_T in t1 t2 t3, U6..8 = v_T in
-// t1 t2 t3. "Speed of the outer body in the inertial frame" makes the partial velocities so sparse
-// that Kane's sums are one walk inward: a joint passes on the moment without its component about
-// its own axis, and that component, with the joint's spring and damper, is the joint's row.
+// t1 t2 t3, U_g = omega_G.s2, U_s = omega_S.s2. "Speed of the outer body in the inertial frame"
+// makes the partial velocities so sparse that Kane's sums are one walk inward: a joint passes on
+// the moment without its component about its own axis, and that component, with the joint's spring
+// and damper, is the joint's row.
 //
 // The full nonlinear equations; valid for any angles (theta_T below 180 degrees).
 #pragma once
@@ -31,9 +33,12 @@ struct Hinge {
 struct RigidChain {
   double gravity = 0.0;  ///< along -n3 [m/s^2]
   Hinge yaw;
+  Hinge generator;  ///< about psi; its damping is the slope of the generator's torque
+  Hinge torsion;
   Hinge teeter;
   RigidBody tower_top;                     ///< reference point: tower top; axes t1 t2 t3
   RigidBody nacelle;                       ///< reference point: tower top; axes y1 y2 y3
+  double generator_inertia = 0.0;          ///< about the shaft, at its speed [kg m^2]
   RigidBody shaft;                         ///< reference: yaw axis on the shaft; axes s1 s2 s3
   RigidBody hub;                           ///< reference: teeter pin; axes h1 h2 h3
   double height = 0.0;                     ///< tower top to shaft axis, along y3 [m]
@@ -43,6 +48,12 @@ struct RigidChain {
   Vector3 teeter_axis = Vector3::UnitX();  ///< e, fixed in S and in H
 };
 
+/// Angle of a joint, speed of the body behind it about its axis, and their rates.
+template <class T>
+struct JointState {
+  T angle, speed, angle_dot, speed_dot;
+};
+
 /// Coordinates, speeds and their rates. The tower-top quantities are in the order of a beam's tip:
 /// components along (t3, t1, t2), as the tower's axes are (n3, n1, n2).
 template <class T>
@@ -50,12 +61,14 @@ struct ChainState {
   Vec3<T> theta;         ///< Rodrigues parameters of T, components in the tower's a
   Vec6<T> top_velocity;  ///< V, Omega of T: (U8, U6, U7, U5, U3, U4)
   Vec6<T> top_velocity_dot;
-  T yaw, yaw_speed, yaw_dot, yaw_speed_dot;              ///< q_y, U1 and rates
-  T teeter, teeter_speed, teeter_dot, teeter_speed_dot;  ///< q_h, U2 and rates
-  Vec6<T> top_load;      ///< F_hat, M_hat at the tower tip, components in the tower's a
-  Vec6<T> hub_load;      ///< sum of the blade-root loads: force, moment about the apex, in H
-  double azimuth = 0.0;  ///< psi [rad]
-  double speed = 0.0;    ///< psi_dot [rad/s]
+  JointState<T> yaw;        ///< q_y, U1
+  JointState<T> teeter;     ///< q_h, U2
+  JointState<T> torsion;    ///< q_s, U_s
+  JointState<T> generator;  ///< q_g, U_g
+  Vec6<T> top_load;         ///< F_hat, M_hat at the tower tip, components in the tower's a
+  Vec6<T> hub_load;         ///< sum of the blade-root loads: force, moment about the apex, in H
+  double azimuth = 0.0;     ///< psi [rad]
+  double speed = 0.0;       ///< psi_dot [rad/s]
 };
 
 /// The hub as the blades see it, components in H.
@@ -66,14 +79,19 @@ struct HubMotion {
   Vec3<T> gravity;   ///< [m/s^2]
 };
 
+template <class T>
+struct JointRows {
+  T kinematic;  ///< q_dot - (U - speed it is carried with), of a locked joint U - that speed
+  T balance;    ///< Kane's row of U [N m]; unused where locked
+};
+
 /// Residual rows. A locked joint has the row U - (speed it is carried with) instead of Kane's.
 template <class T>
 struct ChainRows {
-  Vec6<T> top;         ///< Kane's rows of (U8, U6, U7, U5, U3, U4) [N, N m]
-  T yaw_kinematic;     ///< q_y_dot - (U1 - U5), or of a locked joint U1 - U5
-  T yaw_balance;       ///< Kane's row of U1 [N m]; unused where locked
-  T teeter_kinematic;  ///< q_h_dot - (U2 - omega_S.e), or of a locked joint U2 - omega_S.e
-  T teeter_balance;    ///< Kane's row of U2 [N m]; unused where locked
+  Vec6<T> top;  ///< Kane's rows of (U8, U6, U7, U5, U3, U4) [N, N m]
+  JointRows<T> yaw, teeter, torsion;
+  JointRows<T> generator;  ///< its balance is that of its rate against the nacelle: a constant
+                           ///< torque that is added to it acts back on the nacelle
 };
 
 namespace detail {
@@ -142,21 +160,59 @@ Wrench<T> active_and_inertia(const RigidBody& body, const Motion<T>& m, const Ve
   return w;
 }
 
+/// One joint on the way out and back.
+template <class T>
+class JointWalk {
+ public:
+  /// `rate`: the prescribed one, to which the angle's own is added. `inner`: the motion of the
+  /// joint's point, in the components of the body behind it.
+  JointWalk(const Hinge& hinge, const Vector3& axis, const JointState<T>& state,
+            const Motion<T>& inner, double rate = 0.0)
+      : hinge_(hinge), axis_(axis.cast<T>()), state_(state) {
+    own_rate_ = state.speed - math::dot(axis_, inner.omega) - T(rate);
+    outer_ = hinge.free ? with_outer_speed<T>(axis_, state.speed, state.speed_dot, inner)
+                        : with_relative_rate<T>(axis_, T(rate), inner);
+  }
+
+  const Motion<T>& outer() const { return outer_; }
+
+  /// The joint's rows, from the moment about its point of all that lies behind, which is left
+  /// without the component that the joint does not pass on, but for its spring and damper.
+  JointRows<T> take(Vec3<T>& moment, bool pass_all = false) const {
+    JointRows<T> rows;
+    rows.kinematic = hinge_.free ? T(state_.angle_dot - own_rate_) : own_rate_;
+    rows.balance = T(0);
+    if (!hinge_.free) return rows;
+    const T spring = -(state_.angle * hinge_.stiffness + own_rate_ * hinge_.damping);
+    rows.balance = math::dot(axis_, moment) + spring;
+    if (pass_all) return rows;
+    for (int i = 0; i < 3; ++i) moment(i) -= axis_(i) * rows.balance;
+    return rows;
+  }
+
+ private:
+  const Hinge& hinge_;
+  Vec3<T> axis_;
+  const JointState<T>& state_;
+  Motion<T> outer_;
+  T own_rate_;
+};
+
 }  // namespace detail
 
 /// The rows and the motion that the blades need. A test of Kane's method against Lagrange's
 /// equations is in tests/elements/rigid_chain_test.cpp.
 template <class T>
 ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, HubMotion<T>& hub) {
+  using detail::JointWalk;
   using detail::Motion;
   using detail::Wrench;
   using math::cross;
-  using math::dot;
   const auto from_top = [](const Vec3<T>& b) { return Vec3<T>(b(1), b(2), b(0)); };
   const auto to_top = [](const Vec3<T>& t) { return Vec3<T>(t(2), t(0), t(1)); };
-  const Vec3<T> y3 = Vector3::UnitZ().cast<T>();
-  const Vec3<T> s2 = Vector3::UnitY().cast<T>();
-  const Vec3<T> e = chain.teeter_axis.cast<T>();
+  const auto angle_of = [](const Hinge& hinge, const JointState<T>& joint) {
+    return hinge.free ? joint.angle : T(0);
+  };
 
   // Outward: motions. T: derivative of v_T's components in T plus omega x v is the acceleration.
   const Mat3<T> C_top = math::direction_cosines(state.theta);
@@ -168,81 +224,71 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Vec3<T> down(T(-chain.gravity), T(0), T(0));  // components in (n3, n1, n2)
   const Vec3<T> g_T = from_top(C_top * down);
 
-  const T yaw = chain.yaw.free ? state.yaw : T(0);
-  const Mat3<T> C_YT = math::turn_about<T>(Vector3::UnitZ(), yaw).transpose();
-  const Motion<T> carried_Y = detail::seen_from<T>(C_YT, top);
-  const Motion<T> nacelle =
-      chain.yaw.free
-          ? detail::with_outer_speed<T>(y3, state.yaw_speed, state.yaw_speed_dot, carried_Y)
-          : carried_Y;
+  const T q_y = angle_of(chain.yaw, state.yaw);
+  const Mat3<T> C_YT = math::turn_about<T>(Vector3::UnitZ(), q_y).transpose();
+  const JointWalk<T> yaw(chain.yaw, Vector3::UnitZ(), state.yaw, detail::seen_from<T>(C_YT, top));
+  const Motion<T>& nacelle = yaw.outer();
   const Vec3<T> g_Y = C_YT * g_T;
 
-  const Matrix3 C_YS_tilt = math::turn_about<double>(Vector3::UnitX(), chain.tilt);
-  const Matrix3 C_SY_turn =
-      math::turn_about<double>(Vector3::UnitY(), state.azimuth).transpose() * C_YS_tilt.transpose();
-  const Mat3<T> C_SY = C_SY_turn.cast<T>();
+  // D: the bearing's axes, in which the generator looks the same at all its angles.
+  const Matrix3 C_YD = math::turn_about<double>(Vector3::UnitX(), chain.tilt);
+  const Mat3<T> C_DY = C_YD.transpose().cast<T>();
   const Vec3<T> bearing(T(0), T(0), T(chain.height));
-  const Motion<T> carried_S = detail::seen_from<T>(C_SY, detail::moved_to<T>(bearing, nacelle));
-  const Motion<T> shaft = detail::with_relative_rate<T>(s2, T(state.speed), carried_S);
-  const Vec3<T> g_S = C_SY * g_Y;
+  const JointWalk<T> generator(chain.generator, Vector3::UnitY(), state.generator,
+                               detail::seen_from<T>(C_DY, detail::moved_to<T>(bearing, nacelle)),
+                               state.speed);
+  const Vec3<T> g_D = C_DY * g_Y;
+
+  const T azimuth = angle_of(chain.generator, state.generator) +
+                    angle_of(chain.torsion, state.torsion) + T(state.azimuth);
+  const Mat3<T> C_SD = math::turn_about<T>(Vector3::UnitY(), azimuth).transpose();
+  const JointWalk<T> torsion(chain.torsion, Vector3::UnitY(), state.torsion,
+                             detail::seen_from<T>(C_SD, generator.outer()));
+  const Motion<T>& shaft = torsion.outer();
+  const Vec3<T> g_S = C_SD * g_D;
 
   const Vec3<T> pin(T(0), T(chain.overhang), T(0));
-  const T teeter = chain.teeter.free ? state.teeter : T(0);
-  const Mat3<T> C_HS = math::turn_about<T>(chain.teeter_axis, teeter).transpose();
-  const Motion<T> carried_H = detail::seen_from<T>(C_HS, detail::moved_to<T>(pin, shaft));
-  const Motion<T> hub_motion =
-      chain.teeter.free
-          ? detail::with_outer_speed<T>(e, state.teeter_speed, state.teeter_speed_dot, carried_H)
-          : carried_H;
+  const T q_h = angle_of(chain.teeter, state.teeter);
+  const Mat3<T> C_HS = math::turn_about<T>(chain.teeter_axis, q_h).transpose();
+  const JointWalk<T> teeter(chain.teeter, chain.teeter_axis, state.teeter,
+                            detail::seen_from<T>(C_HS, detail::moved_to<T>(pin, shaft)));
+  const Motion<T>& hub_motion = teeter.outer();
   const Vec3<T> g_H = C_HS * g_S;
   const Vec3<T> apex(T(0), T(chain.undersling), T(0));
   hub.velocity = hub_motion.v + cross(hub_motion.omega, apex);
   hub.omega = hub_motion.omega;
   hub.gravity = g_H;
 
-  ChainRows<T> rows;
-  const T yaw_rate = state.yaw_speed - dot(y3, carried_Y.omega);
-  const T teeter_rate = state.teeter_speed - dot(e, carried_H.omega);
-  rows.yaw_kinematic = chain.yaw.free ? T(state.yaw_dot - yaw_rate) : yaw_rate;
-  rows.teeter_kinematic = chain.teeter.free ? T(state.teeter_dot - teeter_rate) : teeter_rate;
-
   // Inward: Kane's sums, moments about the point of the joint that is passed.
+  ChainRows<T> rows;
   Wrench<T> w = detail::active_and_inertia<T>(chain.hub, hub_motion, g_H);
   const Vec3<T> root_force = state.hub_load.template head<3>();
   const Vec3<T> root_moment = state.hub_load.template tail<3>();
   w.force += root_force;
   w.moment += root_moment + cross(apex, root_force);
-  rows.teeter_balance = T(0);
-  if (chain.teeter.free) {
-    const T spring = -(state.teeter * chain.teeter.stiffness + teeter_rate * chain.teeter.damping);
-    const T about = dot(e, w.moment);
-    rows.teeter_balance = about + spring;
-    for (int i = 0; i < 3; ++i) w.moment(i) -= e(i) * (about + spring);
-  }
-  const Vec3<T> hub_force = C_HS.transpose() * w.force;
-  const Vec3<T> hub_moment = C_HS.transpose() * w.moment;
-  w = detail::active_and_inertia<T>(chain.shaft, shaft, g_S);
-  w.force += hub_force;
-  w.moment += hub_moment + cross(pin, hub_force);
-  const Vec3<T> shaft_force = C_SY.transpose() * w.force;
-  const Vec3<T> shaft_moment = C_SY.transpose() * w.moment;
-  w = detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y);
-  w.force += shaft_force;
-  w.moment += shaft_moment + cross(bearing, shaft_force);
-  rows.yaw_balance = T(0);
-  if (chain.yaw.free) {
-    const T spring = -(state.yaw * chain.yaw.stiffness + yaw_rate * chain.yaw.damping);
-    const T about = w.moment(2);
-    rows.yaw_balance = about + spring;
-    w.moment(2) -= about + spring;
-  }
-  const Wrench<T> fixed = detail::active_and_inertia<T>(chain.tower_top, top, g_T);
-  const Vec3<T> top_force = C_YT.transpose() * w.force + fixed.force;
-  const Vec3<T> top_moment = C_YT.transpose() * w.moment + fixed.moment;
+  rows.teeter = teeter.take(w.moment);
+
+  // The sum so far, applied at `arm` of the next body, in whose components C^T brings it.
+  const auto pass_to = [&w](const Wrench<T>& own, const Mat3<T>& C, const Vec3<T>& arm) {
+    const Vec3<T> force = C.transpose() * w.force;
+    const Vec3<T> moment = C.transpose() * w.moment;
+    w.force = own.force + force;
+    w.moment = own.moment + moment + cross(arm, force);
+  };
+  const Vec3<T> same_point(T(0), T(0), T(0));
+  pass_to(detail::active_and_inertia<T>(chain.shaft, shaft, g_S), C_HS, pin);
+  rows.torsion = torsion.take(w.moment);
+  RigidBody turning;
+  turning.inertia(1, 1) = chain.generator_inertia;
+  pass_to(detail::active_and_inertia<T>(turning, generator.outer(), g_D), C_SD, same_point);
+  rows.generator = generator.take(w.moment, true);
+  pass_to(detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y), C_DY, bearing);
+  rows.yaw = yaw.take(w.moment);
+  pass_to(detail::active_and_inertia<T>(chain.tower_top, top, g_T), C_YT, same_point);
   const Vec3<T> F_hat = C_top * Vec3<T>(state.top_load.template head<3>());
   const Vec3<T> M_hat = C_top * Vec3<T>(state.top_load.template tail<3>());
-  rows.top.template head<3>() = to_top(top_force) - F_hat;
-  rows.top.template tail<3>() = to_top(top_moment) - M_hat;
+  rows.top.template head<3>() = to_top(w.force) - F_hat;
+  rows.top.template tail<3>() = to_top(w.moment) - M_hat;
   return rows;
 }
 

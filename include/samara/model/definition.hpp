@@ -49,6 +49,12 @@ struct JointDefinition {
   double damping = 0.0;    ///< [N m s/rad]
 };
 
+struct GeneratorDefinition {
+  JointKind kind = JointKind::locked;  ///< locked: turns at shaft.speed; free: its angle varies
+  double inertia = 0.0;                ///< about the shaft, at the shaft's speed [kg m^2]
+  double torque_slope = 0.0;           ///< torque against the turning, by its speed [N m s/rad]
+};
+
 struct NacelleDefinition {
   double mass = 0.0;                         ///< [kg]
   Vector3 center_of_mass = Vector3::Zero();  ///< from the tower top, nacelle axes y1 y2 y3 [m]
@@ -66,6 +72,8 @@ struct ShaftDefinition {
   double center_of_mass = 0.0;   ///< along s2 from the yaw axis [m]
   double inertia_axial = 0.0;    ///< [kg m^2]
   double inertia_lateral = 0.0;  ///< [kg m^2]
+  JointDefinition torsion;       ///< between generator and rotor
+  GeneratorDefinition generator;
 };
 
 struct HubDefinition {

@@ -32,12 +32,16 @@ class Layout {
   int tower_mass(int m) const { return tower_first_ + from_root(tower_.masses, m) - block; }
   /// u_hat, theta_hat, V_hat = (U8 U6 U7), Omega_hat = (U5 U3 U4), F_hat, M_hat of the tower top.
   int tower_tip() const { return tower_first_ + tower_.size - block; }
-  int yaw() const { return joints_; }                          ///< q_y; U1 follows
-  int teeter() const { return joints_ + 2; }                   ///< q_h; U2 follows
-  int shaft_torsion() const { return joints_ + 4; }            ///< angle; its rate follows
-  int blade_root(int k) const { return joints_ + 6 + 6 * k; }  ///< F_hat_0, M_hat_0
-  int tower_root() const { return joints_ + 6 + 6 * blade_count_; }
-  int padding() const { return padding_; }  ///< first of the unknowns that stay zero
+  int joints() const { return joints_; }
+  int yaw() const { return joints_; }                           ///< q_y; U1 follows
+  int teeter() const { return joints_ + 2; }                    ///< q_h; U2 follows
+  int shaft_torsion() const { return joints_ + 4; }             ///< q_s; U_s follows
+  int generator() const { return joints_ + 6; }                 ///< q_g; U_g follows
+  int blade_root(int k) const { return joints_ + 12 + 6 * k; }  ///< F_hat_0, M_hat_0
+  int tower_root() const { return joints_ + 12 + 6 * blade_count_; }
+  /// Unknowns that stay zero: those that keep the sixes of the reactions in one block each, and
+  /// what fills the last block.
+  const std::vector<int>& padding() const { return padding_; }
 
  private:
   /// The blocks of a beam, root to tip: unknowns up to and with that of each point and mass node.
@@ -56,7 +60,7 @@ class Layout {
   int blade_count_ = 0;
   int tower_first_ = 0;
   int joints_ = 0;
-  int padding_ = 0;
+  std::vector<int> padding_;
   int size_ = 0;
 };
 

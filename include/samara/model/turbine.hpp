@@ -11,20 +11,20 @@ namespace samara::model {
 
 /// Where a blade is fixed to the hub.
 struct BladeRoot {
-  Vector3 position = Vector3::Zero();        ///< from the apex, components in H [m]
-  Matrix3 C_Ha = Matrix3::Identity();        ///< blade axes a to hub axes
+  Vector3 position = Vector3::Zero();  ///< from the apex, components in H [m]
+  Matrix3 C_Ha = Matrix3::Identity();  ///< blade axes a to hub axes
 };
 
 struct Turbine {
   bool has_tower = false;
   Beam tower;
   std::vector<Beam> blades;
-  std::vector<BladeRoot> roots;      ///< one a blade
+  std::vector<BladeRoot> roots;  ///< one a blade
   elements::RigidChain chain;
-  double speed = 0.0;                ///< Omega0 [rad/s]
-  double azimuth = 0.0;              ///< of blade 1 at t = 0 [rad]
+  double speed = 0.0;    ///< Omega0 [rad/s]
+  double azimuth = 0.0;  ///< of blade 1 at t = 0 [rad]
   bool identical_blades = true;
-  int degrees_of_freedom = 0;        ///< elastic strains of all points + free joints
+  int degrees_of_freedom = 0;  ///< elastic strains of all points + free joints
 
   double azimuth_at(double t) const { return azimuth + speed * t; }
 };

@@ -39,9 +39,9 @@ struct Unknown {
 struct EnergyGroup {
   enum class Kind { kinetic, strain };
   Kind kind = Kind::kinetic;
-  std::string part;   ///< "tower", "nacelle", "hub", "blade"
-  std::string motion; ///< "fore-aft", "lateral", "torsion", "flap", "lead-lag", "yaw", ...
-  int blade = 0;      ///< from 1; 0 = no blade
+  std::string part;    ///< "tower", "nacelle", "hub", "blade"
+  std::string motion;  ///< "fore-aft", "lateral", "torsion", "flap", "lead-lag", "yaw", ...
+  int blade = 0;       ///< from 1; 0 = no blade
   Frame frame = Frame::fixed;
   std::vector<PetscInt> unknowns;
   std::vector<double> weight;  ///< row by row, unknowns x unknowns, symmetric
@@ -57,7 +57,7 @@ struct NeutralCoordinate {
 
 /// z~(t) = P z(t + T/Q): entry i of P z is sign[i] z[source[i]] (docs/theory.md, section 5).
 struct RotorSymmetry {
-  int sectors = 1;  ///< Q
+  int sectors = 1;        ///< Q
   std::string broken_by;  ///< why a rotor of several blades does not repeat; empty if it does
   std::vector<PetscInt> source;
   std::vector<double> sign;
@@ -112,8 +112,7 @@ class PeriodicSystem {
   virtual void residual(double t, Vec z, Vec z_dot, Vec r) const = 0;
 
   /// K + shift M into `jacobian`, and M into `mass` where it is not null.
-  virtual void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,
-                        Mat mass) const = 0;
+  virtual void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian, Mat mass) const = 0;
 };
 
 }  // namespace samara::system

@@ -48,13 +48,14 @@ struct PlacedBeam {
 // Inputs of the rigid chain, in this order.
 inline constexpr int at_theta = 0;
 inline constexpr int at_top_velocity = 3;
-inline constexpr int at_yaw = 9;  // q_y, U1, q_h, U2
-inline constexpr int at_top_velocity_dot = 13;
-inline constexpr int at_yaw_speed_dot = 19;  // U1_dot, U2_dot, q_y_dot, q_h_dot
-inline constexpr int at_top_load = 23;
-inline constexpr int at_hub_load = 29;
-inline constexpr int chain_inputs = 35;
-inline constexpr int chain_motion_inputs = 13;  // on which the hub's motion depends
+inline constexpr int at_joints = 9;  // q_y, U1, q_h, U2, q_s, U_s, q_g, U_g
+inline constexpr int joint_unknowns = 8;
+inline constexpr int at_top_velocity_dot = at_joints + joint_unknowns;
+inline constexpr int at_joint_rates = at_top_velocity_dot + 6;  // in the order of the joints
+inline constexpr int at_top_load = at_joint_rates + joint_unknowns;
+inline constexpr int at_hub_load = at_top_load + 6;
+inline constexpr int chain_inputs = at_hub_load + 6;
+inline constexpr int chain_motion_inputs = at_top_velocity_dot;  // of the hub's motion
 
 class TurbineResidual {
  public:
@@ -105,7 +106,7 @@ class TurbineResidual {
   void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
                  std::vector<T>& r) const;
   template <class T>
-  static void put_joint(int first, bool free, const T& kinematic, const T& balance,
+  static void put_joint(int first, bool free, const elements::JointRows<T>& rows,
                         const std::vector<T>& z, std::vector<T>& r);
 
   void place_beams();
@@ -139,16 +140,16 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
     state.top_load(i) = make(top(12 + i), at_top_load + i);
     state.hub_load(i) = make(load(i), at_hub_load + i);
   }
-  const auto yaw = static_cast<std::size_t>(layout_.yaw());
-  const auto teeter = static_cast<std::size_t>(layout_.teeter());
-  state.yaw = make(z[yaw], at_yaw);
-  state.yaw_speed = make(z[yaw + 1], at_yaw + 1);
-  state.teeter = make(z[teeter], at_yaw + 2);
-  state.teeter_speed = make(z[teeter + 1], at_yaw + 3);
-  state.yaw_speed_dot = make(z_dot[yaw + 1], at_yaw_speed_dot);
-  state.teeter_speed_dot = make(z_dot[teeter + 1], at_yaw_speed_dot + 1);
-  state.yaw_dot = make(z_dot[yaw], at_yaw_speed_dot + 2);
-  state.teeter_dot = make(z_dot[teeter], at_yaw_speed_dot + 3);
+  int local = 0;
+  for (elements::JointState<T>* joint :
+       {&state.yaw, &state.teeter, &state.torsion, &state.generator}) {
+    const auto first = static_cast<std::size_t>(layout_.joints() + local);
+    joint->angle = make(z[first], at_joints + local);
+    joint->speed = make(z[first + 1], at_joints + local + 1);
+    joint->angle_dot = make(z_dot[first], at_joint_rates + local);
+    joint->speed_dot = make(z_dot[first + 1], at_joint_rates + local + 1);
+    local += 2;
+  }
   state.azimuth = turbine_.azimuth_at(t);
   state.speed = turbine_.speed;
   return state;
@@ -188,20 +189,20 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
   if (turbine_.has_tower)
     for (int i = 0; i < 6; ++i) r[index(layout_.tower_tip() + 12 + i)] = rows.top(i);
-  put_joint(layout_.yaw(), turbine_.chain.yaw.free, rows.yaw_kinematic, rows.yaw_balance, z, r);
-  put_joint(layout_.teeter(), turbine_.chain.teeter.free, rows.teeter_kinematic,
-            rows.teeter_balance, z, r);
-  for (int i = 0; i < 2; ++i)  // the shaft is rigid
-    r[index(layout_.shaft_torsion() + i)] = z[index(layout_.shaft_torsion() + i)];
-  for (int i = layout_.padding(); i < layout_.size(); ++i) r[index(i)] = z[index(i)];
+  const elements::RigidChain& chain = turbine_.chain;
+  put_joint(layout_.yaw(), chain.yaw.free, rows.yaw, z, r);
+  put_joint(layout_.teeter(), chain.teeter.free, rows.teeter, z, r);
+  put_joint(layout_.shaft_torsion(), chain.torsion.free, rows.torsion, z, r);
+  put_joint(layout_.generator(), chain.generator.free, rows.generator, z, r);
+  for (const int i : layout_.padding()) r[index(i)] = z[index(i)];
 }
 
 template <class T>
-void TurbineResidual::put_joint(int first, bool free, const T& kinematic, const T& balance,
+void TurbineResidual::put_joint(int first, bool free, const elements::JointRows<T>& rows,
                                 const std::vector<T>& z, std::vector<T>& r) {
   const auto at_joint = static_cast<std::size_t>(first);
-  r[at_joint] = free ? kinematic : z[at_joint];
-  r[at_joint + 1] = free ? balance : kinematic;
+  r[at_joint] = free ? rows.kinematic : z[at_joint];
+  r[at_joint + 1] = free ? rows.balance : rows.kinematic;
 }
 
 template <class T>
