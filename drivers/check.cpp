@@ -102,6 +102,8 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
                      joint_words(turbine.chain.torsion) + "; generator " +
                      joint_words(turbine.chain.generator));
   line("gravity", general(definition.gravity, 6) + " m/s^2");
+  if (!definition.loads.empty())
+    line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));
   line("mesh", "blades " + mesh_words(turbine.blades.front()) +
                    (turbine.has_tower ? "; tower " + mesh_words(turbine.tower) : ""));
   line("unknowns", std::to_string(system.size()) + ", " +

@@ -7,6 +7,7 @@
 namespace samara::drivers {
 
 void run_check(const Job& job);
+void run_static(const Job& job);
 void run_modes(const Job& job);
 void run_trim(const Job& job);
 void run_floquet(const Job& job);
@@ -15,5 +16,11 @@ void run_import(const CommandLine& line);
 
 /// Floquet's theory needs a period.
 void require_speed(const io::Case& input);
+
+/// Statics is of what stands still.
+void require_rest(const io::Case& input);
+
+/// A steady state needs loads that are constant or go with the rotor.
+void require_repeating_loads(const io::Case& input);
 
 }  // namespace samara::drivers

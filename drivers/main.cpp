@@ -27,14 +27,21 @@ constexpr std::array<Command, 5> commands{{
      "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
      "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
      "inputs/lee2002/baseline.yaml", false, false, nullptr, run_check},
+    {"static", "the turbine or beam at rest under gravity and loads",
+     "Finds the equilibrium at rest under gravity and prescribed loads, which grow step by step "
+     "from\n"
+     "nothing; with static.method=arc_length also through limit points.\n",
+     "inputs/lee2002/baseline.yaml --set shaft.speed=0 --set gravity=9.81", true, true,
+     require_rest, run_static},
     {"modes", "modes of a parked rotor, or of a balanced one in its own axes",
      "Finds all modes about the steady state where the coefficients do not depend on the azimuth:\n"
      "a parked rotor, or a balanced one in its own axes. Elsewhere use samara floquet.\n",
-     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, nullptr, run_modes},
+     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, require_repeating_loads,
+     run_modes},
     {"trim", "the periodic steady state",
      "Finds the periodic steady state: deflections and loads as harmonics of the rotor speed.\n",
-     "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true, nullptr,
-     run_trim},
+     "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true,
+     require_repeating_loads, run_trim},
     {"floquet", "the stability of the periodic steady state: all modes",
      "Finds the periodic steady state, and all modes about it by Floquet's theory: multipliers,\n"
      "frequencies, damping, harmonics, and where the energy is.\n",

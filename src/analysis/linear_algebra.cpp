@@ -125,6 +125,13 @@ void DirectSolver::factor(Mat matrix) {
   petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
   petsc::check(KSPSetUp(solver_.get()));
   matrix_ = matrix;
+  PC factored = nullptr;
+  PCFailedReason failure = PC_NOERROR;
+  petsc::check(KSPGetPC(solver_.get(), &factored));
+  petsc::check(PCGetFailedReason(factored, &failure));
+  if (failure != PC_NOERROR)
+    throw ConvergenceError("linear solve (" + prefix_ + "): the matrix is singular (" +
+                           PCFailedReasons[failure] + ")");
 }
 
 /// Of one column, a new one each time.

@@ -1,5 +1,6 @@
 #include "samara/analysis/trim.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -36,7 +37,8 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
                      const std::optional<Trim>& constant, Observer& observer) {
   std::vector<std::pair<int, double>> history;
   if (constant) history = constant->history;
-  for (int harmonics = 1; harmonics <= most_harmonics; ++harmonics) {
+  for (int harmonics = std::max(1, options.least_harmonics); harmonics <= most_harmonics;
+       ++harmonics) {
     if (!is_closed(harmonics, system.symmetry().sectors)) continue;
     Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, nullptr);
     history.emplace_back(harmonics, trim.residual_between);
@@ -58,7 +60,9 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer) {
   if (system.period() == 0.0) return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
-  const std::optional<Trim> constant = try_constant(system, options);
+  // Loads that oscillate are no constant, and might vanish at all of its samples.
+  const std::optional<Trim> constant =
+      options.least_harmonics == 0 ? try_constant(system, options) : std::nullopt;
   if (constant && constant->residual_between <= allowed_residual(*constant, rounding) &&
       constant->residual <= allowed_residual(*constant, rounding))
     return *constant;

@@ -28,6 +28,7 @@ constexpr int max_blades = 100;
 constexpr int max_harmonics = 200;
 constexpr int min_steps = 4;
 constexpr int max_steps = 10000000;
+constexpr int max_load_steps = 100000;
 
 /// `length` beside `reference_line` must agree to this, relative.
 constexpr double length_tolerance = 1e-3;
@@ -466,6 +467,130 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   map.finish();
 }
 
+/// Reads `tower`, `blades` or `blade 2`.
+void read_loaded_beam(MapReader& map, const model::TurbineDefinition& turbine,
+                      model::LoadDefinition& load) {
+  const YamlNode* entry = map.require("beam", "tower, blades or one of them: blade 1");
+  if (entry == nullptr) return;
+  const std::string& text = entry->text;
+  load.on_tower = text == "tower";
+  if (load.on_tower && !turbine.has_tower) map.refuse(*entry, "beam", "there is no tower");
+  if (load.on_tower || text == "blades") return;
+  for (int k = 1; k <= turbine.blades.count; ++k)
+    if (text == "blade " + std::to_string(k)) load.blade = k;
+  if (load.blade == 0)
+    map.refuse(*entry, "beam",
+               "expected tower, blades or a blade from 1 to " +
+                   std::to_string(turbine.blades.count) + " (blade 1), " + describe(*entry));
+}
+
+/// Reads `at`, or `from` and `to`.
+void read_loaded_place(MapReader& map, model::LoadDefinition& load) {
+  const YamlNode* at = map.find("at");
+  const YamlNode* from = map.find("from");
+  const YamlNode* to = map.find("to");
+  if (at != nullptr) {
+    if (map.read("at", load.from, fraction_of_one)) load.to = load.from;
+    for (const auto& [key, entry] : {std::pair("from", from), std::pair("to", to)})
+      if (entry != nullptr)
+        map.refuse(*entry, key, "given together with at; leave one of them out");
+    return;
+  }
+  if (from == nullptr && to == nullptr) {
+    map.require("at", "a point load, or \"from\" and \"to\"");
+    return;
+  }
+  map.require("from", "beside \"to\"");
+  map.require("to", "beside \"from\"");
+  const bool has_from = map.read("from", load.from, fraction_of_one);
+  const bool has_to = map.read("to", load.to, fraction_of_one);
+  if (has_from && has_to && !(load.from < load.to))
+    map.refuse(*to, "to", "expected more than from, " + describe(*to));
+}
+
+void read_harmonic(const YamlNode& node, const std::string& where, model::LoadHistory& history,
+                   ErrorList& errors) {
+  MapReader map(node, where, errors);
+  history.mean = 0.0;
+  history.amplitude = 1.0;
+  const bool has_multiple = map.read("per_rev", history.per_rev, 1, max_harmonics);
+  const bool has_frequency = map.read("frequency", history.frequency, positive);
+  map.read("amplitude", history.amplitude, any_number);
+  map.read("mean", history.mean, any_number);
+  read_angle(map, "phase_deg", history.phase, any_number);
+  if (has_multiple && has_frequency)
+    map.refuse(*node.find("frequency"), "frequency",
+               "given together with per_rev; leave one of them out");
+  if (node.find("per_rev") == nullptr && node.find("frequency") == nullptr)
+    map.require("per_rev", "or \"frequency\"");
+  map.finish();
+}
+
+/// Reads [[t, factor], ...].
+void read_table(MapReader& map, const YamlNode& node, model::LoadHistory& history) {
+  if (node.kind != YamlNode::Kind::list || node.children.empty()) {
+    map.refuse(node, "table", "expected a list of [t, factor], " + describe(node));
+    return;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const std::string where = join_path(map.where("table"), i);
+    std::array<double, 2> entry{};
+    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
+                      map.errors())) {
+      continue;
+    }
+    if (!history.table.empty() && !(entry[0] > history.table.back().first))
+      map.errors().add(find_blame(node.children[i]), where,
+                       "t must be more than in the entry before");
+    history.table.emplace_back(entry[0], entry[1]);
+  }
+}
+
+model::LoadDefinition read_load(const YamlNode& node, const std::string& where,
+                                const model::TurbineDefinition& turbine, ErrorList& errors) {
+  model::LoadDefinition load;
+  MapReader map(node, where, errors);
+  read_loaded_beam(map, turbine, load);
+  read_loaded_place(map, load);
+  read_vector(map, "force", load.force, any_number);
+  read_vector(map, "moment", load.moment, any_number);
+  if (node.find("force") == nullptr && node.find("moment") == nullptr)
+    map.require("force", "or \"moment\", or both");
+  map.read("follower", load.follower, {{"true", true}, {"false", false}});
+  const YamlNode* harmonic = map.find("harmonic");
+  const YamlNode* table = map.find("table");
+  if (harmonic != nullptr && table != nullptr)
+    map.refuse(*table, "table", "given together with harmonic; leave one of them out");
+  else if (harmonic != nullptr)
+    read_harmonic(*harmonic, map.where("harmonic"), load.history, errors);
+  else if (table != nullptr)
+    read_table(map, *table, load.history);
+  map.finish();
+  return load;
+}
+
+void read_loads(MapReader& map, const YamlNode& list, model::TurbineDefinition& turbine) {
+  if (list.kind != YamlNode::Kind::list) {
+    map.refuse(list, "loads",
+               "expected a list of loads (each starts with \"- \"), " + describe(list));
+    return;
+  }
+  for (std::size_t i = 0; i < list.children.size(); ++i)
+    turbine.loads.push_back(
+        read_load(list.children[i], join_path(map.where("loads"), i), turbine, map.errors()));
+}
+
+void read_static(const YamlNode& node, analysis::StaticOptions& statics, ErrorList& errors) {
+  MapReader map(node, "static", errors);
+  map.read("steps", statics.steps, 1, max_load_steps);
+  map.read(
+      "method", statics.method,
+      {{"load", analysis::StaticMethod::load}, {"arc_length", analysis::StaticMethod::arc_length}});
+  map.read("tolerance", statics.tolerance, positive);
+  map.read("max_steps", statics.most_steps, 1, max_steps);
+  map.finish();
+}
+
 void read_trim(const YamlNode& node, analysis::TrimOptions& trim, ErrorList& errors) {
   MapReader map(node, "trim", errors);
   map.read("method", trim.method,
@@ -529,10 +654,15 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("shaft")) read_shaft(*node, turbine.shaft, errors);
   if (const YamlNode* node = map.find("hub")) read_hub(*node, turbine.hub, errors);
   if (const YamlNode* node = map.require("blades")) read_blades(*node, turbine.blades, errors);
+  if (const YamlNode* node = map.find("loads")) read_loads(map, *node, turbine);
   if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);
+  if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
   map.finish();
   check_teeter(root, turbine, errors);
+  if (turbine.shaft.speed > 0.0)
+    for (const model::LoadDefinition& load : turbine.loads)
+      result.trim.least_harmonics = std::max(result.trim.least_harmonics, load.history.per_rev);
 }
 
 /// Adds an error where `samara` is not the version this program reads. False: a newer version, of

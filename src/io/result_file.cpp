@@ -30,6 +30,7 @@ using analysis::ModeSet;
 constexpr char schema_attribute[] = "samara_schema";
 constexpr std::string_view mode_table_start = "number,label,";
 constexpr std::string_view trim_table_start = "name,unit,mean";
+constexpr std::string_view static_table_start = "factor,newton_steps,";
 
 /// Harmonics of the participation are kept as far as one mode has this share there.
 constexpr double smallest_share = 1e-9;
@@ -325,6 +326,41 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
   file.set_attribute("/trim", "convergence", trim.convergence);
 }
 
+void ResultFile::write_static(const analysis::StaticPath& path) {
+  Hdf5File& file = storage_->file;
+  std::vector<double> factors;
+  std::vector<double> residuals;
+  std::vector<double> states;
+  std::vector<int> newton_steps;
+  for (const analysis::StaticState& state : path.states) {
+    factors.push_back(state.factor);
+    residuals.push_back(state.residual);
+    newton_steps.push_back(state.newton_steps);
+    states.insert(states.end(), state.z.data(), state.z.data() + state.z.size());
+  }
+  const hsize_t count = path.states.size();
+  write_values("/static/factor", factors,
+               {"1", no_frame, "of gravity and the prescribed loads, in the order of the path"});
+  file.write("/static/states", states, {count, states.size() / count},
+             {"of /model/unknowns/unit", unknown_frame,
+              "equilibrium at each factor; "
+              "[state, unknown]"});
+  write_values("/static/residual", residuals,
+               {"N, N m", no_frame, "largest entry of the force and moment balances, by state"});
+  file.write("/static/newton_steps", newton_steps, {"1", no_frame, "of each state"});
+  write_values("/static/limit_points", path.limit_points,
+               {"1", no_frame, "factors of the states next to which the factor turned"});
+  write_value("/static/load_level", path.load_level,
+              {"N, N m", no_frame, "largest internal load of the last state"});
+  file.set_attribute(
+      "/static", "method",
+      std::string(path.method == analysis::StaticMethod::load ? "load" : "arc_length"));
+  file.set_attribute("/static", "cuts", path.cuts);
+  file.set_attribute("/static", "convergence",
+                     std::string("the last Newton correction of every state was below the "
+                                 "tolerance"));
+}
+
 void ResultFile::write_floquet(const analysis::Floquet& floquet) {
   Hdf5File& file = storage_->file;
   const ModeSet& set = floquet.set;
@@ -381,7 +417,8 @@ void require_table_path(const std::string& path) {
   std::string line;
   std::ifstream stream(path, std::ios::binary);
   std::getline(stream, line);
-  if (!line.starts_with(mode_table_start) && !line.starts_with(trim_table_start))
+  if (!line.starts_with(mode_table_start) && !line.starts_with(trim_table_start) &&
+      !line.starts_with(static_table_start))
     throw InputError(path +
                      ": exists and is no table of samara, it would be lost; hint: --csv "
                      "gives the table another name");
@@ -418,6 +455,20 @@ void write_trim_table(const std::string& path, const system::PeriodicSystem& sys
     text << system.unknowns()[i].name << ',' << system.unknowns()[i].unit;
     for (Eigen::Index k = 0; k < trim.solution.coefficients().cols(); ++k)
       text << ',' << trim.solution.coefficients()(static_cast<Eigen::Index>(i), k);
+    text << '\n';
+  }
+  write_whole_file(path, text.str());
+}
+
+void write_static_table(const std::string& path, const system::PeriodicSystem& system,
+                        const analysis::StaticPath& states) {
+  std::ostringstream text = exact_text();
+  text << static_table_start << "residual";
+  for (const system::Unknown& unknown : system.unknowns()) text << ',' << unknown.name;
+  text << '\n';
+  for (const analysis::StaticState& state : states.states) {
+    text << state.factor << ',' << state.newton_steps << ',' << state.residual;
+    for (Eigen::Index i = 0; i < state.z.size(); ++i) text << ',' << state.z(i);
     text << '\n';
   }
   write_whole_file(path, text.str());

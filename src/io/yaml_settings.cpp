@@ -26,6 +26,14 @@ constexpr Spelling other_spellings[] = {
     {"mass", "mass_matrix"},
     {"inertia", "mass_matrix"},
     {"mass_center", "mass_matrix"},
+    {"at", "from"},
+    {"at", "to"},
+    {"from", "at"},
+    {"to", "at"},
+    {"harmonic", "table"},
+    {"table", "harmonic"},
+    {"per_rev", "frequency"},
+    {"frequency", "per_rev"},
 };
 
 constexpr std::size_t max_path_length = 16;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "samara/base/error.hpp"
 #include "samara/math/rotation.hpp"
 
 namespace samara::model {
@@ -83,6 +84,22 @@ int elastic_strains(const Beam& beam) {
   return count;
 }
 
+void add_loads(const TurbineDefinition& definition, Turbine& turbine) {
+  for (std::size_t i = 0; i < definition.loads.size(); ++i) {
+    const LoadDefinition& load = definition.loads[i];
+    const auto put = [&](const BeamDefinition& beam_definition, Beam& beam) {
+      beam.loads.push_back(build_load(load, beam_definition, beam));
+      beam.loads.back().source = static_cast<int>(i);
+    };
+    if (load.on_tower && !turbine.has_tower)
+      throw InputError("loads[" + std::to_string(i) + "]: there is no tower");
+    if (load.on_tower) put(definition.tower, turbine.tower);
+    for (std::size_t k = 0; !load.on_tower && k < turbine.blades.size(); ++k)
+      if (load.blade == 0 || load.blade == static_cast<int>(k) + 1)
+        put(definition.blades.beam, turbine.blades[k]);
+  }
+}
+
 bool differs(const BladeDifference& d) {
   return d.pitch != 0.0 || d.mass_factor != 1.0 || d.stiffness_factor != 1.0;
 }
@@ -102,6 +119,7 @@ Turbine build_turbine(const TurbineDefinition& definition) {
                                         d.mass_factor, d.stiffness_factor));
     turbine.roots.push_back(root_of(blades, definition.hub.radius, k));
   }
+  add_loads(definition, turbine);
   turbine.chain = chain_of(definition);
   if (definition.has_tower) turbine.chain.tower_top = tower_top_of(turbine.tower.tip_mass);
   turbine.speed = definition.shaft.speed;

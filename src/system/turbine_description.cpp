@@ -1,5 +1,6 @@
 #include "turbine_description.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -268,6 +269,27 @@ class Describer {
     if (blades > 2 && chain.teeter.free) return "the hub teeters";
     if (blades > 2 && chain.hub.inertia(0, 0) != chain.hub.inertia(2, 2))
       return "hub.inertia differs about h1 and h3";
+    return load_fault();
+  }
+
+  /// The same for the prescribed loads.
+  std::string load_fault() const {
+    const int blades = static_cast<int>(turbine_.blades.size());
+    const auto repeats = [&](const model::BeamLoad& load) {
+      return load.history.is_constant() ||
+             (load.history.table.empty() && load.history.per_rev > 0 &&
+              load.history.per_rev % blades == 0);
+    };
+    const auto alike = [](const model::BeamLoad& a, const model::BeamLoad& b) {
+      return a.source == b.source;
+    };
+    const std::vector<model::BeamLoad>& first = turbine_.blades.front().loads;
+    for (const model::Beam& blade : turbine_.blades)
+      if (!std::equal(first.begin(), first.end(), blade.loads.begin(), blade.loads.end(), alike))
+        return "the loads on the blades differ";
+    for (const std::vector<model::BeamLoad>* loads : {&first, &turbine_.tower.loads})
+      if (!std::all_of(loads->begin(), loads->end(), repeats))
+        return "a load does not repeat from blade to blade";
     return "";
   }
 

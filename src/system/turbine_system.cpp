@@ -157,6 +157,13 @@ bool TurbineSystem::is_conservative() const {
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const elements::BeamPoint& point : placed.beam->points)
       if (!point.damping.isZero(0.0)) return false;
+  // A dead force has a potential where the axes that it is fixed in move as prescribed.
+  const bool hub_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free ||
+                         chain.torsion.free || chain.generator.free;
+  for (const PlacedBeam& placed : assembly_->equations.beams())
+    for (const model::BeamLoad& load : placed.beam->loads)
+      if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub && hub_moves))
+        return false;
   return true;
 }
 
@@ -261,6 +268,14 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   petsc::check(VecGetOwnershipRange(z, &first, &last));
   const petsc::WriteView view(z);
   for (PetscInt i = first; i < last; ++i) view[i - first] = values[static_cast<std::size_t>(i)];
+}
+
+std::unique_ptr<PeriodicSystem> TurbineSystem::unloaded() const {
+  model::Turbine bare = turbine();
+  bare.chain.gravity = 0.0;
+  bare.tower.loads.clear();
+  for (model::Beam& blade : bare.blades) blade.loads.clear();
+  return std::make_unique<TurbineSystem>(bare, comm());
 }
 
 void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {

@@ -23,6 +23,7 @@ using ChainDual = math::Dual<chain_inputs>;
 using MotionJacobian = Eigen::Matrix<double, 9, chain_motion_inputs>;
 using PointInputs = Eigen::Matrix<double, point_inputs, 1>;
 using TermJacobian = Eigen::Matrix<double, 3, point_inputs>;
+using LoadJacobian = Eigen::Matrix<double, 6, 3>;  // of force and moment by theta
 
 TermJacobian jacobian_of(const Vec3<PointDual>& term) {
   TermJacobian j;
@@ -130,6 +131,7 @@ class TurbineTangents::Scatter {
       for (int p = 0; p < placed.beam->point_count(); ++p)
         add_point_tangent(placed, p, root, at_point(placed, p, a, z, z_dot, *point++));
       add_end_tangents(placed, a, root, z, z_dot);
+      add_load_tangents(placed, t, z);
     }
     add_chain_tangents(rows);
   }
@@ -284,6 +286,44 @@ class TurbineTangents::Scatter {
       for (int i = 0; i < 6; ++i)
         add(K_, placed.points[static_cast<std::size_t>(next)] + i, first + i, -1.0);
     }
+  }
+
+  /// Only what turns with the sections depends on the state.
+  void add_load_tangents(const PlacedBeam& placed, double t, const std::vector<double>& z) {
+    const model::Beam& beam = *placed.beam;
+    for (const model::BeamLoad& load : beam.loads) {
+      if (!load.follower) continue;
+      const Vector6 value = load.at(t, turbine_.speed);
+      if (load.at_tip)
+        add_follower(placed.force_rows(beam.point_count() - 1, beam.order), placed.tip, 1.0,
+                     follower_tangent(z, placed.tip, load.tip_axes, value));
+      for (std::size_t e = 0; e < load.weights.size(); ++e) {
+        const int start = (load.first_element + static_cast<int>(e)) * beam.order;
+        for (int j = 0; j < beam.order; ++j) {
+          const auto p = static_cast<std::size_t>(start + j);
+          const LoadJacobian tangent =
+              follower_tangent(z, placed.points[p], beam.points[p].C_ab, value);
+          for (int node = 0; node <= beam.order; ++node)
+            add_follower(placed.force_rows(start, node), placed.points[p], load.weights[e](node, j),
+                         tangent);
+        }
+      }
+    }
+  }
+
+  static LoadJacobian follower_tangent(const std::vector<double>& z, int first, const Matrix3& C_ab,
+                                       const Vector6& load) {
+    Vec3<math::Dual<3>> theta;
+    for (int i = 0; i < 3; ++i)
+      theta(i) = math::independent<3>(z[static_cast<std::size_t>(first + 3 + i)], i);
+    const Vec6<math::Dual<3>> turned = elements::follower_load<math::Dual<3>>(theta, C_ab, load);
+    LoadJacobian j;
+    for (int i = 0; i < 6; ++i) j.row(i) = turned(i).derivatives();
+    return j;
+  }
+
+  void add_follower(int row, int first, double weight, const LoadJacobian& tangent) {
+    K_.at(row / block, first / block).block<6, 3>(row % block, 3) -= weight * tangent;
   }
 
   void add_chain_row(int row, const ChainDual& value) {

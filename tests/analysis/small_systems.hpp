@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include <Eigen/Dense>
 
+#include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
 
@@ -380,6 +382,63 @@ class FreeSlide final : public SmallSystem {
     K << 0.0, 1.0, 0.0, c;
     M << -1.0, 0.0, 0.0, m;
   }
+};
+
+/// A load on springs at rest, stated by their force: 0 = force(w) - load. Unknowns N = force(w), w.
+class LoadedSpring : public SmallSystem {
+ public:
+  explicit LoadedSpring(double load) : load_(load) {
+    add("N", UnknownRole::internal, RowRole::constraint);
+    add("w", UnknownRole::position, RowRole::balance);
+  }
+  virtual double force(double w) const = 0;
+  virtual double stiffness(double w) const = 0;
+
+  Eigen::VectorXd residual_at(double, const Eigen::VectorXd& z,
+                              const Eigen::VectorXd&) const override {
+    return Eigen::Vector2d(z(0) - force(z(1)), z(0) - load_);
+  }
+  void tangents_at(double, const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::MatrixXd& K,
+                   Eigen::MatrixXd&) const override {
+    K << 1.0, -stiffness(z(1)), 1.0, 0.0;
+  }
+
+ private:
+  double load_;
+};
+
+/// Two shallow bars of rise h that a load presses flat and beyond, Green's strain:
+/// force = k w (w - h) (w - 2 h), with limit points at w = h (1 -+ 1/sqrt(3)).
+class ShallowTruss final : public LoadedSpring {
+ public:
+  static constexpr double k = 2.0;
+  static constexpr double h = 1.0;
+
+  explicit ShallowTruss(double load) : LoadedSpring(load) {}
+  double force(double w) const override { return k * w * (w - h) * (w - 2.0 * h); }
+  double stiffness(double w) const override {
+    return k * (3.0 * w * w - 6.0 * h * w + 2.0 * h * h);
+  }
+  std::unique_ptr<system::PeriodicSystem> unloaded() const override {
+    return std::make_unique<ShallowTruss>(0.0);
+  }
+};
+
+/// force = w - w^2: no more than 1/4, at w = 1/2. Where w is more than `range` it is out of range.
+class SofteningSpring final : public LoadedSpring {
+ public:
+  SofteningSpring(double load, double range) : LoadedSpring(load), range_(range) {}
+  double force(double w) const override {
+    if (w > range_) throw DomainError("the spring: too long");
+    return w - w * w;
+  }
+  double stiffness(double w) const override { return 1.0 - 2.0 * w; }
+  std::unique_ptr<system::PeriodicSystem> unloaded() const override {
+    return std::make_unique<SofteningSpring>(0.0, range_);
+  }
+
+ private:
+  double range_;
 };
 
 /// y' = g(t, y) from y at t = 0 over `span` by the classical Runge-Kutta rule in `steps` steps; y

@@ -17,7 +17,7 @@ from program import (  # noqa: E402
     ProgramTest,
 )
 
-COMMANDS = ["check", "modes", "trim", "floquet"]
+COMMANDS = ["check", "static", "modes", "trim", "floquet"]
 
 
 class CommandLine(ProgramTest):
@@ -162,6 +162,62 @@ class Tables(ProgramTest):
         force = float(re.search(r"tower root force n3 \(vertical\) +N +(\S+)", text).group(1))
         weight = 9.81 * (67.5772 * (27 + 2 * 8.42) + 6900)
         self.assertAlmostEqual(force, -weight, delta=1e-3 * weight)
+
+
+class Static(ProgramTest):
+    """A straight beam at rest, 10 m, EI = 1e4, with a force across its end."""
+
+    LOADS = "loads:\n  - {beam: blades, at: 1, force: [0, 0, %g]}\ngravity: 0\n"
+    AT_REST = MINIMAL.replace("speed: 6", "speed: 0").replace("length: 10", "length: 10\n  order: 3")
+
+    def test_shows_deflections_and_loads_by_factor(self):
+        self.write("case.yaml", self.AT_REST + self.LOADS % 0.01)
+        text = self.succeed("static", "case.yaml").stdout
+        for word in ("prescribed load factors, 10 steps", "1 prescribed load", "Newton", "residual",
+                     "blade 1", "turned", "u b3", "M b2"):
+            self.assertIn(word, text)
+        rows = re.findall(r"(?m)^([01]\.\d{4}) +(.*)$", text)
+        self.assertEqual([factor for factor, _ in rows], [f"{k / 10:.4f}" for k in range(11)])
+        words = rows[-1][1].split()
+        deflection, moment = float(words[2]), float(words[8])
+        self.assertAlmostEqual(deflection, 0.01 * 1e3 / 3e4, delta=1e-3 * 3.3e-4)  # P l^3 / 3 EI
+        self.assertAlmostEqual(moment, -0.1, delta=1e-4)  # across b3, about -b2
+        self.assertLessEqual(max(map(len, text.splitlines())), 130)
+
+    def test_refuses_a_rotor_that_turns(self):
+        self.write("case.yaml", MINIMAL + self.LOADS % 1)
+        self.refuse("static", "case.yaml", words=["shaft.speed is not 0", "samara trim"],
+                    place=r"case\.yaml: ")
+
+    def test_ends_with_3_and_the_factor_reached_where_a_section_turns_too_far(self):
+        half_turn = "loads: [{beam: blades, at: 1, moment: [0, %.12g, 0]}]\ngravity: 0\n"
+        self.write("case.yaml", self.AT_REST + half_turn % (3.14159265359 * 1e4 / 10))
+        for method in ("load", "arc_length"):
+            run = self.refuse("static", "case.yaml", "--set", f"static.method={method}", code=3,
+                              words=["blade 1 tip: rotation beyond 170 degrees", "hint: "])
+            reached = float(re.search(r"stopped at load factor (\S+) of 1", run.stderr).group(1))
+            self.assertAlmostEqual(reached, 170 / 180, delta=5e-3)  # four elements
+
+    def test_ends_with_3_where_the_steps_do_not_suffice(self):
+        self.write("case.yaml", self.AT_REST + self.LOADS % 1000)
+        self.refuse("static", "case.yaml", "--set", "static.max_steps=3", code=3,
+                    words=["static: stopped at load factor 0.", "static.max_steps", "hint: "])
+
+    def test_other_commands_want_loads_that_repeat(self):
+        load = "loads: [{beam: blades, at: 1, force: [0, 0, 1], %s}]\n"
+        for history in ("table: [[0, 0], [1, 1]]", "harmonic: {frequency: 3}"):
+            self.write("case.yaml", MINIMAL + load % history)
+            for command in ("trim", "floquet", "modes"):
+                self.refuse(command, "case.yaml", words=["loads[0] does not repeat", "per_rev"],
+                            place=r"case\.yaml: ")
+        self.write("case.yaml", MINIMAL + load % "harmonic: {per_rev: 6}")
+        self.refuse("trim", "case.yaml", words=["trim.harmonics=6"], place=r"case\.yaml: ")
+        self.succeed("trim", "case.yaml", "--set", "trim.harmonics=6")
+
+    def test_petsc_options_reach_the_solver(self):
+        self.write("case.yaml", self.AT_REST + self.LOADS % 1)
+        run = self.succeed("static", "case.yaml", "-static_pc_factor_mat_solver_type", "mumps")
+        self.assertNotIn("nothing in this run asked for", run.stderr)
 
 
 unittest.main()

@@ -187,7 +187,7 @@ class CommandLine(ProgramTest):
     """What is typed."""
 
     def test_nothing(self):
-        self.refuse(words=["missing command", "check, modes, trim, floquet"])
+        self.refuse(words=["missing command", "check, static, modes, trim, floquet"])
 
     def test_unknown_command(self):
         self.refuse("floqet", BASELINE, words='did you mean "floquet"?')

@@ -177,6 +177,31 @@ class Others(ProgramTest):
             numpy.testing.assert_array_equal([[float(v) for v in row[2:]] for row in rows[1:]],
                                              trim["/trim/harmonics"][:])
 
+    def test_static_has_a_row_a_state(self):
+        settings = ["--set", "shaft.speed=0", "--set", "gravity=9.81", "--set", "static.steps=5"]
+        self.succeed("static", BASELINE, *QUICK, *settings, "-o", "x.h5", "--csv", "x.csv")
+        self.succeed("static", BASELINE, *QUICK, *settings, "-o", "x.h5", "--csv", "x.csv")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertEqual(set(file), {"case", "model", "static"})
+            group = file["/static"]
+            names = file["/model/unknowns/name"].asstr()[:]
+            numpy.testing.assert_allclose(group["factor"][:], numpy.arange(6) / 5)
+            self.assertEqual(group["states"].shape, (6, len(names)))
+            for name in ("residual", "newton_steps"):
+                self.assertEqual(group[name].shape, (6,))
+            self.assertEqual(group["limit_points"].shape, (0,))
+            self.assertEqual(group.attrs["method"], "load")
+            for name, dataset in datasets(file).items():
+                self.assertIn("unit", dataset.attrs, name)
+            with open(self.folder / "x.csv", newline="", encoding="utf-8") as stream:
+                rows = list(csv.reader(stream))
+            self.assertEqual(rows[0], ["factor", "newton_steps", "residual", *names])
+            numpy.testing.assert_array_equal([[float(v) for v in row[3:]] for row in rows[1:]],
+                                             group["states"][:])
+            weight = 9.81 * (67.5772 * (27 + 2 * 8.42) + 6900)
+            root = group["states"][-1, list(names).index("tower root F1")]
+            self.assertAlmostEqual(root, -weight, delta=1e-6 * weight)
+
     def test_the_default_path_is_in_the_current_folder(self):
         self.write("sub/my case.yaml", MINIMAL)
         run = self.succeed("floquet", "sub/my case.yaml")

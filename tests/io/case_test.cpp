@@ -341,6 +341,56 @@ BOOST_AUTO_TEST_CASE(options_of_the_analyses_are_read) {
   BOOST_TEST((result.floquet.period == FloquetPeriod::blade));
 }
 
+BOOST_AUTO_TEST_CASE(options_of_static_are_read) {
+  const Case result = read_text(
+      minimal + "static: {steps: 20, method: arc_length, tolerance: 1e-7, max_steps: 300}\n");
+  BOOST_TEST(result.statics.steps == 20);
+  BOOST_TEST((result.statics.method == analysis::StaticMethod::arc_length));
+  BOOST_TEST(result.statics.tolerance == 1e-7);
+  BOOST_TEST(result.statics.most_steps == 300);
+}
+
+BOOST_AUTO_TEST_CASE(loads_are_read) {
+  const Case result = read_text(minimal + tower + "shaft: {speed: 2}\n" + R"(loads:
+  - {beam: blades, at: 1, force: [1, 2, 3]}
+  - beam: blade 2
+    from: 0.25
+    to: 0.5
+    moment: [4, 5, 6]
+    follower: true
+    harmonic: {per_rev: 3, amplitude: 0.5, mean: 1.5, phase_deg: 90}
+  - {beam: tower, at: 0.5, force: [0, 0, 7], moment: [8, 0, 0], harmonic: {frequency: 4}}
+  - {beam: tower, at: 0, force: [0, 0, 9], table: [[0, 1], [2.5, -1]], follower: false}
+)");
+  const std::vector<model::LoadDefinition>& loads = result.turbine.loads;
+  BOOST_REQUIRE(loads.size() == 4u);
+  BOOST_TEST(!loads[0].on_tower);
+  BOOST_TEST(loads[0].blade == 0);
+  BOOST_TEST(loads[0].from == 1.0);
+  BOOST_TEST(loads[0].to == 1.0);
+  BOOST_TEST((loads[0].force == Vector3(1, 2, 3)));
+  BOOST_TEST(loads[0].moment.isZero(0.0));
+  BOOST_TEST(!loads[0].follower);
+  BOOST_TEST(loads[0].history.is_constant());
+  BOOST_TEST(loads[1].blade == 2);
+  BOOST_TEST(loads[1].from == 0.25);
+  BOOST_TEST(loads[1].to == 0.5);
+  BOOST_TEST((loads[1].moment == Vector3(4, 5, 6)));
+  BOOST_TEST(loads[1].follower);
+  BOOST_TEST(loads[1].history.per_rev == 3);
+  BOOST_TEST(loads[1].history.amplitude == 0.5);
+  BOOST_TEST(loads[1].history.mean == 1.5);
+  BOOST_TEST(std::abs(loads[1].history.phase - 90.0 * degree) < rounding);
+  BOOST_TEST(loads[2].on_tower);
+  BOOST_TEST(loads[2].history.frequency == 4.0);
+  BOOST_TEST(loads[2].history.amplitude == 1.0);
+  BOOST_TEST(loads[2].history.mean == 0.0);
+  BOOST_TEST(loads[3].from == 0.0);
+  BOOST_TEST(
+      (loads[3].history.table == std::vector<std::pair<double, double>>{{0.0, 1.0}, {2.5, -1.0}}));
+  BOOST_TEST(result.trim.least_harmonics == 3);
+}
+
 BOOST_AUTO_TEST_CASE(a_tower_line_is_stated_in_n1_n2_n3_and_kept_in_the_beams_axes) {
   const model::BeamDefinition beam =
       read_text(minimal +
@@ -772,6 +822,40 @@ BOOST_AUTO_TEST_CASE(sections_must_be_a_list_that_is_not_empty) {
   check_error(start + "{mass: 3}\n",
               "case.yaml:4:3: blades.sections: expected a list of sections (each starts with \"- "
               "\"), got a mapping");
+}
+
+BOOST_AUTO_TEST_CASE(loads_are_checked) {
+  const auto refuse = [](const std::string& load, const Strings& expected) {
+    check_errors(minimal + "loads:\n  - " + load + "\n", {}, expected);
+  };
+  check_error(minimal + "loads: {beam: tower}\n",
+              "case.yaml:9:1: loads: expected a list of loads (each starts with \"- \"), got a "
+              "mapping");
+  refuse("{beam: tower, at: 1, force: [0, 0, 1]}",
+         {"case.yaml:10:6: loads[0].beam: there is no tower"});
+  refuse("{beam: blade 3, at: 1, force: [0, 0, 1]}",
+         {"case.yaml:10:6: loads[0].beam: expected tower, blades or a blade from 1 to 2 (blade 1), "
+          "got \"blade 3\""});
+  refuse("{at: 1, force: [0, 0, 1]}", {"case.yaml:10:5: loads[0]: missing key \"beam\" (tower, "
+                                       "blades or one of them: blade 1)"});
+  refuse("{beam: blades, at: 1}",
+         {"case.yaml:10:5: loads[0]: missing key \"force\" (or \"moment\", or both)"});
+  refuse("{beam: blades, force: [0, 0, 1]}", {"case.yaml:10:5: loads[0]: missing key \"at\" (a "
+                                              "point load, or \"from\" and \"to\")"});
+  refuse("{beam: blades, from: 0.5, force: [0, 0, 1]}",
+         {"case.yaml:10:5: loads[0]: missing key \"to\" (beside \"from\")"});
+  refuse("{beam: blades, from: 0.5, to: 0.5, force: [0, 0, 1]}",
+         {"case.yaml:10:31: loads[0].to: expected more than from, got 0.5"});
+  refuse("{beam: blades, at: 0.5, from: 0, to: 1.2, force: [0, 0, 1]}",
+         {"case.yaml:10:29: loads[0].from: given together with at; leave one of them out",
+          "case.yaml:10:38: loads[0].to: given together with at; leave one of them out"});
+  refuse("{beam: blades, at: 1, force: [0, 0, 1], follower: maybe, harmonic: {}, table: [[0, 1]]}",
+         {"case.yaml:10:45: loads[0].follower: expected true or false, got \"maybe\"",
+          "case.yaml:10:76: loads[0].table: given together with harmonic; leave one of them out"});
+  refuse("{beam: blades, at: 1, force: [0, 0, 1], harmonic: {amplitude: 2}}",
+         {"case.yaml:10:45: loads[0].harmonic: missing key \"per_rev\" (or \"frequency\")"});
+  refuse("{beam: blades, at: 1, force: [0, 0, 1], table: [[0, 1], [0, 2]]}",
+         {"case.yaml:10:61: loads[0].table[1]: t must be more than in the entry before"});
 }
 
 BOOST_AUTO_TEST_CASE(point_masses_are_checked) {

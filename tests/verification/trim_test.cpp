@@ -231,3 +231,41 @@ BOOST_AUTO_TEST_CASE(shooting_tends_to_harmonic_balance_with_the_square_of_the_s
   BOOST_TEST(largest_difference(*system, richardson(found[1], found[2]), balance) < 1e-6 * size,
              largest_difference(*system, richardson(found[1], found[2]), balance) / size);
 }
+
+BOOST_AUTO_TEST_CASE(oscillating_follower_loads_are_balanced_as_shooting_says) {
+  BeamCase beam;
+  beam.length = 10.0;
+  beam.speed = 6.0;
+  beam.inertia << 2e-4, 1e-4, 1e-4;
+  beam.stiffness << 1e8, 4e7, 4e7, 8e3, 1e4, 1e4;
+  beam.elements = 2;
+  beam.order = 1;
+  model::TurbineDefinition definition = definition_of(beam);
+  model::LoadDefinition load;
+  load.from = 0.2;
+  load.to = 1.0;
+  load.force = Vector3(0.0, 0.0, 5.0);
+  load.follower = true;
+  load.history.per_rev = 2;
+  load.history.amplitude = 1.0;
+  load.history.phase = 0.7;
+  definition.loads = {load};
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  analysis::Observer observer;
+  analysis::TrimOptions options;
+  options.harmonics = 8;
+  options.least_harmonics = 2;
+  const Eigen::MatrixXd balance =
+      analysis::find_trim(system, options, observer).solution.coefficients();
+  const double size = largest_deflection(system, balance);
+  BOOST_TEST(size > 0.05);
+  options.method = analysis::TrimMethod::shooting;
+  std::vector<double> errors;
+  for (const int steps : {100, 200}) {
+    options.steps = steps;
+    const analysis::Trim trim = analysis::find_trim(system, options, observer);
+    errors.push_back(largest_difference(system, trim.solution.coefficients(), balance) / size);
+  }
+  BOOST_TEST(errors[1] < 0.01);
+  BOOST_TEST(std::log2(errors[0] / errors[1]) == 2.0, tolerance(0.1));
+}

@@ -36,6 +36,7 @@ class DirectSolver {
   DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale);
 
   /// Factors `matrix`, which is scaled in place.
+  /// @throws ConvergenceError where it is singular.
   void factor(Mat matrix);
 
   /// Solves for all columns of `right`, which is overwritten by the solution.

@@ -1,4 +1,4 @@
-// What the user asks of the analyses (the keys `trim` and `floquet` of a case file).
+// What the user asks of the analyses (the keys `trim`, `floquet` and `static` of a case file).
 #pragma once
 
 namespace samara::analysis {
@@ -8,6 +8,7 @@ enum class TrimMethod { harmonic_balance, shooting };
 struct TrimOptions {
   TrimMethod method = TrimMethod::harmonic_balance;
   int harmonics = 4;             ///< H >= 0 of (15)
+  int least_harmonics = 0;       ///< the highest harmonic of the prescribed loads: H is no less
   bool automatic = false;        ///< raise H until the residual between the samples is small
   double tolerance = 1e-10;      ///< relative, of the nonlinear solve
   double auto_tolerance = 1e-6;  ///< of the residual between the samples, relative to the loads
@@ -19,6 +20,15 @@ enum class FloquetPeriod { automatic, full, blade };
 struct FloquetOptions {
   int steps = 500;  ///< steps of (19) a revolution
   FloquetPeriod period = FloquetPeriod::automatic;
+};
+
+enum class StaticMethod { load, arc_length };
+
+struct StaticOptions {
+  StaticMethod method = StaticMethod::load;
+  int steps = 10;           ///< of the load factor from 0 to 1; arc length: 1/steps is the first
+  double tolerance = 1e-9;  ///< of the last Newton correction, relative to the solution
+  int most_steps = 1000;    ///< of the path, cut ones included
 };
 
 }  // namespace samara::analysis

@@ -16,6 +16,7 @@ struct Case {
   model::TurbineDefinition turbine;
   analysis::TrimOptions trim;
   analysis::FloquetOptions floquet;
+  analysis::StaticOptions statics;
 };
 
 /// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys before

@@ -11,6 +11,7 @@
 
 #include "samara/analysis/floquet.hpp"
 #include "samara/analysis/mode.hpp"
+#include "samara/analysis/static_path.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/io/case.hpp"
 #include "samara/system/turbine_system.hpp"
@@ -47,6 +48,8 @@ class ResultFile {
   void write_model(const system::TurbineSystem& system);
   /// /trim
   void write_trim(const analysis::Trim& trim);
+  /// /static
+  void write_static(const analysis::StaticPath& path);
   /// /floquet
   void write_floquet(const analysis::Floquet& floquet);
   /// /modes: what /floquet has, without what belongs to a period.
@@ -82,6 +85,10 @@ void write_mode_table(const std::string& path, const analysis::ModeSet& set);
 /// One line an unknown: name, unit, mean, cos 1, sin 1, ...
 void write_trim_table(const std::string& path, const system::PeriodicSystem& system,
                       const analysis::Trim& trim);
+
+/// One line a state: factor, Newton steps, residual and all unknowns by name.
+void write_static_table(const std::string& path, const system::PeriodicSystem& system,
+                        const analysis::StaticPath& states);
 
 /// Name and version of the HDF5 library.
 std::string file_library_version();

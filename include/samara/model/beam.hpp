@@ -7,6 +7,7 @@
 
 #include "samara/elements/beam_point.hpp"
 #include "samara/model/definition.hpp"
+#include "samara/model/load.hpp"
 
 namespace samara::model {
 
@@ -36,6 +37,7 @@ struct Beam {
   Vector3 tip = Vector3::Zero();            ///< undeformed tip, components in a [m]
   Matrix6 tip_mass = Matrix6::Zero();       ///< at the tip, as MassNode::mass
   std::vector<MassNode> mass_nodes;         ///< root to tip, without the tip
+  std::vector<BeamLoad> loads;
 
   int point_count() const { return elements * order; }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "samara/math/types.hpp"
@@ -101,6 +102,33 @@ struct BladesDefinition {
   std::map<int, BladeDifference> each;  ///< by blade number from 1
 };
 
+/// How a load changes with time: mean + amplitude cos(frequency t + phase), or a table.
+struct LoadHistory {
+  double mean = 1.0;
+  double amplitude = 0.0;
+  int per_rev = 0;         ///< the frequency as a multiple of the rotor speed; 0: `frequency` holds
+  double frequency = 0.0;  ///< [rad/s]
+  double phase = 0.0;      ///< [rad]
+  std::vector<std::pair<double, double>> table;  ///< t [s], factor; empty: the cosine
+
+  bool is_constant() const { return amplitude == 0.0 && table.empty(); }
+
+  /// The factor at time t [s] where the rotor turns with `rotor_speed` [rad/s].
+  double factor(double t, double rotor_speed) const;
+};
+
+/// A prescribed load on a beam: at a point (from = to), or uniform along a part of it.
+struct LoadDefinition {
+  bool on_tower = false;
+  int blade = 0;      ///< from 1; 0: all of them
+  double from = 1.0;  ///< fraction of the arc length
+  double to = 1.0;
+  Vector3 force = Vector3::Zero();   ///< [N], or [N/m] where from < to
+  Vector3 moment = Vector3::Zero();  ///< [N m], or [N m/m]
+  bool follower = false;  ///< components in the deformed section; else in the axes of the root
+  LoadHistory history;
+};
+
 struct TurbineDefinition {
   std::string title;
   double gravity = 9.80665;  ///< along -n3 [m/s^2]
@@ -111,6 +139,7 @@ struct TurbineDefinition {
   ShaftDefinition shaft;
   HubDefinition hub;
   BladesDefinition blades;
+  std::vector<LoadDefinition> loads;
 };
 
 /// Interpolates the section at `fraction` (0 to 1) of the length: stiffness, mass and twist are

@@ -3,9 +3,11 @@
 // (2002), eq. (10)-(12), (17)).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
 
 namespace samara::system {
@@ -100,6 +102,12 @@ class PeriodicSystem {
   virtual petsc::Handle<Mat> make_jacobian() const = 0;
   /// Preallocated for M alone.
   virtual petsc::Handle<Mat> make_mass() const = 0;
+
+  /// The same system without gravity and prescribed loads. Both residuals are linear in the loads:
+  /// (1 - f) times this one's plus f times the loaded one's is that of a load factor f.
+  virtual std::unique_ptr<PeriodicSystem> unloaded() const {
+    throw InternalError("this system does not know its loads");
+  }
 
   /// r(t, z, z_dot). @throws DomainError where a rotation is out of range.
   virtual void residual(double t, Vec z, Vec z_dot, Vec r) const = 0;

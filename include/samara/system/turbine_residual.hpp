@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "samara/base/error.hpp"
+#include "samara/elements/beam_load.hpp"
 #include "samara/elements/beam_tip.hpp"
 #include "samara/elements/rigid_chain.hpp"
 #include "samara/model/layout.hpp"
@@ -102,6 +103,9 @@ class TurbineResidual {
   void add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a, const std::vector<T>& z,
                 const std::vector<T>& z_dot, std::vector<T>& r) const;
   template <class T>
+  void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
+                 std::vector<T>& r) const;
+  template <class T>
   static void put_joint(int first, bool free, const elements::JointRows<T>& rows,
                         const std::vector<T>& z, std::vector<T>& r);
 
@@ -180,6 +184,7 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
     const elements::Attachment<T> a = attachment(placed, hub);
     for (int p = 0; p < placed.beam->point_count(); ++p) add_point(placed, p, a, z, z_dot, r);
     add_ends(placed, a, z, z_dot, r);
+    add_loads(placed, t, z, r);
   }
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
   if (turbine_.has_tower)
@@ -261,6 +266,34 @@ void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachm
     add_end(first, next - 1, node.x, node.mass, " mass " + std::to_string(m + 1), true);
     LongRows(r.data() + placed.points[static_cast<std::size_t>(next)]) -=
         at(z, first).template head<6>();
+  }
+}
+
+/// The prescribed loads: -f, -m of the force and moment balances.
+template <class T>
+void TurbineResidual::add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
+                                std::vector<T>& r) const {
+  using Rows = Eigen::Map<Vec6<T>>;
+  const model::Beam& beam = *placed.beam;
+  const auto turned = [&z](const model::BeamLoad& load, const Vector6& value, int first,
+                           const Matrix3& C_ab) -> Vec6<T> {
+    if (!load.follower) return value.cast<T>();
+    return elements::follower_load<T>(Eigen::Map<const Vec3<T>>(z.data() + first + 3), C_ab, value);
+  };
+  for (const model::BeamLoad& load : beam.loads) {
+    const Vector6 value = load.at(t, turbine_.speed);
+    if (load.at_tip)
+      Rows(r.data() + placed.force_rows(beam.point_count() - 1, beam.order)) -=
+          turned(load, value, placed.tip, load.tip_axes);
+    for (std::size_t e = 0; e < load.weights.size(); ++e) {
+      const int start = (load.first_element + static_cast<int>(e)) * beam.order;
+      for (int j = 0; j < beam.order; ++j) {
+        const auto p = static_cast<std::size_t>(start + j);
+        const Vec6<T> part = turned(load, value, placed.points[p], beam.points[p].C_ab);
+        for (int node = 0; node <= beam.order; ++node)
+          Rows(r.data() + placed.force_rows(start, node)) -= part * T(load.weights[e](node, j));
+      }
+    }
   }
 }
 

@@ -41,6 +41,7 @@ class TurbineSystem final : public PeriodicSystem {
   petsc::Handle<Vec> make_state() const override;
   petsc::Handle<Mat> make_jacobian() const override;
   petsc::Handle<Mat> make_mass() const override;
+  std::unique_ptr<PeriodicSystem> unloaded() const override;
   void residual(double t, Vec z, Vec z_dot, Vec r) const override;
   void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian, Mat mass) const override;
 

@@ -1,0 +1,452 @@
+#include "samara/analysis/static_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <sstream>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/base/error.hpp"
+
+namespace samara::analysis {
+namespace {
+
+constexpr int most_newton_steps = 20;
+
+/// A correction this many times the one before is no convergence any more, after the first few.
+constexpr double largest_growth = 10.0;
+constexpr int patient_newton_steps = 3;
+
+/// How often a step is halved before the path is given up.
+constexpr int most_halvings = 20;
+
+/// A remainder of the load factor, or a motion [m, rad], that is rounding.
+constexpr double rounding = 1e-12;
+
+/// Cosine between the tangents at both ends of an arc; below it the step may have changed branches.
+constexpr double least_cosine = 0.3;
+
+/// A point of the path: the state, in which a neutral coordinate gives its place to the load that
+/// holds it, and the load factor.
+struct Point {
+  Eigen::VectorXd x;
+  double factor = 0.0;
+};
+
+/// r(x, f) = (1 - f) r_unloaded + f r_loaded, and what belongs to it.
+class Equilibrium {
+ public:
+  explicit Equilibrium(const system::PeriodicSystem& system)
+      : loaded_(system),
+        unloaded_(system.unloaded()),
+        size_(static_cast<Eigen::Index>(system.size())),
+        z_(system.make_state()),
+        rest_(system.make_state()),
+        r_(system.make_state()),
+        jacobian_(system.make_jacobian()),
+        unloaded_jacobian_(unloaded_->make_jacobian()),
+        solver_("static_", equilibrate) {
+    for (Eigen::Index i = 0; i < size_; ++i)
+      if (system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
+        positions_.push_back(i);
+    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates())
+      std::erase(positions_, static_cast<Eigen::Index>(neutral.unknown));
+  }
+
+  Point start() {
+    loaded_.reference_state(0.0, z_.get());
+    const petsc::ReadView view(z_.get());
+    Point point;
+    point.x = Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
+    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
+      point.x(neutral.unknown) = 0.0;
+    return point;
+  }
+
+  /// The residual, and its derivative by the factor.
+  void evaluate(const Point& point, Eigen::VectorXd& r, Eigen::VectorXd& by_factor) {
+    put(state_of(point.x));
+    const Eigen::VectorXd without = residual_of(*unloaded_);
+    const Eigen::VectorXd with = residual_of(loaded_);
+    by_factor = with - without;
+    r = (1.0 - point.factor) * without + point.factor * with;
+    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
+      r(neutral.row) += point.x(neutral.unknown);
+  }
+
+  /// Solves K columns = columns at a point.
+  void solve(const Point& point, Eigen::MatrixXd& columns) {
+    put(state_of(point.x));
+    loaded_.tangents(0.0, z_.get(), rest_.get(), 0.0, jacobian_.get(), nullptr);
+    if (point.factor != 1.0) {
+      unloaded_->tangents(0.0, z_.get(), rest_.get(), 0.0, unloaded_jacobian_.get(), nullptr);
+      petsc::check(MatScale(jacobian_.get(), point.factor));
+      petsc::check(MatAXPY(jacobian_.get(), 1.0 - point.factor, unloaded_jacobian_.get(),
+                           SAME_NONZERO_PATTERN));
+    }
+    replace_neutral_columns();
+    solver_.factor(jacobian_.get());
+    solver_.solve(columns);
+  }
+
+  Eigen::VectorXd state_of(Eigen::VectorXd x) const {
+    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
+      x(neutral.unknown) = 0.0;
+    return x;
+  }
+
+  StaticState describe(const Point& point, int newton_steps) {
+    Eigen::VectorXd r;
+    Eigen::VectorXd by_factor;
+    evaluate(point, r, by_factor);
+    StaticState state{point.factor, state_of(point.x), newton_steps, 0.0};
+    for (Eigen::Index i = 0; i < size_; ++i)
+      if (loaded_.rows()[static_cast<std::size_t>(i)] == system::RowRole::balance)
+        state.residual = std::max(state.residual, std::abs(r(i)));
+    return state;
+  }
+
+  /// Largest change relative to the largest value, of positions and of internal loads.
+  double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x) const {
+    double worst = 0.0;
+    for (const system::UnknownRole role :
+         {system::UnknownRole::position, system::UnknownRole::internal}) {
+      double moved = 0.0;
+      double size = 0.0;
+      for (Eigen::Index i = 0; i < size_; ++i) {
+        if (loaded_.unknowns()[static_cast<std::size_t>(i)].role != role) continue;
+        moved = std::max(moved, std::abs(change(i)));
+        size = std::max(size, std::abs(x(i)));
+      }
+      if (!(moved <= std::numeric_limits<double>::max())) return moved;
+      if (moved > 0.0) worst = std::max(worst, moved / std::max(size, moved));
+    }
+    return worst;
+  }
+
+  /// Of the positions alone.
+  double product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    double sum = 0.0;
+    for (const Eigen::Index i : positions_) sum += a(i) * b(i);
+    return sum;
+  }
+
+ private:
+  void put(const Eigen::VectorXd& z) {
+    const petsc::WriteView view(z_.get());
+    Eigen::Map<Eigen::VectorXd>(view.data(), size_) = z;
+  }
+
+  Eigen::VectorXd residual_of(const system::PeriodicSystem& system) {
+    system.residual(0.0, z_.get(), rest_.get(), r_.get());
+    const petsc::ReadView view(r_.get());
+    return Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
+  }
+
+  void replace_neutral_columns() {
+    const auto& neutrals = loaded_.neutral_coordinates();
+    if (neutrals.empty()) return;
+    std::vector<std::pair<PetscInt, PetscInt>> entries;
+    for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i) {
+      PetscInt count = 0;
+      const PetscInt* columns = nullptr;
+      petsc::check(MatGetRow(jacobian_.get(), i, &count, &columns, nullptr));
+      for (const system::NeutralCoordinate& neutral : neutrals)
+        if (std::find(columns, columns + count, neutral.unknown) != columns + count)
+          entries.emplace_back(i, neutral.unknown);
+      petsc::check(MatRestoreRow(jacobian_.get(), i, &count, &columns, nullptr));
+    }
+    for (const auto& [row, column] : entries)
+      petsc::check(MatSetValue(jacobian_.get(), row, column, 0.0, INSERT_VALUES));
+    for (const system::NeutralCoordinate& neutral : neutrals)
+      petsc::check(MatSetValue(jacobian_.get(), neutral.row, neutral.unknown, 1.0, INSERT_VALUES));
+    petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
+  }
+
+  const system::PeriodicSystem& loaded_;
+  std::unique_ptr<system::PeriodicSystem> unloaded_;
+  Eigen::Index size_;
+  petsc::Handle<Vec> z_;
+  petsc::Handle<Vec> rest_;  ///< no rates
+  petsc::Handle<Vec> r_;
+  petsc::Handle<Mat> jacobian_;
+  petsc::Handle<Mat> unloaded_jacobian_;
+  DirectSolver solver_;
+  std::vector<Eigen::Index> positions_;
+};
+
+/// Along the path by one unit of arc length: ds^2 = |positions|^2 / D^2 + df^2 / f0^2, with f0 the
+/// first step of the factor and D the length of the first step of the positions.
+struct Direction {
+  Eigen::VectorXd x;
+  double factor = 0.0;
+};
+
+class PathFollower {
+ public:
+  PathFollower(const system::PeriodicSystem& system, const StaticOptions& options,
+               Observer& observer)
+      : system_(system), options_(options), observer_(observer), equilibrium_(system) {
+    path_.method = options.method;
+    first_step_ = 1.0 / options.steps;
+  }
+
+  StaticPath run() {
+    Point point = equilibrium_.start();
+    if (!attempt([&] { accept(point, correct(point, nullptr)); })) give_up();
+    if (options_.method == StaticMethod::load)
+      follow_loads(point);
+    else
+      follow_arc(point);
+    finish();
+    return std::move(path_);
+  }
+
+ private:
+  // ---- one step ------------------------------------------------------------------------------
+
+  /// Newton's method: at a given factor, or, with a direction, in the plane across it through the
+  /// point. Returns the number of steps.
+  int correct(Point& point, const Direction* across) {
+    double last = std::numeric_limits<double>::infinity();
+    for (int step = 1; step <= most_newton_steps; ++step) {
+      Eigen::VectorXd r;
+      Eigen::VectorXd by_factor;
+      equilibrium_.evaluate(point, r, by_factor);
+      Eigen::MatrixXd columns(r.size(), across == nullptr ? 1 : 2);
+      columns.col(0) = -r;
+      if (across != nullptr) columns.col(1) = -by_factor;
+      equilibrium_.solve(point, columns);
+      Eigen::VectorXd change = columns.col(0);
+      if (across != nullptr) {  // the border, eliminated
+        const double factor_change =
+            -product(*across, {columns.col(0), 0.0}) / product(*across, {columns.col(1), 1.0});
+        change += factor_change * columns.col(1);
+        point.factor += factor_change;
+      }
+      point.x += change;
+      const double size = equilibrium_.relative_change(change, point.x);
+      if (size <= options_.tolerance) return step;
+      if (!std::isfinite(size) || (step > patient_newton_steps && size > largest_growth * last))
+        throw ConvergenceError("Newton's iteration diverges");
+      last = size;
+    }
+    throw ConvergenceError("Newton's iteration does not converge in " +
+                           std::to_string(most_newton_steps) + " steps");
+  }
+
+  /// False where a step failed: a rotation out of range, no convergence, a singular matrix.
+  template <class Step>
+  bool attempt(const Step& step) {
+    if (++tried_ > options_.most_steps) {
+      failure_ = std::make_exception_ptr(ConvergenceError(
+          std::to_string(options_.most_steps) + " steps (static.max_steps) were not enough"));
+      give_up();
+    }
+    try {
+      step();
+      return true;
+    } catch (const DomainError&) {
+      failure_ = std::current_exception();
+    } catch (const ConvergenceError&) {
+      failure_ = std::current_exception();
+    }
+    return false;
+  }
+
+  void cut() {
+    ++path_.cuts;
+    if (++halvings_ > most_halvings) give_up();
+  }
+
+  /// A point that is in equilibrium; the residual is looked at, which may find it out of range.
+  void accept(const Point& point, int newton_steps) {
+    path_.states.push_back(equilibrium_.describe(point, newton_steps));
+    constexpr long parts = 1000;
+    observer_.progress("static", std::lround(std::clamp(point.factor, 0.0, 1.0) * parts), parts);
+  }
+
+  [[noreturn]] void give_up() const {
+    std::ostringstream text;
+    text << "static: ";
+    if (path_.states.empty())
+      text << "no equilibrium without loads: ";
+    else
+      text << "stopped at load factor " << path_.states.back().factor << " of 1: ";
+    try {
+      std::rethrow_exception(failure_);
+    } catch (const DomainError& error) {
+      text << error.what() << "; hint: smaller loads, or a stiffer beam";
+      throw DomainError(text.str());
+    } catch (const ConvergenceError& error) {
+      text << error.what() << "; hint: ";
+      if (tried_ > options_.most_steps)
+        text << "more static.max_steps; the path may never reach the whole loads";
+      else if (options_.method == StaticMethod::load)
+        text << "more static.steps; static.method: arc_length where the load can rise no more";
+      else
+        text << "more static.steps, or a finer mesh";
+      throw ConvergenceError(text.str());
+    }
+  }
+
+  // ---- prescribed factors --------------------------------------------------------------------
+
+  /// Newton may end on another branch of equilibria, where the motion of the step, or what comes
+  /// next, goes back against the tangent.
+  void refuse_jump(const Point& point, const Direction& slope, const Point& next,
+                   const Direction& next_slope) const {
+    const Eigen::VectorXd motion = next.x - point.x;
+    if (std::sqrt(equilibrium_.product(motion, motion)) < rounding) return;
+    if (equilibrium_.product(motion, slope.x) < 0.0 ||
+        equilibrium_.product(motion, next_slope.x) < 0.0)
+      throw ConvergenceError("the state jumps, or turns back: there may be another branch");
+  }
+
+  void follow_loads(Point point) {
+    double step = first_step_;
+    Direction slope = slope_at(point);
+    while (point.factor < 1.0) {
+      // Cut steps end on the next multiple of the first step, too.
+      const double multiple =
+          (std::floor(point.factor / first_step_ + rounding) + 1.0) * first_step_;
+      Point next = point;
+      next.factor = std::min(point.factor + step, multiple);
+      if (next.factor > 1.0 - rounding) next.factor = 1.0;
+      Direction next_slope;
+      const bool found = attempt([&] {
+        const int newton_steps = correct(next, nullptr);
+        next_slope = slope_at(next);
+        refuse_jump(point, slope, next, next_slope);
+        accept(next, newton_steps);
+      });
+      if (found) {
+        point = next;
+        slope = next_slope;
+        halvings_ = std::max(halvings_ - 1, 0);
+        step = std::min(2.0 * step, first_step_);
+      } else {
+        step *= 0.5;
+        cut();
+      }
+    }
+  }
+
+  // ---- arc length ----------------------------------------------------------------------------
+
+  double product(const Direction& a, const Direction& b) const {
+    return equilibrium_.product(a.x, b.x) / (length_ * length_) +
+           a.factor * b.factor / (first_step_ * first_step_);
+  }
+
+  /// dx/df along the path.
+  Direction slope_at(const Point& point) {
+    Eigen::VectorXd r;
+    Eigen::VectorXd by_factor;
+    equilibrium_.evaluate(point, r, by_factor);
+    Eigen::MatrixXd columns = -by_factor;
+    equilibrium_.solve(point, columns);
+    return {columns.col(0), 1.0};
+  }
+
+  /// The unit tangent that goes on in the direction `before`.
+  Direction tangent_at(const Point& point, const Direction& before) {
+    Direction tangent = slope_at(point);
+    const double along = product(before, tangent);
+    const double scale = std::copysign(1.0 / std::sqrt(product(tangent, tangent)), along);
+    tangent.x *= scale;
+    tangent.factor *= scale;
+    return tangent;
+  }
+
+  void follow_arc(Point point) {
+    Direction tangent = slope_at(point);
+    length_ = first_step_ * std::sqrt(equilibrium_.product(tangent.x, tangent.x));
+    if (length_ == 0.0) return follow_loads(point);  // nothing moves
+    tangent = tangent_at(point, tangent);
+    const double largest = first_step_ / tangent.factor;
+    double step = largest;
+    while (point.factor < 1.0) {
+      Point next{point.x + step * tangent.x, point.factor + step * tangent.factor};
+      Direction ahead;
+      const bool found = attempt([&] {
+        int newton_steps = correct(next, &tangent);
+        if (next.factor >= 1.0) {  // the end lies between
+          const double part = (1.0 - point.factor) / (next.factor - point.factor);
+          next = {point.x + part * (next.x - point.x), 1.0};
+          newton_steps += correct(next, nullptr);
+        }
+        ahead = tangent_at(next, tangent);
+        if (product(tangent, ahead) < least_cosine)
+          throw ConvergenceError("the path bends too sharply, or leaves for another branch");
+        accept(next, newton_steps);
+      });
+      if (!found) {
+        step *= 0.5;
+        cut();
+        continue;
+      }
+      if (ahead.factor * tangent.factor < 0.0) note_limit_point(point, next, tangent);
+      point = next;
+      tangent = ahead;
+      halvings_ = std::max(halvings_ - 1, 0);
+      step = std::min(2.0 * step, largest);
+    }
+  }
+
+  void note_limit_point(const Point& before, const Point& behind, const Direction& tangent) {
+    const double factor = tangent.factor > 0.0 ? std::max(before.factor, behind.factor)
+                                               : std::min(before.factor, behind.factor);
+    path_.limit_points.push_back(factor);
+    std::ostringstream text;
+    text << "static: limit point near load factor " << factor << ", from where it "
+         << (tangent.factor > 0.0 ? "falls" : "rises");
+    observer_.note(text.str());
+  }
+
+  void finish() {
+    const StaticState& last = path_.states.back();
+    for (std::size_t i = 0; i < system_.unknowns().size(); ++i)
+      if (system_.unknowns()[i].role == system::UnknownRole::internal)
+        path_.load_level =
+            std::max(path_.load_level, std::abs(last.z(static_cast<Eigen::Index>(i))));
+    // What a neutral row lacks is what the holding load gives.
+    const petsc::Handle<Vec> z = system_.make_state();
+    const petsc::Handle<Vec> rest = system_.make_state();
+    const petsc::Handle<Vec> r = system_.make_state();
+    {
+      const petsc::WriteView view(z.get());
+      Eigen::Map<Eigen::VectorXd>(view.data(), last.z.size()) = last.z;
+    }
+    system_.residual(0.0, z.get(), rest.get(), r.get());
+    const petsc::ReadView view(r.get());
+    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
+      path_.held.push_back({neutral.name, neutral.unit, -view[neutral.row]});
+  }
+
+  const system::PeriodicSystem& system_;
+  const StaticOptions& options_;
+  Observer& observer_;
+  Equilibrium equilibrium_;
+  StaticPath path_;
+  double first_step_ = 1.0;  ///< of the factor
+  double length_ = 1.0;      ///< D
+  long tried_ = 0;
+  int halvings_ = 0;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+StaticPath find_static_path(const system::PeriodicSystem& system, const StaticOptions& options,
+                            Observer& observer) {
+  if (system.period() != 0.0)
+    throw InputError("static: the rotor turns; hint: samara trim, or --set shaft.speed=0");
+  return PathFollower(system, options, observer).run();
+}
+
+}  // namespace samara::analysis
