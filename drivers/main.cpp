@@ -22,7 +22,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 5> commands{{
+constexpr std::array<Command, 6> commands{{
     {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
      "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
      "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
