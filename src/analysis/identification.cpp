@@ -119,7 +119,7 @@ std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd
       std::max_element(strain.begin(), strain.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string joint = moving_joint(system, shape);
-  if (!joint.empty() && is_rigid_body(system, shape, mode)) return joint;
+  if (mode.resolved && !joint.empty() && is_rigid_body(system, shape, mode)) return joint;
   if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
   const std::string& largest = largest_entry->first;
   int blades = 0;
