@@ -102,11 +102,18 @@ std::string name_growing(std::vector<const Mode*> growing) {
 /// growth has its decay, exponents lambda and -lambda*, but for the error of the mesh.
 bool has_partner(const ModeSet& set, const Mode& growing) {
   constexpr double slack = 0.05;  // of the rate of growth
+  const double apart = std::max(slack * growing.exponent.real(),
+                                analysis::zero_exponent * rate_scale(set.rotor_speed));
   const double rate = growing.exponent.real();
   return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& other) {
-    double apart = other.exponent.imag() - growing.exponent.imag();
-    if (set.rotor_speed > 0.0) apart = std::remainder(apart, set.rotor_speed);
-    return std::abs(other.exponent.real() + rate) < slack * rate && std::abs(apart) < slack * rate;
+    if (std::abs(other.exponent.real() + rate) > apart) return false;
+    // A row stands for its conjugate, too, and each has a multiple of the rotor speed of its own.
+    for (const double sign : {1.0, -1.0}) {
+      double distance = sign * other.exponent.imag() - growing.exponent.imag();
+      if (set.rotor_speed > 0.0) distance = std::remainder(distance, set.rotor_speed);
+      if (std::abs(distance) < apart) return true;
+    }
+    return false;
   });
 }
 

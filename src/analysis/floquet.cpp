@@ -273,7 +273,9 @@ class Analysis {
     // Every rank combines what its columns add to a batch of modes, and takes its share of them
     // over.
     const Eigen::Index batch =
-        ranks_.size * std::max<Eigen::Index>(1, batch_values / (2 * history_.rows() * ranks_.size));
+        ranks_.size *
+        std::max<Eigen::Index>(
+            1, batch_values / (2 * std::max<Eigen::Index>(1, history_.rows()) * ranks_.size));
     Eigen::MatrixXd values;
     for (Eigen::Index first = 0; first < count; first += batch) {
       std::vector<Eigen::Index> modes;

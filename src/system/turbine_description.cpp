@@ -196,12 +196,13 @@ class Describer {
     };
     add_body(chain.nacelle, Matrix3::Identity(), Vector3::Zero());
     elements::RigidBody shaft = chain.shaft;
-    if (turns_freely()) shaft.inertia(1, 1) = 0.0;  // counted with its own speed
+    elements::RigidBody hub = chain.hub;
+    if (turns_freely()) shaft.inertia(1, 1) = hub.inertia(1, 1) = 0.0;  // counted with their speed
     add_body(shaft, tilted, bearing);
     if (chain.teeter.free)
       add(chain.hub.mass, pin, Matrix3::Zero());
     else
-      add_body(chain.hub, tilted, pin);
+      add_body(hub, tilted, pin);
     return weight;
   }
 
@@ -242,7 +243,9 @@ class Describer {
                                   {speed},
                                   {shaft_inertia}});
     };
-    if (turns_freely()) add_shaft(layout_.shaft_torsion() + 1, chain.shaft.inertia(1, 1));
+    const double turning =
+        chain.shaft.inertia(1, 1) + (chain.teeter.free ? 0.0 : chain.hub.inertia(1, 1));
+    if (turns_freely()) add_shaft(layout_.shaft_torsion() + 1, turning);
     if (chain.generator.free) add_shaft(layout_.generator() + 1, chain.generator_inertia);
     add_spring(chain.yaw, "yaw", Frame::fixed, layout_.yaw());
     add_spring(chain.teeter, "teeter", Frame::rotating, layout_.teeter());
