@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <system_error>
 
 #include "samara/base/error.hpp"
 
+#include "whole_file.hpp"
 #include "yaml_reader.hpp"
 #include "yaml_settings.hpp"
 #include "yaml_tree.hpp"
@@ -21,7 +21,7 @@ namespace {
 using model::JointKind;
 
 constexpr int schema_version = 1;
-constexpr std::size_t max_file_size = 16u << 20;
+constexpr std::size_t max_megabytes = 16;
 constexpr int max_elements = 100000;
 constexpr int max_order = 6;
 constexpr int max_blades = 100;
@@ -693,29 +693,11 @@ bool check_version(const YamlNode& root, ErrorList& errors) {
 }
 
 std::string read_file(const std::string& path) {
-  namespace fs = std::filesystem;
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
-    const std::string with_suffix = path + ".yaml";
-    const bool exists = fs::exists(with_suffix, error);
-    throw InputError(path + ": no such file" +
-                     (exists ? "; did you mean \"" + with_suffix + "\"?" : ""));
-  }
-  if (fs::is_directory(status)) throw InputError(path + ": a directory, expected a case file");
-
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path + ": cannot be opened for reading");
-  std::string text;
-  std::array<char, 65536> buffer;
-  while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0) {
-    text.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > max_file_size) {
-      throw InputError(path + ": more than 16 MB, too large for a case file");
-    }
-  }
-  if (stream.bad()) throw InputError(path + ": cannot be read");
-  return text;
+  const std::string with_suffix = path + ".yaml";
+  if (!std::filesystem::exists(path, error) && std::filesystem::exists(with_suffix, error))
+    throw InputError(path + ": no such file; did you mean \"" + with_suffix + "\"?");
+  return read_whole_file(path, max_megabytes, "case file");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -12,6 +11,7 @@
 #include "samara/model/definition.hpp"
 
 #include "import_common.hpp"
+#include "whole_file.hpp"
 #include "yaml_tree.hpp"
 
 namespace samara::io {
@@ -31,6 +31,8 @@ constexpr int blade_order = 3;
 constexpr int tower_order = 2;
 constexpr double degrees = 180.0 / std::numbers::pi;
 
+constexpr std::size_t max_megabytes = 64;
+
 struct Material {
   double density = 0.0;
   double young = 0.0;
@@ -38,13 +40,7 @@ struct Material {
 };
 
 std::string read_text(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) throw InputError(path + ": no such file");
-  if (std::filesystem::is_directory(path, error))
-    throw InputError(path + ": a directory, expected a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path + ": cannot be opened for reading");
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text = read_whole_file(path, max_megabytes, "deck");
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   if (!text.empty() && text.back() != '\n' && text.back() != '\r')
     throw InputError(path + ":" + std::to_string(1 + std::count(text.begin(), text.end(), '\n')) +
@@ -443,8 +439,8 @@ class Importer {
     const double ratio = number(
         {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
         Fate::derived, "shaft.generator.inertia");
-    const Vector3 inertia =
-        inertia_of(generator, "shaft.generator.inertia = Ixx gear_ratio^2; its mass is the nacelle's");
+    const Vector3 inertia = inertia_of(
+        generator, "shaft.generator.inertia = Ixx gear_ratio^2; its mass is the nacelle's");
     draft_.generator_inertia = inertia(0) * ratio * ratio;
     note("shaft.generator", "generator Ixx gear_ratio^2");
   }

@@ -1,23 +1,23 @@
 #include "openfast_deck.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
 #include "samara/base/error.hpp"
+
+#include "whole_file.hpp"
 
 namespace samara::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_file_size = 64u << 20;
+constexpr std::size_t max_megabytes = 64;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
@@ -75,18 +75,7 @@ std::vector<DeckWord> split(const std::string& line) {
 }
 
 std::string read_text(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw InputError(path + ": no such file");
-  if (fs::is_directory(status)) throw InputError(path + ": a directory, expected a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path + ": cannot be opened for reading");
-  std::string text;
-  std::array<char, 65536> buffer;
-  while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0) {
-    text.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > max_file_size) throw InputError(path + ": more than 64 MB");
-  }
+  std::string text = read_whole_file(path, max_megabytes, "deck");
   if (text.find('\0') != std::string::npos)
     throw InputError(path + ": not a plain text file; hint: UTF-16 must be saved as UTF-8");
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);

@@ -1,5 +1,6 @@
 #include "whole_file.hpp"
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -61,6 +62,28 @@ bool require_writable(const std::string& path) {
   if (::access(path.c_str(), W_OK) != 0)
     throw InputError(path + ": write-protected; hint: give another name");
   return true;
+}
+
+std::string read_whole_file(const std::string& path, std::size_t megabytes,
+                            const std::string& kind) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found)
+    throw InputError(path + ": no such file");
+  if (fs::is_directory(status))
+    throw InputError(path + ": a directory, expected a " + kind);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened for reading");
+  std::string text;
+  std::array<char, 65536> buffer;
+  while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0) {
+    text.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > megabytes << 20)
+      throw InputError(path + ": more than " + std::to_string(megabytes) + " MB, too large for a " +
+                       kind);
+  }
+  if (stream.bad()) throw InputError(path + ": cannot be read");
+  return text;
 }
 
 }  // namespace samara::io
