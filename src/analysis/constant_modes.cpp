@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "samara/analysis/consistent_subspace.hpp"
+#include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
@@ -204,8 +205,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   std::stable_sort(order.begin(), order.end(), [speed](const Found& a, const Found& b) {
     return sorting_frequency(a.exponent, speed) < sorting_frequency(b.exponent, speed);
   });
-  const std::vector<PetscInt> kinetic = kinetic_unknowns(system);
-  const HarmonicEnergy energy(system, kinetic);
+  HarmonicEnergy energy(system);
+  const Eigen::VectorXcd one = Eigen::VectorXcd::Ones(1);
   ModeSet set;
   set.degrees_of_freedom = subspace.degrees_of_freedom();
   set.rotor_speed = speed;
@@ -214,11 +215,13 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   for (const Found& found : order) {
     Mode mode;
     const Eigen::MatrixXcd shape = found.spectrum->found.shapes.col(found.column);
-    Eigen::MatrixXcd history(static_cast<Eigen::Index>(kinetic.size()), 1);
-    for (std::size_t k = 0; k < kinetic.size(); ++k)
-      history(static_cast<Eigen::Index>(k), 0) = shape(kinetic[k], 0);
+    Eigen::MatrixXd real;
+    Eigen::MatrixXd imaginary;
     Eigen::VectorXd participation;
-    energy.identify(history, mode, participation);
+    energy.take(shape.real(), real);
+    energy.take(shape.imag(), imaginary);
+    describe_energy(energy.energies(real.data(), imaginary.data(), one), energy.part_names(), mode,
+                    participation);
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
     mode.exponent = found.exponent;

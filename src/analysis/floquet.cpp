@@ -16,6 +16,10 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/monodromy.hpp"
 #include "samara/base/error.hpp"
+#include "samara/petsc/session.hpp"
+
+#include "ranks.hpp"
+#include "signal_history.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -40,38 +44,6 @@ constexpr Eigen::Index label_samples = 3;
 constexpr std::array<double, 4> smoothing_weights{93.0 / 128.0, -37.0 / 128.0, 9.0 / 128.0,
                                                   -1.0 / 128.0};
 
-/// Numbers in a message, at the most.
-constexpr Eigen::Index most_values = 1 << 20;
-
-struct Ranks {
-  explicit Ranks(MPI_Comm communicator) : comm(communicator) {
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &size);
-  }
-  MPI_Comm comm;
-  int rank = 0;
-  int size = 1;
-
-  void sum(double* values, std::size_t count) const {
-    if (size > 1)
-      MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm);
-  }
-  void sum_on(int target, Eigen::MatrixXd& values) const {
-    if (size == 1) return;
-    for (Eigen::Index i = 0; i < values.size(); i += most_values) {
-      const auto count = static_cast<int>(std::min(most_values, values.size() - i));
-      MPI_Reduce(rank == target ? MPI_IN_PLACE : values.data() + i, values.data() + i, count,
-                 MPI_DOUBLE, MPI_SUM, target, comm);
-    }
-  }
-  /// Sums pairs of columns, one for every rank, which keeps its own as the first of them.
-  void sum_and_deal(Eigen::Ref<Eigen::MatrixXd> pairs) const {
-    if (size > 1)
-      MPI_Reduce_scatter_block(MPI_IN_PLACE, pairs.data(), static_cast<int>(2 * pairs.rows()),
-                               MPI_DOUBLE, MPI_SUM, comm);
-  }
-};
-
 class Analysis {
  public:
   Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution, int sectors,
@@ -81,26 +53,33 @@ class Analysis {
         ranks_(ranks),
         observer_(observer),
         subspace_(system, solution),
-        kinetic_(kinetic_unknowns(system)),
-        energy_(system, kinetic_),
         sectors_(sectors),
         steps_(steps),
         span_(steps / sectors),
         dt_(system.period() / steps),
         speed_(2.0 * std::numbers::pi / system.period()),
         states_(2 * subspace_.degrees_of_freedom()),
+        history_(system, sectors, span_, states_, ranks),
         stride_(std::max(1, (steps + shape_samples - 1) / shape_samples)) {}
 
   Floquet run() {
-    integrate();
-    solve_eigenproblem();
-    identify();
-    find_residuals();
-    collect_shapes();
+    in_stage("steps", [this] { integrate(); });
+    in_stage("eigenproblem", [this] { solve_eigenproblem(); });
+    in_stage("identification", [this] {
+      identify();
+      find_residuals();
+      collect_shapes();
+    });
     return finish();
   }
 
  private:
+  template <class Work>
+  static void in_stage(const char* name, Work work) {
+    const petsc::Stage stage(name);
+    work();
+  }
+
   // ---- the map over a sector -------------------------------------------------------------------
 
   void integrate() {
@@ -111,8 +90,6 @@ class Analysis {
     Eigen::MatrixXd z(start.rows(), static_cast<Eigen::Index>(own_.size()));
     for (std::size_t j = 0; j < own_.size(); ++j)
       z.col(static_cast<Eigen::Index>(j)) = start.col(own_[j]);
-    const auto nk = static_cast<Eigen::Index>(kinetic_.size());
-    history_.resize(nk * span_, z.cols());
     const Eigen::Index shapes = (span_ + stride_ - 1) / stride_;
     shapes_.resize(z.rows() * shapes, z.cols());
     first_.setZero(states_, states_);
@@ -124,9 +101,7 @@ class Analysis {
       const Eigen::MatrixXd& middle = propagator.advance(k, z);
       if (k == span_) end_ = middle;
       if (k < span_) {
-        for (Eigen::Index j = 0; j < z.cols(); ++j)
-          for (Eigen::Index i = 0; i < nk; ++i)
-            history_(k * nk + i, j) = middle(kinetic_[static_cast<std::size_t>(i)], j);
+        history_.append(middle);
         if (k % stride_ == 0) shapes_.middleRows(k / stride_ * z.rows(), z.rows()) = middle;
       }
       if (k == 0) put_coordinates(z, first_, d);
@@ -134,8 +109,8 @@ class Analysis {
       observer_.progress("floquet", k + 1, span_ + 1);
     }
     put_coordinates(z, last_, d);
-    ranks_.sum(first_.data(), static_cast<std::size_t>(first_.size()));
-    ranks_.sum(last_.data(), static_cast<std::size_t>(last_.size()));
+    ranks_.sum(first_);
+    ranks_.sum(last_);
   }
 
   /// Velocities that obey the constraints at t = 0 differ from those of a smooth sequence of steps
@@ -249,63 +224,53 @@ class Analysis {
 
   // ---- identification --------------------------------------------------------------------------
 
-  /// Weights of the own initial states in the given modes: real part and imaginary part of one
-  /// after the other.
+  /// Weights of the initial states in the given modes: real part and imaginary part of one after
+  /// the other.
   Eigen::MatrixXd weights_of(const std::vector<Eigen::Index>& modes) const {
-    const auto count = static_cast<Eigen::Index>(modes.size());
-    Eigen::MatrixXd weights =
-        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(own_.size()), 2 * count);
-    for (Eigen::Index m = 0; m < count; ++m) {
-      const Eigen::Index mode = modes[static_cast<std::size_t>(m)];
-      weights.col(2 * m) = vectors_(own_, mode).real();
-      weights.col(2 * m + 1) = vectors_(own_, mode).imag();
+    Eigen::MatrixXd weights(states_, 2 * static_cast<Eigen::Index>(modes.size()));
+    Eigen::Index column = 0;
+    for (const Eigen::Index mode : modes) {
+      weights.col(column++) = vectors_.col(mode).real();
+      weights.col(column++) = vectors_.col(mode).imag();
     }
     return weights;
   }
 
+  Eigen::MatrixXd own_weights_of(const std::vector<Eigen::Index>& modes) const {
+    return weights_of(modes)(own_, Eigen::all);
+  }
+
   void identify() {
     const auto count = static_cast<Eigen::Index>(modes_.size());
-    const auto nk = static_cast<Eigen::Index>(kinetic_.size());
+    const Eigen::MatrixXd& signals = history_.values();
+    HarmonicEnergy& energy = history_.energy();
+    const auto parts = static_cast<Eigen::Index>(energy.part_names().size());
     participation_.setZero(count, steps_);
-    part_shares_.setZero(static_cast<Eigen::Index>(energy_.part_names().size()), count);
-    Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(count);
-    Eigen::VectorXd energies = Eigen::VectorXd::Zero(count);
-    // Every rank combines what its columns add to a batch of modes, and takes its share of them
-    // over.
-    const Eigen::Index batch =
-        ranks_.size *
-        std::max<Eigen::Index>(
-            1, batch_values / (2 * std::max<Eigen::Index>(1, history_.rows()) * ranks_.size));
+    const Eigen::Index batch = std::max<Eigen::Index>(
+        1, batch_values / std::max<Eigen::Index>(1, 2 * history_.most_rows()));
+    Eigen::VectorXcd factors(span_);
     Eigen::MatrixXd values;
     for (Eigen::Index first = 0; first < count; first += batch) {
-      std::vector<Eigen::Index> modes;
-      for (Eigen::Index m = first; m < std::min(first + batch, count); ++m) modes.push_back(m);
-      while (modes.size() % static_cast<std::size_t>(ranks_.size) != 0) modes.push_back(count - 1);
-      multiply(history_, weights_of(modes), values);
-      for (std::size_t m = 0; m < modes.size(); m += static_cast<std::size_t>(ranks_.size)) {
-        const auto column = 2 * static_cast<Eigen::Index>(m);
-        ranks_.sum_and_deal(values.middleCols(column, 2 * ranks_.size));
-        const Eigen::Index mode = first + static_cast<Eigen::Index>(m) + ranks_.rank;
-        if (mode >= count) continue;
-        const Sector sector{values.col(column).data(), nk, span_, 1};
-        Mode found;
-        Eigen::VectorXd participation;
-        energy_.identify(whole_period(sector, exponents_[static_cast<std::size_t>(mode)], kinetic_),
-                         found, participation);
-        harmonics(mode) = found.harmonic;
-        energies(mode) = found.kinetic_energy;
-        participation_.row(mode) = participation;
-        for (std::size_t p = 0; p < found.parts.size(); ++p)
-          part_shares_(static_cast<Eigen::Index>(p), mode) = found.parts[p].share;
+      std::vector<Eigen::Index> modes(static_cast<std::size_t>(std::min(batch, count - first)));
+      std::iota(modes.begin(), modes.end(), first);
+      multiply(signals, weights_of(modes), values);
+      // Every rank has the energies of some signals of each mode, and the modes want all of them.
+      Eigen::MatrixXd energies(steps_, parts * static_cast<Eigen::Index>(modes.size()));
+      for (const Eigen::Index mode : modes) {
+        const Complex exponent = exponents_[static_cast<std::size_t>(mode)];
+        for (long k = 0; k < span_; ++k)
+          factors(k) = std::exp(-exponent * ((static_cast<double>(k) + 0.5) * dt_));
+        const Eigen::Index at = mode - first;
+        energies.middleCols(at * parts, parts) =
+            energy.energies(values.col(2 * at).data(), values.col(2 * at + 1).data(), factors);
       }
-    }
-    ranks_.sum(harmonics.data(), static_cast<std::size_t>(count));
-    ranks_.sum(energies.data(), static_cast<std::size_t>(count));
-    ranks_.sum(participation_.data(), static_cast<std::size_t>(participation_.size()));
-    ranks_.sum(part_shares_.data(), static_cast<std::size_t>(part_shares_.size()));
-    for (std::size_t m = 0; m < modes_.size(); ++m) {
-      modes_[m].harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
-      modes_[m].kinetic_energy = energies(static_cast<Eigen::Index>(m));
+      ranks_.sum(energies);
+      Eigen::VectorXd participation;
+      for (const Eigen::Index mode : modes) {
+        describe_energy(energies.middleCols((mode - first) * parts, parts), energy.part_names(),
+                        modes_[static_cast<std::size_t>(mode)], participation);
+        participation_.row(mode) = participation;
+      }
     }
   }
 
@@ -378,7 +343,7 @@ class Analysis {
   void find_residuals() {
     std::vector<Eigen::Index> modes(modes_.size());
     std::iota(modes.begin(), modes.end(), 0);
-    const Eigen::MatrixXd weights = weights_of(modes);
+    const Eigen::MatrixXd weights = own_weights_of(modes);
     Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), weights);
     Eigen::MatrixXd last = multiply(end_, weights);
     ranks_.sum_on(0, first);
@@ -389,7 +354,7 @@ class Analysis {
         residuals(m) = closure(first.col(2 * m) + 1i * first.col(2 * m + 1),
                                last.col(2 * m) + 1i * last.col(2 * m + 1),
                                multipliers_[static_cast<std::size_t>(m)]);
-    ranks_.sum(residuals.data(), modes.size());
+    ranks_.sum(residuals);
     for (const Eigen::Index m : modes) modes_[static_cast<std::size_t>(m)].residual = residuals(m);
   }
 
@@ -415,7 +380,7 @@ class Analysis {
   void expand_shapes(const std::vector<Eigen::Index>& modes, Eigen::Index instants) {
     const Eigen::Index n = system_.size();
     Eigen::MatrixXd values;
-    multiply(shapes_.topRows(n * instants), weights_of(modes), values);
+    multiply(shapes_.topRows(n * instants), own_weights_of(modes), values);
     ranks_.sum_on(0, values);
     if (ranks_.rank != 0) return;
     std::vector<PetscInt> all(static_cast<std::size_t>(n));
@@ -442,7 +407,7 @@ class Analysis {
           harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
       }
     }
-    ranks_.sum(harmonics.data(), modes_.size());
+    ranks_.sum(harmonics);
     for (std::size_t m = 0; m < modes_.size(); ++m)
       modes_[m].harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
   }
@@ -484,9 +449,6 @@ class Analysis {
     const bool moderate = 0.5 * std::abs(exponent.real()) * dt_ <= largest_half_phase;
     mode.resolved =
         slow && moderate && in_reach(exponent.imag()) && mode.residual <= largest_residual;
-    for (std::size_t p = 0; p < energy_.part_names().size(); ++p)
-      mode.parts.push_back({energy_.part_names()[p], part_shares_(static_cast<Eigen::Index>(p),
-                                                                  static_cast<Eigen::Index>(m))});
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
   }
@@ -544,17 +506,15 @@ class Analysis {
   Ranks ranks_;
   Observer& observer_;
   ConsistentSubspace subspace_;
-  std::vector<PetscInt> kinetic_;
-  HarmonicEnergy energy_;
   int sectors_;
   int steps_;
   long span_;
   double dt_;
   double speed_;
   Eigen::Index states_;
+  SignalHistory history_;
   long stride_;
   std::vector<Eigen::Index> own_;     ///< initial states of this rank
-  Eigen::MatrixXd history_;           ///< kinetic unknowns, step after step, x own states
   Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th step x own states
   Eigen::MatrixXd end_;               ///< all unknowns in the middle of the step after the sector
   Eigen::MatrixXd first_, last_;      ///< eta at the first two and the last two instants
@@ -563,7 +523,6 @@ class Analysis {
   Eigen::MatrixXcd vectors_;
   std::vector<Mode> modes_;
   Eigen::MatrixXd participation_;
-  Eigen::MatrixXd part_shares_;
   std::vector<Eigen::MatrixXcd> mode_shapes_;
 };
 

@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
-
-#include "samara/math/fourier.hpp"
 
 namespace samara::analysis {
 namespace {
 
 using system::EnergyGroup;
-
-/// Energies closer than this, relative, are a tie.
-constexpr double tie = 1e-6;
 
 /// Share of the energy that must be strain for a mode to be called elastic.
 constexpr double elastic_share = 0.15;
@@ -149,80 +143,6 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
 double sorting_frequency(std::complex<double> exponent, double rotor_speed) {
   const double slow = rotor_speed > 0.0 ? rotor_speed : 1.0;
   return exponent.imag() == 0.0 && std::abs(exponent) < slow ? 0.0 : std::abs(exponent);
-}
-
-std::vector<PetscInt> kinetic_unknowns(const system::PeriodicSystem& system) {
-  std::vector<PetscInt> unknowns;
-  for (const EnergyGroup& group : system.energy_groups())
-    if (group.kind == EnergyGroup::Kind::kinetic)
-      unknowns.insert(unknowns.end(), group.unknowns.begin(), group.unknowns.end());
-  std::sort(unknowns.begin(), unknowns.end());
-  unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
-  return unknowns;
-}
-
-HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system,
-                               const std::vector<PetscInt>& unknowns) {
-  for (const EnergyGroup& group : system.energy_groups()) {
-    if (group.kind != EnergyGroup::Kind::kinetic) continue;
-    auto found = std::find(parts_.begin(), parts_.end(), group.part);
-    if (found == parts_.end()) found = parts_.insert(parts_.end(), group.part);
-    Group own;
-    own.part = static_cast<std::size_t>(found - parts_.begin());
-    own.weight = weight_of(group);
-    for (const PetscInt unknown : group.unknowns)
-      own.rows.push_back(std::lower_bound(unknowns.begin(), unknowns.end(), unknown) -
-                         unknowns.begin());
-    groups_.push_back(own);
-  }
-}
-
-void HarmonicEnergy::identify(const Eigen::MatrixXcd& history, Mode& mode,
-                              Eigen::VectorXd& participation) const {
-  const Eigen::Index samples = history.cols();
-  participation.setZero(samples);
-  if (history.rows() == 0) return;
-  math::FourierTransform transform(static_cast<int>(history.rows()), static_cast<int>(samples));
-  const Eigen::MatrixXcd spectrum = transform(history);
-  Eigen::MatrixXd energy = Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(parts_.size()));
-  for (const Group& group : groups_) {
-    const auto part = static_cast<Eigen::Index>(group.part);
-    for (Eigen::Index a = 0; a < group.weight.rows(); ++a)
-      for (Eigen::Index b = 0; b <= a; ++b) {
-        const double weight = group.weight(a, b) * (a == b ? 0.5 : 1.0);
-        if (weight == 0.0) continue;
-        const auto row = group.rows[static_cast<std::size_t>(a)];
-        const auto other = group.rows[static_cast<std::size_t>(b)];
-        energy.col(part) +=
-            weight * (spectrum.col(row).real().cwiseProduct(spectrum.col(other).real()) +
-                      spectrum.col(row).imag().cwiseProduct(spectrum.col(other).imag()));
-      }
-  }
-  const Eigen::Index half = samples / 2;
-  const auto place = [samples](Eigen::Index k) { return k >= 0 ? k : k + samples; };
-  const double total = energy.sum();
-  mode.kinetic_energy = total;
-  for (Eigen::Index i = 0; i < samples; ++i)
-    participation(i) = total > 0.0 ? energy.row(place(i - half)).sum() / total : 0.0;
-  mode.parts.clear();
-  Eigen::Index dominant = 0;
-  for (std::size_t p = 0; p < parts_.size(); ++p) {
-    const auto column_index = static_cast<Eigen::Index>(p);
-    mode.parts.push_back({parts_[p], total > 0.0 ? energy.col(column_index).sum() / total : 0.0});
-    if (energy.col(column_index).sum() > energy.col(dominant).sum()) dominant = column_index;
-  }
-  mode.harmonic = 0;
-  if (parts_.empty() || !(total > 0.0)) return;
-  double best = 0.0;
-  for (Eigen::Index k = -half; k < samples - half; ++k)
-    best = std::max(best, energy(place(k), dominant));
-  // Among ties the smallest k >= 0, else the largest negative one.
-  Eigen::Index chosen = samples;
-  for (Eigen::Index k = 0; k < samples - half && chosen == samples; ++k)
-    if (energy(place(k), dominant) >= best * (1.0 - tie)) chosen = k;
-  for (Eigen::Index k = -1; k >= -half && chosen == samples; --k)
-    if (energy(place(k), dominant) >= best * (1.0 - tie)) chosen = k;
-  mode.harmonic = static_cast<int>(chosen);
 }
 
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {

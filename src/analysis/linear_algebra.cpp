@@ -22,6 +22,43 @@ void multiply_by_inverse_root(Vec factors, const std::vector<double>& largest) {
     if (largest[i] > 0.0) view[static_cast<PetscInt>(i)] /= std::sqrt(largest[i]);
 }
 
+/// rows matrix columns, in place. MatDiagonalScale takes as long as the tangents for block
+/// matrices.
+void scale(Mat matrix, const Equilibration& scaling) {
+  PetscBool is_blocked = PETSC_FALSE;
+  petsc::check(
+      PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQBAIJ, &is_blocked));
+  if (is_blocked == PETSC_FALSE) {
+    petsc::check(MatDiagonalScale(matrix, scaling.rows.get(), scaling.columns.get()));
+    return;
+  }
+  PetscInt size = 0;
+  PetscInt block_rows = 0;
+  const PetscInt* begin = nullptr;
+  const PetscInt* block_columns = nullptr;
+  PetscBool done = PETSC_FALSE;
+  PetscScalar* values = nullptr;
+  petsc::check(MatGetBlockSize(matrix, &size));
+  petsc::check(
+      MatGetRowIJ(matrix, 0, PETSC_FALSE, PETSC_TRUE, &block_rows, &begin, &block_columns, &done));
+  if (done == PETSC_FALSE) throw InternalError("a block matrix does not show its structure");
+  petsc::check(MatSeqBAIJGetArray(matrix, &values));
+  const petsc::ReadView rows(scaling.rows.get());
+  const petsc::ReadView columns(scaling.columns.get());
+  for (PetscInt i = 0; i < block_rows; ++i) {
+    const Eigen::Map<const Eigen::ArrayXd> row(rows.data() + i * size, size);
+    for (PetscInt k = begin[i]; k < begin[i + 1]; ++k)
+      for (PetscInt c = 0; c < size; ++c)
+        Eigen::Map<Eigen::ArrayXd>(values + (k * size + c) * size, size) *=
+            row * columns[block_columns[k] * size + c];
+  }
+  petsc::check(MatSeqBAIJRestoreArray(matrix, &values));
+  petsc::check(MatRestoreRowIJ(matrix, 0, PETSC_FALSE, PETSC_TRUE, &block_rows, &begin,
+                               &block_columns, &done));
+  petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+}
+
 /// All eigenvalues are equal: their order is the caller's affair, and SLEPc's way of sorting (swaps
 /// in the Schur form) fails on the degenerate pairs of identical blades.
 PetscErrorCode keep_order(PetscScalar, PetscScalar, PetscScalar, PetscScalar, PetscInt* result,
@@ -121,7 +158,7 @@ void DirectSolver::factor(Mat matrix) {
     petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
     petsc::check(KSPSetFromOptions(solver_.get()));
   }
-  petsc::check(MatDiagonalScale(matrix, scaling_.rows.get(), scaling_.columns.get()));
+  scale(matrix, scaling_);
   petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
   petsc::check(KSPSetUp(solver_.get()));
   matrix_ = matrix;

@@ -7,6 +7,7 @@
 #include "samara/analysis/harmonic_balance.hpp"
 #include "samara/analysis/shooting.hpp"
 #include "samara/base/error.hpp"
+#include "samara/petsc/session.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -58,6 +59,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
 
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer) {
+  const petsc::Stage stage("trim");
   if (system.period() == 0.0) return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
   // Loads that oscillate are no constant, and might vanish at all of its samples.

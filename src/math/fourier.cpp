@@ -27,10 +27,12 @@ FourierTransform::FourierTransform(int signals, int samples)
 
 FourierTransform::~FourierTransform() = default;
 
-Eigen::MatrixXcd FourierTransform::operator()(const Eigen::MatrixXcd& history) {
-  plan_->input = history;
+Eigen::MatrixXcd& FourierTransform::input() { return plan_->input; }
+
+const Eigen::MatrixXcd& FourierTransform::run() {
   fftw_execute(plan_->plan);
-  return plan_->output / static_cast<double>(history.cols());
+  plan_->output /= static_cast<double>(plan_->input.cols());
+  return plan_->output;
 }
 
 }  // namespace samara::math

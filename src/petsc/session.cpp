@@ -140,6 +140,15 @@ std::string Session::options() {
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 
+Stage::Stage(const char* name) {
+  PetscLogStage stage = -1;
+  check(PetscLogStageGetId(name, &stage));
+  if (stage < 0) check(PetscLogStageRegister(name, &stage));
+  check(PetscLogStagePush(stage));
+}
+
+Stage::~Stage() { PetscLogStagePop(); }
+
 std::string library_versions() {
   char petsc[256];
   char slepc[256];

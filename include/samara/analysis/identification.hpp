@@ -1,37 +1,11 @@
-// From the history of a mode over a period to its frequency, its parts and its name
-// (docs/theory.md, section 5; Lee, Hodges & Patil (2002), eq. (20), (21)).
+// What a mode is called, from the shape and the strain energy of its parts (docs/theory.md,
+// section 5).
 #pragma once
 
 #include "samara/analysis/mode.hpp"
 #include "samara/system/periodic_system.hpp"
 
 namespace samara::analysis {
-
-/// The unknowns that kinetic energies need, each once.
-std::vector<PetscInt> kinetic_unknowns(const system::PeriodicSystem& system);
-
-/// Mean kinetic energy by part and harmonic.
-class HarmonicEnergy {
- public:
-  /// `unknowns`: rows of the histories, as kinetic_unknowns gives them.
-  HarmonicEnergy(const system::PeriodicSystem& system, const std::vector<PetscInt>& unknowns);
-
-  /// `history`: unknowns x samples of Z(t) exp(-lambda t) over one period. Finds the dominant
-  /// harmonic of the part with most energy, the parts' shares (in the order of part_names) and
-  /// `participation`, the share of every harmonic k = -floor(samples/2) ...
-  const std::vector<std::string>& part_names() const { return parts_; }
-
-  void identify(const Eigen::MatrixXcd& history, Mode& mode, Eigen::VectorXd& participation) const;
-
- private:
-  struct Group {
-    std::size_t part;
-    std::vector<Eigen::Index> rows;
-    Eigen::MatrixXd weight;
-  };
-  std::vector<std::string> parts_;
-  std::vector<Group> groups_;
-};
 
 /// True where almost nothing strains: a rigid-body motion of the free joints. A strain's damping
 /// counts with it: an overdamped motion of a beam is none of its joints.

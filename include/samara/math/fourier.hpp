@@ -14,9 +14,12 @@ class FourierTransform {
   FourierTransform(const FourierTransform&) = delete;
   FourierTransform& operator=(const FourierTransform&) = delete;
 
-  /// Coefficients (1/n) sum_m x_m exp(-2 pi i k m / n), k = 0 .. n - 1 (k > n/2 is k - n).
-  /// `history`: signals x samples; result: samples x signals.
-  Eigen::MatrixXcd operator()(const Eigen::MatrixXcd& history);
+  /// signals x samples, to be filled before every run.
+  Eigen::MatrixXcd& input();
+
+  /// Coefficients (1/n) sum_m x_m exp(-2 pi i k m / n), k = 0 .. n - 1 (k > n/2 is k - n), samples
+  /// x signals; they stand until the next run.
+  const Eigen::MatrixXcd& run();
 
  private:
   struct Plan;

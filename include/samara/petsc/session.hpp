@@ -40,6 +40,15 @@ class Session {
   MPI_Comm agreement_ = MPI_COMM_NULL;  ///< apart from all communication of the analyses
 };
 
+/// A stage of the work in the table of PETSc's `-log_view`, for the length of a scope.
+class Stage {
+ public:
+  explicit Stage(const char* name);
+  ~Stage();
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+};
+
 /// Versions of PETSc, SLEPc and MPI in words.
 std::string library_versions();
 
