@@ -215,8 +215,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   for (const Found& found : order) {
     Mode mode;
     const Eigen::MatrixXcd shape = found.spectrum->found.shapes.col(found.column);
-    Eigen::MatrixXd real;
-    Eigen::MatrixXd imaginary;
+    Eigen::MatrixXd real(energy.signals(), 1);
+    Eigen::MatrixXd imaginary(energy.signals(), 1);
     Eigen::VectorXd participation;
     energy.take(shape.real(), real);
     energy.take(shape.imag(), imaginary);

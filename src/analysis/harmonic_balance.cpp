@@ -13,6 +13,8 @@ namespace samara::analysis {
 namespace {
 
 constexpr double rounding = 1e-12;
+/// Relative: what scaling there and back does to a vector.
+constexpr double same = 1e-14;
 
 int sample_count(int harmonics) { return 4 * harmonics + 2; }
 
@@ -71,14 +73,14 @@ class Balance {
     const PeriodicSolution solution(unpack(h), system_.period());
     const int samples = sample_count(harmonics_);
     const Eigen::Index entries = pattern_.nonZeros();
-    Eigen::MatrixXd sampled = Eigen::MatrixXd::Zero(2 * samples, entries);
+    Eigen::MatrixXd sampled = Eigen::MatrixXd::Zero(entries, 2 * samples);
     Eigen::MatrixXd harmonics(width_ * width_, 2 * samples);
     for (int k = 0; k < samples; ++k) {
       const double t = time_of(k);
       solution.evaluate(t, z_.get(), z_dot_.get());
       system_.tangents(t, z_.get(), z_dot_.get(), 0.0, jacobian_.get(), mass_.get());
-      sample_entries(jacobian_.get(), sampled.row(k));
-      sample_entries(mass_.get(), sampled.row(samples + k));
+      sample_entries(jacobian_.get(), sampled.col(k));
+      sample_entries(mass_.get(), sampled.col(samples + k));
       const Eigen::VectorXd w = projection(t);
       const Eigen::MatrixXd by_value =
           PeriodicSolution::basis(harmonics_, period(), t) * w.transpose();
@@ -88,7 +90,7 @@ class Balance {
       harmonics.col(samples + k) =
           Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
     }
-    insert_blocks(multiply(harmonics, sampled), matrix);
+    insert_blocks(multiply(harmonics, sampled.transpose()), matrix);
   }
 
   /// An AIJ matrix with the pattern of the tangent: every entry of K and M that is not always zero,
@@ -114,15 +116,11 @@ class Balance {
           to_sparse(jacobian_.get()).cwiseAbs();
       pattern_ = Eigen::SparseMatrix<double, Eigen::RowMajor>(pattern_ + found);
     }
+    // The load that holds a neutral coordinate stands in the place of its mean.
+    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
+      pattern_.coeffRef(neutral.row, neutral.unknown) += 1.0;
     pattern_.makeCompressed();
-    std::vector<PetscInt> counts;
-    for (Eigen::Index i = 0; i < size_; ++i)
-      for (int c = 0; c < width_; ++c)
-        counts.push_back((static_cast<PetscInt>(pattern_.row(i).nonZeros()) + 1) * width_);
-    petsc::Handle<Mat> matrix;
-    petsc::check(
-        MatCreateSeqAIJ(PETSC_COMM_SELF, unknowns(), unknowns(), 0, counts.data(), matrix.fill()));
-    return matrix;
+    return make_block_matrix();
   }
 
  private:
@@ -143,9 +141,34 @@ class Balance {
         [unknown](const system::NeutralCoordinate& n) { return n.unknown == unknown; });
   }
 
+  petsc::Handle<Mat> make_block_matrix() const {
+    std::vector<PetscInt> begin{0};
+    std::vector<PetscInt> columns;
+    for (Eigen::Index i = 0; i < size_; ++i)
+      for (int row = 0; row < width_; ++row) {
+        for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(pattern_, i); it; ++it)
+          for (int c = 0; c < width_; ++c)
+            columns.push_back(static_cast<PetscInt>(it.col()) * width_ + c);
+        begin.push_back(static_cast<PetscInt>(columns.size()));
+      }
+    petsc::Handle<Mat> matrix;
+    petsc::check(MatCreate(PETSC_COMM_SELF, matrix.fill()));
+    petsc::check(MatSetSizes(matrix.get(), unknowns(), unknowns(), unknowns(), unknowns()));
+    petsc::check(MatSetType(matrix.get(), MATSEQAIJ));
+    petsc::check(MatSeqAIJSetPreallocationCSR(matrix.get(), begin.data(), columns.data(), nullptr));
+    return matrix;
+  }
+
+  /// Whether the load that holds `unknown` acts in `row`.
+  bool holds(Eigen::Index row, PetscInt unknown) const {
+    return std::any_of(system_.neutral_coordinates().begin(), system_.neutral_coordinates().end(),
+                       [row, unknown](const system::NeutralCoordinate& n) {
+                         return n.unknown == unknown && n.row == row;
+                       });
+  }
+
   /// The entries of a tangent in the order of the pattern.
-  void sample_entries(Mat sample,
-                      Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> out) const {
+  void sample_entries(Mat sample, Eigen::Ref<Eigen::VectorXd> out) const {
     std::vector<Eigen::Index> place(static_cast<std::size_t>(size_), -1);
     for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i) {
       const Eigen::Index first = pattern_.outerIndexPtr()[i];
@@ -177,32 +200,20 @@ class Balance {
 
   /// `blocks`: a column per entry of the pattern, its block of harmonics row by row.
   void insert_blocks(const Eigen::MatrixXd& blocks, Mat matrix) const {
-    std::vector<PetscInt> columns;
-    std::vector<PetscScalar> values;
+    PetscScalar* values = nullptr;
+    petsc::check(MatSeqAIJGetArrayWrite(matrix, &values));
+    PetscScalar* next = values;  // in the order of make_block_matrix
     for (Eigen::Index i = 0; i < size_; ++i) {
       const Eigen::Index first = pattern_.outerIndexPtr()[i];
       const Eigen::Index last = pattern_.outerIndexPtr()[i + 1];
-      for (int row = 0; row < width_; ++row) {
-        columns.clear();
-        values.clear();
+      for (int row = 0; row < width_; ++row)
         for (Eigen::Index e = first; e < last; ++e) {
           const auto unknown = static_cast<PetscInt>(pattern_.innerIndexPtr()[e]);
-          for (int c = 0; c < width_; ++c) {
-            columns.push_back(unknown * width_ + c);
-            values.push_back(c == 0 && is_neutral(unknown) ? 0.0 : blocks(row * width_ + c, e));
-          }
+          next = std::copy_n(&blocks(row * width_, e), width_, next);
+          if (is_neutral(unknown)) *(next - width_) = holds(i, unknown) && row == 0 ? 1.0 : 0.0;
         }
-        const auto number = static_cast<PetscInt>(i * width_ + row);
-        petsc::check(MatSetValues(matrix, 1, &number, static_cast<PetscInt>(columns.size()),
-                                  columns.data(), values.data(), INSERT_VALUES));
-      }
     }
-    // The load that holds a neutral coordinate stands in the place of its mean.
-    petsc::check(MatAssemblyBegin(matrix, MAT_FLUSH_ASSEMBLY));
-    petsc::check(MatAssemblyEnd(matrix, MAT_FLUSH_ASSEMBLY));
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      petsc::check(
-          MatSetValue(matrix, neutral.row * width_, neutral.unknown * width_, 1.0, INSERT_VALUES));
+    petsc::check(MatSeqAIJRestoreArrayWrite(matrix, &values));
     petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
     petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   }
@@ -222,6 +233,7 @@ class Balance {
 /// What SNES's callbacks see: the unknowns and rows are scaled by `scaling`.
 struct SolverContext {
   Balance* balance = nullptr;
+  const Eigen::VectorXd* start = nullptr;  ///< whose tangent the matrix holds, before the first one
   const Equilibration* scaling = nullptr;
   Eigen::VectorXd unscaled;
   std::exception_ptr error;
@@ -257,7 +269,11 @@ PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
 PetscErrorCode form_jacobian(SNES snes, Vec x, Mat, Mat matrix, void* pointer) noexcept {
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
-    context.balance->tangent(context.unscale(x), matrix);
+    const PetscScalar* h = context.unscale(x);
+    const bool is_start = context.start != nullptr && (context.unscaled - *context.start).norm() <=
+                                                          same * context.start->norm();
+    if (!is_start) context.balance->tangent(h, matrix);
+    context.start = nullptr;
     petsc::check(
         MatDiagonalScale(matrix, context.scaling->rows.get(), context.scaling->columns.get()));
   } catch (const DomainError&) {
@@ -291,6 +307,28 @@ void fail(SNES solver, const SolverContext& context) {
           "softer load or a stiffer blade shows whether a steady state exists";
   throw ConvergenceError(text.str());
 }
+
+/// MUMPS would take METIS, which is for larger meshes: a chain of blocks fills in half as much in
+/// the order of approximate minimum fill. An option of the user's stands. (MatMumpsSetIcntl before
+/// the first factorization has no effect in PETSc 3.18.)
+class PreferredOrdering {
+ public:
+  PreferredOrdering() {
+    PetscBool given = PETSC_FALSE;
+    petsc::check(PetscOptionsHasName(nullptr, nullptr, option, &given));
+    set_ = given == PETSC_FALSE;
+    if (set_) petsc::check(PetscOptionsSetValue(nullptr, option, "2"));
+  }
+  ~PreferredOrdering() {
+    if (set_) PetscOptionsClearValue(nullptr, option);
+  }
+  PreferredOrdering(const PreferredOrdering&) = delete;
+  PreferredOrdering& operator=(const PreferredOrdering&) = delete;
+
+ private:
+  static constexpr char option[] = "-trim_mat_mumps_icntl_7";
+  bool set_ = false;
+};
 
 Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics,
                              const PeriodicSolution* start) {
@@ -356,6 +394,7 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
   const Equilibration scaling = equilibrate(matrix.get());
   SolverContext context;
   context.balance = &balance;
+  context.start = &h;
   context.scaling = &scaling;
   context.unscaled.resize(h.size());
   {
@@ -378,6 +417,7 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
   petsc::check(PCSetType(preconditioner, PCLU));
   petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
   petsc::check(SNESSetFromOptions(solver.get()));
+  const PreferredOrdering ordering;
   const PetscErrorCode code = SNESSolve(solver.get(), nullptr, x.get());
   if (code != 0 && context.error) std::rethrow_exception(context.error);
   petsc::check(code);

@@ -16,10 +16,9 @@ constexpr double largest_solve_residual = 1e-11;
 /// Factors of a badly scaled matrix lose digits that refinement brings back.
 constexpr int most_refinements = 3;
 
-void multiply_by_inverse_root(Vec factors, const std::vector<double>& largest) {
+void multiply_each(Vec factors, const std::vector<double>& by) {
   const petsc::WriteView view(factors);
-  for (std::size_t i = 0; i < largest.size(); ++i)
-    if (largest[i] > 0.0) view[static_cast<PetscInt>(i)] /= std::sqrt(largest[i]);
+  for (std::size_t i = 0; i < by.size(); ++i) view[static_cast<PetscInt>(i)] *= by[i];
 }
 
 /// rows matrix columns, in place. MatDiagonalScale takes as long as the tangents for block
@@ -87,12 +86,14 @@ Equilibration equilibrate(Mat matrix) {
         column = std::max(column, std::abs(it.value()));
       }
     }
+    for (std::vector<double>* largest : {&row_largest, &column_largest})
+      for (double& value : *largest) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
     for (Eigen::Index j = 0; j < work.outerSize(); ++j)
       for (Eigen::SparseMatrix<double>::InnerIterator it(work, j); it; ++it)
-        it.valueRef() /= std::sqrt(row_largest[static_cast<std::size_t>(it.row())] *
-                                   column_largest[static_cast<std::size_t>(j)]);
-    multiply_by_inverse_root(scaling.rows.get(), row_largest);
-    multiply_by_inverse_root(scaling.columns.get(), column_largest);
+        it.valueRef() *= row_largest[static_cast<std::size_t>(it.row())] *
+                         column_largest[static_cast<std::size_t>(j)];
+    multiply_each(scaling.rows.get(), row_largest);
+    multiply_each(scaling.columns.get(), column_largest);
   }
   return scaling;
 }

@@ -26,8 +26,7 @@ SignalHistory::SignalHistory(const system::PeriodicSystem& system, int sectors, 
 
 void SignalHistory::append(const Eigen::MatrixXd& states) {
   if (ranks_.size == 1) {
-    energy().take(states, step_);
-    values_.middleRows(taken_ * step_.rows(), step_.rows()) = step_;
+    energy().take(states, values_.middleRows(taken_ * energy().signals(), energy().signals()));
     ++taken_;
     return;
   }
@@ -39,9 +38,9 @@ void SignalHistory::append(const Eigen::MatrixXd& states) {
     block.steps = std::min(block_, steps_ - taken_);
   }
   for (std::size_t r = 0; r < energies_.size(); ++r) {
-    energies_[r].take(states, step_);
-    block.outgoing[r].resize(step_.rows() * block.steps, states.cols());
-    block.outgoing[r].middleRows(place * step_.rows(), step_.rows()) = step_;
+    const Eigen::Index rows = energies_[r].signals();
+    block.outgoing[r].resize(rows * block.steps, states.cols());
+    energies_[r].take(states, block.outgoing[r].middleRows(place * rows, rows));
   }
   ++taken_;
   if (place + 1 == block.steps) send(block);

@@ -55,7 +55,6 @@ class SignalHistory {
   long taken_ = 0;                        ///< steps
   std::vector<HarmonicEnergy> energies_;  ///< of every rank
   std::array<Block, 2> blocks_;           ///< one on its way while the other is filled
-  Eigen::MatrixXd step_;
   Eigen::MatrixXd values_;
 };
 

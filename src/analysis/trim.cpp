@@ -16,6 +16,8 @@ constexpr int most_harmonics = 60;
 
 /// Relative to the largest internal load: below it a constant is the solution.
 constexpr double rounding = 1e-11;
+/// Of the largest residual of the undeformed system: what changes by more is no rounding.
+constexpr double changing = 1e-6;
 
 double allowed_residual(const Trim& trim, double relative) {
   return relative * std::max(trim.load_level, 1.0);
@@ -24,6 +26,26 @@ double allowed_residual(const Trim& trim, double relative) {
 /// With Q identical blades the tower sees multiples of Q. Leaving out the multiple next above H
 /// while the blades keep H leaves its load unbalanced: H + 1 must not be a multiple of Q.
 bool is_closed(int harmonics, int sectors) { return sectors < 2 || (harmonics + 1) % sectors != 0; }
+
+/// True where the undeformed system feels loads that change with time: no constant balances them.
+bool feels_time(const system::PeriodicSystem& system) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Vec> first = system.make_state();
+  const petsc::Handle<Vec> other = system.make_state();
+  system.reference_state(0.0, z.get());
+  system.residual(0.0, z.get(), z_dot.get(), first.get());
+  PetscReal size = 0.0;
+  petsc::check(VecNorm(first.get(), NORM_INFINITY, &size));
+  for (const double turn : {0.13, 0.29, 0.61}) {
+    system.residual(turn * system.period(), z.get(), z_dot.get(), other.get());
+    petsc::check(VecAXPY(other.get(), -1.0, first.get()));
+    PetscReal change = 0.0;
+    petsc::check(VecNorm(other.get(), NORM_INFINITY, &change));
+    if (change > changing * size) return true;
+  }
+  return false;
+}
 
 /// A constant is only tried: an unbalanced rotor may have none.
 std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options) {
@@ -63,8 +85,9 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
   if (system.period() == 0.0) return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
   // Loads that oscillate are no constant, and might vanish at all of its samples.
-  const std::optional<Trim> constant =
-      options.least_harmonics == 0 ? try_constant(system, options) : std::nullopt;
+  const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)
+                                           ? try_constant(system, options)
+                                           : std::nullopt;
   if (constant && constant->residual_between <= allowed_residual(*constant, rounding) &&
       constant->residual <= allowed_residual(*constant, rounding))
     return *constant;

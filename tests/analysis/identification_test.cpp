@@ -76,8 +76,8 @@ Identified identify(const Described& system, const Eigen::MatrixXcd& history) {
   Eigen::MatrixXd energies;
   for (int share = 0; share < 2; ++share) {  // together the whole
     analysis::HarmonicEnergy energy(system, 1, share, 2);
-    Eigen::MatrixXd real;
-    Eigen::MatrixXd imaginary;
+    Eigen::MatrixXd real(energy.signals(), history.cols());
+    Eigen::MatrixXd imaginary(energy.signals(), history.cols());
     energy.take(states.real(), real);
     energy.take(states.imag(), imaginary);
     const Eigen::MatrixXd part =

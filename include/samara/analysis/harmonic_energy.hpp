@@ -29,7 +29,7 @@ class HarmonicEnergy {
   Eigen::Index signals() const { return signals_.rows(); }
 
   /// Signals (signals x columns) of states (system size x columns).
-  void take(const Eigen::MatrixXd& states, Eigen::MatrixXd& signals) const {
+  void take(const Eigen::MatrixXd& states, Eigen::Ref<Eigen::MatrixXd> signals) const {
     signals.noalias() = signals_ * states;
   }
 

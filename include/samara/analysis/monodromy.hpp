@@ -54,7 +54,7 @@ class LinearizedStep {
   petsc::Handle<Mat> jacobian_;
   petsc::Handle<Mat> mass_;
   petsc::Handle<Mat> end_jacobian_;
-  Eigen::SparseMatrix<double> constraint_rows_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> constraint_rows_;
   Eigen::MatrixXd middle_;
   DirectSolver solver_;
 };
