@@ -92,17 +92,47 @@ class Equilibrium {
     solver_.solve(columns);
   }
 
+  /// The system with large rotations counted anew, for which the point is rewritten; null where
+  /// none is large.
+  std::unique_ptr<system::PeriodicSystem> counted_from(Point& point) {
+    put(state_of(point.x));
+    std::unique_ptr<system::PeriodicSystem> system = loaded_.counted_from(z_.get());
+    if (!system) return system;
+    std::vector<double> loads;
+    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
+      loads.push_back(point.x(neutral.unknown));
+    const petsc::ReadView view(z_.get());
+    point.x = Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
+    for (std::size_t n = 0; n < loads.size(); ++n)
+      point.x(loaded_.neutral_coordinates()[n].unknown) = loads[n];
+    return system;
+  }
+
+  /// What a neutral row lacks is what the holding load gives.
+  std::vector<HeldCoordinate> held_loads(const Point& point) const {
+    std::vector<HeldCoordinate> held;
+    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
+      held.push_back({neutral.name, neutral.unit, point.x(neutral.unknown)});
+    return held;
+  }
+
   Eigen::VectorXd state_of(Eigen::VectorXd x) const {
     for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
       x(neutral.unknown) = 0.0;
     return x;
   }
 
+  /// The state counts rotations from the undeformed one.
   StaticState describe(const Point& point, int newton_steps) {
     Eigen::VectorXd r;
     Eigen::VectorXd by_factor;
     evaluate(point, r, by_factor);
-    StaticState state{point.factor, state_of(point.x), newton_steps, 0.0};
+    StaticState state{point.factor, {}, newton_steps, 0.0};
+    loaded_.count_from_undeformed(z_.get());
+    {
+      const petsc::ReadView view(z_.get());
+      state.z = Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
+    }
     for (Eigen::Index i = 0; i < size_; ++i)
       if (loaded_.rows()[static_cast<std::size_t>(i)] == system::RowRole::balance)
         state.residual = std::max(state.residual, std::abs(r(i)));
@@ -190,19 +220,22 @@ class PathFollower {
  public:
   PathFollower(const system::PeriodicSystem& system, const StaticOptions& options,
                Observer& observer)
-      : system_(system), options_(options), observer_(observer), equilibrium_(system) {
+      : system_(system),
+        options_(options),
+        observer_(observer),
+        equilibrium_(std::make_unique<Equilibrium>(system)) {
     path_.method = options.method;
     first_step_ = 1.0 / options.steps;
   }
 
   StaticPath run() {
-    Point point = equilibrium_.start();
+    Point point = equilibrium_->start();
     if (!attempt([&] { accept(point, correct(point, nullptr)); })) give_up();
     if (options_.method == StaticMethod::load)
       follow_loads(point);
     else
       follow_arc(point);
-    finish();
+    finish(point);
     return std::move(path_);
   }
 
@@ -216,11 +249,11 @@ class PathFollower {
     for (int step = 1; step <= most_newton_steps; ++step) {
       Eigen::VectorXd r;
       Eigen::VectorXd by_factor;
-      equilibrium_.evaluate(point, r, by_factor);
+      equilibrium_->evaluate(point, r, by_factor);
       Eigen::MatrixXd columns(r.size(), across == nullptr ? 1 : 2);
       columns.col(0) = -r;
       if (across != nullptr) columns.col(1) = -by_factor;
-      equilibrium_.solve(point, columns);
+      equilibrium_->solve(point, columns);
       Eigen::VectorXd change = columns.col(0);
       if (across != nullptr) {  // the border, eliminated
         const double factor_change =
@@ -229,7 +262,7 @@ class PathFollower {
         point.factor += factor_change;
       }
       point.x += change;
-      const double size = equilibrium_.relative_change(change, point.x);
+      const double size = equilibrium_->relative_change(change, point.x);
       if (size <= options_.tolerance) return step;
       if (!std::isfinite(size) || (step > patient_newton_steps && size > largest_growth * last))
         throw ConvergenceError("Newton's iteration diverges");
@@ -265,7 +298,7 @@ class PathFollower {
 
   /// A point that is in equilibrium; the residual is looked at, which may find it out of range.
   void accept(const Point& point, int newton_steps) {
-    path_.states.push_back(equilibrium_.describe(point, newton_steps));
+    path_.states.push_back(equilibrium_->describe(point, newton_steps));
     constexpr long parts = 1000;
     observer_.progress("static", std::lround(std::clamp(point.factor, 0.0, 1.0) * parts), parts);
   }
@@ -294,6 +327,16 @@ class PathFollower {
     }
   }
 
+  /// Counts large rotations from where they are now: the next step may turn as far again. True
+  /// where the point has been rewritten.
+  bool recount(Point& point) {
+    std::unique_ptr<system::PeriodicSystem> system = equilibrium_->counted_from(point);
+    if (!system) return false;
+    equilibrium_ = std::make_unique<Equilibrium>(*system);
+    recounted_ = std::move(system);
+    return true;
+  }
+
   // ---- prescribed factors --------------------------------------------------------------------
 
   /// Newton may end on another branch of equilibria, where the motion of the step, or what comes
@@ -301,13 +344,13 @@ class PathFollower {
   void refuse_jump(const Point& point, const Direction& slope, const Point& next,
                    const Direction& next_slope) const {
     const Eigen::VectorXd motion = next.x - point.x;
-    if (std::sqrt(equilibrium_.product(motion, motion)) < rounding) return;
-    if (equilibrium_.product(motion, slope.x) < 0.0 ||
-        equilibrium_.product(motion, next_slope.x) < 0.0)
+    if (std::sqrt(equilibrium_->product(motion, motion)) < rounding) return;
+    if (equilibrium_->product(motion, slope.x) < 0.0 ||
+        equilibrium_->product(motion, next_slope.x) < 0.0)
       throw ConvergenceError("the state jumps, or turns back: there may be another branch");
   }
 
-  void follow_loads(Point point) {
+  void follow_loads(Point& point) {
     double step = first_step_;
     Direction slope = slope_at(point);
     while (point.factor < 1.0) {
@@ -326,7 +369,7 @@ class PathFollower {
       });
       if (found) {
         point = next;
-        slope = next_slope;
+        slope = recount(point) ? slope_at(point) : next_slope;
         halvings_ = std::max(halvings_ - 1, 0);
         step = std::min(2.0 * step, first_step_);
       } else {
@@ -339,7 +382,7 @@ class PathFollower {
   // ---- arc length ----------------------------------------------------------------------------
 
   double product(const Direction& a, const Direction& b) const {
-    return equilibrium_.product(a.x, b.x) / (length_ * length_) +
+    return equilibrium_->product(a.x, b.x) / (length_ * length_) +
            a.factor * b.factor / (first_step_ * first_step_);
   }
 
@@ -347,9 +390,9 @@ class PathFollower {
   Direction slope_at(const Point& point) {
     Eigen::VectorXd r;
     Eigen::VectorXd by_factor;
-    equilibrium_.evaluate(point, r, by_factor);
+    equilibrium_->evaluate(point, r, by_factor);
     Eigen::MatrixXd columns = -by_factor;
-    equilibrium_.solve(point, columns);
+    equilibrium_->solve(point, columns);
     return {columns.col(0), 1.0};
   }
 
@@ -363,9 +406,9 @@ class PathFollower {
     return tangent;
   }
 
-  void follow_arc(Point point) {
+  void follow_arc(Point& point) {
     Direction tangent = slope_at(point);
-    length_ = first_step_ * std::sqrt(equilibrium_.product(tangent.x, tangent.x));
+    length_ = first_step_ * std::sqrt(equilibrium_->product(tangent.x, tangent.x));
     if (length_ == 0.0) return follow_loads(point);  // nothing moves
     tangent = tangent_at(point, tangent);
     const double largest = first_step_ / tangent.factor;
@@ -392,7 +435,7 @@ class PathFollower {
       }
       if (ahead.factor * tangent.factor < 0.0) note_limit_point(point, next, tangent);
       point = next;
-      tangent = ahead;
+      tangent = recount(point) ? tangent_at(point, ahead) : ahead;
       halvings_ = std::max(halvings_ - 1, 0);
       step = std::min(2.0 * step, largest);
     }
@@ -408,30 +451,20 @@ class PathFollower {
     observer_.note(text.str());
   }
 
-  void finish() {
+  void finish(const Point& point) {
     const StaticState& last = path_.states.back();
     for (std::size_t i = 0; i < system_.unknowns().size(); ++i)
       if (system_.unknowns()[i].role == system::UnknownRole::internal)
         path_.load_level =
             std::max(path_.load_level, std::abs(last.z(static_cast<Eigen::Index>(i))));
-    // What a neutral row lacks is what the holding load gives.
-    const petsc::Handle<Vec> z = system_.make_state();
-    const petsc::Handle<Vec> rest = system_.make_state();
-    const petsc::Handle<Vec> r = system_.make_state();
-    {
-      const petsc::WriteView view(z.get());
-      Eigen::Map<Eigen::VectorXd>(view.data(), last.z.size()) = last.z;
-    }
-    system_.residual(0.0, z.get(), rest.get(), r.get());
-    const petsc::ReadView view(r.get());
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      path_.held.push_back({neutral.name, neutral.unit, -view[neutral.row]});
+    path_.held = equilibrium_->held_loads(point);
   }
 
   const system::PeriodicSystem& system_;
   const StaticOptions& options_;
   Observer& observer_;
-  Equilibrium equilibrium_;
+  std::unique_ptr<system::PeriodicSystem> recounted_;  ///< rotations counted anew, if they grew
+  std::unique_ptr<Equilibrium> equilibrium_;           ///< of that, or of the system itself
   StaticPath path_;
   double first_step_ = 1.0;  ///< of the factor
   double length_ = 1.0;      ///< D

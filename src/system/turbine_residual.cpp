@@ -64,6 +64,20 @@ void TurbineResidual::check_rotation(const Vector3& theta, const std::string& pl
     throw DomainError(place + ": rotation beyond 170 degrees");
 }
 
+void TurbineResidual::find_changes(PlacedBeam& placed) {
+  const model::Beam& beam = *placed.beam;
+  for (int e = 0; e < beam.elements; ++e) {
+    const Matrix3 before = e == 0 ? Matrix3(Matrix3::Identity()) : beam.reference(e - 1);
+    if (before == beam.reference(e)) continue;
+    ReferenceChange change;
+    change.element = e;
+    change.row = placed.points[static_cast<std::size_t>(e * beam.order)] + 3;
+    change.mass = placed.mass_at(e);
+    change.turn = math::parameters_of(before * beam.reference(e).transpose());
+    placed.changes.push_back(change);
+  }
+}
+
 void TurbineResidual::place_beams() {
   for (std::size_t k = 0; k < turbine_.blades.size(); ++k) {
     const int number = static_cast<int>(k);
@@ -78,6 +92,7 @@ void TurbineResidual::place_beams() {
     placed.on_hub = true;
     placed.position = turbine_.roots[k].position;
     placed.C_Ha = turbine_.roots[k].C_Ha;
+    find_changes(placed);
     beams_.push_back(placed);
   }
   if (!turbine_.has_tower) return;
@@ -89,6 +104,7 @@ void TurbineResidual::place_beams() {
     placed.masses.push_back(layout_.tower_mass(static_cast<int>(m)));
   placed.tip = layout_.tower_tip();
   placed.root = layout_.tower_root();
+  find_changes(placed);
   beams_.push_back(placed);
 }
 

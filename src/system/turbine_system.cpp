@@ -1,5 +1,6 @@
 #include "samara/system/turbine_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -11,6 +12,10 @@ namespace samara::system {
 namespace {
 
 constexpr int block = model::Layout::block;
+
+/// |theta| from which rotations count anew: 120 degrees. A coarse mesh depends a little on what they
+/// count from, so that is not done before it is needed.
+constexpr double large_rotation = 3.4641016151377544;
 
 }  // namespace
 
@@ -63,6 +68,58 @@ class TurbineSystem::Assembly {
     const petsc::ReadView view(whole.get());
     std::copy(view.data(), view.data() + layout.size(), values.begin());
     return values;
+  }
+
+  /// The rotations of the undeformed state.
+  void undo_references(std::vector<double>& values) const {
+    const auto put = [&values](int first, const Matrix3& reference) {
+      Eigen::Map<Vector3>(values.data() + first + 3) = math::parameters_of(reference.transpose());
+    };
+    for (const PlacedBeam& placed : equations.beams()) {
+      if (placed.changes.empty()) continue;
+      const model::Beam& beam = *placed.beam;
+      for (int p = 0; p < beam.point_count(); ++p)
+        put(placed.points[static_cast<std::size_t>(p)], beam.reference(p / beam.order));
+      for (std::size_t m = 0; m < placed.masses.size(); ++m)
+        put(placed.masses[m], beam.reference(beam.mass_nodes[m].end - 1));
+      put(placed.tip, beam.reference(beam.elements - 1));
+    }
+  }
+
+  /// Writes the own part of a state with its rotations counted as in `target`, or from the
+  /// undeformed state where that is null.
+  void recount(std::vector<double> values, const TurbineResidual* target, Vec z) const {
+    const auto rewrite = [&values](int first, const Matrix3& from, const Matrix3& to) {
+      if (from == to) return;
+      const Eigen::Map<Vector3> theta(values.data() + first + 3);
+      const Matrix3 attitude = math::direction_cosines<double>(theta).transpose() * from;
+      Eigen::Map<Vector3>(values.data() + first + 3) =
+          math::parameters_of(attitude * to.transpose());
+    };
+    for (std::size_t b = 0; b < equations.beams().size(); ++b) {
+      const PlacedBeam& placed = equations.beams()[b];
+      const model::Beam& beam = *placed.beam;
+      const auto to = [&](int e) -> Matrix3 {
+        return target == nullptr ? Matrix3(Matrix3::Identity())
+                                 : target->beams()[b].beam->reference(e);
+      };
+      for (int p = 0; p < beam.point_count(); ++p) {
+        const int e = p / beam.order;
+        rewrite(placed.points[static_cast<std::size_t>(p)], beam.reference(e), to(e));
+      }
+      for (std::size_t m = 0; m < placed.masses.size(); ++m) {
+        const int e = beam.mass_nodes[m].end - 1;
+        rewrite(placed.masses[m], beam.reference(e), to(e));
+      }
+      rewrite(placed.tip, beam.reference(beam.elements - 1), to(beam.elements - 1));
+    }
+    write_own(values, z);
+  }
+
+  void write_own(const std::vector<double>& values, Vec z) const {
+    const petsc::WriteView view(z);
+    for (PetscInt i = first_row; i < last_row; ++i)
+      view[i - first_row] = values[static_cast<std::size_t>(i)];
   }
 
  private:
@@ -247,6 +304,7 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   // rows of free joints ask for the same of their speeds, one after the other from the tower
   // outward.
   std::vector<double> r(n, 0.0);
+  assembly.undo_references(values);
   for (int pass = 0; pass < 5; ++pass) {
     assembly.equations.evaluate(t, values, rates, r);
     const std::vector<RowRole>& roles = assembly.description.rows;
@@ -263,11 +321,7 @@ void TurbineSystem::reference_state(double t, Vec z) const {
     set_speed(chain.torsion.free, assembly.layout.shaft_torsion());
     set_speed(chain.teeter.free, assembly.layout.teeter());
   }
-  PetscInt first = 0;
-  PetscInt last = 0;
-  petsc::check(VecGetOwnershipRange(z, &first, &last));
-  const petsc::WriteView view(z);
-  for (PetscInt i = first; i < last; ++i) view[i - first] = values[static_cast<std::size_t>(i)];
+  assembly.write_own(values, z);
 }
 
 std::unique_ptr<PeriodicSystem> TurbineSystem::unloaded() const {
@@ -278,13 +332,45 @@ std::unique_ptr<PeriodicSystem> TurbineSystem::unloaded() const {
   return std::make_unique<TurbineSystem>(bare, comm());
 }
 
+std::unique_ptr<PeriodicSystem> TurbineSystem::counted_from(Vec z) const {
+  const Assembly& assembly = *assembly_;
+  const std::vector<double> values = assembly.gathered(z);
+  const auto rotation = [&values](int first) {
+    return Vector3(TurbineResidual::at(values, first).segment<3>(3));
+  };
+  model::Turbine turned = turbine();
+  bool any = false;
+  for (std::size_t k = 0; k < turned.blades.size(); ++k) {
+    const PlacedBeam& placed = assembly.equations.beams()[k];
+    model::Beam& beam = turned.blades[k];
+    double largest = rotation(placed.tip).norm();
+    for (const int first : placed.points) largest = std::max(largest, rotation(first).norm());
+    if (largest < large_rotation) continue;
+    any = true;
+    for (int e = 0; e < beam.elements; ++e) {
+      const auto middle = static_cast<std::size_t>(e * beam.order + beam.order / 2);
+      const Matrix3 reference =
+          math::direction_cosines<double>(rotation(placed.points[middle])).transpose() *
+          beam.reference(e);
+      for (int j = 0; j < beam.order; ++j)
+        beam.points[static_cast<std::size_t>(e * beam.order + j)].reference = reference;
+    }
+  }
+  if (!any) return nullptr;
+  auto system = std::make_unique<TurbineSystem>(turned, comm());
+  assembly.recount(values, &system->equations(), z);
+  return system;
+}
+
+void TurbineSystem::count_from_undeformed(Vec z) const {
+  assembly_->recount(assembly_->gathered(z), nullptr, z);
+}
+
 void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {
   const Assembly& assembly = *assembly_;
   std::vector<double> values(static_cast<std::size_t>(size()));
   assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), values);
-  const petsc::WriteView view(r);
-  for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i)
-    view[i - assembly.first_row] = values[static_cast<std::size_t>(i)];
+  assembly.write_own(values, r);
 }
 
 void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,

@@ -128,9 +128,11 @@ class TurbineTangents::Scatter {
       const Attachment<double> a = equations_.attachment(placed, motion);
       MotionJacobian root = MotionJacobian::Zero();
       if (placed.on_hub) root = placed.root_from_hub() * motion_jacobian;
+      const auto first = point;
       for (int p = 0; p < placed.beam->point_count(); ++p)
         add_point_tangent(placed, p, root, at_point(placed, p, a, z, z_dot, *point++));
       add_end_tangents(placed, a, root, z, z_dot);
+      add_change_tangents(placed, z, &*first);
       add_load_tangents(placed, t, z);
     }
     add_chain_tangents(rows);
@@ -258,8 +260,8 @@ class TurbineTangents::Scatter {
                         const std::vector<double>& z_dot) {
     const model::Beam& beam = *placed.beam;
     for (int i = 0; i < 6; ++i) add(K_, placed.root + i, placed.root + i, 1.0);
-    const auto add_end = [&](int first, int point, const Vector3& x, const Matrix6& mass,
-                             bool balance) {
+    const auto add_end = [&](int first, int point, const Vector3& x, const Matrix3& reference,
+                             const Matrix6& mass, bool balance) {
       for (int i = 0; i < 6; ++i) {
         add(K_, first + i, first + i, 1.0);
         add(K_, placed.points[static_cast<std::size_t>(point)] + 12 + i, first + 12 + i, -1.0);
@@ -270,21 +272,49 @@ class TurbineTangents::Scatter {
       fill_inputs(inputs_of(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a),
                   dual, dual_dot, dual_a);
       const elements::TipTerms<PointDual> terms =
-          elements::beam_tip_terms<PointDual>(x, mass, dual, dual_dot, dual_a);
+          elements::beam_tip_terms<PointDual>(x, reference, mass, dual, dual_dot, dual_a);
       add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub);
       add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub);
       if (!balance) return;
       add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub);
       add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub);
     };
-    add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass, placed.on_hub);
+    add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.reference(beam.elements - 1),
+            beam.tip_mass, placed.on_hub);
     for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
       const model::MassNode& node = beam.mass_nodes[m];
       const int next = node.end * beam.order;
       const int first = placed.masses[m];
-      add_end(first, next - 1, node.x, node.mass, true);
+      add_end(first, next - 1, node.x, beam.reference(node.end - 1), node.mass, true);
       for (int i = 0; i < 6; ++i)
         add(K_, placed.points[static_cast<std::size_t>(next)] + i, first + i, -1.0);
+    }
+  }
+
+  /// `points`: tangents of the beam's points.
+  void add_change_tangents(const PlacedBeam& placed, const std::vector<double>& z,
+                           const PointTangents* points) {
+    const model::Beam& beam = *placed.beam;
+    for (const ReferenceChange& change : placed.changes) {
+      const Vector3 before = equations_.rotation_before(placed, change, z);
+      Vec3<math::Dual<3>> dual;
+      for (int i = 0; i < 3; ++i) dual(i) = math::independent<3>(before(i), i);
+      const Vec3<math::Dual<3>> anew =
+          math::compose<math::Dual<3>>(dual, change.turn.cast<math::Dual<3>>());
+      Matrix3 missed = Matrix3::Identity();
+      for (int i = 0; i < 3; ++i) missed.row(i) -= anew(i).derivatives();
+      if (change.mass >= 0) {
+        K_.at(change.row / block, change.mass / block).block<3, 3>(change.row % block, 3) += missed;
+        continue;
+      }
+      for (int j = 0; j < beam.order && change.element > 0; ++j) {
+        const int p = (change.element - 1) * beam.order + j;
+        const auto [slope, value] = placed.node_weights(beam.order, p);
+        const int first = placed.points[static_cast<std::size_t>(p)];
+        TermJacobian rotation = value * points[p].turn;
+        rotation.block<3, 3>(0, 3) += slope * Matrix3::Identity();
+        add_term(change.row, first, missed * rotation, {}, false);
+      }
     }
   }
 
@@ -296,13 +326,14 @@ class TurbineTangents::Scatter {
       const Vector6 value = load.at(t, turbine_.speed);
       if (load.at_tip)
         add_follower(placed.force_rows(beam.point_count() - 1, beam.order), placed.tip, 1.0,
-                     follower_tangent(z, placed.tip, load.tip_axes, value));
+                     follower_tangent(z, placed.tip,
+                                      beam.reference(beam.elements - 1) * load.tip_axes, value));
       for (std::size_t e = 0; e < load.weights.size(); ++e) {
         const int start = (load.first_element + static_cast<int>(e)) * beam.order;
         for (int j = 0; j < beam.order; ++j) {
           const auto p = static_cast<std::size_t>(start + j);
-          const LoadJacobian tangent =
-              follower_tangent(z, placed.points[p], beam.points[p].C_ab, value);
+          const LoadJacobian tangent = follower_tangent(
+              z, placed.points[p], beam.points[p].reference * beam.points[p].C_ab, value);
           for (int node = 0; node <= beam.order; ++node)
             add_follower(placed.force_rows(start, node), placed.points[p], load.weights[e](node, j),
                          tangent);

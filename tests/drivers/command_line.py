@@ -189,12 +189,26 @@ class Static(ProgramTest):
         self.refuse("static", "case.yaml", words=["shaft.speed is not 0", "samara trim"],
                     place=r"case\.yaml: ")
 
-    def test_ends_with_3_and_the_factor_reached_where_a_section_turns_too_far(self):
-        half_turn = "loads: [{beam: blades, at: 1, moment: [0, %.12g, 0]}]\ngravity: 0\n"
-        self.write("case.yaml", self.AT_REST + half_turn % (3.14159265359 * 1e4 / 10))
+    def half_turn(self, beam):
+        moment = 3.14159265359 * 1e4 / 10  # pi EI / l
+        return f"loads: [{{beam: {beam}, at: 1, moment: [0, {moment:.12g}, 0]}}]\ngravity: 0\n"
+
+    def test_a_blade_turns_by_half_a_turn(self):
+        self.write("case.yaml", self.AT_REST + self.half_turn("blades"))
+        for method in ("load", "arc_length"):
+            text = self.succeed("static", "case.yaml", "--set", f"static.method={method}").stdout
+            words = re.findall(r"(?m)^1\.0000 +(.*)$", text)[0].split()
+            self.assertAlmostEqual(float(words[0]), -10.0, delta=5e-3)  # R sin(pi) - l
+            self.assertAlmostEqual(float(words[2]), -20.0 / 3.14159265, delta=5e-3)  # -2 R
+            self.assertAlmostEqual(float(words[3]), 180.0, delta=0.1)
+
+    def test_ends_with_3_and_the_factor_reached_where_the_tower_top_turns_too_far(self):
+        blades = self.AT_REST[self.AT_REST.index("blades:"):]
+        tower = blades.replace("blades:", "tower:")
+        self.write("case.yaml", self.AT_REST + tower + self.half_turn("tower"))
         for method in ("load", "arc_length"):
             run = self.refuse("static", "case.yaml", "--set", f"static.method={method}", code=3,
-                              words=["blade 1 tip: rotation beyond 170 degrees", "hint: "])
+                              words=["tower top: rotation beyond 170 degrees", "hint: "])
             reached = float(re.search(r"stopped at load factor (\S+) of 1", run.stderr).group(1))
             self.assertAlmostEqual(reached, 170 / 180, delta=5e-3)  # four elements
 

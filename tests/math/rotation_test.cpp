@@ -292,6 +292,21 @@ BOOST_AUTO_TEST_CASE(automatic_differentiation_agrees_with_complex_step) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(composed_parameters_are_those_of_one_turn_after_the_other) {
+  std::minstd_rand random(16);
+  for (int i = 0; i < 20; ++i) {
+    const Vector3 a = random_vector(random, 2.0);
+    const Vector3 b = random_vector(random, 2.0);
+    const Matrix3 first = math::direction_cosines<double>(b).transpose();
+    const Matrix3 then = math::direction_cosines<double>(a).transpose();
+    const Vector3 both = math::compose<double>(a, b);
+    const Matrix3 found = math::direction_cosines<double>(both).transpose();
+    BOOST_TEST(largest(Matrix3(found - then * first)) < rounding);
+    BOOST_TEST(largest(Vector3(math::parameters_of(then * first) - both)) <
+               rounding * (1.0 + both.squaredNorm()));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_range_of_rotations_ends_at_170_degrees) {
   const double length = 2.0 * std::tan(85.0 * std::numbers::pi / 180.0);
   BOOST_TEST(std::abs(math::largest_rodrigues_length / length - 1.0) < 1e-9);

@@ -158,7 +158,8 @@ void add_beam(const Place& place, const elements::Attachment<T>& a, const Array<
     }
     const PointState<T> end = z.template segment<block>(first);
     const PointState<T> end_dot = z_dot.template segment<block>(first);
-    const elements::TipTerms<T> terms = elements::beam_tip_terms<T>(x, mass, end, end_dot, a);
+    const elements::TipTerms<T> terms =
+        elements::beam_tip_terms<T>(x, Matrix3::Identity(), mass, end, end_dot, a);
     r.template segment<3>(first + 6) += terms.velocity;
     r.template segment<3>(first + 9) += terms.spin;
     if (place.blade < 0 && node == last) return;

@@ -144,34 +144,76 @@ BOOST_AUTO_TEST_CASE(a_moment_rolls_a_cantilever_up_into_a_circle) {
   beam.stiffness << 30e6, 12.5e6, 12.5e6, 4.2e6, EI, EI;
   beam.elements = 6;
   beam.order = 3;
-  for (const bool follower : {false, true}) {
-    for (const double part : {0.4, 0.8}) {  // of half a turn
+  for (const auto& [follower, method] :
+       {std::pair(false, StaticMethod::load), std::pair(true, StaticMethod::load),
+        std::pair(false, StaticMethod::arc_length)}) {
+    for (const double part : {0.4, 0.8, 1.2, 1.6, 2.0}) {  // of half a turn
       model::LoadDefinition load = force_at(1.0, Vector3::Zero());
       load.moment = Vector3(0.0, -part * pi * EI / length, 0.0);
       load.follower = follower;
-      const End end = end_of(beam, {load});
+      const End end = end_of(beam, {load}, 10, method);
       const double radius = length / (part * pi);
+      const double attitude = std::min(part, 2.0 - part) * pi;
       BOOST_TEST(std::abs(end.u(0) - (radius * std::sin(part * pi) - length)) < 1e-3 * length);
       BOOST_TEST(std::abs(end.u(2) - radius * (1.0 - std::cos(part * pi))) < 1e-3 * length);
       BOOST_TEST(std::abs(end.u(1)) < 1e-9 * length);
-      BOOST_TEST(std::abs(end.angle - part * pi) < 1e-3);
+      BOOST_TEST(std::abs(end.angle - attitude) < 1e-3);
     }
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_rotation_beyond_170_degrees_is_named_with_the_load_reached) {
-  BeamCase beam = elastica(6, 3);
+BOOST_AUTO_TEST_CASE(order_is_kept_through_half_a_turn_and_on) {
+  for (const double part : {1.1, 1.7}) {  // of half a turn
+    for (const auto& [order, elements] : {std::pair(1, 8), std::pair(2, 4), std::pair(3, 4)}) {
+      const auto error = [&, s = order](int n) {
+        model::LoadDefinition load = force_at(1.0, Vector3::Zero());
+        load.moment = Vector3(0.0, -part * pi, 0.0);
+        const End end = end_of(elastica(n, s), {load}, 12);
+        const double radius = 1.0 / (part * pi);
+        return std::hypot(end.u(0) - (radius * std::sin(part * pi) - 1.0),
+                          end.u(2) - radius * (1.0 - std::cos(part * pi)));
+      };
+      const double coarse = error(elements);
+      const double fine = error(2 * elements);
+      const double slope = std::log2(coarse / fine);
+      BOOST_TEST(fine > 1e-11);
+      BOOST_TEST(std::abs(slope - 2.0 * order) < 0.3,
+                 "order " << order << ": slope " << slope << ", errors " << coarse << " " << fine);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_beam_rolls_up_twice) {
+  // Twice round: 45 degrees an element.
   model::LoadDefinition load = force_at(1.0, Vector3::Zero());
+  load.moment = Vector3(0.0, 0.0, 4.0 * pi);
+  BeamCase beam;
+  beam.stiffness << 0.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  beam.elements = 16;
+  beam.order = 3;
+  const End end = end_of(beam, {load}, 20);
+  BOOST_TEST((end.u - Vector3(-1.0, 0.0, 0.0)).norm() < 1e-5);
+  BOOST_TEST(end.angle < 1e-4);
+}
+
+BOOST_AUTO_TEST_CASE(a_tower_top_beyond_170_degrees_is_named_with_the_load_reached) {
+  model::TurbineDefinition definition = definition_of(elastica(1, 1));
+  definition.has_tower = true;
+  definition.tower = definition_of(elastica(6, 3)).blades.beam;
+  model::LoadDefinition load = force_at(1.0, Vector3::Zero());
+  load.on_tower = true;
   load.moment = Vector3(0.0, pi, 0.0);  // half a turn
+  definition.loads = {load};
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   for (const StaticMethod method : {StaticMethod::load, StaticMethod::arc_length}) {
     try {
-      end_of(beam, {load}, 10, method);
+      statics_of(system, 10, method);
       BOOST_TEST(false, "180 degrees were reached");
     } catch (const DomainError& error) {
       const std::string words = error.what();
-      BOOST_TEST(words.find("blade 1 tip: rotation beyond 170 degrees") != std::string::npos);
+      BOOST_TEST(words.find("tower top: rotation beyond 170 degrees") != std::string::npos, words);
       const std::string before = "stopped at load factor ";
-      BOOST_TEST_REQUIRE(words.find(before) != std::string::npos);
+      BOOST_TEST_REQUIRE(words.find(before) != std::string::npos, words);
       const double reached = std::stod(words.substr(words.find(before) + before.size()));
       BOOST_TEST(std::abs(reached - 170.0 / 180.0) < 1e-3);
     }

@@ -5,7 +5,8 @@
 // M(3) in the deformed section basis B. The residual of an element is a sum over its points, so all
 // of the element's mathematics is this one function of one point; the nodes only add.
 //
-// Valid for |theta| below 180 degrees and any strain that the linear law (4) allows.
+// theta counts from a rotation of the element's own, so that a beam can turn any way: valid for
+// |theta| below 180 degrees and any strain that the linear law (4) allows.
 #pragma once
 
 #include "samara/math/rotation.hpp"
@@ -17,11 +18,12 @@ inline constexpr int point_size = 18;
 
 /// What is constant at a Gauss point.
 struct BeamPoint {
-  Vector3 x = Vector3::Zero();            ///< undeformed position, components in a [m]
-  Matrix3 C_ab = Matrix3::Identity();     ///< undeformed section basis
-  Matrix6 compliance = Matrix6::Zero();   ///< S^-1 of (4); zero rows and columns where rigid
-  Matrix6 mass = Matrix6::Zero();         ///< I6 of (3)
-  Vector6 damping = Vector6::Zero();      ///< mu [s]; zero where rigid
+  Vector3 x = Vector3::Zero();              ///< undeformed position, components in a [m]
+  Matrix3 C_ab = Matrix3::Identity();       ///< undeformed section basis
+  Matrix3 reference = Matrix3::Identity();  ///< rotation from which theta counts, in a
+  Matrix6 compliance = Matrix6::Zero();     ///< S^-1 of (4); zero rows and columns where rigid
+  Matrix6 mass = Matrix6::Zero();           ///< I6 of (3)
+  Vector6 damping = Vector6::Zero();        ///< mu [s]; zero where rigid
 };
 
 /// The motion of the attachment frame and the gravity seen in it (components in a).
@@ -42,14 +44,15 @@ struct PointTerms {
   Vec3<T> moment_flux;  ///< R M
   Vec3<T> moment_load;  ///< R (H_dot + Omega x H + V x P - (e1 + gamma) x F) - m
   Vec3<T> stretch;      ///< R (e1 + gamma) - C_ab e1
-  Vec3<T> turn;         ///< Q^-1 C_ab kappa
+  Vec3<T> turn;         ///< Q^-1 C_ab kappa, C_ab turned by the reference
   Vec3<T> velocity;     ///< f_P = V - R^T (v_a + omega_a x (x + u) + u_dot), components in B
   Vec3<T> spin;         ///< f_H = Omega - R^T omega_a - C_ba Q theta_dot, components in B
 };
 
 /// The two kinematic rows of a point or of a beam's tip (the last two lines of the element).
+/// `turned`: the basis that theta turns.
 template <class T>
-void kinematic_rows(const Vector3& x, const Matrix3& C_ab, const Vec6<T>& position,
+void kinematic_rows(const Vector3& x, const Matrix3& turned, const Vec6<T>& position,
                     const Vec6<T>& position_dot, const Vec6<T>& velocity, const Attachment<T>& a,
                     const Mat3<T>& R, Vec3<T>& f_P, Vec3<T>& f_H) {
   const Vec3<T> u = position.template head<3>();
@@ -62,7 +65,7 @@ void kinematic_rows(const Vector3& x, const Matrix3& C_ab, const Vec6<T>& positi
   const Vec3<T> relative = math::tangent_times(theta, theta_dot);
   f_P = velocity.template head<3>() - R.transpose() * motion;
   f_H = velocity.template tail<3>() - R.transpose() * a.omega -
-        C_ab.transpose().cast<T>() * relative;
+        turned.transpose().cast<T>() * relative;
 }
 
 /// All terms of one Gauss point at the state z, z_dot (18 each).
@@ -76,7 +79,8 @@ PointTerms<T> beam_point_terms(const BeamPoint& point, const Eigen::Matrix<T, po
   const Vec3<T> Omega = z.template segment<3>(9);
   const Vec6<T> FM = z.template segment<6>(12);
   const Mat3<T> C = math::direction_cosines(theta);
-  const Mat3<T> R = C.transpose() * point.C_ab.cast<T>();  // B components to a components
+  const Matrix3 turned = point.reference * point.C_ab;
+  const Mat3<T> R = C.transpose() * turned.cast<T>();  // B components to a components
 
   Vec6<T> strain;  // {gamma; kappa} = S^-1 {F; M}  (4)
   Vec6<T> momentum;
@@ -117,9 +121,9 @@ PointTerms<T> beam_point_terms(const BeamPoint& point, const Eigen::Matrix<T, po
   terms.moment_flux = R * M;
   terms.moment_load = R * moment_B;
   terms.stretch = R * along - point.C_ab.col(0).template cast<T>();
-  const Vec3<T> kappa_a = point.C_ab.cast<T>() * kappa;
+  const Vec3<T> kappa_a = turned.cast<T>() * kappa;
   terms.turn = math::inverse_tangent_times(theta, kappa_a);
-  kinematic_rows<T>(point.x, point.C_ab, z.template head<6>(), z_dot.template head<6>(),
+  kinematic_rows<T>(point.x, turned, z.template head<6>(), z_dot.template head<6>(),
                     z.template segment<6>(6), a, R, terms.velocity, terms.spin);
   return terms;
 }

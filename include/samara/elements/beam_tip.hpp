@@ -1,7 +1,7 @@
 // The end of a beam or of a part of it, which may carry a rigid mass (docs/theory.md, section 2).
 //
 // Unknowns, in the order of a Gauss point: u_hat(3), theta_hat(3) in a; V_hat(3), Omega_hat(3) in a
-// turned by C(theta_hat); F_hat(3), M_hat(3), the section loads at the end, in a.
+// turned with the section; F_hat(3), M_hat(3), the section loads at the end, in a.
 #pragma once
 
 #include "samara/elements/beam_point.hpp"
@@ -17,13 +17,15 @@ struct TipTerms {
 };
 
 /// `mass`: I6 of (3) about x, momenta from velocities, in the basis of V_hat and Omega_hat.
+/// `reference`: the rotation from which theta_hat counts.
 template <class T>
-TipTerms<T> beam_tip_terms(const Vector3& x, const Matrix6& mass,
+TipTerms<T> beam_tip_terms(const Vector3& x, const Matrix3& reference, const Matrix6& mass,
                            const Eigen::Matrix<T, point_size, 1>& z,
                            const Eigen::Matrix<T, point_size, 1>& z_dot, const Attachment<T>& a) {
-  const Mat3<T> R = math::direction_cosines(Vec3<T>(z.template segment<3>(3))).transpose();
+  const Mat3<T> R =
+      math::direction_cosines(Vec3<T>(z.template segment<3>(3))).transpose() * reference.cast<T>();
   TipTerms<T> terms;
-  kinematic_rows<T>(x, Matrix3::Identity(), z.template head<6>(), z_dot.template head<6>(),
+  kinematic_rows<T>(x, reference, z.template head<6>(), z_dot.template head<6>(),
                     z.template segment<6>(6), a, R, terms.velocity, terms.spin);
   terms.force = z.template segment<3>(12);
   terms.moment = z.template segment<3>(15);

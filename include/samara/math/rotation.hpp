@@ -77,6 +77,20 @@ Vec3<T> inverse_tangent_times(const Vec3<T>& theta, const Vec3<T>& w) {
   return r;
 }
 
+/// Parameters of the turn by b, then by a: C(compose(a, b))^T = C(a)^T C(b)^T, components in the
+/// unturned basis. Grows without bound where that is a turn by 180 degrees.
+template <class T>
+Vec3<T> compose(const Vec3<T>& a, const Vec3<T>& b) {
+  const T factor = T(1.0) / T(T(1.0) - dot(a, b) * 0.25);
+  const Vec3<T> turn = cross(a, b);
+  Vec3<T> c;
+  for (int i = 0; i < 3; ++i) c(i) = (a(i) + b(i) + turn(i) * 0.5) * factor;
+  return c;
+}
+
+/// theta with C(theta)^T = rotation.
+Vector3 parameters_of(const Matrix3& rotation);
+
 /// Matrix that turns vectors by `angle` about the unit vector `axis` (components in = components
 /// out of the same basis): v -> v cos + axis x v sin + axis (axis.v)(1 - cos).
 template <class T>

@@ -41,6 +41,11 @@ struct Beam {
 
   int point_count() const { return elements * order; }
 
+  /// The rotation from which those of element e count, components in a.
+  const Matrix3& reference(int e) const {
+    return points[static_cast<std::size_t>(e * order)].reference;
+  }
+
   /// L of element e [m].
   double element_length(int e) const {
     const auto at = static_cast<std::size_t>(e);

@@ -109,6 +109,14 @@ class PeriodicSystem {
     throw InternalError("this system does not know its loads");
   }
 
+  /// The same system with large rotations counted from their values in `z`, which is rewritten for
+  /// it; null where none is large. So rotations grow without a limit, step after step.
+  virtual std::unique_ptr<PeriodicSystem> counted_from(Vec) const { return nullptr; }
+
+  /// Rewrites `z` with rotations that count from the undeformed state. They are infinite at 180
+  /// degrees, and those of a turn by more are those of the same attitude.
+  virtual void count_from_undeformed(Vec) const {}
+
   /// r(t, z, z_dot). @throws DomainError where a rotation is out of range.
   virtual void residual(double t, Vec z, Vec z_dot, Vec r) const = 0;
 

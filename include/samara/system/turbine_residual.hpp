@@ -15,6 +15,15 @@
 
 namespace samara::system {
 
+/// Where the rotations of two neighbours count from different references: the start of an element,
+/// whose balance of curvature asks for the rotation of what is before it, expressed anew.
+struct ReferenceChange {
+  int element = 0;
+  int row = 0;                     ///< of the balance
+  int mass = -1;                   ///< first unknown of the mass node before it; -1: none
+  Vector3 turn = Vector3::Zero();  ///< reference before it, as seen from the one behind it
+};
+
 /// A beam in its place: where its unknowns are and what carries it.
 struct PlacedBeam {
   const model::Beam* beam = nullptr;
@@ -22,6 +31,7 @@ struct PlacedBeam {
   std::vector<int> masses;  ///< first unknown of each mass node
   int tip = 0;
   int root = 0;  ///< first of F_hat_0, M_hat_0
+  std::vector<ReferenceChange> changes;
   bool on_hub = false;
   Vector3 position = Vector3::Zero();  ///< root from the apex, in H
   Matrix3 C_Ha = Matrix3::Identity();
@@ -39,8 +49,6 @@ struct PlacedBeam {
   int force_rows(int p, int a) const;
   /// Weights of point p in the balances of local node a: w N_a' and w L N_a.
   std::array<double, 2> node_weights(int a, int p) const;
-
- private:
   /// The mass node at end e of the elements, -1 where there is none.
   int mass_at(int e) const;
 };
@@ -92,6 +100,11 @@ class TurbineResidual {
   elements::Attachment<T> attachment(const PlacedBeam& placed,
                                      const elements::HubMotion<T>& hub) const;
 
+  /// The rotation before a change of reference, counted as there.
+  template <class T>
+  Vec3<T> rotation_before(const PlacedBeam& placed, const ReferenceChange& change,
+                          const std::vector<T>& z) const;
+
   /// @throws DomainError beyond 170 degrees, naming the place.
   static void check_rotation(const Vector3& theta, const std::string& place);
 
@@ -103,6 +116,8 @@ class TurbineResidual {
   void add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a, const std::vector<T>& z,
                 const std::vector<T>& z_dot, std::vector<T>& r) const;
   template <class T>
+  void add_changes(const PlacedBeam& placed, const std::vector<T>& z, std::vector<T>& r) const;
+  template <class T>
   void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
                  std::vector<T>& r) const;
   template <class T>
@@ -110,6 +125,7 @@ class TurbineResidual {
                         const std::vector<T>& z, std::vector<T>& r);
 
   void place_beams();
+  static void find_changes(PlacedBeam& placed);
 
   model::Turbine turbine_;
   model::Layout layout_;
@@ -184,6 +200,7 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
     const elements::Attachment<T> a = attachment(placed, hub);
     for (int p = 0; p < placed.beam->point_count(); ++p) add_point(placed, p, a, z, z_dot, r);
     add_ends(placed, a, z, z_dot, r);
+    add_changes(placed, z, r);
     add_loads(placed, t, z, r);
   }
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
@@ -242,14 +259,14 @@ void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachm
   using LongRows = Eigen::Map<Vec6<T>>;
   LongRows(r.data() + placed.root) += Eigen::Map<const Vec6<T>>(z.data() + placed.root);
   const auto add_end = [&](int first, int point, const Vector3& x, const Matrix6& mass,
-                           const std::string& name, bool balance) {
+                           const Matrix3& reference, const std::string& name, bool balance) {
     const State<T> end = at(z, first);
     check_rotation(Vector3(end.template segment<3>(3).real()), placed.beam->name + name);
     LongRows(r.data() + first) += end.template head<6>();
     LongRows(r.data() + placed.points[static_cast<std::size_t>(point)] + 12) -=
         end.template tail<6>();
     const elements::TipTerms<T> terms =
-        elements::beam_tip_terms<T>(x, mass, end, at(z_dot, first), a);
+        elements::beam_tip_terms<T>(x, reference, mass, end, at(z_dot, first), a);
     Rows(r.data() + first + 6) += terms.velocity;
     Rows(r.data() + first + 9) += terms.spin;
     if (!balance) return;
@@ -258,15 +275,48 @@ void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachm
   };
   const model::Beam& beam = *placed.beam;
   // The tower top's loads are Kane's rows.
-  add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass, " tip", placed.on_hub);
+  add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass,
+          beam.reference(beam.elements - 1), " tip", placed.on_hub);
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const model::MassNode& node = beam.mass_nodes[m];
     const int next = node.end * beam.order;  // the first point behind it
     const int first = placed.masses[m];
-    add_end(first, next - 1, node.x, node.mass, " mass " + std::to_string(m + 1), true);
+    add_end(first, next - 1, node.x, node.mass, beam.reference(node.end - 1),
+            " mass " + std::to_string(m + 1), true);
     LongRows(r.data() + placed.points[static_cast<std::size_t>(next)]) -=
         at(z, first).template head<6>();
   }
+}
+
+/// What the plain sums of the curvature balances miss where references differ.
+template <class T>
+void TurbineResidual::add_changes(const PlacedBeam& placed, const std::vector<T>& z,
+                                  std::vector<T>& r) const {
+  for (const ReferenceChange& change : placed.changes) {
+    const Vec3<T> before = rotation_before<T>(placed, change, z);
+    const Vec3<T> anew = math::compose<T>(before, change.turn.cast<T>());
+    Eigen::Map<Vec3<T>>(r.data() + change.row) += before - anew;
+  }
+}
+
+/// The rotation at the start of an element as what is before it has it: the root has none.
+template <class T>
+Vec3<T> TurbineResidual::rotation_before(const PlacedBeam& placed, const ReferenceChange& change,
+                                         const std::vector<T>& z) const {
+  if (change.mass >= 0) return at(z, change.mass).template segment<3>(3);
+  Vec3<T> rotation = Vec3<T>::Zero();
+  if (change.element == 0) return rotation;
+  const model::Beam& beam = *placed.beam;
+  elements::Attachment<T> still;
+  for (int j = 0; j < beam.order; ++j) {
+    const int p = (change.element - 1) * beam.order + j;
+    const auto [slope, value] = placed.node_weights(beam.order, p);
+    const State<T> state = at(z, placed.points[static_cast<std::size_t>(p)]);
+    const elements::PointTerms<T> terms = elements::beam_point_terms<T>(
+        beam.points[static_cast<std::size_t>(p)], state, State<T>::Zero(), still);
+    rotation += state.template segment<3>(3) * T(slope) + terms.turn * T(value);
+  }
+  return rotation;
 }
 
 /// The prescribed loads: -f, -m of the force and moment balances.
@@ -284,12 +334,13 @@ void TurbineResidual::add_loads(const PlacedBeam& placed, double t, const std::v
     const Vector6 value = load.at(t, turbine_.speed);
     if (load.at_tip)
       Rows(r.data() + placed.force_rows(beam.point_count() - 1, beam.order)) -=
-          turned(load, value, placed.tip, load.tip_axes);
+          turned(load, value, placed.tip, beam.reference(beam.elements - 1) * load.tip_axes);
     for (std::size_t e = 0; e < load.weights.size(); ++e) {
       const int start = (load.first_element + static_cast<int>(e)) * beam.order;
       for (int j = 0; j < beam.order; ++j) {
         const auto p = static_cast<std::size_t>(start + j);
-        const Vec6<T> part = turned(load, value, placed.points[p], beam.points[p].C_ab);
+        const Vec6<T> part =
+            turned(load, value, placed.points[p], beam.points[p].reference * beam.points[p].C_ab);
         for (int node = 0; node <= beam.order; ++node)
           Rows(r.data() + placed.force_rows(start, node)) -= part * T(load.weights[e](node, j));
       }

@@ -42,6 +42,9 @@ class TurbineSystem final : public PeriodicSystem {
   petsc::Handle<Mat> make_jacobian() const override;
   petsc::Handle<Mat> make_mass() const override;
   std::unique_ptr<PeriodicSystem> unloaded() const override;
+  /// Of the blades; the tower top's rotation stays one below 170 degrees.
+  std::unique_ptr<PeriodicSystem> counted_from(Vec z) const override;
+  void count_from_undeformed(Vec z) const override;
   void residual(double t, Vec z, Vec z_dot, Vec r) const override;
   void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian, Mat mass) const override;
 
