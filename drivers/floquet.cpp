@@ -33,7 +33,7 @@ void require_speed(const io::Case& input) {
     throw InputError(input.path +
                      ": shaft.speed is 0, a rotor that stands still has no period; hint: use "
                      "samara modes, or --set shaft.speed=...");
-  require_repeating_loads(input);
+  require_motion(input);
 }
 
 void run_floquet(const Job& job) {

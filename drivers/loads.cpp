@@ -1,9 +1,35 @@
-// Which loads a command can take.
+// What loads and supports a command can take.
 #include "samara/base/error.hpp"
 
 #include "commands.hpp"
 
 namespace samara::drivers {
+
+namespace {
+
+/// A root that moves needs inertia in every direction that moves.
+void require_mass(const io::Case& input, const std::string& key,
+                  const model::SupportDefinition& support) {
+  bool displaces = false;
+  bool turns = false;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!support.rigid[i]) (i < 3 ? displaces : turns) = true;
+  if ((displaces || turns) && !(support.mass > 0.0))
+    throw InputError(input.path + ": " + key +
+                     " may move, and has no mass; hint: give the mass and inertia of what stands "
+                     "on the springs (a foundation, a bearing); samara static needs none");
+  if (turns && !(support.inertia.minCoeff() > 0.0))
+    throw InputError(input.path + ": " + key +
+                     " may turn, and has no inertia; hint: give inertia: [I1, I2, I3], each > 0");
+}
+
+}  // namespace
+
+void require_motion(const io::Case& input) {
+  require_repeating_loads(input);
+  if (input.turbine.has_tower) require_mass(input, "tower.support", input.turbine.tower.support);
+  require_mass(input, "blades.support", input.turbine.blades.beam.support);
+}
 
 void require_repeating_loads(const io::Case& input) {
   const analysis::TrimOptions& trim = input.trim;

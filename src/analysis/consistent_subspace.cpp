@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include <Eigen/QR>
 #include <Eigen/SparseLU>
 
 #include "samara/analysis/linear_algebra.hpp"
@@ -11,6 +12,9 @@ namespace samara::analysis {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
+
+/// Below it a strain does not let a held end give way.
+constexpr double least_pivot = 1e-9;
 
 struct Tangents {
   Sparse K, M;
@@ -72,8 +76,10 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
         largest = std::max(largest, std::abs(it.value()));
     const auto column = static_cast<PetscInt>(j);
     const system::UnknownRole role = system.unknowns()[j].role;
-    if (largest > 0.0 && role == system::UnknownRole::position) tied_.push_back(column);
-    if (largest == 0.0 && role == system::UnknownRole::position) free.push_back(column);
+    if (role == system::UnknownRole::position) {
+      const bool is_tied = largest > 0.0 && !system.unknowns()[j].is_free;
+      (is_tied ? tied_ : free).push_back(column);
+    }
     if (largest > 0.0 && role == system::UnknownRole::internal) {
       coordinates_.push_back(column);
       scale_.push_back(1.0 / largest);
@@ -84,6 +90,7 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
     coordinates_.push_back(column);
     scale_.push_back(1.0);
   }
+  tie_coordinates(at_start.K);
   if (tied_.size() != constraints_.size())
     throw InternalError(std::to_string(constraints_.size()) + " constraints for " +
                         std::to_string(tied_.size()) + " positions");
@@ -97,6 +104,41 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
   if (kinematic_.size() != velocities_.size())
     throw InternalError("kinematic rows and velocities differ in number");
   fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
+}
+
+void ConsistentSubspace::tie_coordinates(const Eigen::SparseMatrix<double>& K) {
+  if (constraints_.size() <= tied_.size()) return;
+  // Beams held at both ends: what constraints leave when the positions have met theirs, W^T D p = 0
+  // with W^T D_tied = 0, ties the coordinates that it pivots on.
+  const auto excess = static_cast<Eigen::Index>(constraints_.size() - tied_.size());
+  const Eigen::MatrixXd D_tied = part(K, constraints_, tied_);
+  const Eigen::MatrixXd D_free =
+      part(K, constraints_, coordinates_) *
+      Eigen::Map<const Eigen::VectorXd>(scale_.data(), degrees_of_freedom()).asDiagonal();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> tied_qr(D_tied);
+  const Eigen::MatrixXd W = Eigen::MatrixXd(tied_qr.householderQ()).rightCols(excess);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(W.transpose() * D_free);
+  // Columns of D are scaled to entries of about one.
+  const Eigen::VectorXd pivot = pivots.matrixR().diagonal().head(excess).cwiseAbs();
+  if (pivot.minCoeff() < least_pivot)
+    throw InputError(
+        "the supports of a beam hold it twice in a direction in which it is rigid; hint: a spring "
+        "instead of a rigid direction of the support");
+  std::vector<bool> chosen(coordinates_.size(), false);
+  for (Eigen::Index i = 0; i < excess; ++i)
+    chosen[static_cast<std::size_t>(pivots.colsPermutation().indices()(i))] = true;
+  std::vector<PetscInt> coordinates;
+  std::vector<double> scale;
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    if (chosen[i]) {
+      tied_.push_back(coordinates_[i]);
+      continue;
+    }
+    coordinates.push_back(coordinates_[i]);
+    scale.push_back(scale_[i]);
+  }
+  coordinates_ = coordinates;
+  scale_ = scale;
 }
 
 Eigen::MatrixXd ConsistentSubspace::coordinates_of(const Eigen::MatrixXd& z) const {

@@ -163,13 +163,33 @@ void DirectSolver::factor(Mat matrix) {
   petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
   petsc::check(KSPSetUp(solver_.get()));
   matrix_ = matrix;
-  PC factored = nullptr;
-  PCFailedReason failure = PC_NOERROR;
-  petsc::check(KSPGetPC(solver_.get(), &factored));
-  petsc::check(PCGetFailedReason(factored, &failure));
-  if (failure != PC_NOERROR)
+  if (failure() != PC_NOERROR) take_pivoting_solver();
+  if (const PCFailedReason reason = failure(); reason != PC_NOERROR)
     throw ConvergenceError("linear solve (" + prefix_ + "): the matrix is singular (" +
-                           PCFailedReasons[failure] + ")");
+                           PCFailedReasons[reason] + ")");
+}
+
+PCFailedReason DirectSolver::failure() const {
+  PC factored = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  petsc::check(KSPGetPC(solver_.get(), &factored));
+  petsc::check(PCGetFailedReason(factored, &reason));
+  return reason;
+}
+
+/// A beam held at its end has a block without an inverse of its own: rows must change places. The
+/// solver of the user's choice stands.
+void DirectSolver::take_pivoting_solver() {
+  PC factored = nullptr;
+  PetscBool chosen = PETSC_FALSE;
+  petsc::check(
+      PetscOptionsHasName(nullptr, prefix_.c_str(), "-pc_factor_mat_solver_type", &chosen));
+  if (chosen != PETSC_FALSE) return;
+  petsc::check(KSPGetPC(solver_.get(), &factored));
+  petsc::check(PCReset(factored));
+  petsc::check(PCFactorSetMatSolverType(factored, MATSOLVERMUMPS));
+  petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
+  petsc::check(KSPSetUp(solver_.get()));
 }
 
 /// Of one column, a new one each time.

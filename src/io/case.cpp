@@ -309,6 +309,81 @@ void read_point_masses(MapReader& map, std::vector<model::PointMassDefinition>& 
                    [](const auto& a, const auto& b) { return a.at < b.at; });
 }
 
+bool is_word(const YamlNode& node, std::string_view word) {
+  return node.kind == YamlNode::Kind::scalar && node.text == word;
+}
+
+/// Reads springs by direction; what is not given stays as it is.
+void read_springs(const YamlNode& node, const std::string& where, model::SupportDefinition& support,
+                  ErrorList& errors) {
+  constexpr std::array<const char*, 6> keys = {"u1", "u2", "u3", "theta1", "theta2", "theta3"};
+  constexpr NumberRule rule{"a number > 0, rigid or free", positive.low, positive.high, true};
+  MapReader map(node, where, errors);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const YamlNode* entry = map.find(keys[i]);
+    if (entry == nullptr) continue;
+    support.rigid[i] = is_rigid(*entry);
+    support.free[i] = is_word(*entry, "free");
+    const auto k = static_cast<Eigen::Index>(i);
+    if (!support.rigid[i] && !support.free[i])
+      read_number(*entry, map.where(keys[i]), rule, support.stiffness(k, k), errors);
+  }
+  map.finish();
+}
+
+/// Reads what holds an end: a word, or springs, at the root with a body on them.
+void read_support(MapReader& beam, std::string_view key, bool at_root,
+                  model::SupportDefinition& support) {
+  const YamlNode* node = beam.find(key);
+  if (node == nullptr) return;
+  ErrorList& errors = beam.errors();
+  model::SupportDefinition hinge;
+  for (std::size_t i = 3; i < 6; ++i) {
+    hinge.rigid[i] = false;
+    hinge.free[i] = true;
+  }
+  if (node->kind == YamlNode::Kind::scalar) {
+    enum class Word { clamped, pinned, free };
+    Word word = Word::clamped;
+    const bool known =
+        at_root ? beam.read(key, word, {{"clamped", Word::clamped}, {"pinned", Word::pinned}})
+                : beam.read(
+                      key, word,
+                      {{"free", Word::free}, {"clamped", Word::clamped}, {"pinned", Word::pinned}});
+    if (!known) return;
+    support = word == Word::clamped  ? model::SupportDefinition()
+              : word == Word::pinned ? hinge
+                                     : model::free_end();
+    return;
+  }
+  const std::size_t errors_before = errors.size();
+  MapReader map(*node, beam.where(key), errors);
+  const YamlNode* springs = map.find("stiffness");
+  const YamlNode* matrix = map.find("stiffness_matrix");
+  if (springs != nullptr && matrix != nullptr) {
+    map.refuse(*matrix, "stiffness_matrix", "given together with stiffness; leave one of them out");
+  } else if (springs != nullptr) {
+    read_springs(*springs, map.where("stiffness"), support, errors);
+  } else if (matrix != nullptr) {
+    support.rigid = {};
+    support.free = {};
+    read_matrix(*matrix, map.where("stiffness_matrix"), support.stiffness, &support.rigid, errors);
+  } else {
+    map.require("stiffness", "or \"stiffness_matrix\"");
+  }
+  if (at_root) {
+    map.read("mass", support.mass, non_negative);
+    read_vector(map, "center", support.center, any_number);
+    read_vector(map, "inertia", support.inertia, non_negative);
+    map.read("damping", support.damping, non_negative);
+  }
+  map.finish();
+  if (errors.size() > errors_before) return;
+  const std::string fault = model::find_support_fault(support);
+  if (!fault.empty()) errors.add(find_blame(*node), beam.where(key), fault);
+  support.stiffness = symmetrize(support.stiffness);
+}
+
 /// Reads the keys that the tower and the blades have in common.
 void read_beam(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam) {
   read_length(map, to_a, beam);
@@ -318,6 +393,7 @@ void read_beam(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam)
   read_damping(map, beam.damping);
   map.read("tip_mass", beam.tip_mass, non_negative);
   read_point_masses(map, beam.point_masses);
+  read_support(map, "support", true, beam.support);
 }
 
 void read_tower(const YamlNode& node, model::TurbineDefinition& turbine, ErrorList& errors) {
@@ -461,6 +537,7 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   read_angle(map, "precone_deg", blades.precone, quarter_turn);
   read_angle(map, "pitch_deg", blades.pitch, half_turn);
   read_beam(map, Matrix3::Identity(), blades.beam);
+  read_support(map, "end_support", false, blades.beam.end_support);
   if (const YamlNode* entry = map.find("each")) {
     read_each(*entry, map.where("each"), blades, errors);
   }

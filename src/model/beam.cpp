@@ -54,18 +54,14 @@ std::vector<double> element_ends(const std::string& name, const BeamDefinition& 
   return ends;
 }
 
-}  // namespace
-
-Matrix6 compliance_of(const SectionDefinition& section) {
-  std::vector<int> elastic;
-  for (int i = 0; i < 6; ++i)
-    if (!section.rigid[static_cast<std::size_t>(i)]) elastic.push_back(i);
+/// The inverse on the elastic directions, zero elsewhere.
+Matrix6 inverse_of(const Matrix6& stiffness, const std::vector<int>& elastic) {
   const auto n = static_cast<Eigen::Index>(elastic.size());
   Eigen::MatrixXd S(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
-      S(i, j) = section.stiffness(elastic[static_cast<std::size_t>(i)],
-                                  elastic[static_cast<std::size_t>(j)]);
+      S(i, j) =
+          stiffness(elastic[static_cast<std::size_t>(i)], elastic[static_cast<std::size_t>(j)]);
   const Eigen::MatrixXd inverse = S.llt().solve(Eigen::MatrixXd::Identity(n, n));
   Matrix6 compliance = Matrix6::Zero();
   for (Eigen::Index i = 0; i < n; ++i)
@@ -73,6 +69,35 @@ Matrix6 compliance_of(const SectionDefinition& section) {
       compliance(elastic[static_cast<std::size_t>(i)], elastic[static_cast<std::size_t>(j)]) =
           0.5 * (inverse(i, j) + inverse(j, i));
   return compliance;
+}
+
+void add_supports(const BeamDefinition& definition, Beam& beam) {
+  const SupportDefinition& support = definition.support;
+  if (!support.is_clamp()) {
+    std::vector<int> elastic;
+    for (int i = 0; i < 6; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (!support.rigid[at] && !support.free[at]) elastic.push_back(i);
+    }
+    beam.has_support = true;
+    beam.support.compliance = inverse_of(support.stiffness, elastic);
+    beam.support.free = support.free;
+    beam.support.damping = support.damping;
+    beam.mass_nodes.push_back(
+        {0, Vector3::Zero(),
+         rigid_mass(support.mass, support.center, support.inertia.asDiagonal())});
+  }
+  beam.end_support.stiffness = definition.end_support.stiffness;
+  beam.end_support.rigid = definition.end_support.rigid;
+}
+
+}  // namespace
+
+Matrix6 compliance_of(const SectionDefinition& section) {
+  std::vector<int> elastic;
+  for (int i = 0; i < 6; ++i)
+    if (!section.rigid[static_cast<std::size_t>(i)]) elastic.push_back(i);
+  return inverse_of(section.stiffness, elastic);
 }
 
 Matrix6 rigid_mass(double mass, const Vector3& center, const Matrix3& inertia_about_center) {
@@ -114,6 +139,7 @@ Beam build_beam(const std::string& name, const BeamDefinition& definition, doubl
       beam.fractions.push_back(fraction);
     }
   }
+  add_supports(definition, beam);
   for (const PointMassDefinition& lump : definition.point_masses) {
     const ReferenceLine::Station station =
         line.at(lump.at, interpolate_section(definition, lump.at).twist);

@@ -178,6 +178,25 @@ std::string find_section_fault(const SectionDefinition& section) {
   return fault;
 }
 
+SupportDefinition free_end() {
+  SupportDefinition end;
+  end.rigid = {};
+  end.free.fill(true);
+  return end;
+}
+
+std::string find_support_fault(const SupportDefinition& support) {
+  SectionDefinition springs;  // of the same form
+  springs.stiffness = support.stiffness;
+  for (std::size_t i = 0; i < 6; ++i) {
+    springs.rigid[i] = support.rigid[i] || support.free[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    if (springs.rigid[i] && !support.stiffness.row(k).isZero(0.0))
+      return "a direction that is rigid or free has no springs beside it";
+  }
+  return find_stiffness_fault(springs);
+}
+
 double compute_arc_length(const std::vector<Vector3>& reference_line) {
   if (reference_line.size() < 2) return 0.0;
   for (std::size_t i = 1; i < reference_line.size(); ++i)

@@ -3,6 +3,7 @@
 namespace samara::model {
 
 Layout::Chain::Chain(const Beam& beam) {
+  if (beam.has_support) masses.push_back(size += block);
   for (int p = 0; p < beam.point_count(); ++p) {
     points.push_back(size += block);
     const auto next = masses.size();

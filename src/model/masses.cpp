@@ -43,6 +43,10 @@ MassProperties beam_mass(const BeamDefinition& beam, double mass_factor) {
   const math::QuadratureRule rule = math::gauss_rule(quadrature_points);
   const ReferenceLine line("beam", beam);
   MassProperties sum = point_mass(beam.tip_mass, line.at(1.0).x);
+  const SupportDefinition& support = beam.support;
+  if (!support.is_clamp())
+    sum += section_mass(rigid_mass(support.mass, support.center, support.inertia.asDiagonal()), 1.0,
+                        Matrix3::Identity(), Vector3::Zero());
   for (const PointMassDefinition& lump : beam.point_masses) {
     const ReferenceLine::Station station =
         line.at(lump.at, interpolate_section(beam, lump.at).twist);

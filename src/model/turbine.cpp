@@ -76,11 +76,17 @@ BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   return root;
 }
 
+/// Degrees of freedom: elastic strains, and what the ends can do; a held end takes some away.
 int elastic_strains(const Beam& beam) {
   int count = 0;
   for (const elements::BeamPoint& point : beam.points)
     for (int i = 0; i < 6; ++i)
       if (point.compliance(i, i) > 0.0) ++count;
+  for (int i = 0; i < 6; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (beam.support.is_elastic(i) || beam.support.free[at]) ++count;
+    if (beam.end_support.rigid[at]) --count;
+  }
   return count;
 }
 

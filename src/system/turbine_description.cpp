@@ -80,6 +80,47 @@ class Describer {
     }
   }
 
+  /// Point masses count from 1, whatever the root stands on.
+  void name_mass_node(const model::Beam& beam, int m, int first) {
+    if (beam.mass_nodes[static_cast<std::size_t>(m)].end == 0)
+      name_block(first, beam.name + " support");
+    else
+      name_block(first, beam.name + " mass " + std::to_string(beam.has_support ? m : m + 1));
+  }
+
+  void describe_support(const model::Beam& beam, int first, int blade, Frame frame) {
+    for (int i = 0; i < 6; ++i) {
+      if (beam.support.free[static_cast<std::size_t>(i)]) {
+        result_.rows[static_cast<std::size_t>(first + i)] = RowRole::balance;
+        result_.unknowns[static_cast<std::size_t>(first + i)].is_free = true;
+      }
+      if (beam.support.is_elastic(i))
+        result_.groups.push_back({EnergyGroup::Kind::strain,
+                                  "joint",
+                                  blade == 0 ? "foundation" : "blade support",
+                                  blade,
+                                  frame,
+                                  {first + 12 + i},
+                                  {beam.support.compliance(i, i)},
+                                  beam.support.damping});
+    }
+  }
+
+  void describe_end_support(const model::Beam& beam, int tip, int blade) {
+    for (int i = 0; i < 6; ++i) {
+      if (beam.end_support.rigid[static_cast<std::size_t>(i)])
+        result_.rows[static_cast<std::size_t>(tip + 12 + i)] = RowRole::constraint;
+      if (beam.end_support.stiffness(i, i) > 0.0)
+        result_.groups.push_back({EnergyGroup::Kind::strain,
+                                  "joint",
+                                  "blade end support",
+                                  blade,
+                                  Frame::rotating,
+                                  {tip + i},
+                                  {beam.end_support.stiffness(i, i)}});
+    }
+  }
+
   void describe_blade(int k) {
     const model::Beam& beam = turbine_.blades[static_cast<std::size_t>(k)];
     for (int p = 0; p < beam.point_count(); ++p) {
@@ -89,10 +130,12 @@ class Describer {
     }
     for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
       const int first = layout_.blade_mass(k, static_cast<int>(m));
-      name_block(first, beam.name + " mass " + std::to_string(m + 1));
+      name_mass_node(beam, static_cast<int>(m), first);
+      if (beam.mass_nodes[m].end == 0) describe_support(beam, first, k + 1, Frame::rotating);
       add_mass(first, beam.mass_nodes[m].mass, "blade", k + 1, Frame::rotating);
     }
     name_block(layout_.blade_tip(k), beam.name + " tip");
+    describe_end_support(beam, layout_.blade_tip(k), k + 1);
     name_root(layout_.blade_root(k), beam.name);
     add_mass(layout_.blade_tip(k), beam.tip_mass, "blade", k + 1, Frame::rotating);
   }
@@ -116,7 +159,8 @@ class Describer {
     }
     for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
       const int first = layout_.tower_mass(static_cast<int>(m));
-      name_block(first, "tower mass " + std::to_string(m + 1));
+      name_mass_node(beam, static_cast<int>(m), first);
+      if (beam.mass_nodes[m].end == 0) describe_support(beam, first, 0, Frame::fixed);
       add_mass(first, beam.mass_nodes[m].mass, "tower", 0, Frame::fixed);
     }
     name_block(layout_.tower_tip(), "tower top");

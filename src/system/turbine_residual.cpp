@@ -47,9 +47,9 @@ int PlacedBeam::strain_rows(int p, int a) const {
 int PlacedBeam::force_rows(int p, int a) const {
   const int e = p / beam->order;
   if (a == 0) {
-    if (e == 0) return root;
     const int mass = mass_at(e);
     if (mass >= 0) return mass + 12;
+    if (e == 0) return root;
   }
   return points[static_cast<std::size_t>(e * beam->order + a - 1)] + 12;
 }
@@ -67,7 +67,7 @@ void TurbineResidual::check_rotation(const Vector3& theta, const std::string& pl
 void TurbineResidual::find_changes(PlacedBeam& placed) {
   const model::Beam& beam = *placed.beam;
   for (int e = 0; e < beam.elements; ++e) {
-    const Matrix3 before = e == 0 ? Matrix3(Matrix3::Identity()) : beam.reference(e - 1);
+    const Matrix3 before = beam.reference_before(e);
     if (before == beam.reference(e)) continue;
     ReferenceChange change;
     change.element = e;
@@ -76,6 +76,8 @@ void TurbineResidual::find_changes(PlacedBeam& placed) {
     change.turn = math::parameters_of(before * beam.reference(e).transpose());
     placed.changes.push_back(change);
   }
+  if (!placed.changes.empty())
+    placed.end_reference = math::parameters_of(beam.reference(beam.elements - 1));
 }
 
 void TurbineResidual::place_beams() {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int block = model::Layout::block;
 
-/// |theta| from which rotations count anew: 120 degrees. A coarse mesh depends a little on what they
-/// count from, so that is not done before it is needed.
+/// |theta| from which rotations count anew: 120 degrees. A coarse mesh depends a little on what
+/// they count from, so that is not done before it is needed.
 constexpr double large_rotation = 3.4641016151377544;
 
 }  // namespace
@@ -81,7 +81,7 @@ class TurbineSystem::Assembly {
       for (int p = 0; p < beam.point_count(); ++p)
         put(placed.points[static_cast<std::size_t>(p)], beam.reference(p / beam.order));
       for (std::size_t m = 0; m < placed.masses.size(); ++m)
-        put(placed.masses[m], beam.reference(beam.mass_nodes[m].end - 1));
+        put(placed.masses[m], beam.reference_before(beam.mass_nodes[m].end));
       put(placed.tip, beam.reference(beam.elements - 1));
     }
   }
@@ -109,7 +109,7 @@ class TurbineSystem::Assembly {
       }
       for (std::size_t m = 0; m < placed.masses.size(); ++m) {
         const int e = beam.mass_nodes[m].end - 1;
-        rewrite(placed.masses[m], beam.reference(e), to(e));
+        if (e >= 0) rewrite(placed.masses[m], beam.reference(e), to(e));
       }
       rewrite(placed.tip, beam.reference(beam.elements - 1), to(beam.elements - 1));
     }

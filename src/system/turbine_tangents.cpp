@@ -62,7 +62,7 @@ class Pattern {
       if (placed.on_hub) couple_to_motion(couple, placed.tip);
       for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
         const auto next = static_cast<std::size_t>(beam.mass_nodes[m].end * beam.order);
-        couple(placed.points[next - 1], placed.masses[m]);
+        couple(next == 0 ? placed.root : placed.points[next - 1], placed.masses[m]);
         couple(placed.points[next], placed.masses[m]);
         if (placed.on_hub) couple_to_motion(couple, placed.masses[m]);
       }
@@ -281,14 +281,72 @@ class TurbineTangents::Scatter {
     };
     add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.reference(beam.elements - 1),
             beam.tip_mass, placed.on_hub);
+    if (placed.on_hub) add_end_support_tangent(placed, z);
     for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
       const model::MassNode& node = beam.mass_nodes[m];
       const int next = node.end * beam.order;
       const int first = placed.masses[m];
-      add_end(first, next - 1, node.x, beam.reference(node.end - 1), node.mass, true);
+      if (node.end == 0)
+        add_support_tangent(placed, first, a, root, z, z_dot);
+      else
+        add_end(first, next - 1, node.x, beam.reference(node.end - 1), node.mass, true);
       for (int i = 0; i < 6; ++i)
         add(K_, placed.points[static_cast<std::size_t>(next)] + i, first + i, -1.0);
     }
+  }
+
+  /// Two terms of three rows each.
+  void add_terms(int row, int first, const Vec6<PointDual>& terms, const MotionJacobian& root,
+                 bool on_hub) {
+    add_term(row, first, jacobian_of(terms.head<3>()), root, on_hub);
+    add_term(row + 3, first, jacobian_of(terms.tail<3>()), root, on_hub);
+  }
+
+  void add_support_tangent(const PlacedBeam& placed, int first, const Attachment<double>& a,
+                           const MotionJacobian& root, const std::vector<double>& z,
+                           const std::vector<double>& z_dot) {
+    const model::Beam& beam = *placed.beam;
+    PointDualState node;
+    PointDualState node_dot;
+    Attachment<PointDual> dual_a;
+    fill_inputs(inputs_of(TurbineResidual::at(z, first), TurbineResidual::at(z_dot, first), a),
+                node, node_dot, dual_a);
+    const elements::RootSupportTerms<PointDual> held =
+        elements::root_support_terms<PointDual>(beam.support, node, node_dot);
+    node.segment<6>(12) = held.load;
+    const elements::TipTerms<PointDual> terms = elements::beam_tip_terms<PointDual>(
+        Vector3::Zero(), Matrix3::Identity(), beam.mass_nodes.front().mass, node, node_dot, dual_a);
+    add_terms(first, first, held.law, root, false);
+    add_terms(placed.root, first, -held.root, root, false);
+    add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub);
+    add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub);
+    add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub);
+    add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub);
+  }
+
+  /// A rigid direction has no balance: its row says that the end does not move.
+  void add_end_support_tangent(const PlacedBeam& placed, const std::vector<double>& z) {
+    using EndDual = math::Dual<6>;
+    const elements::EndSupport& support = placed.beam->end_support;
+    const bool any =
+        std::any_of(support.rigid.begin(), support.rigid.end(), [](bool r) { return r; });
+    if (!any && support.stiffness.isZero(0.0)) return;
+    Vec6<EndDual> end;
+    for (int i = 0; i < 6; ++i)
+      end(i) = math::independent<6>(z[static_cast<std::size_t>(placed.tip + i)], i);
+    const Vec6<EndDual> load =
+        elements::end_support_load<EndDual>(support, placed.end_reference, end);
+    BlockMatrix::Block K = K_.at(placed.tip / block, placed.tip / block);
+    for (int i = 0; i < 6; ++i) {
+      if (support.rigid[static_cast<std::size_t>(i)]) clear_row(placed.tip + 12 + i);
+      K.block<1, 6>(12 + i, 0) += load(i).derivatives().transpose();
+    }
+  }
+
+  void clear_row(int row) {
+    for (BlockMatrix* matrix : {&K_, &M_})
+      for (const int column : matrix->columns()[static_cast<std::size_t>(row / block)])
+        matrix->at(row / block, column).row(row % block).setZero();
   }
 
   /// `points`: tangents of the beam's points.

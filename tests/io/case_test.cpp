@@ -255,6 +255,57 @@ BOOST_AUTO_TEST_CASE(point_masses_are_sorted_by_their_place) {
   BOOST_TEST((beam.point_masses[1].center == Vector3::Zero()));
 }
 
+BOOST_AUTO_TEST_CASE(supports_are_words_or_springs) {
+  using Six = std::array<bool, 6>;
+  const auto beam = [](const std::string& keys) {
+    return read_text(minimal + keys).turbine.blades.beam;
+  };
+  BOOST_TEST(beam("").support.is_clamp());
+  BOOST_TEST(beam("").end_support.is_none());
+  BOOST_TEST(beam("  support: clamped\n  end_support: free\n").end_support.is_none());
+  const model::BeamDefinition pinned = beam("  support: pinned\n  end_support: pinned\n");
+  for (const model::SupportDefinition& support : {pinned.support, pinned.end_support}) {
+    BOOST_TEST((support.rigid == Six{true, true, true, false, false, false}));
+    BOOST_TEST((support.free == Six{false, false, false, true, true, true}));
+  }
+  const model::SupportDefinition springs =
+      beam(
+          "  support:\n    stiffness: {u1: 3, theta2: 7, theta3: free}\n    mass: 2\n"
+          "    center: [1, 2, 3]\n    inertia: [4, 5, 6]\n    damping: 0.1\n")
+          .support;
+  BOOST_TEST((springs.rigid == Six{false, true, true, true, false, false}));
+  BOOST_TEST((springs.free == Six{false, false, false, false, false, true}));
+  BOOST_TEST((Vector6(springs.stiffness.diagonal()) == Vector6(3, 0, 0, 0, 7, 0)));
+  BOOST_TEST(springs.mass == 2.0);
+  BOOST_TEST((springs.center == Vector3(1, 2, 3)));
+  BOOST_TEST((springs.inertia == Vector3(4, 5, 6)));
+  BOOST_TEST(springs.damping == 0.1);
+  const model::SupportDefinition matrix =
+      beam(
+          "  end_support:\n    stiffness_matrix:\n"
+          "      - [2, 1, 0, 0, 0, 0]\n      - [1, 3, 0, 0, 0, 0]\n      - [0, 0, 4, 0, 0, 0]\n"
+          "      - [0, 0, 0, rigid, 0, 0]\n      - [0, 0, 0, 0, 5, 0]\n      - [0, 0, 0, 0, 0, "
+          "6]\n")
+          .end_support;
+  BOOST_TEST((matrix.rigid == Six{false, false, false, true, false, false}));
+  BOOST_TEST(matrix.stiffness(0, 1) == 1.0);
+  BOOST_TEST(matrix.stiffness(5, 5) == 6.0);
+}
+
+BOOST_AUTO_TEST_CASE(supports_are_checked) {
+  check_error(minimal + "  support: loose\n",
+              "case.yaml:9:3: blades.support: expected clamped or pinned, got \"loose\"");
+  check_error(minimal + "  support: {mass: 3}\n",
+              "case.yaml:9:3: blades.support: missing key \"stiffness\" (or \"stiffness_matrix\")");
+  check_error(
+      minimal + "  support: {stiffness: {u1: -3}}\n",
+      "case.yaml:9:25: blades.support.stiffness.u1: expected a number > 0, rigid or free, got "
+      "-3");
+  check_error(minimal + "  end_support: {stiffness: {u1: 3}, mass: 1}\n",
+              "case.yaml:9:37: unknown key \"mass\" in blades.end_support; known keys: stiffness, "
+              "stiffness_matrix");
+}
+
 BOOST_AUTO_TEST_CASE(a_mass_center_couples_forces_and_rotations) {
   const double m = 5, c2 = 0.1, c3 = -0.2;
   const Matrix6 mass =

@@ -2,6 +2,7 @@
 // as dense arrays.
 #pragma once
 
+#include <complex>
 #include <random>
 #include <vector>
 
@@ -225,6 +226,42 @@ inline Tangents tangents_of(const system::PeriodicSystem& system, double t,
   system.tangents(t, to_petsc(system, z).get(), to_petsc(system, z_dot).get(), 0.0, K.get(),
                   M.get());
   return {to_dense(K.get()), to_dense(M.get())};
+}
+
+/// Largest difference of the tangents from a complex step of the residual, relative to the largest
+/// entry of the row in K and M.
+inline double tangent_error(const system::TurbineSystem& system, double t,
+                            const RandomState& state) {
+  using Complex = std::complex<double>;
+  const auto n = static_cast<std::size_t>(system.size());
+  const Tangents found = tangents_of(system, t, state.z, state.z_dot);
+  std::vector<Complex> z(state.z.data(), state.z.data() + n);
+  std::vector<Complex> z_dot(state.z_dot.data(), state.z_dot.data() + n);
+  std::vector<Complex> r(n);
+  Tangents expected{Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n)};
+  constexpr double step = 1e-30;
+  const auto fill_column = [&](std::vector<Complex>& moved, Eigen::MatrixXd& target,
+                               std::size_t j) {
+    const Complex before = moved[j];
+    moved[j] += Complex(0.0, step);
+    system.equations().evaluate<Complex>(t, z, z_dot, r);
+    for (std::size_t i = 0; i < n; ++i)
+      target(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = r[i].imag() / step;
+    moved[j] = before;
+  };
+  for (std::size_t j = 0; j < n; ++j) {
+    fill_column(z, expected.K, j);
+    fill_column(z_dot, expected.M, j);
+  }
+  const Eigen::VectorXd scale = expected.K.cwiseAbs().rowwise().maxCoeff().cwiseMax(
+      expected.M.cwiseAbs().rowwise().maxCoeff());
+  const Eigen::VectorXd error =
+      (found.K - expected.K)
+          .cwiseAbs()
+          .rowwise()
+          .maxCoeff()
+          .cwiseMax((found.M - expected.M).cwiseAbs().rowwise().maxCoeff());
+  return error.cwiseQuotient(scale).maxCoeff();
 }
 
 inline Eigen::VectorXd reference_state_of(const system::PeriodicSystem& system, double t) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "samara/analysis/periodic_solution.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -47,6 +48,7 @@ class ConsistentSubspace {
 
  private:
   Eigen::MatrixXd positions(double t) const;
+  void tie_coordinates(const Eigen::SparseMatrix<double>& K);
 
   const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;
@@ -54,7 +56,7 @@ class ConsistentSubspace {
   std::vector<double> scale_;  ///< eta = z / scale
   std::vector<bool> carried_;
   std::vector<PetscInt> constraints_;  ///< rows
-  std::vector<PetscInt> tied_;         ///< positions in constraint rows
+  std::vector<PetscInt> tied_;         ///< what constraint rows determine: positions
   std::vector<PetscInt> kinematic_;    ///< rows
   std::vector<PetscInt> velocities_;   ///< unknowns
   bool fixed_constraints_ = false;

@@ -46,6 +46,8 @@ class DirectSolver {
 
  private:
   double compute_residual(const Eigen::MatrixXd& right) const;
+  PCFailedReason failure() const;
+  void take_pivoting_solver();
 
   std::string prefix_;
   std::function<Equilibration(Mat)> scale_;

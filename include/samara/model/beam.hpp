@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "samara/elements/beam_point.hpp"
+#include "samara/elements/beam_support.hpp"
 #include "samara/model/definition.hpp"
 #include "samara/model/load.hpp"
 
@@ -18,7 +19,7 @@ struct TestFunctions {
   std::vector<std::vector<double>> slope;  ///< N_a'(xi_j) per unit xi, [a][j]
 };
 
-/// A mass at the common end of two elements.
+/// A mass at the common end of two elements, or at the root.
 struct MassNode {
   int end = 0;                     ///< of element `end` - 1, start of element `end`
   Vector3 x = Vector3::Zero();     ///< undeformed, components in a [m]
@@ -37,6 +38,9 @@ struct Beam {
   Vector3 tip = Vector3::Zero();            ///< undeformed tip, components in a [m]
   Matrix6 tip_mass = Matrix6::Zero();       ///< at the tip, as MassNode::mass
   std::vector<MassNode> mass_nodes;         ///< root to tip, without the tip
+  bool has_support = false;                 ///< the first mass node is the root, on springs
+  elements::RootSupport support;
+  elements::EndSupport end_support;
   std::vector<BeamLoad> loads;
 
   int point_count() const { return elements * order; }
@@ -44,6 +48,11 @@ struct Beam {
   /// The rotation from which those of element e count, components in a.
   const Matrix3& reference(int e) const {
     return points[static_cast<std::size_t>(e * order)].reference;
+  }
+
+  /// The rotation from which that of the start of element e counts, on the side of the root.
+  Matrix3 reference_before(int e) const {
+    return e == 0 ? Matrix3(Matrix3::Identity()) : reference(e - 1);
   }
 
   /// L of element e [m].

@@ -29,6 +29,23 @@ struct PointMassDefinition {
   Vector3 inertia = Vector3::Zero();  ///< about its own centre, section axes [kg m^2]
 };
 
+/// What holds an end of a beam. Order of directions: u1 u2 u3 theta1 theta2 theta3, root axes.
+struct SupportDefinition {
+  Matrix6 stiffness = Matrix6::Zero();  ///< [N/m, N, N m]; rigid and free rows, columns are 0
+  std::array<bool, 6> rigid{true, true, true, true, true, true};  ///< directions that cannot move
+  std::array<bool, 6> free{};                                     ///< directions that nothing holds
+  double mass = 0.0;                  ///< of a rigid body between springs and beam [kg]
+  Vector3 center = Vector3::Zero();   ///< from the root, root axes [m]
+  Vector3 inertia = Vector3::Zero();  ///< about its own centre, root axes [kg m^2]
+  double damping = 0.0;               ///< mu [s] of the springs
+
+  bool is_clamp() const { return rigid == std::array<bool, 6>{true, true, true, true, true, true}; }
+  bool is_none() const { return free == std::array<bool, 6>{true, true, true, true, true, true}; }
+};
+
+/// Nothing at all.
+SupportDefinition free_end();
+
 struct BeamDefinition {
   double length = 0.0;                      ///< arc length [m], > 0
   std::vector<Vector3> reference_line;      ///< points in axes a [m]; empty = straight along b1
@@ -39,6 +56,8 @@ struct BeamDefinition {
   Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component
   double tip_mass = 0.0;                    ///< [kg], >= 0
   std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`
+  SupportDefinition support;                      ///< of the root
+  SupportDefinition end_support = free_end();     ///< of the end, without a mass
 };
 
 enum class JointKind { free, locked };
@@ -141,6 +160,10 @@ struct TurbineDefinition {
   BladesDefinition blades;
   std::vector<LoadDefinition> loads;
 };
+
+/// Returns what is wrong with a support, or an empty string: springs that are not symmetric, finite
+/// and positive definite.
+std::string find_support_fault(const SupportDefinition& support);
 
 /// Interpolates the section at `fraction` (0 to 1) of the length: stiffness, mass and twist are
 /// linear between stations, constant outside the first and the last.

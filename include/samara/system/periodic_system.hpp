@@ -32,6 +32,8 @@ struct Unknown {
   std::string name;  ///< "blade 1 point 3 theta2"
   std::string unit;
   UnknownRole role = UnknownRole::position;
+  /// A position that constraints tie others to, free itself: that of a hinge.
+  bool is_free = false;
 };
 
 /// Unknowns that belong together, with their share of an energy e = z^T weight z / 2. Kinetic:

@@ -32,6 +32,7 @@ struct PlacedBeam {
   int tip = 0;
   int root = 0;  ///< first of F_hat_0, M_hat_0
   std::vector<ReferenceChange> changes;
+  Vector3 end_reference = Vector3::Zero();  ///< parameters of that of the tip
   bool on_hub = false;
   Vector3 position = Vector3::Zero();  ///< root from the apex, in H
   Matrix3 C_Ha = Matrix3::Identity();
@@ -115,6 +116,9 @@ class TurbineResidual {
   template <class T>
   void add_ends(const PlacedBeam& placed, const elements::Attachment<T>& a, const std::vector<T>& z,
                 const std::vector<T>& z_dot, std::vector<T>& r) const;
+  template <class T>
+  void add_support(const PlacedBeam& placed, int first, const elements::Attachment<T>& a,
+                   const std::vector<T>& z, const std::vector<T>& z_dot, std::vector<T>& r) const;
   template <class T>
   void add_changes(const PlacedBeam& placed, const std::vector<T>& z, std::vector<T>& r) const;
   template <class T>
@@ -277,15 +281,50 @@ void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachm
   // The tower top's loads are Kane's rows.
   add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass,
           beam.reference(beam.elements - 1), " tip", placed.on_hub);
+  if (placed.on_hub) {
+    const Vec6<T> load =
+        elements::end_support_load<T>(beam.end_support, placed.end_reference,
+                                      Vec6<T>(Eigen::Map<const Vec6<T>>(z.data() + placed.tip)));
+    for (int i = 0; i < 6; ++i) {
+      T& row = r[static_cast<std::size_t>(placed.tip + 12 + i)];
+      row = beam.end_support.rigid[static_cast<std::size_t>(i)] ? load(i) : T(row + load(i));
+    }
+  }
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const model::MassNode& node = beam.mass_nodes[m];
     const int next = node.end * beam.order;  // the first point behind it
     const int first = placed.masses[m];
-    add_end(first, next - 1, node.x, node.mass, beam.reference(node.end - 1),
-            " mass " + std::to_string(m + 1), true);
+    if (node.end == 0)
+      add_support(placed, first, a, z, z_dot, r);
+    else
+      add_end(first, next - 1, node.x, node.mass, beam.reference(node.end - 1),
+              " mass " + std::to_string(m + 1), true);
     LongRows(r.data() + placed.points[static_cast<std::size_t>(next)]) -=
         at(z, first).template head<6>();
   }
+}
+
+/// The root on its body and springs: their law, the motion of the body, its balance.
+template <class T>
+void TurbineResidual::add_support(const PlacedBeam& placed, int first,
+                                  const elements::Attachment<T>& a, const std::vector<T>& z,
+                                  const std::vector<T>& z_dot, std::vector<T>& r) const {
+  using LongRows = Eigen::Map<Vec6<T>>;
+  const model::Beam& beam = *placed.beam;
+  State<T> node = at(z, first);
+  check_rotation(Vector3(node.template segment<3>(3).real()), beam.name + " root");
+  const elements::RootSupportTerms<T> held =
+      elements::root_support_terms<T>(beam.support, node, at(z_dot, first));
+  node.template segment<6>(12) = held.load;
+  const elements::TipTerms<T> terms =
+      elements::beam_tip_terms<T>(Vector3::Zero(), Matrix3::Identity(),
+                                  beam.mass_nodes.front().mass, node, at(z_dot, first), a);
+  LongRows(r.data() + first) += held.law;
+  LongRows(r.data() + placed.root) -= held.root;
+  Eigen::Map<Vec3<T>>(r.data() + first + 6) += terms.velocity;
+  Eigen::Map<Vec3<T>>(r.data() + first + 9) += terms.spin;
+  Eigen::Map<Vec3<T>>(r.data() + first + 12) += terms.force;
+  Eigen::Map<Vec3<T>>(r.data() + first + 15) += terms.moment;
 }
 
 /// What the plain sums of the curvature balances miss where references differ.

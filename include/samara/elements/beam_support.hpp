@@ -1,0 +1,72 @@
+// What holds the ends of a beam, where it is not the clamp of its root or nothing at its tip
+// (docs/theory.md, section 2.7).
+#pragma once
+
+#include <array>
+
+#include "samara/elements/beam_point.hpp"
+
+namespace samara::elements {
+
+/// The root stands on a rigid body of its own (a node in the order of a Gauss point), and that on
+/// springs. Order of directions: u1 u2 u3 theta1 theta2 theta3, root axes a.
+struct RootSupport {
+  Matrix6 compliance = Matrix6::Zero();  ///< of the springs; zero rows and columns where rigid
+  std::array<bool, 6> free{};            ///< directions that nothing holds
+  double damping = 0.0;                  ///< mu [s]: load = F_hat + mu F_hat_dot, where elastic
+
+  bool is_elastic(int i) const { return compliance(i, i) > 0.0; }
+};
+
+/// Springs at the free end, in root axes a; a rigid direction does not move.
+struct EndSupport {
+  Matrix6 stiffness = Matrix6::Zero();
+  std::array<bool, 6> rigid{};
+};
+
+template <class T>
+struct RootSupportTerms {
+  Vec6<T> law;   ///< position less compliance times load; the load where nothing holds
+  Vec6<T> load;  ///< of the node on its springs, in a
+  Vec6<T> root;  ///< the same on what carries the springs, moment about the undeformed root
+};
+
+/// z: u, theta; V, Omega; F_hat, M_hat, the elastic loads.
+template <class T>
+RootSupportTerms<T> root_support_terms(const RootSupport& support,
+                                       const Eigen::Matrix<T, point_size, 1>& z,
+                                       const Eigen::Matrix<T, point_size, 1>& z_dot) {
+  RootSupportTerms<T> terms;
+  for (int i = 0; i < 6; ++i) {
+    terms.load(i) = z(12 + i);
+    if (support.is_elastic(i)) terms.load(i) += z_dot(12 + i) * support.damping;
+    terms.law(i) = support.free[static_cast<std::size_t>(i)] ? z(12 + i) : z(i);
+    for (int j = 0; j < 6; ++j)
+      if (support.compliance(i, j) != 0.0) terms.law(i) -= z(12 + j) * support.compliance(i, j);
+  }
+  const Vec3<T> force = terms.load.template head<3>();
+  const Vec3<T> displacement = z.template head<3>();
+  terms.root = terms.load;
+  terms.root.template tail<3>() += math::cross(displacement, force);
+  return terms;
+}
+
+/// Load of the end on its springs, and in rigid directions the position itself. `reference`:
+/// parameters of the rotation from which theta counts.
+template <class T>
+Vec6<T> end_support_load(const EndSupport& support, const Vector3& reference, const Vec6<T>& end) {
+  Vec6<T> position = end;
+  if (!reference.isZero(0.0))
+    position.template tail<3>() =
+        math::compose<T>(Vec3<T>(end.template tail<3>()), reference.cast<T>());
+  Vec6<T> load;
+  for (int i = 0; i < 6; ++i) {
+    load(i) = T(0);
+    for (int j = 0; j < 6; ++j)
+      if (support.stiffness(i, j) != 0.0) load(i) += position(j) * support.stiffness(i, j);
+    if (support.rigid[static_cast<std::size_t>(i)]) load(i) = position(i);
+  }
+  return load;
+}
+
+}  // namespace samara::elements

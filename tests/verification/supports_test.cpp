@@ -1,0 +1,215 @@
+// Ends of beams on springs, hinges and held at both ends, against closed forms.
+#include <Eigen/Eigenvalues>
+#include <boost/test/unit_test.hpp>
+
+#include "samara/analysis/static_path.hpp"
+
+#include "cases.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using boost::test_tools::tolerance;
+
+namespace {
+
+/// Directions, in the order u1 u2 u3 theta1 theta2 theta3: r rigid, f free, s a spring.
+model::SupportDefinition support(const std::string& directions, double stiffness = 0.0) {
+  model::SupportDefinition result;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    result.rigid[i] = directions[i] == 'r';
+    result.free[i] = directions[i] == 'f';
+    if (directions[i] == 's') result.stiffness(k, k) = stiffness;
+  }
+  return result;
+}
+
+/// A beam that only bends about b2, EI = m = L = 1, with ends held in that plane.
+model::TurbineDefinition beam_between(const std::string& root, const std::string& end) {
+  BeamCase beam;
+  beam.stiffness << 0.0, 0.0, 0.0, 0.0, 1.0, 0.0;
+  beam.elements = 10;
+  model::TurbineDefinition definition = definition_of(beam);
+  definition.blades.beam.support = support(root);
+  definition.blades.beam.support.mass = 1e-6;  // too small to tell
+  definition.blades.beam.support.inertia.setConstant(1e-9);
+  definition.blades.beam.end_support = support(end);
+  return definition;
+}
+
+/// An upright rigid turbine on springs, all its mass in the tower, a rod of mass m and height l.
+struct Rod {
+  double mass = 3.0;
+  double height = 2.0;
+  double lateral = 50.0;    ///< of the springs [N/m]
+  double rotation = 400.0;  ///< [N m/rad]
+  double gravity = 9.81;
+  double damping = 0.0;
+};
+
+model::TurbineDefinition rod_on_springs(const Rod& rod) {
+  BeamCase light;
+  light.mass = 1e-9;
+  light.length = 1e-3;
+  light.stiffness.setZero();
+  model::TurbineDefinition definition = definition_of(light);
+  BeamCase beam;
+  beam.mass = rod.mass / rod.height;
+  beam.length = rod.height;
+  beam.stiffness.setZero();
+  definition.has_tower = true;
+  definition.tower = definition_of(beam).blades.beam;
+  definition.tower.support = support("ssssss");
+  definition.tower.support.stiffness.diagonal() << rod.lateral, rod.lateral, rod.lateral,
+      rod.rotation, rod.rotation, rod.rotation;
+  definition.tower.support.mass = 0.7;
+  definition.tower.support.inertia = Vector3(0.2, 0.3, 0.4);
+  definition.tower.support.damping = rod.damping;
+  definition.gravity = rod.gravity;
+  return definition;
+}
+
+/// Sway and rocking of the rod in the plane of n3 and the lateral axis, whose inertia about the
+/// foot is `own` more than the rod's: M x'' + K x = 0 for the displacement of the foot and the
+/// rotation. The weight of the rod pushes it over.
+Eigen::Vector2d rod_frequencies(const Rod& rod, double own) {
+  const double arm = 0.5 * rod.height;
+  Eigen::Matrix2d M;
+  M << rod.mass + 0.7, rod.mass * arm, rod.mass * arm,
+      rod.mass * rod.height * rod.height / 3.0 + own;
+  const Eigen::Matrix2d K =
+      Eigen::Vector2d(rod.lateral, rod.rotation - rod.mass * rod.gravity * arm).asDiagonal();
+  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(K, M).eigenvalues().cwiseSqrt();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(supports)
+
+BOOST_AUTO_TEST_CASE(beams_between_two_supports_vibrate_as_in_the_books) {
+  // (beta L)^2 of cos cosh = 1, tan = tanh, sin = 0 (Blevins, Formulas for Natural Frequency and
+  // Mode Shape, 1979, table 8-1), and of a hinged beam with a free end.
+  struct Ends {
+    const char* root;
+    const char* end;
+    double first, second;
+  };
+  const auto square = [](double x) { return x * x; };
+  for (const Ends& ends : {Ends{"rrrrfr", "ffrfff", square(pi), square(2.0 * pi)},
+                           Ends{"rrrrrr", "ffrfff", square(3.92660231), square(7.06858275)},
+                           Ends{"rrrrfr", "ffrfrf", square(3.92660231), square(7.06858275)},
+                           Ends{"rrrrrr", "ffrfrf", square(4.73004074), square(7.85320462)}}) {
+    const model::TurbineDefinition definition = beam_between(ends.root, ends.end);
+    const std::vector<double> found = frequencies(constant_modes_of(definition));
+    BOOST_TEST_REQUIRE(found.size() > 2u);
+    BOOST_TEST(found[0] == ends.first, tolerance(1e-5));
+    BOOST_TEST(found[1] == ends.second, tolerance(1e-5));
+    const model::Turbine turbine = model::build_turbine(definition);
+    BOOST_TEST(static_cast<int>(found.size()) == turbine.degrees_of_freedom);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_beam_turns_with_its_held_end_and_keeps_its_energy) {
+  // Floquet's analysis of a turning beam held at its end finds the modes of its own axes.
+  model::TurbineDefinition definition = beam_between("rrrrfr", "ffrfff");
+  definition.blades.beam.elements = 4;
+  definition.shaft.speed = 2.0;
+  const std::vector<double> constant = frequencies(constant_modes_of(definition));
+  constexpr int steps = 800;
+  const analysis::Floquet floquet = floquet_of(definition, steps);
+  const double dt = pi / steps;
+  int resolved = 0;
+  for (const analysis::Mode& mode : floquet.set.modes) {
+    if (!mode.resolved) continue;
+    ++resolved;
+    BOOST_TEST(std::abs(std::abs(mode.multiplier) - 1.0) < 1e-7, mode.label);
+    const double omega = 2.0 / dt * std::tan(0.5 * dt * mode.exponent.imag());
+    BOOST_TEST(std::abs(nearest(constant, omega) / omega - 1.0) < 1e-7, mode.label);
+  }
+  BOOST_TEST(resolved >= 4);
+}
+
+BOOST_AUTO_TEST_CASE(supports_that_hold_a_direction_twice_are_refused) {
+  BOOST_CHECK_THROW(constant_modes_of(beam_between("rrrrrr", "rfffff")), InputError);
+}
+
+BOOST_AUTO_TEST_CASE(springs_carry_a_cantilever_like_flexibilities_in_a_row) {
+  // F across the end: the beam's F l^3 / 3 EI, the root's F / k and F l^2 / k_r, all with a spring
+  // at the end beside them.
+  BeamCase beam;
+  beam.stiffness << 0.0, 0.0, 0.0, 0.0, 1e3, 0.0;
+  beam.length = 2.0;
+  beam.elements = 2;
+  model::TurbineDefinition definition = definition_of(beam);
+  definition.blades.beam.support = support("rrsrsr");
+  definition.blades.beam.support.stiffness.diagonal() << 0.0, 0.0, 700.0, 0.0, 900.0, 0.0;
+  model::LoadDefinition load;
+  load.from = load.to = 1.0;
+  constexpr double force = 1e-3;
+  load.force = Vector3(0.0, 0.0, force);
+  definition.loads = {load};
+  const double flexibility = 8.0 / 3e3 + 1.0 / 700.0 + 4.0 / 900.0;
+  for (const double spring : {0.0, 80.0}) {
+    definition.blades.beam.end_support = support("ffsfff", spring);
+    if (spring == 0.0) definition.blades.beam.end_support = model::free_end();
+    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    analysis::Observer observer;
+    const Eigen::VectorXd z =
+        find_static_path(system, {analysis::StaticMethod::load, 1, 1e-12, 10}, observer)
+            .states.back()
+            .z;
+    const double expected = force / (1.0 / flexibility + spring);
+    BOOST_TEST(z(system.layout().blade_tip(0) + 2) == expected, tolerance(1e-8));
+    const int root = system.layout().blade_root(0);
+    const double held = force - spring * expected;
+    BOOST_TEST(z(root + 2) == held, tolerance(1e-8));
+    BOOST_TEST(z(root + 4) == -held * 2.0, tolerance(1e-8));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_rigid_turbine_sways_and_rocks_on_its_foundation) {
+  const Rod rod;
+  const std::vector<double> found = frequencies(constant_modes_of(rod_on_springs(rod)));
+  // Rotation about b2 (inertia 0.3) moves the tower along b3, about b3 (0.4) along b2.
+  for (const double own : {0.3, 0.4}) {
+    const Eigen::Vector2d expected = rod_frequencies(rod, own);
+    for (const double omega : expected) BOOST_TEST(nearest(found, omega) == omega, tolerance(1e-6));
+  }
+  BOOST_TEST(nearest(found, std::sqrt(rod.lateral / (rod.mass + 0.7))) ==
+                 std::sqrt(rod.lateral / (rod.mass + 0.7)),
+             tolerance(1e-6));
+  BOOST_TEST(nearest(found, std::sqrt(rod.rotation / 0.2)) == std::sqrt(rod.rotation / 0.2),
+             tolerance(1e-6));
+  // The weight matters.
+  Rod light = rod;
+  light.gravity = 0.0;
+  BOOST_TEST(std::abs(nearest(found, rod_frequencies(light, 0.3)(0)) -
+                      rod_frequencies(light, 0.3)(0)) > 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(damping_of_the_foundation_gives_each_mode_mu_omega_over_two) {
+  Rod rod;
+  rod.gravity = 0.0;
+  rod.damping = 0.004;
+  int seen = 0;
+  for (const analysis::Mode& mode : constant_modes_of(rod_on_springs(rod)).modes) {
+    if (mode.exponent.imag() == 0.0) continue;
+    ++seen;
+    BOOST_TEST(mode.damping_ratio == 0.5 * rod.damping * std::abs(mode.exponent), tolerance(1e-6));
+  }
+  BOOST_TEST(seen == 6);
+}
+
+BOOST_AUTO_TEST_CASE(a_stiff_foundation_is_a_clamp) {
+  io::Case input = lee("baseline", {"shaft.speed=0"});
+  const std::vector<double> clamped = frequencies(constant_modes_of(input.turbine));
+  input.turbine.tower.support = support("ssssss", 1e15);
+  input.turbine.tower.support.mass = 10.0;
+  input.turbine.tower.support.inertia.setConstant(10.0);
+  const std::vector<double> stiff = frequencies(constant_modes_of(input.turbine));
+  BOOST_TEST(stiff.size() == clamped.size() + 6u);
+  for (std::size_t i = 0; i < 12; ++i)
+    if (clamped[i] > 0.1) BOOST_TEST(stiff[i] == clamped[i], tolerance(1e-6));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
