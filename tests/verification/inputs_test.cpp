@@ -1,5 +1,7 @@
 // The cases of inputs/ that have no article or deck of their own, against closed forms.
-#include <Eigen/Dense>
+#include <array>
+
+#include <Eigen/Core>
 #include <boost/test/unit_test.hpp>
 
 #include "samara/math/quadrature.hpp"
