@@ -1,6 +1,7 @@
 #include "samara/analysis/harmonic_balance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <random>
@@ -308,26 +309,38 @@ void fail(SNES solver, const SolverContext& context) {
   throw ConvergenceError(text.str());
 }
 
-/// MUMPS would take METIS, which is for larger meshes: a chain of blocks fills in half as much in
-/// the order of approximate minimum fill. An option of the user's stands. (MatMumpsSetIcntl before
-/// the first factorization has no effect in PETSc 3.18.)
-class PreferredOrdering {
+/// What MUMPS would choose badly here; an option of the user's stands. (MatMumpsSetIcntl before the
+/// first factorization has no effect in PETSc 3.18.)
+/// - 7: METIS is for larger meshes; a chain of blocks fills in half as much in the order of
+///   approximate minimum fill.
+/// - 6: the permutation to a large diagonal comes with a scaling, both from the values of the first
+///   matrix and kept for the later ones, whose factors it can make worthless. Rows and columns are
+///   equilibrated already.
+class PreferredFactorization {
  public:
-  PreferredOrdering() {
-    PetscBool given = PETSC_FALSE;
-    petsc::check(PetscOptionsHasName(nullptr, nullptr, option, &given));
-    set_ = given == PETSC_FALSE;
-    if (set_) petsc::check(PetscOptionsSetValue(nullptr, option, "2"));
+  PreferredFactorization() {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      PetscBool given = PETSC_FALSE;
+      petsc::check(PetscOptionsHasName(nullptr, nullptr, choices[i].option, &given));
+      set_[i] = given == PETSC_FALSE;
+      if (set_[i]) petsc::check(PetscOptionsSetValue(nullptr, choices[i].option, choices[i].value));
+    }
   }
-  ~PreferredOrdering() {
-    if (set_) PetscOptionsClearValue(nullptr, option);
+  ~PreferredFactorization() {
+    for (std::size_t i = 0; i < choices.size(); ++i)
+      if (set_[i]) PetscOptionsClearValue(nullptr, choices[i].option);
   }
-  PreferredOrdering(const PreferredOrdering&) = delete;
-  PreferredOrdering& operator=(const PreferredOrdering&) = delete;
+  PreferredFactorization(const PreferredFactorization&) = delete;
+  PreferredFactorization& operator=(const PreferredFactorization&) = delete;
 
  private:
-  static constexpr char option[] = "-trim_mat_mumps_icntl_7";
-  bool set_ = false;
+  struct Choice {
+    const char* option;
+    const char* value;
+  };
+  static constexpr std::array<Choice, 2> choices{
+      {{"-trim_mat_mumps_icntl_7", "2"}, {"-trim_mat_mumps_icntl_6", "0"}}};
+  std::array<bool, choices.size()> set_{};
 };
 
 Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics,
@@ -417,7 +430,7 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
   petsc::check(PCSetType(preconditioner, PCLU));
   petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
   petsc::check(SNESSetFromOptions(solver.get()));
-  const PreferredOrdering ordering;
+  const PreferredFactorization factorization;
   const PetscErrorCode code = SNESSolve(solver.get(), nullptr, x.get());
   if (code != 0 && context.error) std::rethrow_exception(context.error);
   petsc::check(code);

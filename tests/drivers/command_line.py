@@ -164,6 +164,38 @@ class Tables(ProgramTest):
         self.assertAlmostEqual(force, -weight, delta=1e-3 * weight)
 
 
+class Inputs(ProgramTest):
+    """The cases in the tree."""
+
+    def test_all_are_read_and_say_how_to_run_them(self):
+        cases = sorted((SOURCE / "inputs").rglob("*.yaml"))
+        self.assertGreater(len(cases), 5)
+        for case in cases:
+            with self.subTest(case=case.name):
+                self.assertIn("degrees of freedom", self.succeed("check", case).stdout)
+
+    def test_the_rotating_beam_runs_with_modes_and_floquet(self):
+        """Wright et al. (1982): at 6 rad/s the beam flaps at 7.3604, lead-lag at 4.2631 rad/s."""
+        beam = SOURCE / "inputs/beam/rotating.yaml"
+        for command in ("modes", "floquet"):
+            text = self.succeed(command, beam).stdout
+            for mode, omega in (("flap", 7.3604), ("lead-lag", (7.3604**2 - 36) ** 0.5)):
+                found = float(re.search(rf"(?m)blade {mode} 1 +(\S+)", text).group(1))
+                self.assertAlmostEqual(found, omega / 6, delta=2e-4)
+
+    def test_the_teetering_turbine_is_stable(self):
+        case = SOURCE / "inputs/two_bladed/teetering.yaml"
+        coarse = ("--set", "blades.elements=2", "--set", "tower.elements=2",
+                  "--set", "floquet.steps=400")
+        text = self.succeed("check", case).stdout
+        self.assertRegex(text, r"teeter free, \S+ N m s/rad")
+        self.assertRegex(self.succeed("trim", case, *coarse).stdout, r"(?m)^teeter +deg +0 ")
+        text = self.succeed("floquet", case, *coarse).stdout
+        self.assertRegex(text, r"(?m)^stable: all \d+ modes decay; ")
+        teeter = float(re.search(r"(?m) teeter +(\S+)", text).group(1))
+        self.assertAlmostEqual(teeter, 1, delta=5e-3)
+
+
 class Static(ProgramTest):
     """A straight beam at rest, 10 m, EI = 1e4, with a force across its end."""
 
