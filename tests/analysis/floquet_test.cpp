@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/base/error.hpp"
 
+#include "../verification/record.hpp"
 #include "small_systems.hpp"
 
 using namespace samara;
@@ -34,6 +36,12 @@ Complex nearest(const analysis::Floquet& floquet, Complex wanted) {
   return best;
 }
 
+/// Richardson's limit of figures at n and 2 n steps.
+template <class T>
+T extrapolate(T coarse, T fine) {
+  return fine + (fine - coarse) / 3.0;
+}
+
 /// Errors at n, 2 n, 4 n steps must fall by 2^order each time; Richardson's limit must agree.
 void require_order_two(const std::vector<Complex>& found, Complex exact, double slack,
                        double tolerance) {
@@ -41,8 +49,7 @@ void require_order_two(const std::vector<Complex>& found, Complex exact, double 
     const double slope = std::log2(std::abs(found[i] - exact) / std::abs(found[i + 1] - exact));
     BOOST_TEST(slope == 2.0, boost::test_tools::tolerance(slack));
   }
-  const Complex coarse = found[found.size() - 2];
-  const Complex limit = found.back() + (found.back() - coarse) / 3.0;
+  const Complex limit = extrapolate(found[found.size() - 2], found.back());
   BOOST_TEST(std::abs(limit - exact) < tolerance * std::abs(exact),
              "limit " << limit << " exact " << exact);
 }
@@ -64,20 +71,74 @@ BOOST_AUTO_TEST_CASE(mathieu_has_published_multipliers_with_slope_two) {
                                 {4.0, 1.0, {0.86427423, 1.15704017}}};
   constexpr double print = 3e-7;  // relative; half a unit of the seventh digit of -0.2406128
   constexpr double extrapolated = 1e-7;
+  const Figures published{"P1", "known multipliers, as printed", "400 and 800 steps, extrapolated"};
+  const Figures own{"P1", "Runge-Kutta, 4000 steps", published.mesh};
+  const Convergence page{"P1", "multipliers, relative, q = 1", "steps"};
   for (const Case& c : cases) {
     const Mathieu system(c.a, c.q);
     const Eigen::VectorXcd reference = reference_multipliers(
         [&system](double t) { return system.explicit_form(t); }, system.period(), 4000);
-    for (const Complex printed : c.multipliers) {
+    for (std::size_t k = 0; k < c.multipliers.size(); ++k) {
+      const Complex printed = c.multipliers[k];
       Complex exact = std::numeric_limits<double>::infinity();
       for (const Complex value : reference)
         if (std::abs(value - printed) < std::abs(exact - printed)) exact = value;
       BOOST_TEST(std::abs(exact - printed) < print * std::abs(printed));
       std::vector<Complex> found;
-      for (const int steps : {200, 400, 800})
+      std::vector<std::pair<double, double>> errors;
+      for (const int steps : {200, 400, 800}) {
         found.push_back(nearest(floquet_at_rest(system, steps), exact));
-      require_order_two(found, exact, slope_slack, extrapolated);
+        errors.emplace_back(steps, std::abs(found.back() / exact - 1.0));
+      }
+      const std::string what = "mu" + std::to_string(k + 1) + ", a = " + in_short(c.a);
+      page.check(what, -2.0, 2.0 * slope_slack, errors);
+      const Complex limit = extrapolate(found[1], found[2]);
+      BOOST_TEST(std::abs(limit - exact) < extrapolated * std::abs(exact));
+      for (const auto& [figures, wanted, tolerance] :
+           {std::tuple(&published, printed, print), std::tuple(&own, exact, extrapolated)}) {
+        const double size = tolerance * std::abs(printed);
+        const bool real = printed.imag() == 0.0;
+        figures->check_absolute((real ? "" : "Re ") + what, limit.real(), wanted.real(), size);
+        if (!real) figures->check_absolute("Im " + what, limit.imag(), wanted.imag(), size);
+      }
     }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(mathieu_changes_stability_at_its_characteristic_values) {
+  // There the multipliers meet at 1 (period pi) or -1 (2 pi), and their sum is 2 or -2.
+  struct Boundary {
+    const char* name;
+    double a, sum;
+  };
+  const Figures page{"P1", "characteristic values of Mathieu's equation",
+                     "200 and 400 steps, extrapolated"};
+  for (const Boundary& boundary :
+       {Boundary{"a0", -0.455138604, 2.0}, Boundary{"b1", -0.110248817, -2.0},
+        Boundary{"a1", 1.859108073, -2.0}, Boundary{"b2", 3.917024773, 2.0},
+        Boundary{"a2", 4.371300983, 2.0}}) {
+    const auto find = [&](int steps) {
+      const auto excess = [&](double a) {
+        Complex sum = 0.0;
+        const analysis::Floquet floquet = floquet_at_rest(Mathieu(a, 1.0), steps);
+        for (const analysis::Mode& mode : floquet.set.modes)
+          sum += mode.multiplier.imag() == 0.0 ? mode.multiplier : 2.0 * mode.multiplier.real();
+        return sum.real() - boundary.sum;
+      };
+      double before = boundary.a - 1e-2;
+      double a = boundary.a + 1e-2;
+      double excess_before = excess(before);
+      for (int i = 0; i < 20 && std::abs(a - before) > 1e-10; ++i) {
+        const double excess_now = excess(a);
+        const double next = a - excess_now * (a - before) / (excess_now - excess_before);
+        before = a;
+        excess_before = excess_now;
+        a = next;
+      }
+      return a;
+    };
+    page.check_absolute(std::string(boundary.name) + ", q = 1", extrapolate(find(200), find(400)),
+                        boundary.a, 1e-7);
   }
 }
 
