@@ -16,6 +16,12 @@ namespace {
 /// Shortest element that point masses may leave, of an even one.
 constexpr double least_element = 0.25;
 
+/// Gauss points between two stations: sections are linear there, their compliance is not.
+constexpr int fine_points = 6;
+
+/// Of a semi-definite matrix's pivots: rounding.
+constexpr double semi_definite = 1e-12;
+
 TestFunctions test_functions(const math::QuadratureRule& rule) {
   const int order = static_cast<int>(rule.points.size());
   const std::vector<double> nodes = math::lobatto_nodes(order);
@@ -71,6 +77,61 @@ Matrix6 inverse_of(const Matrix6& stiffness, const std::vector<int>& elastic) {
   return compliance;
 }
 
+/// Mass and compliance of a Gauss point.
+struct MeanSection {
+  Matrix6 mass = Matrix6::Zero();
+  Matrix6 compliance = Matrix6::Zero();
+};
+
+bool is_semi_definite(const Matrix6& matrix) {
+  const Eigen::LDLT<Matrix6> factors(matrix);
+  const Vector6 pivots = factors.vectorD();
+  return pivots.minCoeff() >= -semi_definite * pivots.cwiseAbs().maxCoeff();
+}
+
+/// Where stations lie inside an element, points would miss what stands between them: the integrals
+/// (1 / w_j) int l_j(xi) m(xi) dxi, with the polynomials l_j through the points, keep its moments.
+/// Between stations they are the values at the points, which are taken then (none is returned), as
+/// they are where an integral is no possible section.
+std::vector<MeanSection> mean_sections(const BeamDefinition& definition,
+                                       const math::QuadratureRule& rule, double start,
+                                       double span) {
+  std::vector<double> cuts{start};
+  for (const SectionDefinition& section : definition.sections)
+    if (section.at > start && section.at < start + span) cuts.push_back(section.at);
+  if (cuts.size() == 1) return {};
+  cuts.push_back(start + span);
+  const math::QuadratureRule fine = math::gauss_rule(fine_points);
+  std::vector<MeanSection> means(rule.points.size());
+  for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
+    for (std::size_t q = 0; q < fine.points.size(); ++q) {
+      const double at = cuts[c] + (cuts[c + 1] - cuts[c]) * fine.points[q];
+      const double length = (cuts[c + 1] - cuts[c]) / span * fine.weights[q];
+      const SectionDefinition section = interpolate_section(definition, at);
+      const Matrix6 compliance = compliance_of(section);
+      for (std::size_t j = 0; j < means.size(); ++j) {
+        const double share = math::lagrange(rule.points, static_cast<int>(j), (at - start) / span) *
+                             length / rule.weights[j];
+        means[j].mass += share * section.mass;
+        means[j].compliance += share * compliance;
+      }
+    }
+  }
+  const auto all = [&means](Matrix6 MeanSection::*part) {
+    return std::all_of(means.begin(), means.end(),
+                       [part](const MeanSection& mean) { return is_semi_definite(mean.*part); });
+  };
+  const bool masses = all(&MeanSection::mass);
+  const bool compliances = all(&MeanSection::compliance);
+  for (std::size_t j = 0; j < means.size(); ++j) {
+    const SectionDefinition section =
+        interpolate_section(definition, start + span * rule.points[j]);
+    if (!masses) means[j].mass = section.mass;
+    if (!compliances) means[j].compliance = compliance_of(section);
+  }
+  return means;
+}
+
 void add_supports(const BeamDefinition& definition, Beam& beam) {
   const SupportDefinition& support = definition.support;
   if (!support.is_clamp()) {
@@ -124,15 +185,18 @@ Beam build_beam(const std::string& name, const BeamDefinition& definition, doubl
   for (int e = 0; e < definition.elements; ++e) {
     const double start = beam.ends[static_cast<std::size_t>(e)];
     const double span = beam.ends[static_cast<std::size_t>(e) + 1] - start;
-    for (const double xi : rule.points) {
+    const std::vector<MeanSection> means = mean_sections(definition, rule, start, span);
+    for (const double& xi : rule.points) {
       const double fraction = start + span * xi;
       const SectionDefinition section = interpolate_section(definition, fraction);
       const ReferenceLine::Station station = line.at(fraction, section.twist);
       elements::BeamPoint point;
       point.x = station.x;
       point.C_ab = station.C_ab;
-      point.compliance = compliance_of(section) / stiffness_factor;
-      point.mass = section.mass * mass_factor;
+      const auto j = static_cast<std::size_t>(&xi - rule.points.data());
+      point.compliance = means.empty() ? compliance_of(section) : means[j].compliance;
+      point.compliance /= stiffness_factor;
+      point.mass = (means.empty() ? section.mass : means[j].mass) * mass_factor;
       for (int i = 0; i < 6; ++i)
         point.damping(i) = section.rigid[static_cast<std::size_t>(i)] ? 0.0 : definition.damping(i);
       beam.points.push_back(point);

@@ -5,6 +5,7 @@
 #include "samara/math/quadrature.hpp"
 
 #include "multiblade.hpp"
+#include "record.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -291,10 +292,18 @@ BOOST_AUTO_TEST_CASE(nrel5mw_at_12_rpm_has_the_frequencies_of_openfast) {
   BOOST_REQUIRE(found.size() >= published.size());
   BOOST_TEST(sideways[0] > std::sqrt(0.5));  // the spin mixes the two, 0.3 % apart
   BOOST_TEST(sideways[1] < std::sqrt(0.5));
-  // The first modes of the blades are met as they are.
-  for (const std::size_t i : {2u, 3u, 4u, 5u, 7u})
-    BOOST_TEST(found[i] == published[i], tolerance(0.02));
-  // The others are not: two shapes are too stiff for the tower, on which the locked rotor rolls
+  const std::vector<std::string> names{"tower side-side", "tower fore-aft", "flap backward",
+                                       "flap collective", "edge backward",  "flap forward",
+                                       "edge collective", "edge forward",   "second flap backward"};
+  const std::string source = "OpenFAST, BeamDyn blades, ElastoDyn tower";
+  const std::string mesh = "blades 12 elements of order 3, tower 4 of order 3";
+  const Figures page{"N2", source, mesh};
+  // The first modes of the blades are met as they are, the others not: 6 % is a bound, no claim.
+  for (std::size_t i = 0; i < published.size(); ++i) {
+    const bool is_met = i >= 2 && i <= 7 && i != 6;
+    page.check_relative(names[i] + " [Hz]", found[i], published[i], is_met ? 0.02 : 0.06);
+  }
+  // The reason: two shapes are too stiff for the tower, on which the locked rotor rolls
   // with its collective edge mode, and one element of order 5 for the second flap. Ritz's method in
   // the published code's shapes and in many, without a figure of this program, says by how much:
   // then all but one agree to 0.3 %, and side-side, where ElastoDyn's tower alone is 0.6 % above
@@ -320,7 +329,7 @@ BOOST_AUTO_TEST_CASE(nrel5mw_at_12_rpm_has_the_frequencies_of_openfast) {
       found[6] * roll_theirs[2] / roll[2],   (found[7] - turn) * stiffer(1) + turn,
       (found[8] + turn) * stiffer(2) - turn};
   for (std::size_t i = 0; i < published.size(); ++i)
-    BOOST_TEST(expected[i] == published[i], tolerance(0.02));
+    page.check_relative(names[i] + ", in its shapes [Hz]", expected[i], published[i], 0.02);
 
   // The tower does not droop as the rotor turns.
   const std::vector<double> still =
