@@ -47,8 +47,16 @@ std::string mass_table(const model::Turbine& turbine, const model::Masses& masse
   return table.text();
 }
 
-std::string joint_words(const elements::Hinge& hinge) {
-  if (!hinge.free) return "locked";
+std::string degrees(double radians) { return general(radians * 180.0 / std::numbers::pi, 5); }
+
+std::string joint_words(const elements::Hinge& hinge, const model::JointHistory& motion = {}) {
+  if (!hinge.free && motion.angle == 0.0 && motion.is_constant()) return "locked";
+  if (!hinge.free && motion.is_constant()) return "held at " + degrees(motion.angle) + " deg";
+  if (!hinge.free)
+    return "prescribed, " + degrees(motion.amplitude) + " deg about " + degrees(motion.angle) +
+           " deg at " +
+           (motion.per_rev > 0 ? std::to_string(motion.per_rev) + "P"
+                               : general(motion.frequency, 5) + " rad/s");
   std::string text = "free";
   if (hinge.stiffness > 0.0) text += ", " + general(hinge.stiffness, 4) + " N m/rad";
   if (hinge.damping > 0.0) text += ", " + general(hinge.damping, 4) + " N m s/rad";
@@ -97,8 +105,8 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
        system.symmetry().sectors > 1
            ? "repeats every 1/" + std::to_string(system.symmetry().sectors) + " revolution"
            : "none, the period is a whole revolution");
-  line("joints", "yaw " + joint_words(turbine.chain.yaw) + "; teeter " +
-                     joint_words(turbine.chain.teeter) + "; shaft torsion " +
+  line("joints", "yaw " + joint_words(turbine.chain.yaw, turbine.yaw_motion) + "; teeter " +
+                     joint_words(turbine.chain.teeter, turbine.teeter_motion) + "; shaft torsion " +
                      joint_words(turbine.chain.torsion) + "; generator " +
                      joint_words(turbine.chain.generator));
   line("gravity", general(definition.gravity, 6) + " m/s^2");

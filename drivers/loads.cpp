@@ -1,14 +1,36 @@
-// Which loads a command can take.
+// Which loads and prescribed motions a command can take.
 #include "samara/base/error.hpp"
 
 #include "commands.hpp"
 
 namespace samara::drivers {
 
-void require_repeating_loads(const io::Case& input) {
+namespace {
+
+/// @throws InputError where more harmonics are asked for than the trim has.
+void require_harmonics(const io::Case& input, const std::string& place, int per_rev) {
   const analysis::TrimOptions& trim = input.trim;
   const bool truncates = input.turbine.shaft.speed > 0.0 && !trim.automatic &&
                          trim.method == analysis::TrimMethod::harmonic_balance;
+  if (truncates && per_rev > trim.harmonics)
+    throw InputError(
+        place + ".harmonic.per_rev is " + std::to_string(per_rev) +
+        ", more than trim.harmonics; hint: --set trim.harmonics=" + std::to_string(per_rev));
+}
+
+void require_repeating_motion(const io::Case& input, const std::string& joint,
+                              const model::JointHistory& motion) {
+  const std::string place = input.path + ": " + joint;
+  if (!motion.is_constant() && motion.per_rev == 0)
+    throw InputError(place +
+                     " does not repeat with the rotor; hint: harmonic: {per_rev: ...}, or samara "
+                     "static, which takes its angle at t = 0");
+  require_harmonics(input, place, motion.per_rev);
+}
+
+}  // namespace
+
+void require_repeating_loads(const io::Case& input) {
   for (std::size_t i = 0; i < input.turbine.loads.size(); ++i) {
     const model::LoadHistory& history = input.turbine.loads[i].history;
     const std::string place = input.path + ": loads[" + std::to_string(i) + "]";
@@ -16,11 +38,10 @@ void require_repeating_loads(const io::Case& input) {
       throw InputError(place +
                        " does not repeat with the rotor; hint: harmonic: {per_rev: ...}, or samara "
                        "static, which takes the loads at t = 0");
-    if (truncates && history.per_rev > trim.harmonics)
-      throw InputError(place + ".harmonic.per_rev is " + std::to_string(history.per_rev) +
-                       ", more than trim.harmonics; hint: --set trim.harmonics=" +
-                       std::to_string(history.per_rev));
+    require_harmonics(input, place, history.per_rev);
   }
+  require_repeating_motion(input, "nacelle.yaw", input.turbine.nacelle.yaw.motion);
+  require_repeating_motion(input, "hub.teeter", input.turbine.hub.teeter.motion);
 }
 
 }  // namespace samara::drivers

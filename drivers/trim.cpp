@@ -59,8 +59,11 @@ std::vector<Output> outputs_of(const system::TurbineSystem& system, double load_
     add_three(blade + " root moment", root + 3, "N m", small_load,
               {"b1 (torsion)", "b2 (flap)", "b3 (lead-lag)"});
   }
-  if (turbine.chain.teeter.free) add_angle("teeter", layout.teeter());
-  if (turbine.chain.yaw.free) add_angle("yaw", layout.yaw());
+  const auto moves = [](const elements::Hinge& hinge, const model::JointHistory& motion) {
+    return hinge.free || motion.angle != 0.0 || !motion.is_constant();
+  };
+  if (moves(turbine.chain.teeter, turbine.teeter_motion)) add_angle("teeter", layout.teeter());
+  if (moves(turbine.chain.yaw, turbine.yaw_motion)) add_angle("yaw", layout.yaw());
   if (turbine.chain.torsion.free) add_angle("shaft torsion", layout.shaft_torsion());
   if (turbine.chain.generator.free) add_angle("generator", layout.generator());
   if (!turbine.has_tower) return outputs;

@@ -48,25 +48,52 @@ void read_vector(MapReader& map, std::string_view key, Vector3& vector, const Nu
   map.read(key, std::span<double>(vector.data(), 3), rule);
 }
 
-enum class JointWord { free, locked, prescribed };
+/// Reads `per_rev` or `frequency` of something that oscillates.
+void read_frequency(MapReader& map, int& per_rev, double& frequency) {
+  const bool has_multiple = map.read("per_rev", per_rev, 1, max_harmonics);
+  const bool has_frequency = map.read("frequency", frequency, positive);
+  if (has_multiple && has_frequency)
+    map.refuse(*map.node().find("frequency"), "frequency",
+               "given together with per_rev; leave one of them out");
+  if (map.node().find("per_rev") == nullptr && map.node().find("frequency") == nullptr)
+    map.require("per_rev", "or \"frequency\"");
+}
 
-/// Reads stiffness, damping and the word of a joint. False: no usable word was given.
-bool read_joint(MapReader& map, model::JointDefinition& joint, const YamlNode* word) {
+/// Reads the motion of a prescribed joint; refuses it for one of another kind.
+void read_motion(MapReader& map, model::JointDefinition& joint) {
+  const YamlNode* angle = map.find("angle_deg");
+  const YamlNode* harmonic = map.find("harmonic");
+  if (joint.kind != JointKind::prescribed) {
+    for (const auto& [key, entry] :
+         {std::pair("angle_deg", angle), std::pair("harmonic", harmonic)})
+      if (entry != nullptr) map.refuse(*entry, key, "only a joint: prescribed has a motion");
+    return;
+  }
+  if (angle == nullptr && harmonic == nullptr)
+    map.require("angle_deg", "of a prescribed joint, or \"harmonic\"");
+  read_angle(map, "angle_deg", joint.motion.angle, half_turn);
+  if (harmonic == nullptr) return;
+  MapReader wave(*harmonic, map.where("harmonic"), map.errors());
+  read_frequency(wave, joint.motion.per_rev, joint.motion.frequency);
+  wave.require("amplitude_deg");
+  read_angle(wave, "amplitude_deg", joint.motion.amplitude, half_turn);
+  read_angle(wave, "phase_deg", joint.motion.phase, any_number);
+  wave.finish();
+}
+
+/// Reads stiffness, damping and the word of a joint that may be prescribed.
+void read_joint(MapReader& map, model::JointDefinition& joint) {
   map.read("stiffness", joint.stiffness, non_negative);
   map.read("damping", joint.damping, non_negative);
-  JointWord kind = JointWord::locked;
-  if (!map.read("joint", kind,
-                {{"free", JointWord::free},
-                 {"locked", JointWord::locked},
-                 {"prescribed", JointWord::prescribed}})) {
-    return false;
+  if (map.read("joint", joint.kind,
+               {{"free", JointKind::free},
+                {"locked", JointKind::locked},
+                {"prescribed", JointKind::prescribed}}) ||
+      map.node().find("joint") == nullptr) {
+    read_motion(map, joint);
+    return;
   }
-  if (kind == JointWord::prescribed) {
-    map.refuse(*word, "joint", "\"prescribed\" is not available yet; use free or locked");
-    return false;
-  }
-  joint.kind = kind == JointWord::free ? JointKind::free : JointKind::locked;
-  return true;
+  for (const char* key : {"angle_deg", "harmonic"}) map.find(key);
 }
 
 bool is_rigid(const YamlNode& node) {
@@ -339,8 +366,8 @@ void read_nacelle(const YamlNode& node, model::TurbineDefinition& turbine, Error
   read_vector(map, "inertia", nacelle.inertia, non_negative);
   if (const YamlNode* entry = map.find("yaw")) {
     MapReader yaw(*entry, map.where("yaw"), errors);
-    const YamlNode* word = yaw.require("joint", "free or locked");
-    read_joint(yaw, nacelle.yaw, word);
+    yaw.require("joint", "free, locked or prescribed");
+    read_joint(yaw, nacelle.yaw);
     yaw.finish();
   }
   map.finish();
@@ -362,7 +389,10 @@ void read_torsion(const YamlNode& node, const std::string& where, model::JointDe
                   ErrorList& errors) {
   MapReader map(node, where, errors);
   const YamlNode* word = map.require("joint", "free or locked");
-  if (read_joint(map, torsion, word) && torsion.kind == JointKind::free && torsion.stiffness == 0.0)
+  map.read("stiffness", torsion.stiffness, non_negative);
+  map.read("damping", torsion.damping, non_negative);
+  map.read("joint", torsion.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
+  if (torsion.kind == JointKind::free && torsion.stiffness == 0.0)
     map.refuse(*word, "joint", "a shaft that may twist needs a stiffness > 0");
   map.finish();
 }
@@ -408,9 +438,8 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
 void read_teeter(const YamlNode& node, const std::string& where, model::HubDefinition& hub,
                  ErrorList& errors) {
   MapReader map(node, where, errors);
-  const YamlNode* word = node.find("joint");
-  if (word == nullptr) hub.teeter.kind = JointKind::free;
-  read_joint(map, hub.teeter, word);
+  if (node.find("joint") == nullptr) hub.teeter.kind = JointKind::free;
+  read_joint(map, hub.teeter);
   map.read("undersling", hub.undersling, any_number);
   read_angle(map, "delta3_deg", hub.delta3, quarter_turn);
   map.finish();
@@ -513,16 +542,10 @@ void read_harmonic(const YamlNode& node, const std::string& where, model::LoadHi
   MapReader map(node, where, errors);
   history.mean = 0.0;
   history.amplitude = 1.0;
-  const bool has_multiple = map.read("per_rev", history.per_rev, 1, max_harmonics);
-  const bool has_frequency = map.read("frequency", history.frequency, positive);
+  read_frequency(map, history.per_rev, history.frequency);
   map.read("amplitude", history.amplitude, any_number);
   map.read("mean", history.mean, any_number);
   read_angle(map, "phase_deg", history.phase, any_number);
-  if (has_multiple && has_frequency)
-    map.refuse(*node.find("frequency"), "frequency",
-               "given together with per_rev; leave one of them out");
-  if (node.find("per_rev") == nullptr && node.find("frequency") == nullptr)
-    map.require("per_rev", "or \"frequency\"");
   map.finish();
 }
 
@@ -627,7 +650,7 @@ void read_floquet(const YamlNode& node, analysis::FloquetOptions& floquet, Error
 /// Refuses what only shows in two blocks together.
 void check_teeter(const YamlNode& root, const model::TurbineDefinition& turbine,
                   ErrorList& errors) {
-  if (turbine.hub.teeter.kind != JointKind::free || turbine.blades.count <= 2) return;
+  if (turbine.hub.teeter.kind == JointKind::locked || turbine.blades.count <= 2) return;
   const YamlNode& teeter = *root.find("hub")->find("teeter");
   const YamlNode& count = *root.find("blades")->find("count");
   const YamlNode* joint = teeter.find("joint");
@@ -660,9 +683,12 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
   map.finish();
   check_teeter(root, turbine, errors);
-  if (turbine.shaft.speed > 0.0)
-    for (const model::LoadDefinition& load : turbine.loads)
-      result.trim.least_harmonics = std::max(result.trim.least_harmonics, load.history.per_rev);
+  if (turbine.shaft.speed == 0.0) return;
+  int& least = result.trim.least_harmonics;
+  for (const model::LoadDefinition& load : turbine.loads)
+    least = std::max(least, load.history.per_rev);
+  for (const model::JointDefinition* joint : {&turbine.nacelle.yaw, &turbine.hub.teeter})
+    least = std::max(least, joint->motion.per_rev);
 }
 
 /// Adds an error where `samara` is not the version this program reads. False: a newer version, of

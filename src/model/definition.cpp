@@ -138,6 +138,13 @@ std::string find_mass_fault(const SectionDefinition& section) {
 
 }  // namespace
 
+elements::JointMotion JointHistory::at(double t, double rotor_speed) const {
+  const double rate = per_rev > 0 ? per_rev * rotor_speed : frequency;
+  const double turned = rate * t + phase;
+  return {angle + amplitude * std::cos(turned), -amplitude * rate * std::sin(turned),
+          -amplitude * rate * rate * std::cos(turned)};
+}
+
 SectionDefinition interpolate_section(const BeamDefinition& beam, double fraction) {
   const std::vector<SectionDefinition>& sections = beam.sections;
   if (sections.empty()) throw InternalError("interpolate_section: the beam has no section");

@@ -122,6 +122,11 @@ Turbine build_turbine(const TurbineDefinition& definition) {
   add_loads(definition, turbine);
   turbine.chain = chain_of(definition);
   if (definition.has_tower) turbine.chain.tower_top = tower_top_of(turbine.tower.tip_mass);
+  const auto motion_of = [](const JointDefinition& joint) {
+    return joint.kind == JointKind::prescribed ? joint.motion : JointHistory{};
+  };
+  if (definition.has_nacelle) turbine.yaw_motion = motion_of(definition.nacelle.yaw);
+  turbine.teeter_motion = motion_of(definition.hub.teeter);
   turbine.speed = definition.shaft.speed;
   turbine.azimuth = definition.shaft.azimuth;
   turbine.degrees_of_freedom = definition.has_tower ? elastic_strains(turbine.tower) : 0;

@@ -175,11 +175,13 @@ class Describer {
 
   bool turns_freely() const { return turbine_.chain.torsion.free || turbine_.chain.generator.free; }
 
-  /// What the tower top carries, at zero yaw and azimuth: nacelle and shaft, and the hub, of which
-  /// a free teeter leaves only the mass at the pin; what turns about the hinge is the hub's own.
+  /// What the tower top carries, at zero azimuth and the mean of a prescribed yaw: nacelle and
+  /// shaft, and the hub, of which a free teeter leaves only the mass at the pin; what turns about
+  /// the hinge is the hub's own.
   Matrix6 carried_mass() const {
     const elements::RigidChain& chain = turbine_.chain;
-    const Matrix3 tilted = math::turn_about<double>(Vector3::UnitX(), chain.tilt);
+    const Matrix3 yawed = math::turn_about<double>(Vector3::UnitZ(), turbine_.yaw_motion.angle);
+    const Matrix3 tilted = yawed * math::turn_about<double>(Vector3::UnitX(), chain.tilt);
     const Vector3 bearing(0.0, 0.0, chain.height);
     const Vector3 pin = bearing + tilted * Vector3(0.0, chain.overhang, 0.0);
     Matrix6 weight = Matrix6::Zero();
@@ -194,7 +196,7 @@ class Describer {
                               const Vector3& reference) {
       add(body.mass, reference + C * body.center, C * body.inertia * C.transpose());
     };
-    add_body(chain.nacelle, Matrix3::Identity(), Vector3::Zero());
+    add_body(chain.nacelle, yawed, Vector3::Zero());
     elements::RigidBody shaft = chain.shaft;
     elements::RigidBody hub = chain.hub;
     if (turns_freely()) shaft.inertia(1, 1) = hub.inertia(1, 1) = 0.0;  // counted with their speed
@@ -272,7 +274,22 @@ class Describer {
     if (blades > 2 && chain.teeter.free) return "the hub teeters";
     if (blades > 2 && chain.hub.inertia(0, 0) != chain.hub.inertia(2, 2))
       return "hub.inertia differs about h1 and h3";
-    return load_fault();
+    const std::string fault = motion_fault();
+    return fault.empty() ? load_fault() : fault;
+  }
+
+  /// The same for the prescribed motions: the yaw must repeat from blade to blade, and half a turn
+  /// must reverse the teeter angle of two blades.
+  std::string motion_fault() const {
+    const int blades = static_cast<int>(turbine_.blades.size());
+    const model::JointHistory& yaw = turbine_.yaw_motion;
+    const model::JointHistory& teeter = turbine_.teeter_motion;
+    if (!yaw.is_constant() && (yaw.per_rev == 0 || yaw.per_rev % blades != 0))
+      return "the yaw does not repeat from blade to blade";
+    const bool reverses = teeter.angle == 0.0 && (teeter.is_constant() || teeter.per_rev % 2 == 1);
+    if (!reverses || (blades > 2 && !teeter.is_constant()))
+      return "the teeter angle does not repeat from blade to blade";
+    return "";
   }
 
   /// The same for the prescribed loads.

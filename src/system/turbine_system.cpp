@@ -149,6 +149,10 @@ const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const
   return assembly_->description.neutral;
 }
 
+bool TurbineSystem::constraints_are_autonomous() const {
+  return turbine().yaw_motion.is_constant() && turbine().teeter_motion.is_constant();
+}
+
 bool TurbineSystem::is_conservative() const {
   const model::Turbine& turbine = assembly_->turbine;
   const elements::RigidChain& chain = turbine.chain;
@@ -246,6 +250,12 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   // With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The
   // rows of free joints ask for the same of their speeds, one after the other from the tower
   // outward.
+  const auto angle_at = [&](int joint) -> double& {
+    return values[static_cast<std::size_t>(joint)];
+  };
+  angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_motion.at(t, assembly.turbine.speed).angle;
+  angle_at(assembly.layout.teeter()) =
+      assembly.turbine.teeter_motion.at(t, assembly.turbine.speed).angle;
   std::vector<double> r(n, 0.0);
   for (int pass = 0; pass < 5; ++pass) {
     assembly.equations.evaluate(t, values, rates, r);

@@ -679,12 +679,8 @@ BOOST_AUTO_TEST_CASE(words_must_be_known) {
 }
 
 BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
-  check_error(minimal + "nacelle:\n  yaw: {joint: prescribed}\n",
-              "case.yaml:10:9: nacelle.yaw.joint: \"prescribed\" is not available yet; use free or "
-              "locked");
-  check_error(minimal + "hub:\n  teeter: {joint: prescribed}\n",
-              "case.yaml:10:12: hub.teeter.joint: \"prescribed\" is not available yet; use free or "
-              "locked");
+  check_error(minimal + "shaft:\n  torsion: {joint: prescribed, stiffness: 3}\n",
+              "case.yaml:10:13: shaft.torsion.joint: expected free or locked, got \"prescribed\"");
   check_error(minimal + "shaft:\n  torsion: {joint: free}\n",
               "case.yaml:10:13: shaft.torsion.joint: a shaft that may twist needs a stiffness > 0");
   check_error(minimal +
@@ -698,9 +694,54 @@ BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
 
 BOOST_AUTO_TEST_CASE(a_yaw_block_must_state_its_joint) {
   check_error(minimal + "nacelle:\n  yaw: {stiffness: 3}\n",
-              "case.yaml:10:3: nacelle.yaw: missing key \"joint\" (free or locked)");
+              "case.yaml:10:3: nacelle.yaw: missing key \"joint\" (free, locked or prescribed)");
   check_error_start(minimal + "nacelle:\n  yaw: {joint: open}\n",
                     "case.yaml:10:9: nacelle.yaw.joint: expected free, locked or prescribed");
+}
+
+BOOST_AUTO_TEST_CASE(prescribed_angles_are_constant_or_harmonic) {
+  const model::TurbineDefinition turbine =
+      read_text(minimal +
+                "nacelle:\n  yaw: {joint: prescribed, angle_deg: 8}\n"
+                "hub:\n  teeter:\n    joint: prescribed\n"
+                "    harmonic: {per_rev: 3, amplitude_deg: 2, phase_deg: 30}\n"
+                "shaft: {speed: 2}\n")
+          .turbine;
+  BOOST_TEST((turbine.nacelle.yaw.kind == JointKind::prescribed));
+  BOOST_TEST((turbine.hub.teeter.kind == JointKind::prescribed));
+  const elements::JointMotion yaw = turbine.nacelle.yaw.motion.at(0.3, 2.0);
+  BOOST_TEST(std::abs(yaw.angle - 8.0 * degree) < rounding);
+  BOOST_TEST(yaw.rate == 0.0);
+  const elements::JointMotion teeter = turbine.hub.teeter.motion.at(0.3, 2.0);
+  const double turned = 3.0 * 2.0 * 0.3 + 30.0 * degree;
+  BOOST_TEST(std::abs(teeter.angle - 2.0 * degree * std::cos(turned)) < rounding);
+  BOOST_TEST(std::abs(teeter.rate + 6.0 * 2.0 * degree * std::sin(turned)) < rounding);
+  BOOST_TEST(std::abs(teeter.acceleration + 36.0 * teeter.angle) < rounding);
+  const Case many = read_text(minimal +
+                              "nacelle: {yaw: {joint: prescribed, harmonic: {per_rev: 7, "
+                              "amplitude_deg: 2}}}\nshaft: {speed: 2}\n");
+  BOOST_TEST(many.trim.least_harmonics == 7);
+}
+
+BOOST_AUTO_TEST_CASE(a_prescribed_angle_must_be_stated_and_only_there) {
+  check_error(minimal + "nacelle:\n  yaw: {joint: prescribed}\n",
+              "case.yaml:10:3: nacelle.yaw: missing key \"angle_deg\" (of a prescribed joint, or "
+              "\"harmonic\")");
+  check_error(minimal + "nacelle:\n  yaw: {joint: locked, angle_deg: 8}\n",
+              "case.yaml:10:24: nacelle.yaw.angle_deg: only a joint: prescribed has a motion");
+  check_error(minimal + "hub:\n  teeter: {harmonic: {per_rev: 1}}\n",
+              "case.yaml:10:12: hub.teeter.harmonic: only a joint: prescribed has a motion");
+  check_error(minimal + "nacelle:\n  yaw: {joint: prescribed, harmonic: {per_rev: 1}}\n",
+              "case.yaml:10:28: nacelle.yaw.harmonic: missing key \"amplitude_deg\"");
+  check_error(minimal +
+                  "nacelle:\n  yaw: {joint: prescribed, harmonic: {per_rev: 1, frequency: 2, "
+                  "amplitude_deg: 1}}\n",
+              "case.yaml:10:51: nacelle.yaw.harmonic.frequency: given together with per_rev; "
+              "leave one of them out");
+  check_error(replace(minimal, "count: 2", "count: 3") +
+                  "hub:\n  teeter: {joint: prescribed, angle_deg: 1}\n",
+              "case.yaml:10:12: hub.teeter: a teeter hinge carries two blades, blades.count is 3; "
+              "use joint: locked, or leave teeter out");
 }
 
 BOOST_AUTO_TEST_CASE(a_teeter_hinge_is_for_two_blades) {

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "samara/elements/beam_point.hpp"
+#include "samara/elements/joint_motion.hpp"
 #include "samara/math/rotation.hpp"
 
 namespace samara::elements {
@@ -52,6 +53,7 @@ struct RigidChain {
 template <class T>
 struct JointState {
   T angle, speed, angle_dot, speed_dot;
+  JointMotion prescribed = {};  ///< of a joint that is not free
 };
 
 /// Coordinates, speeds and their rates. The tower-top quantities are in the order of a beam's tip:
@@ -81,11 +83,13 @@ struct HubMotion {
 
 template <class T>
 struct JointRows {
-  T kinematic;  ///< q_dot - (U - speed it is carried with), of a locked joint U - that speed
-  T balance;    ///< Kane's row of U [N m]; unused where locked
+  T kinematic;  ///< q_dot - (U - speed it is carried with); of a joint that is not free U - that
+                ///< speed - the prescribed rate
+  T balance;    ///< Kane's row of U [N m]; unused where not free
+  T position;   ///< q - the prescribed angle, of a joint that is not free
 };
 
-/// Residual rows. A locked joint has the row U - (speed it is carried with) instead of Kane's.
+/// Residual rows. A joint that is locked or prescribed has its kinematic row instead of Kane's.
 template <class T>
 struct ChainRows {
   Vec6<T> top;  ///< Kane's rows of (U8, U6, U7, U5, U3, U4) [N, N m]
@@ -164,14 +168,19 @@ Wrench<T> active_and_inertia(const RigidBody& body, const Motion<T>& m, const Ve
 template <class T>
 class JointWalk {
  public:
-  /// `rate`: the prescribed one, to which the angle's own is added. `inner`: the motion of the
-  /// joint's point, in the components of the body behind it.
+  /// `rate`: to which the joint's own is added. `inner`: the motion of the joint's point, in the
+  /// components of the body behind it.
   JointWalk(const Hinge& hinge, const Vector3& axis, const JointState<T>& state,
             const Motion<T>& inner, double rate = 0.0)
       : hinge_(hinge), axis_(axis.cast<T>()), state_(state) {
     own_rate_ = state.speed - math::dot(axis_, inner.omega) - T(rate);
-    outer_ = hinge.free ? with_outer_speed<T>(axis_, state.speed, state.speed_dot, inner)
-                        : with_relative_rate<T>(axis_, T(rate), inner);
+    if (hinge.free) {
+      outer_ = with_outer_speed<T>(axis_, state.speed, state.speed_dot, inner);
+      return;
+    }
+    const JointMotion& own = state.prescribed;
+    outer_ = with_relative_rate<T>(axis_, T(rate + own.rate), inner);
+    for (int i = 0; i < 3; ++i) outer_.alpha(i) += axis_(i) * T(own.acceleration);
   }
 
   const Motion<T>& outer() const { return outer_; }
@@ -180,8 +189,10 @@ class JointWalk {
   /// without the component that the joint does not pass on, but for its spring and damper.
   JointRows<T> take(Vec3<T>& moment, bool pass_all = false) const {
     JointRows<T> rows;
-    rows.kinematic = hinge_.free ? T(state_.angle_dot - own_rate_) : own_rate_;
+    rows.kinematic =
+        hinge_.free ? T(state_.angle_dot - own_rate_) : T(own_rate_ - T(state_.prescribed.rate));
     rows.balance = T(0);
+    rows.position = state_.angle - T(state_.prescribed.angle);
     if (!hinge_.free) return rows;
     const T spring = -(state_.angle * hinge_.stiffness + own_rate_ * hinge_.damping);
     rows.balance = math::dot(axis_, moment) + spring;
@@ -211,7 +222,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const auto from_top = [](const Vec3<T>& b) { return Vec3<T>(b(1), b(2), b(0)); };
   const auto to_top = [](const Vec3<T>& t) { return Vec3<T>(t(2), t(0), t(1)); };
   const auto angle_of = [](const Hinge& hinge, const JointState<T>& joint) {
-    return hinge.free ? joint.angle : T(0);
+    return hinge.free ? joint.angle : T(joint.prescribed.angle);
   };
 
   // Outward: motions. T: derivative of v_T's components in T plus omega x v is the acceleration.

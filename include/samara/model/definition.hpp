@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "samara/elements/joint_motion.hpp"
 #include "samara/math/types.hpp"
 
 namespace samara::model {
@@ -41,12 +42,28 @@ struct BeamDefinition {
   std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`
 };
 
-enum class JointKind { free, locked };
+/// locked: at zero; prescribed: its angle is a given function of time.
+enum class JointKind { free, locked, prescribed };
+
+/// angle + amplitude cos(frequency t + phase).
+struct JointHistory {
+  double angle = 0.0;      ///< mean [rad]
+  double amplitude = 0.0;  ///< [rad]
+  int per_rev = 0;         ///< the frequency as a multiple of the rotor speed; 0: `frequency` holds
+  double frequency = 0.0;  ///< [rad/s]
+  double phase = 0.0;      ///< [rad]
+
+  bool is_constant() const { return amplitude == 0.0; }
+
+  /// At time t [s] where the rotor turns with `rotor_speed` [rad/s].
+  elements::JointMotion at(double t, double rotor_speed) const;
+};
 
 struct JointDefinition {
   JointKind kind = JointKind::locked;
-  double stiffness = 0.0;  ///< [N m/rad]
-  double damping = 0.0;    ///< [N m s/rad]
+  double stiffness = 0.0;    ///< [N m/rad]
+  double damping = 0.0;      ///< [N m s/rad]
+  JointHistory motion = {};  ///< of a prescribed joint
 };
 
 struct GeneratorDefinition {
