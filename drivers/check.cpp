@@ -109,6 +109,15 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
                      joint_words(turbine.chain.teeter, turbine.teeter_motion) + "; shaft torsion " +
                      joint_words(turbine.chain.torsion) + "; generator " +
                      joint_words(turbine.chain.generator));
+  const model::ShaftDefinition& shaft = definition.shaft;
+  const auto torque = [&](const std::string& name, const model::TorqueLaw& law) {
+    const elements::TorqueLine at_speed = law.at(shaft.speed);
+    if (at_speed.torque != 0.0 || at_speed.slope != 0.0)
+      line(name, general(at_speed.torque, 5) + " N m at the rotor speed, slope " +
+                     general(at_speed.slope, 5) + " N m s/rad");
+  };
+  torque("generator torque", shaft.generator.law);
+  torque("rotor torque", shaft.rotor);
   line("gravity", general(definition.gravity, 6) + " m/s^2");
   if (!definition.loads.empty())
     line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));

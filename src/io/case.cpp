@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <numbers>
+#include <sstream>
 #include <system_error>
 
 #include "samara/base/error.hpp"
@@ -397,13 +398,62 @@ void read_torsion(const YamlNode& node, const std::string& where, model::JointDe
   map.finish();
 }
 
-void read_generator(const YamlNode& node, const std::string& where,
+/// Reads [[x, y], ...] with rising x, of which `names` are the words.
+void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
+                const std::array<const char*, 2>& names,
+                std::vector<std::pair<double, double>>& pairs) {
+  if (node.kind != YamlNode::Kind::list || node.children.empty()) {
+    map.refuse(
+        node, key,
+        std::string("expected a list of [") + names[0] + ", " + names[1] + "], " + describe(node));
+    return;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const std::string where = join_path(map.where(key), i);
+    std::array<double, 2> entry{};
+    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
+                      map.errors())) {
+      continue;
+    }
+    if (!pairs.empty() && !(entry[0] > pairs.back().first))
+      map.errors().add(find_blame(node.children[i]), where,
+                       std::string(names[0]) + " must be more than in the entry before");
+    pairs.emplace_back(entry[0], entry[1]);
+  }
+}
+
+/// Reads the keys of a torque law of a rotor whose mean speed is known.
+void read_torque(MapReader& map, double speed, model::TorqueLaw& law) {
+  map.read("torque", law.torque, any_number);
+  map.read("torque_slope", law.slope, any_number);
+  const YamlNode* table = map.find("torque_table");
+  if (table == nullptr) return;
+  for (const char* key : {"torque", "torque_slope"})
+    if (const YamlNode* entry = map.node().find(key))
+      map.refuse(*entry, key, "given together with torque_table; leave one of them out");
+  const std::size_t errors_before = map.errors().size();
+  read_pairs(map, "torque_table", *table, {"speed", "torque"}, law.table);
+  if (map.errors().size() > errors_before) {
+    law.table.clear();
+  } else if (law.table.size() < 2) {
+    map.refuse(*table, "torque_table", "expected at least 2 entries [speed, torque]");
+    law.table.clear();
+  } else if (!law.covers(speed)) {
+    std::ostringstream text;
+    text << "the table reaches from " << law.table.front().first << " to " << law.table.back().first
+         << " rad/s, shaft.speed is " << speed << " rad/s";
+    map.refuse(*table, "torque_table", text.str());
+    law.table.clear();
+  }
+}
+
+void read_generator(const YamlNode& node, const std::string& where, double speed,
                     model::GeneratorDefinition& generator, ErrorList& errors) {
   MapReader map(node, where, errors);
   map.require("joint", "free or locked");
   map.read("joint", generator.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
   map.read("inertia", generator.inertia, non_negative);
-  map.read("torque_slope", generator.torque_slope, any_number);
+  read_torque(map, speed, generator.law);
   map.finish();
 }
 
@@ -426,11 +476,16 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
     read_torsion(*entry, map.where("torsion"), shaft.torsion, errors);
   }
   if (const YamlNode* entry = map.find("generator")) {
-    read_generator(*entry, map.where("generator"), shaft.generator, errors);
+    read_generator(*entry, map.where("generator"), shaft.speed, shaft.generator, errors);
     if (shaft.generator.kind == JointKind::free && shaft.torsion.kind == JointKind::free &&
         shaft.generator.inertia == 0.0)
       map.refuse(*entry, "generator",
                  "a free generator behind a shaft that may twist needs an inertia > 0");
+  }
+  if (const YamlNode* entry = map.find("rotor")) {
+    MapReader rotor(*entry, map.where("rotor"), errors);
+    read_torque(rotor, shaft.speed, shaft.rotor);
+    rotor.finish();
   }
   map.finish();
 }
@@ -549,26 +604,6 @@ void read_harmonic(const YamlNode& node, const std::string& where, model::LoadHi
   map.finish();
 }
 
-/// Reads [[t, factor], ...].
-void read_table(MapReader& map, const YamlNode& node, model::LoadHistory& history) {
-  if (node.kind != YamlNode::Kind::list || node.children.empty()) {
-    map.refuse(node, "table", "expected a list of [t, factor], " + describe(node));
-    return;
-  }
-  for (std::size_t i = 0; i < node.children.size(); ++i) {
-    const std::string where = join_path(map.where("table"), i);
-    std::array<double, 2> entry{};
-    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
-                      map.errors())) {
-      continue;
-    }
-    if (!history.table.empty() && !(entry[0] > history.table.back().first))
-      map.errors().add(find_blame(node.children[i]), where,
-                       "t must be more than in the entry before");
-    history.table.emplace_back(entry[0], entry[1]);
-  }
-}
-
 model::LoadDefinition read_load(const YamlNode& node, const std::string& where,
                                 const model::TurbineDefinition& turbine, ErrorList& errors) {
   model::LoadDefinition load;
@@ -587,7 +622,7 @@ model::LoadDefinition read_load(const YamlNode& node, const std::string& where,
   else if (harmonic != nullptr)
     read_harmonic(*harmonic, map.where("harmonic"), load.history, errors);
   else if (table != nullptr)
-    read_table(map, *table, load.history);
+    read_pairs(map, "table", *table, {"t", "factor"}, load.history.table);
   map.finish();
   return load;
 }

@@ -34,7 +34,10 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.hub.inertia = hub.inertia.asDiagonal();
   chain.teeter = hinge_of(hub.teeter);
   chain.torsion = hinge_of(shaft.torsion);
-  chain.generator = {shaft.generator.kind == JointKind::free, 0.0, shaft.generator.torque_slope};
+  const elements::TorqueLine torque = shaft.generator.law.at(shaft.speed);
+  chain.generator = {shaft.generator.kind == JointKind::free, 0.0, torque.slope};
+  chain.generator_torque = torque.torque;
+  chain.rotor_torque = shaft.rotor.at(shaft.speed);
   chain.generator_inertia = shaft.generator.inertia;
   chain.height = shaft.height;
   chain.tilt = shaft.tilt;

@@ -161,9 +161,12 @@ bool TurbineSystem::is_conservative() const {
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const elements::BeamPoint& point : placed.beam->points)
       if (!point.damping.isZero(0.0)) return false;
+  // A constant torque has a potential where its axis moves as prescribed.
+  const bool axis_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free;
+  if (axis_moves && chain.rotor_torque.torque != 0.0) return false;
   // A dead force has a potential where the axes that it is fixed in move as prescribed.
-  const bool hub_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free ||
-                         chain.torsion.free || chain.generator.free;
+  const bool hub_moves = axis_moves || chain.torsion.free || chain.generator.free;
+  if (hub_moves && chain.rotor_torque.slope != 0.0) return false;
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const model::BeamLoad& load : placed.beam->loads)
       if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub && hub_moves))
@@ -283,6 +286,8 @@ void TurbineSystem::reference_state(double t, Vec z) const {
 std::unique_ptr<PeriodicSystem> TurbineSystem::unloaded() const {
   model::Turbine bare = turbine();
   bare.chain.gravity = 0.0;
+  bare.chain.generator_torque = 0.0;
+  bare.chain.rotor_torque.torque = 0.0;
   bare.tower.loads.clear();
   for (model::Beam& blade : bare.blades) blade.loads.clear();
   return std::make_unique<TurbineSystem>(bare, comm());

@@ -237,7 +237,49 @@ BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
   BOOST_TEST(shaft.torsion.damping == 6e6);
   BOOST_TEST((shaft.generator.kind == JointKind::free));
   BOOST_TEST(shaft.generator.inertia == 5e6);
-  BOOST_TEST(shaft.generator.torque_slope == -3.0);
+  BOOST_TEST(shaft.generator.law.slope == -3.0);
+  BOOST_TEST(shaft.generator.law.torque == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(torque_laws_are_lines_or_tables) {
+  const model::ShaftDefinition shaft =
+      read_text(minimal +
+                "shaft:\n  rotor: {torque: 90, torque_slope: -1.5}\n  speed: 2\n"
+                "  generator: {joint: free, torque_table: [[1, 10], [2, 30], [4, 50]]}\n")
+          .turbine.shaft;
+  BOOST_TEST(shaft.rotor.at(2.0).torque == 90.0);
+  BOOST_TEST(shaft.rotor.at(2.0).slope == -1.5);
+  BOOST_REQUIRE(shaft.generator.law.table.size() == 3u);
+  const auto torque = [&](double speed) { return shaft.generator.law.at(speed).torque; };
+  const auto slope = [&](double speed) { return shaft.generator.law.at(speed).slope; };
+  BOOST_TEST(torque(1.0) == 10.0);
+  BOOST_TEST(torque(1.25) == 15.0);
+  BOOST_TEST(torque(2.0) == 30.0);
+  BOOST_TEST(torque(3.0) == 40.0);
+  BOOST_TEST(torque(4.0) == 50.0);
+  BOOST_TEST(slope(1.0) == 20.0);
+  BOOST_TEST(slope(1.9) == 20.0);
+  BOOST_TEST(slope(2.0) == 15.0);
+  BOOST_TEST(slope(2.1) == 10.0);
+  BOOST_TEST(slope(4.0) == 10.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_torque_table_must_rise_and_reach_to_the_speed) {
+  const auto check = [](const std::string& table, const std::string& message) {
+    check_error(minimal + "shaft:\n  speed: 2\n  rotor:\n    torque_table: " + table + "\n",
+                "case.yaml:12:" + message);
+  };
+  check("[[1, 2], [1, 3]]",
+        "28: shaft.rotor.torque_table[1]: speed must be more than in the entry before");
+  check("[[2, 3]]", "5: shaft.rotor.torque_table: expected at least 2 entries [speed, torque]");
+  check("5", "5: shaft.rotor.torque_table: expected a list of [speed, torque], got 5");
+  check("[[3, 1], [4, 1]]",
+        "5: shaft.rotor.torque_table: the table reaches from 3 to 4 rad/s, shaft.speed is 2 rad/s");
+  check_error(minimal +
+                  "shaft:\n  generator:\n    joint: free\n    torque: 3\n"
+                  "    torque_table: [[0, 1], [4, 1]]\n",
+              "case.yaml:12:5: shaft.generator.torque: given together with torque_table; leave one "
+              "of them out");
 }
 
 BOOST_AUTO_TEST_CASE(point_masses_are_sorted_by_their_place) {

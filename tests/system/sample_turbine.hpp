@@ -145,7 +145,8 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
                                 {1.0, 0.3, Vector3(0.0, 0.1, 0.2), Vector3(0.02, 0.03, 0.01)}};
   d.hub.delta3 = 0.5;
   d.shaft.torsion = {model::JointKind::free, 250.0, 15.0};
-  d.shaft.generator = {model::JointKind::free, 1.5, 4.0};
+  d.shaft.generator = {model::JointKind::free, 1.5, {6.0, 4.0, {}}};
+  d.shaft.rotor = {5.0, -3.0, {}};
   return d;
 }
 

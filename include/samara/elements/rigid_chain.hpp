@@ -14,6 +14,7 @@
 
 #include "samara/elements/beam_point.hpp"
 #include "samara/elements/joint_motion.hpp"
+#include "samara/elements/torque_line.hpp"
 #include "samara/math/rotation.hpp"
 
 namespace samara::elements {
@@ -34,7 +35,9 @@ struct Hinge {
 struct RigidChain {
   double gravity = 0.0;  ///< along -n3 [m/s^2]
   Hinge yaw;
-  Hinge generator;  ///< about psi; its damping is the slope of the generator's torque
+  Hinge generator;                ///< about psi; its damping is the slope of the generator's torque
+  double generator_torque = 0.0;  ///< at the mean speed, against the turning [N m]
+  TorqueLine rotor_torque;        ///< on H along h2, by omega_H . h2
   Hinge torsion;
   Hinge teeter;
   RigidBody tower_top;                     ///< reference point: tower top; axes t1 t2 t3
@@ -277,6 +280,8 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Vec3<T> root_moment = state.hub_load.template tail<3>();
   w.force += root_force;
   w.moment += root_moment + cross(apex, root_force);
+  w.moment(1) += (hub_motion.omega(1) - T(state.speed)) * chain.rotor_torque.slope +
+                 T(chain.rotor_torque.torque);
   rows.teeter = teeter.take(w.moment);
 
   // The sum so far, applied at `arm` of the next body, in whose components C^T brings it.
@@ -293,6 +298,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   turning.inertia(1, 1) = chain.generator_inertia;
   pass_to(detail::active_and_inertia<T>(turning, generator.outer(), g_D), C_SD, same_point);
   rows.generator = generator.take(w.moment, true);
+  rows.generator.balance -= T(chain.generator_torque);
   pass_to(detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y), C_DY, bearing);
   rows.yaw = yaw.take(w.moment);
   pass_to(detail::active_and_inertia<T>(chain.tower_top, top, g_T), C_YT, same_point);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "samara/elements/joint_motion.hpp"
+#include "samara/elements/torque_line.hpp"
 #include "samara/math/types.hpp"
 
 namespace samara::model {
@@ -66,10 +67,25 @@ struct JointDefinition {
   JointHistory motion = {};  ///< of a prescribed joint
 };
 
+/// A torque over a speed: by its value and slope at the mean speed, or a table.
+struct TorqueLaw {
+  double torque = 0.0;                           ///< [N m]
+  double slope = 0.0;                            ///< [N m s/rad]
+  std::vector<std::pair<double, double>> table;  ///< rising speed [rad/s], torque; empty: above
+
+  /// Whether a table reaches to a speed.
+  bool covers(double speed) const {
+    return table.empty() || (speed >= table.front().first && speed <= table.back().first);
+  }
+  /// Torque and slope at a speed; of a table linear between its entries, the slope at an entry the
+  /// mean of both sides.
+  elements::TorqueLine at(double speed) const;
+};
+
 struct GeneratorDefinition {
   JointKind kind = JointKind::locked;  ///< locked: turns at shaft.speed; free: its angle varies
   double inertia = 0.0;                ///< about the shaft, at the shaft's speed [kg m^2]
-  double torque_slope = 0.0;           ///< torque against the turning, by its speed [N m s/rad]
+  TorqueLaw law;                       ///< against the turning
 };
 
 struct NacelleDefinition {
@@ -91,6 +107,7 @@ struct ShaftDefinition {
   double inertia_lateral = 0.0;  ///< [kg m^2]
   JointDefinition torsion;       ///< between generator and rotor
   GeneratorDefinition generator;
+  TorqueLaw rotor;  ///< on the hub about h2
 };
 
 struct HubDefinition {
