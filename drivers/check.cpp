@@ -1,4 +1,5 @@
 // samara check: what the case describes; solves nothing.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,8 @@ namespace {
 
 /// Of a centre of mass: smaller is rounding [m].
 constexpr double small_length = 1e-9;
+/// Relative: a rotor whose unbalance is smaller has none.
+constexpr double balanced = 1e-9;
 
 std::string triple(const Vector3& v) {
   std::string text;
@@ -74,6 +77,17 @@ std::string inertia_words(const model::Masses& masses) {
   return text;
 }
 
+/// Mass times distance of its centre from the shaft.
+std::string balance_words(const model::Masses& masses) {
+  const Vector3& moment = masses.rotor.moment;
+  const double off = std::hypot(moment(0), moment(2));
+  const double size = masses.rotor.mass *
+                      std::sqrt(masses.rotor.inertia.trace() / std::max(masses.rotor.mass, 1e-300));
+  if (!(off > balanced * size)) return "its centre of mass is on the shaft";
+  const double azimuth = std::atan2(moment(0), moment(2)) * 180.0 / std::numbers::pi;
+  return general(off, 5) + " kg m off the shaft, " + general(azimuth, 5) + " deg ahead of blade 1";
+}
+
 std::string mesh_words(const model::Beam& beam) {
   return count(beam.elements, "element") + " of order " + std::to_string(beam.order);
 }
@@ -97,6 +111,7 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
                            " m, blade " + general(definition.blades.beam.length, 5) + " m");
   if (turbine.has_tower) line("tower", general(definition.tower.length, 6) + " m");
   line("rotor inertia", inertia_words(masses));
+  line("rotor balance", balance_words(masses));
   line("blades", count(static_cast<int>(turbine.blades.size()), "blade") +
                      (turbine.blades.size() == 1 ? ""
                       : turbine.identical_blades ? ", alike"

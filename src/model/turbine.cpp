@@ -13,6 +13,24 @@ elements::Hinge hinge_of(const JointDefinition& joint) {
   return {joint.kind == JointKind::free, joint.stiffness, joint.damping};
 }
 
+/// The hub and the masses on it as one body.
+elements::RigidBody hub_of(const HubDefinition& hub) {
+  elements::RigidBody body;
+  body.mass = hub.mass;
+  body.center = Vector3(0.0, hub.center_of_mass, 0.0);
+  body.inertia = hub.inertia.asDiagonal();
+  for (const HubMassDefinition& lump : hub.point_masses) {
+    // About the common centre: the reduced mass at the distance of the two.
+    const double mass = body.mass + lump.mass;
+    const Matrix3 across = math::skew<double>(Vector3(lump.center - body.center));
+    body.inertia += Matrix3(lump.inertia.asDiagonal());
+    body.inertia -= body.mass * lump.mass / mass * across * across;
+    body.center += lump.mass / mass * (lump.center - body.center);
+    body.mass = mass;
+  }
+  return body;
+}
+
 elements::RigidChain chain_of(const TurbineDefinition& definition) {
   elements::RigidChain chain;
   const NacelleDefinition& nacelle = definition.nacelle;
@@ -29,9 +47,7 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.shaft.center = Vector3(0.0, shaft.center_of_mass, 0.0);
   chain.shaft.inertia =
       Vector3(shaft.inertia_lateral, shaft.inertia_axial, shaft.inertia_lateral).asDiagonal();
-  chain.hub.mass = hub.mass;
-  chain.hub.center = Vector3(0.0, hub.center_of_mass, 0.0);
-  chain.hub.inertia = hub.inertia.asDiagonal();
+  chain.hub = hub_of(hub);
   chain.teeter = hinge_of(hub.teeter);
   chain.torsion = hinge_of(shaft.torsion);
   const elements::TorqueLine torque = shaft.generator.law.at(shaft.speed);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "samara/math/rotation.hpp"
@@ -10,6 +11,9 @@ namespace samara::system {
 namespace {
 
 constexpr int block = model::Layout::block;
+
+/// Relative: what sums of several masses leave where they should cancel.
+constexpr double symmetry_rounding = 1e-12;
 
 struct NamedUnknown {
   const char* name;
@@ -245,8 +249,9 @@ class Describer {
                                   {speed},
                                   {shaft_inertia}});
     };
-    const double turning =
-        chain.shaft.inertia(1, 1) + (chain.teeter.free ? 0.0 : chain.hub.inertia(1, 1));
+    const Vector3 off_axis(chain.hub.center(0), 0.0, chain.hub.center(2));
+    const double hub_turning = chain.hub.inertia(1, 1) + chain.hub.mass * off_axis.squaredNorm();
+    const double turning = chain.shaft.inertia(1, 1) + (chain.teeter.free ? 0.0 : hub_turning);
     if (turns_freely()) add_shaft(layout_.shaft_torsion() + 1, turning);
     if (chain.generator.free) add_shaft(layout_.generator() + 1, chain.generator_inertia);
     add_spring(chain.yaw, "yaw", Frame::fixed, layout_.yaw());
@@ -272,10 +277,26 @@ class Describer {
     const auto blades = turbine_.blades.size();
     if (!turbine_.identical_blades) return "the blades differ";
     if (blades > 2 && chain.teeter.free) return "the hub teeters";
-    if (blades > 2 && chain.hub.inertia(0, 0) != chain.hub.inertia(2, 2))
+    for (const std::string& fault : {hub_fault(blades > 2), motion_fault(), load_fault()})
+      if (!fault.empty()) return fault;
+    return "";
+  }
+
+  /// The same for the hub: its axis must be a principal one through its centre, and all axes across
+  /// it alike where it is turned by less than half a turn.
+  std::string hub_fault(bool round) const {
+    const elements::RigidBody& hub = turbine_.chain.hub;
+    const Matrix3& I = hub.inertia;
+    const double largest = I.cwiseAbs().maxCoeff();
+    const double inertia = symmetry_rounding * largest;
+    const double length = hub.mass > 0.0 ? hub.center.norm() + std::sqrt(largest / hub.mass) : 0.0;
+    if (std::hypot(hub.center(0), hub.center(2)) > symmetry_rounding * length)
+      return "the hub's centre of mass is off the shaft";
+    if (std::hypot(I(0, 1), I(1, 2)) > inertia)
+      return "the shaft is no principal axis of the hub's inertia";
+    if (round && (std::abs(I(0, 0) - I(2, 2)) > inertia || std::abs(I(0, 2)) > inertia))
       return "hub.inertia differs about h1 and h3";
-    const std::string fault = motion_fault();
-    return fault.empty() ? load_fault() : fault;
+    return "";
   }
 
   /// The same for the prescribed motions: the yaw must repeat from blade to blade, and half a turn

@@ -241,6 +241,23 @@ BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
   BOOST_TEST(shaft.generator.law.torque == 0.0);
 }
 
+BOOST_AUTO_TEST_CASE(a_hub_carries_masses_off_its_axis) {
+  const model::HubDefinition hub =
+      read_text(minimal +
+                "hub:\n  point_masses:\n    - {mass: 5, center: [0, 0.1, -2], inertia: "
+                "[1, 2, 3]}\n    - {mass: 2}\n")
+          .turbine.hub;
+  BOOST_REQUIRE(hub.point_masses.size() == 2u);
+  BOOST_TEST(hub.point_masses[0].mass == 5.0);
+  BOOST_TEST((hub.point_masses[0].center == Vector3(0, 0.1, -2)));
+  BOOST_TEST((hub.point_masses[0].inertia == Vector3(1, 2, 3)));
+  BOOST_TEST((hub.point_masses[1].center == Vector3::Zero()));
+  check_error(minimal + "hub:\n  point_masses: 5\n",
+              "case.yaml:10:3: hub.point_masses: expected a list, got 5");
+  check_error(minimal + "hub:\n  point_masses:\n    - {center: [0, 0, 1]}\n",
+              "case.yaml:11:7: hub.point_masses[0]: missing key \"mass\"");
+}
+
 BOOST_AUTO_TEST_CASE(torque_laws_are_lines_or_tables) {
   const model::ShaftDefinition shaft =
       read_text(minimal +

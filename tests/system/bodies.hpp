@@ -205,6 +205,8 @@ class BodyBuilder {
     }
     add_body(hub.mass, Vector3(0.0, hub.center_of_mass, 0.0), hub.inertia, pin, pin_velocity,
              bodies_.R_H, spin);
+    for (const model::HubMassDefinition& lump : hub.point_masses)
+      add_body(lump.mass, lump.center, lump.inertia, pin, pin_velocity, bodies_.R_H, spin);
     const Vector3 apex = pin + bodies_.R_H.col(1) * hub.undersling;
     for (int k = 0; k < definition_.blades.count; ++k) add_blade(k, apex);
   }

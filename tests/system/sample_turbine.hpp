@@ -132,6 +132,8 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
     d.nacelle.yaw.kind = d.hub.teeter.kind = model::JointKind::prescribed;
     d.nacelle.yaw.motion = {0.5, 0.2, 2, 0.0, 0.7};
     d.hub.teeter.motion = {-0.1, 0.15, 1, 0.0, -0.4};
+    d.hub.point_masses = {{1.5, Vector3(0.3, -0.2, -0.6), Vector3(0.1, 0.2, 0.3)},
+                          {0.4, Vector3(-0.5, 0.1, 0.2), Vector3(0.02, 0.01, 0.03)}};
   }
   if (!choice.full) return d;
   // Two points make a line that leans from the root on.

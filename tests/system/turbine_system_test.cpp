@@ -561,6 +561,33 @@ BOOST_AUTO_TEST_CASE(renaming_every_sector_once_is_no_renaming) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(masses_on_the_hub_keep_the_symmetry_where_they_balance) {
+  const auto check = [](int blades, const std::vector<Vector3>& places, bool repeats) {
+    model::TurbineDefinition definition =
+        sample::turbine_definition({blades, 1, true, true, false, true, false});
+    for (const Vector3& place : places)
+      definition.hub.point_masses.push_back({0.37, place, Vector3::Zero()});
+    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    BOOST_TEST((system.symmetry().sectors == blades) == repeats);
+    const int speed = system.layout().teeter() + 1;
+    if (repeats) BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < rounding);
+  };
+  const auto ring = [](int count, double downwind) {
+    std::vector<Vector3> places;
+    for (int k = 0; k < count; ++k) {
+      const double angle = 0.3 + 2.0 * std::numbers::pi * k / count;
+      places.emplace_back(0.7 * std::sin(angle), downwind, 0.7 * std::cos(angle));
+    }
+    return places;
+  };
+  check(2, ring(2, 0.1), true);
+  check(3, ring(3, 0.1), true);
+  check(3, ring(2, 0.1), false);
+  check(2, {Vector3(0.7, 0.1, 0.0), Vector3(-0.7, -0.1, 0.0)}, false);  // h2 no principal axis
+  check(2, {Vector3(0.0, 0.1, 0.0)}, true);
+  check(2, {Vector3(0.0, 0.1, 1e-6)}, false);
+}
+
 BOOST_AUTO_TEST_CASE(prescribed_angles_keep_the_symmetry_where_they_repeat) {
   model::TurbineDefinition definition = sample::turbine_definition({2, 1, true, true, true});
   definition.nacelle.yaw.kind = definition.hub.teeter.kind = model::JointKind::prescribed;
@@ -610,6 +637,9 @@ BOOST_AUTO_TEST_CASE(dissimilar_rotors_have_one_sector) {
   BOOST_TEST(sectors_of(definition) == 1);
   definition = sample::turbine_definition(three);
   definition.hub.inertia(2) *= 2.0;
+  BOOST_TEST(sectors_of(definition) == 1);
+  definition = sample::turbine_definition(three);
+  definition.hub.point_masses = {{0.5, Vector3(0.0, 0.1, -0.3), Vector3::Zero()}};
   BOOST_TEST(sectors_of(definition) == 1);
   BOOST_TEST(sectors_of(sample::turbine_definition({3, 1, true, true, true, true, false})) == 1);
   BOOST_TEST(sectors_of(sample::turbine_definition({1, 1, true, true, false, true, false})) == 1);

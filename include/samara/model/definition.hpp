@@ -110,11 +110,19 @@ struct ShaftDefinition {
   TorqueLaw rotor;  ///< on the hub about h2
 };
 
+/// A mass on the hub.
+struct HubMassDefinition {
+  double mass = 0.0;                  ///< [kg], > 0
+  Vector3 center = Vector3::Zero();   ///< from the teeter pin, h1 h2 h3 [m]
+  Vector3 inertia = Vector3::Zero();  ///< about its own centre, h1 h2 h3 [kg m^2]
+};
+
 struct HubDefinition {
   double mass = 0.0;            ///< [kg]
   double center_of_mass = 0.0;  ///< along s2 from the teeter pin [m]
   Vector3 inertia =
-      Vector3::Zero();      ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
+      Vector3::Zero();  ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
+  std::vector<HubMassDefinition> point_masses;
   double radius = 0.0;      ///< shaft axis to blade root [m]
   JointDefinition teeter;   ///< locked = rigid hub
   double undersling = 0.0;  ///< along s2 from teeter pin to rotor apex [m]
