@@ -1,8 +1,10 @@
 // samara check: what the case describes; solves nothing.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "samara/model/beam_modes.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/system/turbine_system.hpp"
 
@@ -17,6 +19,8 @@ namespace {
 constexpr double small_length = 1e-9;
 /// Relative: a rotor whose unbalance is smaller has none.
 constexpr double balanced = 1e-9;
+/// A damping ratio below it is rounding.
+constexpr double no_damping = 1e-12;
 
 std::string triple(const Vector3& v) {
   std::string text;
@@ -88,6 +92,31 @@ std::string balance_words(const model::Masses& masses) {
   return general(off, 5) + " kg m off the shaft, " + general(azimuth, 5) + " deg ahead of blade 1";
 }
 
+/// What mu the damping ratios of a beam have become, and what its modes get: a line a direction.
+std::vector<std::string> damping_lines(const model::BeamDefinition& definition,
+                                       const model::Beam& beam,
+                                       const std::array<const char*, 3>& names) {
+  const model::ModalDamping& given = definition.modal_damping;
+  std::vector<std::string> lines;
+  if (!given[0] && !given[1] && !given[2]) return lines;
+  constexpr std::array<int, 3> strain{4, 5, 3};
+  const std::array<std::vector<model::BeamMode>, 3> modes = model::first_modes(beam);
+  for (std::size_t d = 0; d < names.size(); ++d) {
+    std::string text =
+        std::string(names[d]) + " mu " + general(definition.damping(strain[d]), 4) + " s";
+    for (std::size_t m = 0; m < modes[d].size(); ++m) {
+      const model::BeamMode& mode = modes[d][m];
+      const double ratio = mode.damping_ratio(definition.damping);
+      text += (m == 0 ? ": mode " : ", mode ") + std::to_string(m + 1) + " " +
+              (ratio < no_damping ? "0" : general(100.0 * ratio, 4)) + " % at " +
+              general(0.5 * mode.frequency / std::numbers::pi, 4) + " Hz";
+      if (m == 0 && given[d]) text += " (given " + general(100.0 * *given[d], 4) + " %)";
+    }
+    if (!modes[d].empty()) lines.push_back(text);
+  }
+  return lines;
+}
+
 std::string mesh_words(const model::Beam& beam) {
   return count(beam.elements, "element") + " of order " + std::to_string(beam.order);
 }
@@ -138,6 +167,17 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
     line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));
   line("mesh", "blades " + mesh_words(turbine.blades.front()) +
                    (turbine.has_tower ? "; tower " + mesh_words(turbine.tower) : ""));
+  const auto damping = [&line](std::string name, const std::vector<std::string>& lines) {
+    for (const std::string& words : lines) {
+      line(name, words);
+      name.clear();
+    }
+  };
+  damping("blade damping", damping_lines(definition.blades.beam, turbine.blades.front(),
+                                         {"flap", "lead-lag", "torsion"}));
+  if (turbine.has_tower)
+    damping("tower damping",
+            damping_lines(definition.tower, turbine.tower, {"fore-aft", "lateral", "torsion"}));
   line("unknowns", std::to_string(system.size()) + ", " +
                        count(turbine.degrees_of_freedom, "degree") + " of freedom");
   return text;

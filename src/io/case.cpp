@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "samara/base/error.hpp"
+#include "samara/model/beam_modes.hpp"
 
 #include "whole_file.hpp"
 #include "yaml_reader.hpp"
@@ -251,15 +252,30 @@ void read_sections(MapReader& map, std::vector<model::SectionDefinition>& sectio
   }
 }
 
-void read_damping(MapReader& map, Vector6& damping) {
+/// The keys of damping ratios, in the order of model::ModalDamping.
+using RatioKeys = std::array<const char*, 3>;
+constexpr RatioKeys blade_ratios{"flap", "lead_lag", "torsion"};
+constexpr RatioKeys tower_ratios{"fore_aft", "lateral", "torsion"};
+
+void read_damping(MapReader& map, const RatioKeys& ratios, model::BeamDefinition& beam) {
   const YamlNode* entry = map.find("damping");
   if (entry == nullptr) return;
+  Vector6& damping = beam.damping;
+  if (entry->kind == YamlNode::Kind::map) {
+    MapReader modes(*entry, map.where("damping"), map.errors());
+    for (std::size_t d = 0; d < ratios.size(); ++d) {
+      double ratio = 0.0;
+      if (modes.read(ratios[d], ratio, fraction_of_one)) beam.modal_damping[d] = ratio;
+    }
+    modes.finish();
+    return;
+  }
   if (entry->kind == YamlNode::Kind::list) {
     read_numbers(*entry, map.where("damping"), non_negative, std::span<double>(damping.data(), 6),
                  map.errors());
     return;
   }
-  constexpr NumberRule rule{"a number >= 0 or a list of 6", non_negative.low};
+  constexpr NumberRule rule{"a number >= 0, a list of 6 or damping ratios", non_negative.low};
   double mu = 0.0;
   if (read_number(*entry, map.where("damping"), rule, mu, map.errors())) damping.setConstant(mu);
 }
@@ -337,15 +353,29 @@ void read_point_masses(MapReader& map, std::vector<model::PointMassDefinition>& 
                    [](const auto& a, const auto& b) { return a.at < b.at; });
 }
 
+/// Turns damping ratios into mu per strain.
+void find_damping(MapReader& map, model::BeamDefinition& beam) {
+  try {
+    beam.damping = model::fit_damping(model::build_beam(map.where(), beam), beam.modal_damping);
+  } catch (const InputError& error) {
+    map.refuse(*map.node().find("damping"), "damping", error.what());
+  }
+}
+
 /// Reads the keys that the tower and the blades have in common.
-void read_beam(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam) {
+void read_beam(MapReader& map, const Matrix3& to_a, const RatioKeys& ratios,
+               model::BeamDefinition& beam) {
+  const std::size_t errors_before = map.errors().size();
   read_length(map, to_a, beam);
   map.read("elements", beam.elements, 1, max_elements);
   map.read("order", beam.order, 1, max_order);
   read_sections(map, beam.sections);
-  read_damping(map, beam.damping);
+  read_damping(map, ratios, beam);
   map.read("tip_mass", beam.tip_mass, non_negative);
   read_point_masses(map, beam.point_masses);
+  const bool has_ratios = std::any_of(beam.modal_damping.begin(), beam.modal_damping.end(),
+                                      [](const auto& ratio) { return ratio.has_value(); });
+  if (has_ratios && map.errors().size() == errors_before) find_damping(map, beam);
 }
 
 void read_tower(const YamlNode& node, model::TurbineDefinition& turbine, ErrorList& errors) {
@@ -354,7 +384,7 @@ void read_tower(const YamlNode& node, model::TurbineDefinition& turbine, ErrorLi
   Matrix3 to_a;
   to_a << 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
   MapReader map(node, "tower", errors);
-  read_beam(map, to_a, turbine.tower);
+  read_beam(map, to_a, tower_ratios, turbine.tower);
   map.finish();
 }
 
@@ -564,7 +594,7 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   map.read("count", blades.count, 1, max_blades);
   read_angle(map, "precone_deg", blades.precone, quarter_turn);
   read_angle(map, "pitch_deg", blades.pitch, half_turn);
-  read_beam(map, Matrix3::Identity(), blades.beam);
+  read_beam(map, Matrix3::Identity(), blade_ratios, blades.beam);
   if (const YamlNode* entry = map.find("each")) {
     read_each(*entry, map.where("each"), blades, errors);
   }

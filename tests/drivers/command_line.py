@@ -144,6 +144,15 @@ class Tables(ProgramTest):
             text = self.succeed(command, "case.yaml", "--set", "floquet.steps=2000").stdout
             self.assertRegex(text, r"(?m)^stable: all \d+ modes decay; the least damped is ")
 
+    def test_damping_ratios_are_those_of_the_first_modes(self):
+        ratios = "length: 10\n  damping: {flap: 0.02, lead_lag: 0.013, torsion: 0.004}"
+        self.write("case.yaml", MINIMAL.replace("length: 10", ratios) + "gravity: 0\n")
+        self.assertRegex(self.succeed("check", "case.yaml").stdout,
+                         r"(?m)^blade damping +flap mu \S+ s: mode 1 2 % at .*\(given 2 %\)")
+        text = self.succeed("modes", "case.yaml", "--set", "shaft.speed=0").stdout
+        for mode, percent in (("flap", "2.000"), ("lead-lag", "1.300"), ("torsion", "0.400")):
+            self.assertRegex(text, rf"(?m)blade {mode} 1 +\S+ +{percent} ")
+
     def test_the_generator_says_what_it_gives(self):
         laws = ("generator: {joint: free, torque: 500, torque_slope: 30}, "
                 "rotor: {torque: 480, torque_slope: -20}")

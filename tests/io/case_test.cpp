@@ -241,6 +241,35 @@ BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
   BOOST_TEST(shaft.generator.law.torque == 0.0);
 }
 
+BOOST_AUTO_TEST_CASE(damping_ratios_become_mu_per_strain) {
+  // A slender beam of EI2 = 2e6, EI3 = 3e6: omega^2 ~ EI, so mu = 2 zeta/omega differs by sqrt.
+  const model::BeamDefinition beam =
+      read_text(minimal + "  elements: 20\n  damping: {flap: 0.02, lead_lag: 0.02}\n")
+          .turbine.blades.beam;
+  BOOST_TEST(beam.modal_damping[0].value() == 0.02);
+  BOOST_TEST(!beam.modal_damping[2]);
+  // (1.8751/l)^2 sqrt(EI/m), rotary inertia 0.5/(5 l^2) left out.
+  const double omega = 1.8751 * 1.8751 / 100.0 * std::sqrt(2e6 / 5.0);
+  BOOST_TEST(std::abs(beam.damping(4) * omega - 0.04) < 0.04 * 0.02);
+  BOOST_TEST(std::abs(beam.damping(5) / beam.damping(4) - std::sqrt(2.0 / 3.0)) < 1e-9);
+  BOOST_TEST(beam.damping(2) == beam.damping(4));
+  BOOST_TEST(beam.damping(1) == beam.damping(5));
+  BOOST_TEST(beam.damping(3) == 0.0);
+  BOOST_TEST(beam.damping(0) == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(damping_ratios_need_modes) {
+  const std::string rigid = replace(minimal, "GJ: 1e6", "GJ: rigid");
+  check_error(rigid + "  damping: {flap: 0.02, torsion: 0.01}\n",
+              "case.yaml:9:3: blades.damping: the beam has no mode of torsion: its strain is "
+              "rigid, or the mesh too coarse; leave this ratio out");
+  check_error(minimal + "  damping: {flap: 2}\n",
+              "case.yaml:9:13: blades.damping.flap: expected a number from 0 to 1, got 2");
+  check_error(minimal + "  damping: {fore_aft: 0.01}\n",
+              "case.yaml:9:13: unknown key \"fore_aft\" in blades.damping; known keys: "
+              "flap, lead_lag, torsion");
+}
+
 BOOST_AUTO_TEST_CASE(a_hub_carries_masses_off_its_axis) {
   const model::HubDefinition hub =
       read_text(minimal +
@@ -720,7 +749,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_negative_is_refused) {
   check("hub: {radius: -1}\n", "hub.radius", ">= 0");
   check("hub: {teeter: {stiffness: -1}}\n", "hub.teeter.stiffness", ">= 0");
   check("  tip_mass: -1\n", "blades.tip_mass", ">= 0");
-  check("  damping: -1\n", "blades.damping", ">= 0 or a list of 6");
+  check("  damping: -1\n", "blades.damping", ">= 0, a list of 6 or damping ratios");
   check("  each: {1: {mass_factor: -1}}\n", "blades.each.1.mass_factor", "> 0");
   check("trim: {tolerance: -1}\n", "trim.tolerance", "> 0");
   check_error(replace(minimal, "length: 10", "length: 0"),

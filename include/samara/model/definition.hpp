@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,9 @@ struct PointMassDefinition {
   Vector3 inertia = Vector3::Zero();  ///< about its own centre, section axes [kg m^2]
 };
 
+/// Damping ratios of a clamped beam's first modes: bending about b2, about b3, torsion.
+using ModalDamping = std::array<std::optional<double>, 3>;
+
 struct BeamDefinition {
   double length = 0.0;                      ///< arc length [m], > 0
   std::vector<Vector3> reference_line;      ///< points in axes a [m]; empty = straight along b1
@@ -39,6 +43,7 @@ struct BeamDefinition {
   int order = 1;                            ///< Gauss points an element, 1 to 6
   std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
   Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component
+  ModalDamping modal_damping{};             ///< from which mu was found, if it was
   double tip_mass = 0.0;                    ///< [kg], >= 0
   std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`
 };
