@@ -1,7 +1,10 @@
 // samara check: what the case describes; solves nothing.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "samara/model/beam_modes.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/system/turbine_system.hpp"
 
@@ -14,6 +17,10 @@ namespace {
 
 /// Of a centre of mass: smaller is rounding [m].
 constexpr double small_length = 1e-9;
+/// Relative: a rotor whose unbalance is smaller has none.
+constexpr double balanced = 1e-9;
+/// A damping ratio below it is rounding.
+constexpr double no_damping = 1e-12;
 
 std::string triple(const Vector3& v) {
   std::string text;
@@ -47,8 +54,16 @@ std::string mass_table(const model::Turbine& turbine, const model::Masses& masse
   return table.text();
 }
 
-std::string joint_words(const elements::Hinge& hinge) {
-  if (!hinge.free) return "locked";
+std::string degrees(double radians) { return general(radians * 180.0 / std::numbers::pi, 5); }
+
+std::string joint_words(const elements::Hinge& hinge, const model::JointHistory& motion = {}) {
+  if (!hinge.free && motion.angle == 0.0 && motion.is_constant()) return "locked";
+  if (!hinge.free && motion.is_constant()) return "held at " + degrees(motion.angle) + " deg";
+  if (!hinge.free)
+    return "prescribed, " + degrees(motion.amplitude) + " deg about " + degrees(motion.angle) +
+           " deg at " +
+           (motion.per_rev > 0 ? std::to_string(motion.per_rev) + "P"
+                               : general(motion.frequency, 5) + " rad/s");
   std::string text = "free";
   if (hinge.stiffness > 0.0) text += ", " + general(hinge.stiffness, 4) + " N m/rad";
   if (hinge.damping > 0.0) text += ", " + general(hinge.damping, 4) + " N m s/rad";
@@ -64,6 +79,42 @@ std::string inertia_words(const model::Masses& masses) {
   if (exact > 0.0 && std::abs(meshed - exact) > 5e-5 * exact)
     text += " (as meshed " + fixed(100.0 * (meshed / exact - 1.0), 2) + " %)";
   return text;
+}
+
+/// Mass times distance of its centre from the shaft.
+std::string balance_words(const model::Masses& masses) {
+  const Vector3& moment = masses.rotor.moment;
+  const double off = std::hypot(moment(0), moment(2));
+  const double size = masses.rotor.mass *
+                      std::sqrt(masses.rotor.inertia.trace() / std::max(masses.rotor.mass, 1e-300));
+  if (!(off > balanced * size)) return "its centre of mass is on the shaft";
+  const double azimuth = std::atan2(moment(0), moment(2)) * 180.0 / std::numbers::pi;
+  return general(off, 5) + " kg m off the shaft, " + general(azimuth, 5) + " deg ahead of blade 1";
+}
+
+/// What mu the damping ratios of a beam have become, and what its modes get: a line a direction.
+std::vector<std::string> damping_lines(const model::BeamDefinition& definition,
+                                       const model::Beam& beam,
+                                       const std::array<const char*, 3>& names) {
+  const model::ModalDamping& given = definition.modal_damping;
+  std::vector<std::string> lines;
+  if (!given[0] && !given[1] && !given[2]) return lines;
+  constexpr std::array<int, 3> strain{4, 5, 3};
+  const std::array<std::vector<model::BeamMode>, 3> modes = model::first_modes(beam);
+  for (std::size_t d = 0; d < names.size(); ++d) {
+    std::string text =
+        std::string(names[d]) + " mu " + general(definition.damping(strain[d]), 4) + " s";
+    for (std::size_t m = 0; m < modes[d].size(); ++m) {
+      const model::BeamMode& mode = modes[d][m];
+      const double ratio = mode.damping_ratio(definition.damping);
+      text += (m == 0 ? ": mode " : ", mode ") + std::to_string(m + 1) + " " +
+              (ratio < no_damping ? "0" : general(100.0 * ratio, 4)) + " % at " +
+              general(0.5 * mode.frequency / std::numbers::pi, 4) + " Hz";
+      if (m == 0 && given[d]) text += " (given " + general(100.0 * *given[d], 4) + " %)";
+    }
+    if (!modes[d].empty()) lines.push_back(text);
+  }
+  return lines;
 }
 
 std::string mesh_words(const model::Beam& beam) {
@@ -89,6 +140,7 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
                            " m, blade " + general(definition.blades.beam.length, 5) + " m");
   if (turbine.has_tower) line("tower", general(definition.tower.length, 6) + " m");
   line("rotor inertia", inertia_words(masses));
+  line("rotor balance", balance_words(masses));
   line("blades", count(static_cast<int>(turbine.blades.size()), "blade") +
                      (turbine.blades.size() == 1 ? ""
                       : turbine.identical_blades ? ", alike"
@@ -97,15 +149,35 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
        system.symmetry().sectors > 1
            ? "repeats every 1/" + std::to_string(system.symmetry().sectors) + " revolution"
            : "none, the period is a whole revolution");
-  line("joints", "yaw " + joint_words(turbine.chain.yaw) + "; teeter " +
-                     joint_words(turbine.chain.teeter) + "; shaft torsion " +
+  line("joints", "yaw " + joint_words(turbine.chain.yaw, turbine.yaw_motion) + "; teeter " +
+                     joint_words(turbine.chain.teeter, turbine.teeter_motion) + "; shaft torsion " +
                      joint_words(turbine.chain.torsion) + "; generator " +
                      joint_words(turbine.chain.generator));
+  const model::ShaftDefinition& shaft = definition.shaft;
+  const auto torque = [&](const std::string& name, const model::TorqueLaw& law) {
+    const elements::TorqueLine at_speed = law.at(shaft.speed);
+    if (at_speed.torque != 0.0 || at_speed.slope != 0.0)
+      line(name, general(at_speed.torque, 5) + " N m at the rotor speed, slope " +
+                     general(at_speed.slope, 5) + " N m s/rad");
+  };
+  torque("generator torque", shaft.generator.law);
+  torque("rotor torque", shaft.rotor);
   line("gravity", general(definition.gravity, 6) + " m/s^2");
   if (!definition.loads.empty())
     line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));
   line("mesh", "blades " + mesh_words(turbine.blades.front()) +
                    (turbine.has_tower ? "; tower " + mesh_words(turbine.tower) : ""));
+  const auto damping = [&line](std::string name, const std::vector<std::string>& lines) {
+    for (const std::string& words : lines) {
+      line(name, words);
+      name.clear();
+    }
+  };
+  damping("blade damping", damping_lines(definition.blades.beam, turbine.blades.front(),
+                                         {"flap", "lead-lag", "torsion"}));
+  if (turbine.has_tower)
+    damping("tower damping",
+            damping_lines(definition.tower, turbine.tower, {"fore-aft", "lateral", "torsion"}));
   line("unknowns", std::to_string(system.size()) + ", " +
                        count(turbine.degrees_of_freedom, "degree") + " of freedom");
   return text;

@@ -20,10 +20,8 @@ void require_speed(const io::Case& input);
 /// Statics is of what stands still.
 void require_rest(const io::Case& input);
 
-/// What modes, trim and floquet ask of loads and supports.
+/// What modes, trim and floquet ask: loads and prescribed motions that are constant or go with the
+/// rotor, and inertia where the root of a beam may move.
 void require_motion(const io::Case& input);
-
-/// A steady state needs loads that are constant or go with the rotor.
-void require_repeating_loads(const io::Case& input);
 
 }  // namespace samara::drivers

@@ -98,7 +98,7 @@ std::string summary(const io::Case& input, const system::TurbineSystem& system,
             (is_zero ? "" : " (not 0: no equilibrium there)") + "\n";
   }
   const auto joint = [&](const std::string& name, const elements::Hinge& hinge, int unknown) {
-    if (hinge.free && hinge.stiffness > 0.0)
+    if (hinge.free ? hinge.stiffness > 0.0 : last.z(unknown) != 0.0)
       text += name + std::string(13 - name.size(), ' ') + general(last.z(unknown) * to_degrees, 5) +
               " deg\n";
   };
@@ -133,7 +133,12 @@ void require_rest(const io::Case& input) {
 }
 
 void run_static(const Job& job) {
-  const model::Turbine turbine = model::build_turbine(job.input.turbine);
+  model::Turbine turbine = model::build_turbine(job.input.turbine);
+  for (model::JointHistory* motion : {&turbine.yaw_motion, &turbine.teeter_motion}) {
+    const double angle = motion->at(0.0, 0.0).angle;
+    *motion = {};
+    motion->angle = angle;  // at rest
+  }
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);

@@ -59,8 +59,11 @@ std::vector<Output> outputs_of(const system::TurbineSystem& system, double load_
     add_three(blade + " root moment", root + 3, "N m", small_load,
               {"b1 (torsion)", "b2 (flap)", "b3 (lead-lag)"});
   }
-  if (turbine.chain.teeter.free) add_angle("teeter", layout.teeter());
-  if (turbine.chain.yaw.free) add_angle("yaw", layout.yaw());
+  const auto moves = [](const elements::Hinge& hinge, const model::JointHistory& motion) {
+    return hinge.free || motion.angle != 0.0 || !motion.is_constant();
+  };
+  if (moves(turbine.chain.teeter, turbine.teeter_motion)) add_angle("teeter", layout.teeter());
+  if (moves(turbine.chain.yaw, turbine.yaw_motion)) add_angle("yaw", layout.yaw());
   if (turbine.chain.torsion.free) add_angle("shaft torsion", layout.shaft_torsion());
   if (turbine.chain.generator.free) add_angle("generator", layout.generator());
   if (!turbine.has_tower) return outputs;
@@ -125,6 +128,19 @@ std::string explain(const std::string& reason) {
   return reason;
 }
 
+/// A free generator holds the mean speed, by its law and a constant torque beside it.
+std::string generator_words(const io::Case& input, double load, double zero) {
+  const model::ShaftDefinition& shaft = input.turbine.shaft;
+  const double law = shaft.generator.law.at(shaft.speed).torque;
+  const auto number = [zero](double torque) {
+    return std::abs(torque) < zero ? std::string("0") : general(torque, 4);
+  };
+  std::string text =
+      "generator    " + number(law - load) + " N m against its turning hold the mean speed";
+  if (law != 0.0) text += ": " + number(law) + " by its law and " + number(-load) + " beside it";
+  return text + "\n";
+}
+
 std::string summary(const io::Case& input, const Trim& trim) {
   const int harmonics = trim.solution.harmonics();
   std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
@@ -143,7 +159,12 @@ std::string summary(const io::Case& input, const Trim& trim) {
           scientific(trim.residual_between, 1) + " between them [N, N m]; largest load " +
           general(trim.load_level, 4) + "\n";
   for (const analysis::HeldCoordinate& held : trim.held) {
-    const bool is_zero = std::abs(held.load) < rounding * std::max(trim.load_level, 1.0);
+    const double zero = rounding * std::max(trim.load_level, 1.0);
+    if (held.name == "generator") {
+      text += generator_words(input, held.load, zero);
+      continue;
+    }
+    const bool is_zero = std::abs(held.load) < zero;
     text += "held         " + held.name + ", which nothing restores: mean 0, by " +
             (is_zero ? "0" : general(held.load, 4)) + " " + held.unit +
             (is_zero ? "" : " (not 0: no equilibrium there)") + "\n";

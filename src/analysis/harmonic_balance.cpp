@@ -19,6 +19,14 @@ constexpr double same = 1e-14;
 
 int sample_count(int harmonics) { return 4 * harmonics + 2; }
 
+/// Fourier weights of a sample at t: mean, then 2/N cos, 2/N sin.
+Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
+  Eigen::VectorXd weights = PeriodicSolution::basis(harmonics, period, t);
+  weights *= 2.0 / sample_count(harmonics);
+  weights(0) *= 0.5;
+  return weights;
+}
+
 /// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i and has number
 /// i (2 H + 1) + c; the mean of a neutral coordinate gives its place to the load that holds it.
 class Balance {
@@ -128,13 +136,7 @@ class Balance {
   double period() const { return system_.period() > 0.0 ? system_.period() : 1.0; }
   double time_of(int k) const { return system_.period() * k / sample_count(harmonics_); }
 
-  /// Fourier weights of a sample: mean, then 2/N cos, 2/N sin.
-  Eigen::VectorXd projection(double t) const {
-    Eigen::VectorXd weights = PeriodicSolution::basis(harmonics_, period(), t);
-    weights *= 2.0 / sample_count(harmonics_);
-    weights(0) *= 0.5;
-    return weights;
-  }
+  Eigen::VectorXd projection(double t) const { return fourier_weights(harmonics_, period(), t); }
 
   bool is_neutral(PetscInt unknown) const {
     return std::any_of(
@@ -352,9 +354,17 @@ Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics
     coefficients.topRows(columns) = start->coefficients().leftCols(columns).transpose();
   } else {
     const petsc::Handle<Vec> z = system.make_state();
-    system.reference_state(0.0, z.get());
-    const petsc::ReadView view(z.get());
-    coefficients.row(0) = Eigen::Map<const Eigen::RowVectorXd>(view.data(), n);
+    const int samples = system.constraints_are_autonomous() ? 1 : sample_count(harmonics);
+    for (int k = 0; k < samples; ++k) {
+      const double t = system.period() * k / samples;
+      system.reference_state(t, z.get());
+      const petsc::ReadView view(z.get());
+      const Eigen::Map<const Eigen::RowVectorXd> values(view.data(), n);
+      if (samples == 1)
+        coefficients.row(0) = values;
+      else
+        coefficients += fourier_weights(harmonics, system.period(), t) * values;
+    }
   }
   return Eigen::Map<const Eigen::VectorXd>(coefficients.data(), coefficients.size());
 }

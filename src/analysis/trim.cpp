@@ -27,8 +27,10 @@ double allowed_residual(const Trim& trim, double relative) {
 /// while the blades keep H leaves its load unbalanced: H + 1 must not be a multiple of Q.
 bool is_closed(int harmonics, int sectors) { return sectors < 2 || (harmonics + 1) % sectors != 0; }
 
-/// True where the undeformed system feels loads that change with time: no constant balances them.
+/// True where the undeformed system feels loads that change with time, or a prescribed motion
+/// changes: no constant balances them.
 bool feels_time(const system::PeriodicSystem& system) {
+  if (!system.constraints_are_autonomous()) return true;
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Vec> first = system.make_state();
@@ -84,7 +86,7 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
   const petsc::Stage stage("trim");
   if (system.period() == 0.0) return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
-  // Loads that oscillate are no constant, and might vanish at all of its samples.
+  // Loads and motions that oscillate are no constant, and might vanish at all of its samples.
   const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)
                                            ? try_constant(system, options)
                                            : std::nullopt;

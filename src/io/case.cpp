@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <numbers>
+#include <sstream>
 #include <system_error>
 
 #include "samara/base/error.hpp"
+#include "samara/model/beam_modes.hpp"
 
 #include "whole_file.hpp"
 #include "yaml_reader.hpp"
@@ -48,25 +50,52 @@ void read_vector(MapReader& map, std::string_view key, Vector3& vector, const Nu
   map.read(key, std::span<double>(vector.data(), 3), rule);
 }
 
-enum class JointWord { free, locked, prescribed };
+/// Reads `per_rev` or `frequency` of something that oscillates.
+void read_frequency(MapReader& map, int& per_rev, double& frequency) {
+  const bool has_multiple = map.read("per_rev", per_rev, 1, max_harmonics);
+  const bool has_frequency = map.read("frequency", frequency, positive);
+  if (has_multiple && has_frequency)
+    map.refuse(*map.node().find("frequency"), "frequency",
+               "given together with per_rev; leave one of them out");
+  if (map.node().find("per_rev") == nullptr && map.node().find("frequency") == nullptr)
+    map.require("per_rev", "or \"frequency\"");
+}
 
-/// Reads stiffness, damping and the word of a joint. False: no usable word was given.
-bool read_joint(MapReader& map, model::JointDefinition& joint, const YamlNode* word) {
+/// Reads the motion of a prescribed joint; refuses it for one of another kind.
+void read_motion(MapReader& map, model::JointDefinition& joint) {
+  const YamlNode* angle = map.find("angle_deg");
+  const YamlNode* harmonic = map.find("harmonic");
+  if (joint.kind != JointKind::prescribed) {
+    for (const auto& [key, entry] :
+         {std::pair("angle_deg", angle), std::pair("harmonic", harmonic)})
+      if (entry != nullptr) map.refuse(*entry, key, "only a joint: prescribed has a motion");
+    return;
+  }
+  if (angle == nullptr && harmonic == nullptr)
+    map.require("angle_deg", "of a prescribed joint, or \"harmonic\"");
+  read_angle(map, "angle_deg", joint.motion.angle, half_turn);
+  if (harmonic == nullptr) return;
+  MapReader wave(*harmonic, map.where("harmonic"), map.errors());
+  read_frequency(wave, joint.motion.per_rev, joint.motion.frequency);
+  wave.require("amplitude_deg");
+  read_angle(wave, "amplitude_deg", joint.motion.amplitude, half_turn);
+  read_angle(wave, "phase_deg", joint.motion.phase, any_number);
+  wave.finish();
+}
+
+/// Reads stiffness, damping and the word of a joint that may be prescribed.
+void read_joint(MapReader& map, model::JointDefinition& joint) {
   map.read("stiffness", joint.stiffness, non_negative);
   map.read("damping", joint.damping, non_negative);
-  JointWord kind = JointWord::locked;
-  if (!map.read("joint", kind,
-                {{"free", JointWord::free},
-                 {"locked", JointWord::locked},
-                 {"prescribed", JointWord::prescribed}})) {
-    return false;
+  if (map.read("joint", joint.kind,
+               {{"free", JointKind::free},
+                {"locked", JointKind::locked},
+                {"prescribed", JointKind::prescribed}}) ||
+      map.node().find("joint") == nullptr) {
+    read_motion(map, joint);
+    return;
   }
-  if (kind == JointWord::prescribed) {
-    map.refuse(*word, "joint", "\"prescribed\" is not available yet; use free or locked");
-    return false;
-  }
-  joint.kind = kind == JointWord::free ? JointKind::free : JointKind::locked;
-  return true;
+  for (const char* key : {"angle_deg", "harmonic"}) map.find(key);
 }
 
 bool is_rigid(const YamlNode& node) {
@@ -223,15 +252,30 @@ void read_sections(MapReader& map, std::vector<model::SectionDefinition>& sectio
   }
 }
 
-void read_damping(MapReader& map, Vector6& damping) {
+/// The keys of damping ratios, in the order of model::ModalDamping.
+using RatioKeys = std::array<const char*, 3>;
+constexpr RatioKeys blade_ratios{"flap", "lead_lag", "torsion"};
+constexpr RatioKeys tower_ratios{"fore_aft", "lateral", "torsion"};
+
+void read_damping(MapReader& map, const RatioKeys& ratios, model::BeamDefinition& beam) {
   const YamlNode* entry = map.find("damping");
   if (entry == nullptr) return;
+  Vector6& damping = beam.damping;
+  if (entry->kind == YamlNode::Kind::map) {
+    MapReader modes(*entry, map.where("damping"), map.errors());
+    for (std::size_t d = 0; d < ratios.size(); ++d) {
+      double ratio = 0.0;
+      if (modes.read(ratios[d], ratio, fraction_of_one)) beam.modal_damping[d] = ratio;
+    }
+    modes.finish();
+    return;
+  }
   if (entry->kind == YamlNode::Kind::list) {
     read_numbers(*entry, map.where("damping"), non_negative, std::span<double>(damping.data(), 6),
                  map.errors());
     return;
   }
-  constexpr NumberRule rule{"a number >= 0 or a list of 6", non_negative.low};
+  constexpr NumberRule rule{"a number >= 0, a list of 6 or damping ratios", non_negative.low};
   double mu = 0.0;
   if (read_number(*entry, map.where("damping"), rule, mu, map.errors())) damping.setConstant(mu);
 }
@@ -384,15 +428,29 @@ void read_support(MapReader& beam, std::string_view key, bool at_root,
   support.stiffness = symmetrize(support.stiffness);
 }
 
+/// Turns damping ratios into mu per strain.
+void find_damping(MapReader& map, model::BeamDefinition& beam) {
+  try {
+    beam.damping = model::fit_damping(model::build_beam(map.where(), beam), beam.modal_damping);
+  } catch (const InputError& error) {
+    map.refuse(*map.node().find("damping"), "damping", error.what());
+  }
+}
+
 /// Reads the keys that the tower and the blades have in common.
-void read_beam(MapReader& map, const Matrix3& to_a, model::BeamDefinition& beam) {
+void read_beam(MapReader& map, const Matrix3& to_a, const RatioKeys& ratios,
+               model::BeamDefinition& beam) {
+  const std::size_t errors_before = map.errors().size();
   read_length(map, to_a, beam);
   map.read("elements", beam.elements, 1, max_elements);
   map.read("order", beam.order, 1, max_order);
   read_sections(map, beam.sections);
-  read_damping(map, beam.damping);
+  read_damping(map, ratios, beam);
   map.read("tip_mass", beam.tip_mass, non_negative);
   read_point_masses(map, beam.point_masses);
+  const bool has_ratios = std::any_of(beam.modal_damping.begin(), beam.modal_damping.end(),
+                                      [](const auto& ratio) { return ratio.has_value(); });
+  if (has_ratios && map.errors().size() == errors_before) find_damping(map, beam);
   read_support(map, "support", true, beam.support);
 }
 
@@ -402,7 +460,7 @@ void read_tower(const YamlNode& node, model::TurbineDefinition& turbine, ErrorLi
   Matrix3 to_a;
   to_a << 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
   MapReader map(node, "tower", errors);
-  read_beam(map, to_a, turbine.tower);
+  read_beam(map, to_a, tower_ratios, turbine.tower);
   map.finish();
 }
 
@@ -415,8 +473,8 @@ void read_nacelle(const YamlNode& node, model::TurbineDefinition& turbine, Error
   read_vector(map, "inertia", nacelle.inertia, non_negative);
   if (const YamlNode* entry = map.find("yaw")) {
     MapReader yaw(*entry, map.where("yaw"), errors);
-    const YamlNode* word = yaw.require("joint", "free or locked");
-    read_joint(yaw, nacelle.yaw, word);
+    yaw.require("joint", "free, locked or prescribed");
+    read_joint(yaw, nacelle.yaw);
     yaw.finish();
   }
   map.finish();
@@ -438,18 +496,70 @@ void read_torsion(const YamlNode& node, const std::string& where, model::JointDe
                   ErrorList& errors) {
   MapReader map(node, where, errors);
   const YamlNode* word = map.require("joint", "free or locked");
-  if (read_joint(map, torsion, word) && torsion.kind == JointKind::free && torsion.stiffness == 0.0)
+  map.read("stiffness", torsion.stiffness, non_negative);
+  map.read("damping", torsion.damping, non_negative);
+  map.read("joint", torsion.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
+  if (torsion.kind == JointKind::free && torsion.stiffness == 0.0)
     map.refuse(*word, "joint", "a shaft that may twist needs a stiffness > 0");
   map.finish();
 }
 
-void read_generator(const YamlNode& node, const std::string& where,
+/// Reads [[x, y], ...] with rising x, of which `names` are the words.
+void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
+                const std::array<const char*, 2>& names,
+                std::vector<std::pair<double, double>>& pairs) {
+  if (node.kind != YamlNode::Kind::list || node.children.empty()) {
+    map.refuse(
+        node, key,
+        std::string("expected a list of [") + names[0] + ", " + names[1] + "], " + describe(node));
+    return;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const std::string where = join_path(map.where(key), i);
+    std::array<double, 2> entry{};
+    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
+                      map.errors())) {
+      continue;
+    }
+    if (!pairs.empty() && !(entry[0] > pairs.back().first))
+      map.errors().add(find_blame(node.children[i]), where,
+                       std::string(names[0]) + " must be more than in the entry before");
+    pairs.emplace_back(entry[0], entry[1]);
+  }
+}
+
+/// Reads the keys of a torque law of a rotor whose mean speed is known.
+void read_torque(MapReader& map, double speed, model::TorqueLaw& law) {
+  map.read("torque", law.torque, any_number);
+  map.read("torque_slope", law.slope, any_number);
+  const YamlNode* table = map.find("torque_table");
+  if (table == nullptr) return;
+  for (const char* key : {"torque", "torque_slope"})
+    if (const YamlNode* entry = map.node().find(key))
+      map.refuse(*entry, key, "given together with torque_table; leave one of them out");
+  const std::size_t errors_before = map.errors().size();
+  read_pairs(map, "torque_table", *table, {"speed", "torque"}, law.table);
+  if (map.errors().size() > errors_before) {
+    law.table.clear();
+  } else if (law.table.size() < 2) {
+    map.refuse(*table, "torque_table", "expected at least 2 entries [speed, torque]");
+    law.table.clear();
+  } else if (!law.covers(speed)) {
+    std::ostringstream text;
+    text << "the table reaches from " << law.table.front().first << " to " << law.table.back().first
+         << " rad/s, shaft.speed is " << speed << " rad/s";
+    map.refuse(*table, "torque_table", text.str());
+    law.table.clear();
+  }
+}
+
+void read_generator(const YamlNode& node, const std::string& where, double speed,
                     model::GeneratorDefinition& generator, ErrorList& errors) {
   MapReader map(node, where, errors);
   map.require("joint", "free or locked");
   map.read("joint", generator.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
   map.read("inertia", generator.inertia, non_negative);
-  map.read("torque_slope", generator.torque_slope, any_number);
+  read_torque(map, speed, generator.law);
   map.finish();
 }
 
@@ -472,11 +582,16 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
     read_torsion(*entry, map.where("torsion"), shaft.torsion, errors);
   }
   if (const YamlNode* entry = map.find("generator")) {
-    read_generator(*entry, map.where("generator"), shaft.generator, errors);
+    read_generator(*entry, map.where("generator"), shaft.speed, shaft.generator, errors);
     if (shaft.generator.kind == JointKind::free && shaft.torsion.kind == JointKind::free &&
         shaft.generator.inertia == 0.0)
       map.refuse(*entry, "generator",
                  "a free generator behind a shaft that may twist needs an inertia > 0");
+  }
+  if (const YamlNode* entry = map.find("rotor")) {
+    MapReader rotor(*entry, map.where("rotor"), errors);
+    read_torque(rotor, shaft.speed, shaft.rotor);
+    rotor.finish();
   }
   map.finish();
 }
@@ -484,12 +599,30 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
 void read_teeter(const YamlNode& node, const std::string& where, model::HubDefinition& hub,
                  ErrorList& errors) {
   MapReader map(node, where, errors);
-  const YamlNode* word = node.find("joint");
-  if (word == nullptr) hub.teeter.kind = JointKind::free;
-  read_joint(map, hub.teeter, word);
+  if (node.find("joint") == nullptr) hub.teeter.kind = JointKind::free;
+  read_joint(map, hub.teeter);
   map.read("undersling", hub.undersling, any_number);
   read_angle(map, "delta3_deg", hub.delta3, quarter_turn);
   map.finish();
+}
+
+void read_hub_masses(MapReader& map, std::vector<model::HubMassDefinition>& masses) {
+  const YamlNode* list = map.find("point_masses");
+  if (list == nullptr) return;
+  if (list->kind != YamlNode::Kind::list) {
+    map.refuse(*list, "point_masses", "expected a list, " + describe(*list));
+    return;
+  }
+  for (std::size_t i = 0; i < list->children.size(); ++i) {
+    MapReader entry(list->children[i], join_path(map.where("point_masses"), i), map.errors());
+    model::HubMassDefinition lump;
+    entry.require("mass");
+    entry.read("mass", lump.mass, positive);
+    read_vector(entry, "center", lump.center, any_number);
+    read_vector(entry, "inertia", lump.inertia, non_negative);
+    entry.finish();
+    masses.push_back(lump);
+  }
 }
 
 void read_hub(const YamlNode& node, model::HubDefinition& hub, ErrorList& errors) {
@@ -498,6 +631,7 @@ void read_hub(const YamlNode& node, model::HubDefinition& hub, ErrorList& errors
   map.read("center_of_mass", hub.center_of_mass, any_number);
   read_vector(map, "inertia", hub.inertia, non_negative);
   map.read("radius", hub.radius, non_negative);
+  read_hub_masses(map, hub.point_masses);
   if (const YamlNode* entry = map.find("teeter")) {
     read_teeter(*entry, map.where("teeter"), hub, errors);
   }
@@ -536,7 +670,7 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   map.read("count", blades.count, 1, max_blades);
   read_angle(map, "precone_deg", blades.precone, quarter_turn);
   read_angle(map, "pitch_deg", blades.pitch, half_turn);
-  read_beam(map, Matrix3::Identity(), blades.beam);
+  read_beam(map, Matrix3::Identity(), blade_ratios, blades.beam);
   read_support(map, "end_support", false, blades.beam.end_support);
   if (const YamlNode* entry = map.find("each")) {
     read_each(*entry, map.where("each"), blades, errors);
@@ -590,37 +724,11 @@ void read_harmonic(const YamlNode& node, const std::string& where, model::LoadHi
   MapReader map(node, where, errors);
   history.mean = 0.0;
   history.amplitude = 1.0;
-  const bool has_multiple = map.read("per_rev", history.per_rev, 1, max_harmonics);
-  const bool has_frequency = map.read("frequency", history.frequency, positive);
+  read_frequency(map, history.per_rev, history.frequency);
   map.read("amplitude", history.amplitude, any_number);
   map.read("mean", history.mean, any_number);
   read_angle(map, "phase_deg", history.phase, any_number);
-  if (has_multiple && has_frequency)
-    map.refuse(*node.find("frequency"), "frequency",
-               "given together with per_rev; leave one of them out");
-  if (node.find("per_rev") == nullptr && node.find("frequency") == nullptr)
-    map.require("per_rev", "or \"frequency\"");
   map.finish();
-}
-
-/// Reads [[t, factor], ...].
-void read_table(MapReader& map, const YamlNode& node, model::LoadHistory& history) {
-  if (node.kind != YamlNode::Kind::list || node.children.empty()) {
-    map.refuse(node, "table", "expected a list of [t, factor], " + describe(node));
-    return;
-  }
-  for (std::size_t i = 0; i < node.children.size(); ++i) {
-    const std::string where = join_path(map.where("table"), i);
-    std::array<double, 2> entry{};
-    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
-                      map.errors())) {
-      continue;
-    }
-    if (!history.table.empty() && !(entry[0] > history.table.back().first))
-      map.errors().add(find_blame(node.children[i]), where,
-                       "t must be more than in the entry before");
-    history.table.emplace_back(entry[0], entry[1]);
-  }
 }
 
 model::LoadDefinition read_load(const YamlNode& node, const std::string& where,
@@ -641,7 +749,7 @@ model::LoadDefinition read_load(const YamlNode& node, const std::string& where,
   else if (harmonic != nullptr)
     read_harmonic(*harmonic, map.where("harmonic"), load.history, errors);
   else if (table != nullptr)
-    read_table(map, *table, load.history);
+    read_pairs(map, "table", *table, {"t", "factor"}, load.history.table);
   map.finish();
   return load;
 }
@@ -704,7 +812,7 @@ void read_floquet(const YamlNode& node, analysis::FloquetOptions& floquet, Error
 /// Refuses what only shows in two blocks together.
 void check_teeter(const YamlNode& root, const model::TurbineDefinition& turbine,
                   ErrorList& errors) {
-  if (turbine.hub.teeter.kind != JointKind::free || turbine.blades.count <= 2) return;
+  if (turbine.hub.teeter.kind == JointKind::locked || turbine.blades.count <= 2) return;
   const YamlNode& teeter = *root.find("hub")->find("teeter");
   const YamlNode& count = *root.find("blades")->find("count");
   const YamlNode* joint = teeter.find("joint");
@@ -737,9 +845,12 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
   map.finish();
   check_teeter(root, turbine, errors);
-  if (turbine.shaft.speed > 0.0)
-    for (const model::LoadDefinition& load : turbine.loads)
-      result.trim.least_harmonics = std::max(result.trim.least_harmonics, load.history.per_rev);
+  if (turbine.shaft.speed == 0.0) return;
+  int& least = result.trim.least_harmonics;
+  for (const model::LoadDefinition& load : turbine.loads)
+    least = std::max(least, load.history.per_rev);
+  for (const model::JointDefinition* joint : {&turbine.nacelle.yaw, &turbine.hub.teeter})
+    least = std::max(least, joint->motion.per_rev);
 }
 
 /// Adds an error where `samara` is not the version this program reads. False: a newer version, of

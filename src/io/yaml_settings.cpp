@@ -32,6 +32,10 @@ constexpr Spelling other_spellings[] = {
     {"to", "at"},
     {"harmonic", "table"},
     {"table", "harmonic"},
+    {"torque_table", "torque"},
+    {"torque_table", "torque_slope"},
+    {"torque", "torque_table"},
+    {"torque_slope", "torque_table"},
     {"per_rev", "frequency"},
     {"frequency", "per_rev"},
 };

@@ -138,6 +138,28 @@ std::string find_mass_fault(const SectionDefinition& section) {
 
 }  // namespace
 
+elements::TorqueLine TorqueLaw::at(double speed) const {
+  if (table.empty()) return {torque, slope};
+  if (!covers(speed)) throw InternalError("a torque table does not reach to the speed");
+  const auto slope_before = [this](std::size_t i) {
+    return (table[i].second - table[i - 1].second) / (table[i].first - table[i - 1].first);
+  };
+  std::size_t i = 1;
+  while (i + 1 < table.size() && table[i].first < speed) ++i;
+  elements::TorqueLine line{0.0, slope_before(i)};
+  line.torque = table[i].second + line.slope * (speed - table[i].first);
+  if (i + 1 < table.size() && table[i].first == speed)
+    line.slope = 0.5 * (slope_before(i) + slope_before(i + 1));
+  return line;
+}
+
+elements::JointMotion JointHistory::at(double t, double rotor_speed) const {
+  const double rate = per_rev > 0 ? per_rev * rotor_speed : frequency;
+  const double turned = rate * t + phase;
+  return {angle + amplitude * std::cos(turned), -amplitude * rate * std::sin(turned),
+          -amplitude * rate * rate * std::cos(turned)};
+}
+
 SectionDefinition interpolate_section(const BeamDefinition& beam, double fraction) {
   const std::vector<SectionDefinition>& sections = beam.sections;
   if (sections.empty()) throw InternalError("interpolate_section: the beam has no section");

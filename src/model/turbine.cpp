@@ -13,6 +13,24 @@ elements::Hinge hinge_of(const JointDefinition& joint) {
   return {joint.kind == JointKind::free, joint.stiffness, joint.damping};
 }
 
+/// The hub and the masses on it as one body.
+elements::RigidBody hub_of(const HubDefinition& hub) {
+  elements::RigidBody body;
+  body.mass = hub.mass;
+  body.center = Vector3(0.0, hub.center_of_mass, 0.0);
+  body.inertia = hub.inertia.asDiagonal();
+  for (const HubMassDefinition& lump : hub.point_masses) {
+    // About the common centre: the reduced mass at the distance of the two.
+    const double mass = body.mass + lump.mass;
+    const Matrix3 across = math::skew<double>(Vector3(lump.center - body.center));
+    body.inertia += Matrix3(lump.inertia.asDiagonal());
+    body.inertia -= body.mass * lump.mass / mass * across * across;
+    body.center += lump.mass / mass * (lump.center - body.center);
+    body.mass = mass;
+  }
+  return body;
+}
+
 elements::RigidChain chain_of(const TurbineDefinition& definition) {
   elements::RigidChain chain;
   const NacelleDefinition& nacelle = definition.nacelle;
@@ -29,12 +47,13 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.shaft.center = Vector3(0.0, shaft.center_of_mass, 0.0);
   chain.shaft.inertia =
       Vector3(shaft.inertia_lateral, shaft.inertia_axial, shaft.inertia_lateral).asDiagonal();
-  chain.hub.mass = hub.mass;
-  chain.hub.center = Vector3(0.0, hub.center_of_mass, 0.0);
-  chain.hub.inertia = hub.inertia.asDiagonal();
+  chain.hub = hub_of(hub);
   chain.teeter = hinge_of(hub.teeter);
   chain.torsion = hinge_of(shaft.torsion);
-  chain.generator = {shaft.generator.kind == JointKind::free, 0.0, shaft.generator.torque_slope};
+  const elements::TorqueLine torque = shaft.generator.law.at(shaft.speed);
+  chain.generator = {shaft.generator.kind == JointKind::free, 0.0, torque.slope};
+  chain.generator_torque = torque.torque;
+  chain.rotor_torque = shaft.rotor.at(shaft.speed);
   chain.generator_inertia = shaft.generator.inertia;
   chain.height = shaft.height;
   chain.tilt = shaft.tilt;
@@ -128,6 +147,11 @@ Turbine build_turbine(const TurbineDefinition& definition) {
   add_loads(definition, turbine);
   turbine.chain = chain_of(definition);
   if (definition.has_tower) turbine.chain.tower_top = tower_top_of(turbine.tower.tip_mass);
+  const auto motion_of = [](const JointDefinition& joint) {
+    return joint.kind == JointKind::prescribed ? joint.motion : JointHistory{};
+  };
+  if (definition.has_nacelle) turbine.yaw_motion = motion_of(definition.nacelle.yaw);
+  turbine.teeter_motion = motion_of(definition.hub.teeter);
   turbine.speed = definition.shaft.speed;
   turbine.azimuth = definition.shaft.azimuth;
   turbine.degrees_of_freedom = definition.has_tower ? elastic_strains(turbine.tower) : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "samara/math/rotation.hpp"
@@ -10,6 +11,9 @@ namespace samara::system {
 namespace {
 
 constexpr int block = model::Layout::block;
+
+/// Relative: what sums of several masses leave where they should cancel.
+constexpr double symmetry_rounding = 1e-12;
 
 struct NamedUnknown {
   const char* name;
@@ -219,11 +223,13 @@ class Describer {
 
   bool turns_freely() const { return turbine_.chain.torsion.free || turbine_.chain.generator.free; }
 
-  /// What the tower top carries, at zero yaw and azimuth: nacelle and shaft, and the hub, of which
-  /// a free teeter leaves only the mass at the pin; what turns about the hinge is the hub's own.
+  /// What the tower top carries, at zero azimuth and the mean of a prescribed yaw: nacelle and
+  /// shaft, and the hub, of which a free teeter leaves only the mass at the pin; what turns about
+  /// the hinge is the hub's own.
   Matrix6 carried_mass() const {
     const elements::RigidChain& chain = turbine_.chain;
-    const Matrix3 tilted = math::turn_about<double>(Vector3::UnitX(), chain.tilt);
+    const Matrix3 yawed = math::turn_about<double>(Vector3::UnitZ(), turbine_.yaw_motion.angle);
+    const Matrix3 tilted = yawed * math::turn_about<double>(Vector3::UnitX(), chain.tilt);
     const Vector3 bearing(0.0, 0.0, chain.height);
     const Vector3 pin = bearing + tilted * Vector3(0.0, chain.overhang, 0.0);
     Matrix6 weight = Matrix6::Zero();
@@ -238,7 +244,7 @@ class Describer {
                               const Vector3& reference) {
       add(body.mass, reference + C * body.center, C * body.inertia * C.transpose());
     };
-    add_body(chain.nacelle, Matrix3::Identity(), Vector3::Zero());
+    add_body(chain.nacelle, yawed, Vector3::Zero());
     elements::RigidBody shaft = chain.shaft;
     elements::RigidBody hub = chain.hub;
     if (turns_freely()) shaft.inertia(1, 1) = hub.inertia(1, 1) = 0.0;  // counted with their speed
@@ -287,8 +293,9 @@ class Describer {
                                   {speed},
                                   {shaft_inertia}});
     };
-    const double turning =
-        chain.shaft.inertia(1, 1) + (chain.teeter.free ? 0.0 : chain.hub.inertia(1, 1));
+    const Vector3 off_axis(chain.hub.center(0), 0.0, chain.hub.center(2));
+    const double hub_turning = chain.hub.inertia(1, 1) + chain.hub.mass * off_axis.squaredNorm();
+    const double turning = chain.shaft.inertia(1, 1) + (chain.teeter.free ? 0.0 : hub_turning);
     if (turns_freely()) add_shaft(layout_.shaft_torsion() + 1, turning);
     if (chain.generator.free) add_shaft(layout_.generator() + 1, chain.generator_inertia);
     add_spring(chain.yaw, "yaw", Frame::fixed, layout_.yaw());
@@ -314,9 +321,40 @@ class Describer {
     const auto blades = turbine_.blades.size();
     if (!turbine_.identical_blades) return "the blades differ";
     if (blades > 2 && chain.teeter.free) return "the hub teeters";
-    if (blades > 2 && chain.hub.inertia(0, 0) != chain.hub.inertia(2, 2))
+    for (const std::string& fault : {hub_fault(blades > 2), motion_fault(), load_fault()})
+      if (!fault.empty()) return fault;
+    return "";
+  }
+
+  /// The same for the hub: its axis must be a principal one through its centre, and all axes across
+  /// it alike where it is turned by less than half a turn.
+  std::string hub_fault(bool round) const {
+    const elements::RigidBody& hub = turbine_.chain.hub;
+    const Matrix3& I = hub.inertia;
+    const double largest = I.cwiseAbs().maxCoeff();
+    const double inertia = symmetry_rounding * largest;
+    const double length = hub.mass > 0.0 ? hub.center.norm() + std::sqrt(largest / hub.mass) : 0.0;
+    if (std::hypot(hub.center(0), hub.center(2)) > symmetry_rounding * length)
+      return "the hub's centre of mass is off the shaft";
+    if (std::hypot(I(0, 1), I(1, 2)) > inertia)
+      return "the shaft is no principal axis of the hub's inertia";
+    if (round && (std::abs(I(0, 0) - I(2, 2)) > inertia || std::abs(I(0, 2)) > inertia))
       return "hub.inertia differs about h1 and h3";
-    return load_fault();
+    return "";
+  }
+
+  /// The same for the prescribed motions: the yaw must repeat from blade to blade, and half a turn
+  /// must reverse the teeter angle of two blades.
+  std::string motion_fault() const {
+    const int blades = static_cast<int>(turbine_.blades.size());
+    const model::JointHistory& yaw = turbine_.yaw_motion;
+    const model::JointHistory& teeter = turbine_.teeter_motion;
+    if (!yaw.is_constant() && (yaw.per_rev == 0 || yaw.per_rev % blades != 0))
+      return "the yaw does not repeat from blade to blade";
+    const bool reverses = teeter.angle == 0.0 && (teeter.is_constant() || teeter.per_rev % 2 == 1);
+    if (!reverses || (blades > 2 && !teeter.is_constant()))
+      return "the teeter angle does not repeat from blade to blade";
+    return "";
   }
 
   /// The same for the prescribed loads.

@@ -206,6 +206,10 @@ const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const
   return assembly_->description.neutral;
 }
 
+bool TurbineSystem::constraints_are_autonomous() const {
+  return turbine().yaw_motion.is_constant() && turbine().teeter_motion.is_constant();
+}
+
 bool TurbineSystem::is_conservative() const {
   const model::Turbine& turbine = assembly_->turbine;
   const elements::RigidChain& chain = turbine.chain;
@@ -214,9 +218,12 @@ bool TurbineSystem::is_conservative() const {
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const elements::BeamPoint& point : placed.beam->points)
       if (!point.damping.isZero(0.0)) return false;
+  // A constant torque has a potential where its axis moves as prescribed.
+  const bool axis_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free;
+  if (axis_moves && chain.rotor_torque.torque != 0.0) return false;
   // A dead force has a potential where the axes that it is fixed in move as prescribed.
-  const bool hub_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free ||
-                         chain.torsion.free || chain.generator.free;
+  const bool hub_moves = axis_moves || chain.torsion.free || chain.generator.free;
+  if (hub_moves && chain.rotor_torque.slope != 0.0) return false;
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const model::BeamLoad& load : placed.beam->loads)
       if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub && hub_moves))
@@ -303,6 +310,12 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   // With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The
   // rows of free joints ask for the same of their speeds, one after the other from the tower
   // outward.
+  const auto angle_at = [&](int joint) -> double& {
+    return values[static_cast<std::size_t>(joint)];
+  };
+  angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_motion.at(t, assembly.turbine.speed).angle;
+  angle_at(assembly.layout.teeter()) =
+      assembly.turbine.teeter_motion.at(t, assembly.turbine.speed).angle;
   std::vector<double> r(n, 0.0);
   assembly.undo_references(values);
   for (int pass = 0; pass < 5; ++pass) {
@@ -327,6 +340,8 @@ void TurbineSystem::reference_state(double t, Vec z) const {
 std::unique_ptr<PeriodicSystem> TurbineSystem::unloaded() const {
   model::Turbine bare = turbine();
   bare.chain.gravity = 0.0;
+  bare.chain.generator_torque = 0.0;
+  bare.chain.rotor_torque.torque = 0.0;
   bare.tower.loads.clear();
   for (model::Beam& blade : bare.blades) blade.loads.clear();
   return std::make_unique<TurbineSystem>(bare, comm());

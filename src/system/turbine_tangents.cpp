@@ -447,7 +447,7 @@ class TurbineTangents::Scatter {
       add_chain_row(first, rows.kinematic);
       add_chain_row(first + 1, rows.balance);
     } else {
-      add(K_, first, first, 1.0);
+      add_chain_row(first, rows.position);
       add_chain_row(first + 1, rows.kinematic);
     }
   }

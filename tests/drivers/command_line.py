@@ -144,6 +144,23 @@ class Tables(ProgramTest):
             text = self.succeed(command, "case.yaml", "--set", "floquet.steps=2000").stdout
             self.assertRegex(text, r"(?m)^stable: all \d+ modes decay; the least damped is ")
 
+    def test_damping_ratios_are_those_of_the_first_modes(self):
+        ratios = "length: 10\n  damping: {flap: 0.02, lead_lag: 0.013, torsion: 0.004}"
+        self.write("case.yaml", MINIMAL.replace("length: 10", ratios) + "gravity: 0\n")
+        self.assertRegex(self.succeed("check", "case.yaml").stdout,
+                         r"(?m)^blade damping +flap mu \S+ s: mode 1 2 % at .*\(given 2 %\)")
+        text = self.succeed("modes", "case.yaml", "--set", "shaft.speed=0").stdout
+        for mode, percent in (("flap", "2.000"), ("lead-lag", "1.300"), ("torsion", "0.400")):
+            self.assertRegex(text, rf"(?m)blade {mode} 1 +\S+ +{percent} ")
+
+    def test_the_generator_says_what_it_gives(self):
+        laws = ("generator: {joint: free, torque: 500, torque_slope: 30}, "
+                "rotor: {torque: 480, torque_slope: -20}")
+        text = MINIMAL.replace("{speed: 6}", "{speed: 6, " + laws + "}")
+        self.write("case.yaml", text + "gravity: 0\n")
+        self.assertIn("generator    480 N m against its turning hold the mean speed: 500 by its law "
+                      "and -20 beside it", self.succeed("trim", "case.yaml").stdout)
+
     def test_unresolved_modes_are_explained(self):
         self.write("case.yaml", MINIMAL)
         text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
@@ -259,6 +276,20 @@ class Static(ProgramTest):
         self.write("case.yaml", MINIMAL + load % "harmonic: {per_rev: 6}")
         self.refuse("trim", "case.yaml", words=["trim.harmonics=6"], place=r"case\.yaml: ")
         self.succeed("trim", "case.yaml", "--set", "trim.harmonics=6")
+
+    def test_other_commands_want_prescribed_angles_that_repeat(self):
+        yaw = "nacelle: {yaw: {joint: prescribed, harmonic: {%s, amplitude_deg: 3}}}\n"
+        self.write("case.yaml", MINIMAL + yaw % "frequency: 2")
+        for command in ("trim", "floquet", "modes"):
+            self.refuse(command, "case.yaml", words=["nacelle.yaw does not repeat", "per_rev"],
+                        place=r"case\.yaml: ")
+        text = self.succeed("static", "case.yaml", "--set", "shaft.speed=0").stdout
+        self.assertRegex(text, r"(?m)^yaw +3 deg$")  # where it is at t = 0
+        self.write("case.yaml", MINIMAL + yaw % "per_rev: 6")
+        self.refuse("trim", "case.yaml", words=["trim.harmonics=6"], place=r"case\.yaml: ")
+        self.succeed("trim", "case.yaml", "--set", "trim.harmonics=6")
+        self.refuse("modes", "case.yaml", "--set", "trim.harmonics=6", words="samara floquet",
+                    place=r"case\.yaml: ")
 
     def test_petsc_options_reach_the_solver(self):
         self.write("case.yaml", self.AT_REST + self.LOADS % 1)

@@ -91,6 +91,8 @@ RigidChain random_chain(std::minstd_rand& random, const Joints& joints) {
   chain.torsion = {joints.torsion, 700.0, 40.0};
   chain.generator = {joints.generator, 0.0, 50.0};
   chain.generator_inertia = 6.0;
+  chain.generator_torque = 70.0;
+  chain.rotor_torque = {90.0, -25.0};
   chain.tower_top = random_body(random, 2.0);
   chain.nacelle = random_body(random, 7.0);
   chain.shaft = random_body(random, 3.0);
@@ -103,10 +105,18 @@ RigidChain random_chain(std::minstd_rand& random, const Joints& joints) {
   return chain;
 }
 
-/// What is prescribed: psi = psi_0 + Omega t.
+/// The angle of a joint that is not free: mean + amplitude cos(2.3 t + phase).
+struct Wave {
+  double mean = 0.0;
+  double amplitude = 0.0;
+  double phase = 0.0;
+};
+
+/// What is prescribed: psi = psi_0 + Omega t, and the angles of joints that are not free.
 struct Prescribed {
   double azimuth = 0.0;
   double speed = 0.0;
+  std::array<Wave, 4> waves{};  ///< q_y, q_h, q_s, q_g
 };
 
 /// Turns of vectors about one axis of a basis, by hand.
@@ -166,19 +176,23 @@ struct Configuration {
 template <class T>
 Configuration<T> configuration_of(const RigidChain& chain, const Prescribed& prescribed,
                                   const Coordinates<T>& q, const T& t) {
+  const auto angle_of = [&](const Hinge& hinge, int i) {
+    using std::cos;
+    const Wave& wave = prescribed.waves[static_cast<std::size_t>(i - at_yaw)];
+    if (hinge.free) return q(i);
+    return T(T(wave.mean) + T(wave.amplitude) * cos(T(2.3) * t + T(wave.phase)));
+  };
   const auto fixed = [](const Vector3& v) { return Vec3<T>(v.cast<T>()); };
   Configuration<T> c;
   c.top = in_N<T>(q.template segment<3>(0));
   c.R_T = turned_by<T>(in_N<T>(q.template segment<3>(3)));
-  c.R_Y = c.R_T;
-  if (chain.yaw.free) c.R_Y = c.R_T * about_3<T>(q(at_yaw));
+  c.R_Y = c.R_T * about_3<T>(angle_of(chain.yaw, at_yaw));
   T azimuth = T(prescribed.azimuth) + T(prescribed.speed) * t;
-  if (chain.generator.free) azimuth += q(at_generator);
+  azimuth += angle_of(chain.generator, at_generator);
   c.R_G = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth);
-  if (chain.torsion.free) azimuth += q(at_torsion);
+  azimuth += angle_of(chain.torsion, at_torsion);
   c.R_S = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth);
-  c.R_H = c.R_S;
-  if (chain.teeter.free) c.R_H = c.R_S * about<T>(chain.teeter_axis, q(at_teeter));
+  c.R_H = c.R_S * about<T>(chain.teeter_axis, angle_of(chain.teeter, at_teeter));
   const Vec3<T> bearing = c.top + c.R_Y * fixed(Vector3(0.0, 0.0, chain.height));
   const Vec3<T> pin = bearing + c.R_S * fixed(Vector3(0.0, chain.overhang, 0.0));
   c.top_center = c.top + c.R_T * fixed(chain.tower_top.center);
@@ -281,9 +295,12 @@ struct Instant {
   Vector6 top_load, hub_load;
 };
 
-Instant random_instant(std::minstd_rand& random, const RigidChain& chain) {
+Instant random_instant(std::minstd_rand& random, const RigidChain& chain, bool moves) {
   Instant now;
   now.prescribed = {uniform(random, 3.0), 2.0 + uniform(random, 1.0)};
+  if (moves)
+    for (Wave& wave : now.prescribed.waves)
+      wave = {uniform(random, 0.6), uniform(random, 0.5), uniform(random, 3.0)};
   now.t = uniform(random, 2.0);
   now.q = random_array<coordinates>(random, 1.0);
   now.q_dot = random_array<coordinates>(random, 1.0);
@@ -331,6 +348,11 @@ ChainState<double> state_of(const RigidChain& chain, const Instant& now, std::mi
     JointState<double> own;
     own.speed = U(i).value.value;
     own.speed_dot = U(i).rate.value;
+    const Wave& wave = now.prescribed.waves[static_cast<std::size_t>(i - at_yaw)];
+    const double turned = 2.3 * now.t + wave.phase;
+    own.prescribed.angle = wave.mean + wave.amplitude * std::cos(turned);
+    own.prescribed.rate = -2.3 * wave.amplitude * std::sin(turned);
+    own.prescribed.acceleration = -2.3 * 2.3 * wave.amplitude * std::cos(turned);
     own.angle = free ? now.q(i) : uniform(random, 1.0);
     own.angle_dot = free ? now.q_dot(i) : uniform(random, 1.0);
     return own;
@@ -385,6 +407,11 @@ Balance lagrange(const RigidChain& chain, const Instant& now, int i) {
   balance.add(partial.segment<3>(3).dot(top_moment));
   balance.add(-partial.segment<3>(6).dot(now.hub_load.head<3>()));
   balance.add(-partial.segment<3>(9).dot(now.hub_load.tail<3>()));
+  // The torques: of the generator on its own angle, of the rotor along h2.
+  if (i == at_generator) balance.add(chain.generator_torque);
+  const double spin = load_speeds<double>(chain, now.prescribed, now.q, now.q_dot, now.t)(10);
+  balance.add(-partial(10) * (chain.rotor_torque.torque +
+                              chain.rotor_torque.slope * (spin - now.prescribed.speed)));
   return balance;
 }
 
@@ -413,11 +440,11 @@ bool moves(const RigidChain& chain, int i) {
   return true;
 }
 
-void compare_with_lagrange(const Joints& joints) {
+void compare_with_lagrange(const Joints& joints, bool prescribed = false) {
   std::minstd_rand random(1);
   for (int trial = 0; trial < 4; ++trial) {
     const RigidChain chain = random_chain(random, joints);
-    const Instant now = random_instant(random, chain);
+    const Instant now = random_instant(random, chain, prescribed);
     HubMotion<double> hub;
     const ChainRows<double> rows = rigid_chain<double>(chain, state_of(chain, now, random), hub);
     for (int i = 0; i < coordinates; ++i) {
@@ -487,11 +514,26 @@ BOOST_AUTO_TEST_CASE(kane_is_lagrange_whichever_joints_are_locked) {
   for (const Joints& joints : all_joints()) compare_with_lagrange(joints);
 }
 
+BOOST_AUTO_TEST_CASE(kane_is_lagrange_whichever_joints_move_as_prescribed) {
+  for (const Joints& joints : all_joints()) compare_with_lagrange(joints, true);
+}
+
+BOOST_AUTO_TEST_CASE(a_joint_that_is_not_free_stands_where_it_is_prescribed) {
+  RigidChain chain;
+  ChainState<double> state = state_at_rest();
+  state.yaw.angle = 0.7;
+  state.yaw.prescribed = {0.2, 0.3, 0.4};
+  HubMotion<double> hub;
+  const ChainRows<double> rows = rigid_chain<double>(chain, state, hub);
+  BOOST_TEST(std::abs(rows.yaw.position - 0.5) < rounding);
+  BOOST_TEST(std::abs(rows.yaw.kinematic + 0.3) < rounding);  // U1 = 0
+}
+
 BOOST_AUTO_TEST_CASE(kinematic_rows_vanish_in_every_motion) {
   std::minstd_rand random(3);
   for (const Joints& joints : all_joints()) {
     const RigidChain chain = random_chain(random, joints);
-    const Instant now = random_instant(random, chain);
+    const Instant now = random_instant(random, chain, true);
     HubMotion<double> hub;
     const ChainState<double> still = state_of(chain, now, random);
     const ChainRows<double> rows = rigid_chain<double>(chain, still, hub);
@@ -518,7 +560,7 @@ BOOST_AUTO_TEST_CASE(the_hub_moves_as_its_differentiated_position) {
   std::minstd_rand random(4);
   for (const Joints& joints : all_joints()) {
     const RigidChain chain = random_chain(random, joints);
-    const Instant now = random_instant(random, chain);
+    const Instant now = random_instant(random, chain, true);
     HubMotion<double> hub;
     rigid_chain<double>(chain, state_of(chain, now, random), hub);
     const Eigen::Matrix<double, 12, 1> speeds =

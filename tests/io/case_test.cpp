@@ -237,7 +237,95 @@ BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
   BOOST_TEST(shaft.torsion.damping == 6e6);
   BOOST_TEST((shaft.generator.kind == JointKind::free));
   BOOST_TEST(shaft.generator.inertia == 5e6);
-  BOOST_TEST(shaft.generator.torque_slope == -3.0);
+  BOOST_TEST(shaft.generator.law.slope == -3.0);
+  BOOST_TEST(shaft.generator.law.torque == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(damping_ratios_become_mu_per_strain) {
+  // A slender beam of EI2 = 2e6, EI3 = 3e6: omega^2 ~ EI, so mu = 2 zeta/omega differs by sqrt.
+  const model::BeamDefinition beam =
+      read_text(minimal + "  elements: 20\n  damping: {flap: 0.02, lead_lag: 0.02}\n")
+          .turbine.blades.beam;
+  BOOST_TEST(beam.modal_damping[0].value() == 0.02);
+  BOOST_TEST(!beam.modal_damping[2]);
+  // (1.8751/l)^2 sqrt(EI/m), rotary inertia 0.5/(5 l^2) left out.
+  const double omega = 1.8751 * 1.8751 / 100.0 * std::sqrt(2e6 / 5.0);
+  BOOST_TEST(std::abs(beam.damping(4) * omega - 0.04) < 0.04 * 0.02);
+  BOOST_TEST(std::abs(beam.damping(5) / beam.damping(4) - std::sqrt(2.0 / 3.0)) < 1e-9);
+  BOOST_TEST(beam.damping(2) == beam.damping(4));
+  BOOST_TEST(beam.damping(1) == beam.damping(5));
+  BOOST_TEST(beam.damping(3) == 0.0);
+  BOOST_TEST(beam.damping(0) == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(damping_ratios_need_modes) {
+  const std::string rigid = replace(minimal, "GJ: 1e6", "GJ: rigid");
+  check_error(rigid + "  damping: {flap: 0.02, torsion: 0.01}\n",
+              "case.yaml:9:3: blades.damping: the beam has no mode of torsion: its strain is "
+              "rigid, or the mesh too coarse; leave this ratio out");
+  check_error(minimal + "  damping: {flap: 2}\n",
+              "case.yaml:9:13: blades.damping.flap: expected a number from 0 to 1, got 2");
+  check_error(minimal + "  damping: {fore_aft: 0.01}\n",
+              "case.yaml:9:13: unknown key \"fore_aft\" in blades.damping; known keys: "
+              "flap, lead_lag, torsion");
+}
+
+BOOST_AUTO_TEST_CASE(a_hub_carries_masses_off_its_axis) {
+  const model::HubDefinition hub =
+      read_text(minimal +
+                "hub:\n  point_masses:\n    - {mass: 5, center: [0, 0.1, -2], inertia: "
+                "[1, 2, 3]}\n    - {mass: 2}\n")
+          .turbine.hub;
+  BOOST_REQUIRE(hub.point_masses.size() == 2u);
+  BOOST_TEST(hub.point_masses[0].mass == 5.0);
+  BOOST_TEST((hub.point_masses[0].center == Vector3(0, 0.1, -2)));
+  BOOST_TEST((hub.point_masses[0].inertia == Vector3(1, 2, 3)));
+  BOOST_TEST((hub.point_masses[1].center == Vector3::Zero()));
+  check_error(minimal + "hub:\n  point_masses: 5\n",
+              "case.yaml:10:3: hub.point_masses: expected a list, got 5");
+  check_error(minimal + "hub:\n  point_masses:\n    - {center: [0, 0, 1]}\n",
+              "case.yaml:11:7: hub.point_masses[0]: missing key \"mass\"");
+}
+
+BOOST_AUTO_TEST_CASE(torque_laws_are_lines_or_tables) {
+  const model::ShaftDefinition shaft =
+      read_text(minimal +
+                "shaft:\n  rotor: {torque: 90, torque_slope: -1.5}\n  speed: 2\n"
+                "  generator: {joint: free, torque_table: [[1, 10], [2, 30], [4, 50]]}\n")
+          .turbine.shaft;
+  BOOST_TEST(shaft.rotor.at(2.0).torque == 90.0);
+  BOOST_TEST(shaft.rotor.at(2.0).slope == -1.5);
+  BOOST_REQUIRE(shaft.generator.law.table.size() == 3u);
+  const auto torque = [&](double speed) { return shaft.generator.law.at(speed).torque; };
+  const auto slope = [&](double speed) { return shaft.generator.law.at(speed).slope; };
+  BOOST_TEST(torque(1.0) == 10.0);
+  BOOST_TEST(torque(1.25) == 15.0);
+  BOOST_TEST(torque(2.0) == 30.0);
+  BOOST_TEST(torque(3.0) == 40.0);
+  BOOST_TEST(torque(4.0) == 50.0);
+  BOOST_TEST(slope(1.0) == 20.0);
+  BOOST_TEST(slope(1.9) == 20.0);
+  BOOST_TEST(slope(2.0) == 15.0);
+  BOOST_TEST(slope(2.1) == 10.0);
+  BOOST_TEST(slope(4.0) == 10.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_torque_table_must_rise_and_reach_to_the_speed) {
+  const auto check = [](const std::string& table, const std::string& message) {
+    check_error(minimal + "shaft:\n  speed: 2\n  rotor:\n    torque_table: " + table + "\n",
+                "case.yaml:12:" + message);
+  };
+  check("[[1, 2], [1, 3]]",
+        "28: shaft.rotor.torque_table[1]: speed must be more than in the entry before");
+  check("[[2, 3]]", "5: shaft.rotor.torque_table: expected at least 2 entries [speed, torque]");
+  check("5", "5: shaft.rotor.torque_table: expected a list of [speed, torque], got 5");
+  check("[[3, 1], [4, 1]]",
+        "5: shaft.rotor.torque_table: the table reaches from 3 to 4 rad/s, shaft.speed is 2 rad/s");
+  check_error(minimal +
+                  "shaft:\n  generator:\n    joint: free\n    torque: 3\n"
+                  "    torque_table: [[0, 1], [4, 1]]\n",
+              "case.yaml:12:5: shaft.generator.torque: given together with torque_table; leave one "
+              "of them out");
 }
 
 BOOST_AUTO_TEST_CASE(point_masses_are_sorted_by_their_place) {
@@ -712,7 +800,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_negative_is_refused) {
   check("hub: {radius: -1}\n", "hub.radius", ">= 0");
   check("hub: {teeter: {stiffness: -1}}\n", "hub.teeter.stiffness", ">= 0");
   check("  tip_mass: -1\n", "blades.tip_mass", ">= 0");
-  check("  damping: -1\n", "blades.damping", ">= 0 or a list of 6");
+  check("  damping: -1\n", "blades.damping", ">= 0, a list of 6 or damping ratios");
   check("  each: {1: {mass_factor: -1}}\n", "blades.each.1.mass_factor", "> 0");
   check("trim: {tolerance: -1}\n", "trim.tolerance", "> 0");
   check_error(replace(minimal, "length: 10", "length: 0"),
@@ -730,12 +818,8 @@ BOOST_AUTO_TEST_CASE(words_must_be_known) {
 }
 
 BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
-  check_error(minimal + "nacelle:\n  yaw: {joint: prescribed}\n",
-              "case.yaml:10:9: nacelle.yaw.joint: \"prescribed\" is not available yet; use free or "
-              "locked");
-  check_error(minimal + "hub:\n  teeter: {joint: prescribed}\n",
-              "case.yaml:10:12: hub.teeter.joint: \"prescribed\" is not available yet; use free or "
-              "locked");
+  check_error(minimal + "shaft:\n  torsion: {joint: prescribed, stiffness: 3}\n",
+              "case.yaml:10:13: shaft.torsion.joint: expected free or locked, got \"prescribed\"");
   check_error(minimal + "shaft:\n  torsion: {joint: free}\n",
               "case.yaml:10:13: shaft.torsion.joint: a shaft that may twist needs a stiffness > 0");
   check_error(minimal +
@@ -749,9 +833,54 @@ BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
 
 BOOST_AUTO_TEST_CASE(a_yaw_block_must_state_its_joint) {
   check_error(minimal + "nacelle:\n  yaw: {stiffness: 3}\n",
-              "case.yaml:10:3: nacelle.yaw: missing key \"joint\" (free or locked)");
+              "case.yaml:10:3: nacelle.yaw: missing key \"joint\" (free, locked or prescribed)");
   check_error_start(minimal + "nacelle:\n  yaw: {joint: open}\n",
                     "case.yaml:10:9: nacelle.yaw.joint: expected free, locked or prescribed");
+}
+
+BOOST_AUTO_TEST_CASE(prescribed_angles_are_constant_or_harmonic) {
+  const model::TurbineDefinition turbine =
+      read_text(minimal +
+                "nacelle:\n  yaw: {joint: prescribed, angle_deg: 8}\n"
+                "hub:\n  teeter:\n    joint: prescribed\n"
+                "    harmonic: {per_rev: 3, amplitude_deg: 2, phase_deg: 30}\n"
+                "shaft: {speed: 2}\n")
+          .turbine;
+  BOOST_TEST((turbine.nacelle.yaw.kind == JointKind::prescribed));
+  BOOST_TEST((turbine.hub.teeter.kind == JointKind::prescribed));
+  const elements::JointMotion yaw = turbine.nacelle.yaw.motion.at(0.3, 2.0);
+  BOOST_TEST(std::abs(yaw.angle - 8.0 * degree) < rounding);
+  BOOST_TEST(yaw.rate == 0.0);
+  const elements::JointMotion teeter = turbine.hub.teeter.motion.at(0.3, 2.0);
+  const double turned = 3.0 * 2.0 * 0.3 + 30.0 * degree;
+  BOOST_TEST(std::abs(teeter.angle - 2.0 * degree * std::cos(turned)) < rounding);
+  BOOST_TEST(std::abs(teeter.rate + 6.0 * 2.0 * degree * std::sin(turned)) < rounding);
+  BOOST_TEST(std::abs(teeter.acceleration + 36.0 * teeter.angle) < rounding);
+  const Case many = read_text(minimal +
+                              "nacelle: {yaw: {joint: prescribed, harmonic: {per_rev: 7, "
+                              "amplitude_deg: 2}}}\nshaft: {speed: 2}\n");
+  BOOST_TEST(many.trim.least_harmonics == 7);
+}
+
+BOOST_AUTO_TEST_CASE(a_prescribed_angle_must_be_stated_and_only_there) {
+  check_error(minimal + "nacelle:\n  yaw: {joint: prescribed}\n",
+              "case.yaml:10:3: nacelle.yaw: missing key \"angle_deg\" (of a prescribed joint, or "
+              "\"harmonic\")");
+  check_error(minimal + "nacelle:\n  yaw: {joint: locked, angle_deg: 8}\n",
+              "case.yaml:10:24: nacelle.yaw.angle_deg: only a joint: prescribed has a motion");
+  check_error(minimal + "hub:\n  teeter: {harmonic: {per_rev: 1}}\n",
+              "case.yaml:10:12: hub.teeter.harmonic: only a joint: prescribed has a motion");
+  check_error(minimal + "nacelle:\n  yaw: {joint: prescribed, harmonic: {per_rev: 1}}\n",
+              "case.yaml:10:28: nacelle.yaw.harmonic: missing key \"amplitude_deg\"");
+  check_error(minimal +
+                  "nacelle:\n  yaw: {joint: prescribed, harmonic: {per_rev: 1, frequency: 2, "
+                  "amplitude_deg: 1}}\n",
+              "case.yaml:10:51: nacelle.yaw.harmonic.frequency: given together with per_rev; "
+              "leave one of them out");
+  check_error(replace(minimal, "count: 2", "count: 3") +
+                  "hub:\n  teeter: {joint: prescribed, angle_deg: 1}\n",
+              "case.yaml:10:12: hub.teeter: a teeter hinge carries two blades, blades.count is 3; "
+              "use joint: locked, or leave teeter out");
 }
 
 BOOST_AUTO_TEST_CASE(a_teeter_hinge_is_for_two_blades) {

@@ -154,8 +154,8 @@ class BodyBuilder {
     const model::ShaftDefinition& shaft = definition_.shaft;
     const model::HubDefinition& hub = definition_.hub;
     const model::NacelleDefinition& nacelle = definition_.nacelle;
-    const bool yaws = nacelle.yaw.kind == model::JointKind::free;
-    const bool teeters = hub.teeter.kind == model::JointKind::free;
+    const bool yaws = nacelle.yaw.kind != model::JointKind::locked;
+    const bool teeters = hub.teeter.kind != model::JointKind::locked;
     const double yaw = z_(layout_.yaw());
     const double teeter = z_(layout_.teeter());
     Matrix3 R_Y = bodies_.R_T;
@@ -164,7 +164,8 @@ class BodyBuilder {
       R_Y = bodies_.R_T * turned(Vector3::UnitZ(), yaw);
       // U1 is the nacelle's whole angular velocity about y3.
       spin += R_Y.col(2) * (z_(layout_.yaw() + 1) - R_Y.col(2).dot(spin));
-      bodies_.joint_energy += 0.5 * nacelle.yaw.stiffness * yaw * yaw;
+      if (nacelle.yaw.kind == model::JointKind::free)
+        bodies_.joint_energy += 0.5 * nacelle.yaw.stiffness * yaw * yaw;
     }
     add_body(nacelle.mass, nacelle.center_of_mass, nacelle.inertia, bodies_.top, top_velocity_, R_Y,
              spin);
@@ -199,10 +200,13 @@ class BodyBuilder {
       const Vector3 hinge = R_S * axis;
       bodies_.R_H = R_S * turned(axis, teeter);
       spin += hinge * (z_(layout_.teeter() + 1) - hinge.dot(spin));
-      bodies_.joint_energy += 0.5 * hub.teeter.stiffness * teeter * teeter;
+      if (hub.teeter.kind == model::JointKind::free)
+        bodies_.joint_energy += 0.5 * hub.teeter.stiffness * teeter * teeter;
     }
     add_body(hub.mass, Vector3(0.0, hub.center_of_mass, 0.0), hub.inertia, pin, pin_velocity,
              bodies_.R_H, spin);
+    for (const model::HubMassDefinition& lump : hub.point_masses)
+      add_body(lump.mass, lump.center, lump.inertia, pin, pin_velocity, bodies_.R_H, spin);
     const Vector3 apex = pin + bodies_.R_H.col(1) * hub.undersling;
     for (int k = 0; k < definition_.blades.count; ++k) add_blade(k, apex);
   }

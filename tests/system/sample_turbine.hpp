@@ -25,16 +25,23 @@ struct Choice {
   bool damped = true;
   bool rigid_shear = false;  ///< and rigid extension, as in the paper
   bool full = false;         ///< beams that lean, masses on them, delta-3, a free drivetrain
+  bool prescribed = false;   ///< yaw and teeter that move as prescribed
 };
 
 /// Every combination that meets another branch of the assembly.
 inline std::vector<Choice> choices() {
-  return {
-      {2, 1, true, true, true, true, false},       {2, 2, true, true, true, false, true},
-      {3, 1, true, true, false, true, false},      {3, 3, true, false, false, false, false},
-      {2, 3, true, false, true, true, true},       {1, 2, true, true, false, false, false},
-      {2, 2, false, true, true, true, false},      {3, 2, false, false, false, true, true},
-      {2, 1, true, true, true, true, false, true}, {3, 2, true, false, false, true, true, true}};
+  return {{2, 1, true, true, true, true, false},
+          {2, 2, true, true, true, false, true},
+          {3, 1, true, true, false, true, false},
+          {3, 3, true, false, false, false, false},
+          {2, 3, true, false, true, true, true},
+          {1, 2, true, true, false, false, false},
+          {2, 2, false, true, true, true, false},
+          {3, 2, false, false, false, true, true},
+          {2, 1, true, true, true, true, false, true},
+          {3, 2, true, false, false, true, true, true},
+          {2, 2, true, false, false, true, false, false, true},
+          {2, 1, true, false, false, false, true, true, true}};
 }
 
 /// Section mass per length `m` with its centre at (0, c2, c3) and inertias about the centre.
@@ -122,6 +129,13 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
                             section(1.0, 1.2, 0.6 * blade, choice)};
   if (choice.damped) d.blades.beam.damping = damping;
   d.blades.beam.tip_mass = choice.order == 2 ? 0.0 : 0.7;
+  if (choice.prescribed) {
+    d.nacelle.yaw.kind = d.hub.teeter.kind = model::JointKind::prescribed;
+    d.nacelle.yaw.motion = {0.5, 0.2, 2, 0.0, 0.7};
+    d.hub.teeter.motion = {-0.1, 0.15, 1, 0.0, -0.4};
+    d.hub.point_masses = {{1.5, Vector3(0.3, -0.2, -0.6), Vector3(0.1, 0.2, 0.3)},
+                          {0.4, Vector3(-0.5, 0.1, 0.2), Vector3(0.02, 0.01, 0.03)}};
+  }
   if (!choice.full) return d;
   // Two points make a line that leans from the root on.
   d.tower.reference_line = {Vector3::Zero(), Vector3(4.8, 0.9, -1.1)};
@@ -134,7 +148,8 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
                                 {1.0, 0.3, Vector3(0.0, 0.1, 0.2), Vector3(0.02, 0.03, 0.01)}};
   d.hub.delta3 = 0.5;
   d.shaft.torsion = {model::JointKind::free, 250.0, 15.0};
-  d.shaft.generator = {model::JointKind::free, 1.5, 4.0};
+  d.shaft.generator = {model::JointKind::free, 1.5, {6.0, 4.0, {}}};
+  d.shaft.rotor = {5.0, -3.0, {}};
   return d;
 }
 

@@ -106,6 +106,7 @@ BOOST_AUTO_TEST_CASE(the_tower_root_carries_the_weight_of_the_deformed_turbine) 
     Weight weight;
     for (const sample::Piece& piece : bodies.pieces)
       weight.add(piece, definition.gravity, Vector3::Zero());
+    weight.moment += definition.shaft.rotor.torque * bodies.R_H.col(1);  // the rotor's torque
     // The root loads act on the ground; components along (n3, n1, n2).
     const int root = system.layout().tower_root();
     const Vector3 force(z(root + 1), z(root + 2), z(root));

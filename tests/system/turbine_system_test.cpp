@@ -200,6 +200,15 @@ Array<T> summed_residual(const system::TurbineSystem& system, double t, const Ar
   chain.teeter = joint(layout.teeter());
   chain.torsion = joint(layout.shaft_torsion());
   chain.generator = joint(layout.generator());
+  const auto motion = [&](const model::JointHistory& history) {
+    const double rate = history.per_rev * turbine.speed;
+    const double turned = rate * t + history.phase;
+    return elements::JointMotion{history.angle + history.amplitude * std::cos(turned),
+                                 -rate * history.amplitude * std::sin(turned),
+                                 -rate * rate * history.amplitude * std::cos(turned)};
+  };
+  chain.yaw.prescribed = motion(turbine.yaw_motion);
+  chain.teeter.prescribed = motion(turbine.teeter_motion);
   chain.azimuth = turbine.azimuth + turbine.speed * t;
   chain.speed = turbine.speed;
   chain.hub_load.setZero();
@@ -219,12 +228,13 @@ Array<T> summed_residual(const system::TurbineSystem& system, double t, const Ar
   for (const Place& place : places_of(system))
     add_beam<T>(place, attachment_of<T>(system, place, hub), z, z_dot, r);
   if (turbine.has_tower) r.template segment<6>(layout.tower_tip() + 12) = rows.top;
-  const auto put_joint = [&](int first, bool free, const elements::JointRows<T>& own) {
-    r(first) = free ? own.kinematic : z(first);
+  const auto put_joint = [&](int first, bool free, const elements::JointRows<T>& own,
+                             double angle = 0.0) {
+    r(first) = free ? own.kinematic : z(first) - T(angle);
     r(first + 1) = free ? own.balance : own.kinematic;
   };
-  put_joint(layout.yaw(), turbine.chain.yaw.free, rows.yaw);
-  put_joint(layout.teeter(), turbine.chain.teeter.free, rows.teeter);
+  put_joint(layout.yaw(), turbine.chain.yaw.free, rows.yaw, chain.yaw.prescribed.angle);
+  put_joint(layout.teeter(), turbine.chain.teeter.free, rows.teeter, chain.teeter.prescribed.angle);
   put_joint(layout.shaft_torsion(), turbine.chain.torsion.free, rows.torsion);
   put_joint(layout.generator(), turbine.chain.generator.free, rows.generator);
   for (const int i : layout.padding()) r(i) = z(i);
@@ -552,6 +562,61 @@ BOOST_AUTO_TEST_CASE(renaming_every_sector_once_is_no_renaming) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(masses_on_the_hub_keep_the_symmetry_where_they_balance) {
+  const auto check = [](int blades, const std::vector<Vector3>& places, bool repeats) {
+    model::TurbineDefinition definition =
+        sample::turbine_definition({blades, 1, true, true, false, true, false});
+    for (const Vector3& place : places)
+      definition.hub.point_masses.push_back({0.37, place, Vector3::Zero()});
+    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    BOOST_TEST((system.symmetry().sectors == blades) == repeats);
+    const int speed = system.layout().teeter() + 1;
+    if (repeats) BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < rounding);
+  };
+  const auto ring = [](int count, double downwind) {
+    std::vector<Vector3> places;
+    for (int k = 0; k < count; ++k) {
+      const double angle = 0.3 + 2.0 * std::numbers::pi * k / count;
+      places.emplace_back(0.7 * std::sin(angle), downwind, 0.7 * std::cos(angle));
+    }
+    return places;
+  };
+  check(2, ring(2, 0.1), true);
+  check(3, ring(3, 0.1), true);
+  check(3, ring(2, 0.1), false);
+  check(2, {Vector3(0.7, 0.1, 0.0), Vector3(-0.7, -0.1, 0.0)}, false);  // h2 no principal axis
+  check(2, {Vector3(0.0, 0.1, 0.0)}, true);
+  check(2, {Vector3(0.0, 0.1, 1e-6)}, false);
+}
+
+BOOST_AUTO_TEST_CASE(prescribed_angles_keep_the_symmetry_where_they_repeat) {
+  model::TurbineDefinition definition = sample::turbine_definition({2, 1, true, true, true});
+  definition.nacelle.yaw.kind = definition.hub.teeter.kind = model::JointKind::prescribed;
+  const auto check = [&](int sectors) {
+    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    BOOST_TEST(system.symmetry().sectors == sectors);
+    BOOST_TEST(system.symmetry().broken_by.empty() == (sectors == 2));
+    const int speed = system.layout().teeter() + 1;
+    if (sectors == 2) BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < rounding);
+  };
+  model::JointHistory& yaw = definition.nacelle.yaw.motion;
+  model::JointHistory& teeter = definition.hub.teeter.motion;
+  check(2);
+  yaw = {0.5, 0.2, 2, 0.0, 0.7};
+  teeter = {0.0, 0.1, 3, 0.0, -0.4};
+  check(2);
+  yaw.per_rev = 1;
+  check(1);
+  yaw.per_rev = 0;
+  yaw.frequency = 6.0;
+  check(1);
+  yaw = {0.5};
+  teeter.per_rev = 2;
+  check(1);
+  teeter = {0.1};
+  check(1);
+}
+
 BOOST_AUTO_TEST_CASE(dissimilar_rotors_have_one_sector) {
   const sample::Choice three{3, 1, true, true, false, true, false};
   const auto sectors_of = [](const model::TurbineDefinition& definition) {
@@ -573,6 +638,9 @@ BOOST_AUTO_TEST_CASE(dissimilar_rotors_have_one_sector) {
   BOOST_TEST(sectors_of(definition) == 1);
   definition = sample::turbine_definition(three);
   definition.hub.inertia(2) *= 2.0;
+  BOOST_TEST(sectors_of(definition) == 1);
+  definition = sample::turbine_definition(three);
+  definition.hub.point_masses = {{0.5, Vector3(0.0, 0.1, -0.3), Vector3::Zero()}};
   BOOST_TEST(sectors_of(definition) == 1);
   BOOST_TEST(sectors_of(sample::turbine_definition({3, 1, true, true, true, true, false})) == 1);
   BOOST_TEST(sectors_of(sample::turbine_definition({1, 1, true, true, false, true, false})) == 1);

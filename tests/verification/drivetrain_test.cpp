@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(the_slope_of_the_torque_brings_the_speed_back) {
   // d/dt of the deviation: - slope / (rotor + generator), a real exponent; the angle itself is
   // neutral.
   model::TurbineDefinition definition = rotor(5.0, false, true);
-  definition.shaft.generator.torque_slope = 2.5;
+  definition.shaft.generator.law.slope = 2.5;
   const analysis::ModeSet set = constant_modes_of(definition);
   BOOST_TEST(set.degrees_of_freedom == 1);
   const double rate = -2.5 / (rotor_inertia() + generator_inertia);
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(an_unbalanced_rotor_under_gravity_is_held_by_its_generator_
   beam.order = 2;
   model::TurbineDefinition definition = definition_of(beam);
   definition.gravity = 1e-3;
-  definition.shaft.generator = {model::JointKind::free, generator_inertia, 0.0};
+  definition.shaft.generator = {model::JointKind::free, generator_inertia, {}};
   const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
@@ -128,4 +128,66 @@ BOOST_AUTO_TEST_CASE(an_unbalanced_rotor_under_gravity_is_held_by_its_generator_
   BOOST_TEST(largest == amplitude, tolerance(1e-4));
   BOOST_REQUIRE(trim.held.size() == 1u);
   BOOST_TEST(std::abs(trim.held.front().load) < 1e-6 * 1e-3 * blade_mass * l * l);
+}
+
+BOOST_AUTO_TEST_CASE(slopes_of_rotor_and_generator_give_the_exponent_of_the_speed) {
+  // J d(omega)/dt = (Q_rotor' - Q_generator') omega: growing where the rotor's torque rises more.
+  for (const double rotor_slope : {-1.7, 4.0}) {
+    model::TurbineDefinition definition = rotor(5.0, false, true);
+    definition.shaft.generator.law = {120.0, 2.5, {}};
+    definition.shaft.rotor.table = {{4.0, 90.0 - rotor_slope}, {6.0, 90.0 + rotor_slope}};
+    const double rate = (rotor_slope - 2.5) / (rotor_inertia() + generator_inertia);
+    const analysis::Floquet floquet = floquet_of(definition, 500);
+    double nearest_rate = 1e9;
+    for (const analysis::Mode& mode : floquet.set.modes) {
+      // The step maps an exponent l to (1 + l dt/2)/(1 - l dt/2).
+      const double stepped = std::exp(mode.exponent.real() * floquet.step);
+      const double found = 2.0 / floquet.step * (stepped - 1.0) / (stepped + 1.0);
+      if (std::abs(found - rate) < std::abs(nearest_rate - rate)) nearest_rate = found;
+    }
+    BOOST_TEST(nearest_rate == rate, tolerance(1e-9));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_generator_takes_the_power_that_the_rotor_gives) {
+  // One heavier blade under gravity swings the speed; over a revolution gravity gives nothing.
+  model::TurbineDefinition definition = rotor(5.0, false, true);
+  definition.gravity = 9.81;
+  definition.blades.each[2].mass_factor = 1.4;
+  definition.shaft.generator.law = {120.0, 2.5, {}};
+  definition.shaft.rotor = {90.0, -1.7, {}};
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  analysis::TrimOptions options;
+  options.harmonics = 24;
+  options.tolerance = 1e-13;
+  analysis::Observer observer;
+  const analysis::Trim trim = analysis::find_trim(system, options, observer);
+  BOOST_REQUIRE(trim.held.size() == 1u);
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  double given = 0.0;
+  double taken = 0.0;
+  double swing = 0.0;
+  constexpr int samples = 400;
+  for (int k = 0; k < samples; ++k) {
+    trim.solution.evaluate(system.period() * k / samples, z.get(), z_dot.get());
+    const petsc::ReadView view(z.get());
+    const double omega = view[system.layout().generator() + 1];
+    swing = std::max(swing, std::abs(omega - 5.0));
+    given += (90.0 - 1.7 * (omega - 5.0)) * omega / samples;
+    taken += (120.0 + 2.5 * (omega - 5.0) - trim.held.front().load) * omega / samples;
+  }
+  BOOST_TEST(swing > 0.1);
+  BOOST_TEST(taken == given, tolerance(1e-9));
+  BOOST_TEST(trim.held.front().load == 30.0, tolerance(0.05));  // what the law gives too much
+}
+
+BOOST_AUTO_TEST_CASE(a_rotor_torque_twists_the_shaft_of_a_locked_generator) {
+  model::TurbineDefinition definition = rotor(5.0, true, false);
+  definition.shaft.rotor = {90.0, -1.7, {}};
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  analysis::Observer observer;
+  const analysis::Trim trim = analysis::find_trim(system, {}, observer);
+  BOOST_TEST(trim.solution.coefficients()(system.layout().shaft_torsion(), 0) == 90.0 / stiffness,
+             tolerance(1e-12));
 }

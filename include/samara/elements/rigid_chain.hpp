@@ -13,6 +13,8 @@
 #pragma once
 
 #include "samara/elements/beam_point.hpp"
+#include "samara/elements/joint_motion.hpp"
+#include "samara/elements/torque_line.hpp"
 #include "samara/math/rotation.hpp"
 
 namespace samara::elements {
@@ -33,7 +35,9 @@ struct Hinge {
 struct RigidChain {
   double gravity = 0.0;  ///< along -n3 [m/s^2]
   Hinge yaw;
-  Hinge generator;  ///< about psi; its damping is the slope of the generator's torque
+  Hinge generator;                ///< about psi; its damping is the slope of the generator's torque
+  double generator_torque = 0.0;  ///< at the mean speed, against the turning [N m]
+  TorqueLine rotor_torque;        ///< on H along h2, by omega_H . h2
   Hinge torsion;
   Hinge teeter;
   RigidBody tower_top;                     ///< reference point: tower top; axes t1 t2 t3
@@ -52,6 +56,7 @@ struct RigidChain {
 template <class T>
 struct JointState {
   T angle, speed, angle_dot, speed_dot;
+  JointMotion prescribed = {};  ///< of a joint that is not free
 };
 
 /// Coordinates, speeds and their rates. The tower-top quantities are in the order of a beam's tip:
@@ -81,11 +86,13 @@ struct HubMotion {
 
 template <class T>
 struct JointRows {
-  T kinematic;  ///< q_dot - (U - speed it is carried with), of a locked joint U - that speed
-  T balance;    ///< Kane's row of U [N m]; unused where locked
+  T kinematic;  ///< q_dot - (U - speed it is carried with); of a joint that is not free U - that
+                ///< speed - the prescribed rate
+  T balance;    ///< Kane's row of U [N m]; unused where not free
+  T position;   ///< q - the prescribed angle, of a joint that is not free
 };
 
-/// Residual rows. A locked joint has the row U - (speed it is carried with) instead of Kane's.
+/// Residual rows. A joint that is locked or prescribed has its kinematic row instead of Kane's.
 template <class T>
 struct ChainRows {
   Vec6<T> top;  ///< Kane's rows of (U8, U6, U7, U5, U3, U4) [N, N m]
@@ -164,14 +171,19 @@ Wrench<T> active_and_inertia(const RigidBody& body, const Motion<T>& m, const Ve
 template <class T>
 class JointWalk {
  public:
-  /// `rate`: the prescribed one, to which the angle's own is added. `inner`: the motion of the
-  /// joint's point, in the components of the body behind it.
+  /// `rate`: to which the joint's own is added. `inner`: the motion of the joint's point, in the
+  /// components of the body behind it.
   JointWalk(const Hinge& hinge, const Vector3& axis, const JointState<T>& state,
             const Motion<T>& inner, double rate = 0.0)
       : hinge_(hinge), axis_(axis.cast<T>()), state_(state) {
     own_rate_ = state.speed - math::dot(axis_, inner.omega) - T(rate);
-    outer_ = hinge.free ? with_outer_speed<T>(axis_, state.speed, state.speed_dot, inner)
-                        : with_relative_rate<T>(axis_, T(rate), inner);
+    if (hinge.free) {
+      outer_ = with_outer_speed<T>(axis_, state.speed, state.speed_dot, inner);
+      return;
+    }
+    const JointMotion& own = state.prescribed;
+    outer_ = with_relative_rate<T>(axis_, T(rate + own.rate), inner);
+    for (int i = 0; i < 3; ++i) outer_.alpha(i) += axis_(i) * T(own.acceleration);
   }
 
   const Motion<T>& outer() const { return outer_; }
@@ -180,8 +192,10 @@ class JointWalk {
   /// without the component that the joint does not pass on, but for its spring and damper.
   JointRows<T> take(Vec3<T>& moment, bool pass_all = false) const {
     JointRows<T> rows;
-    rows.kinematic = hinge_.free ? T(state_.angle_dot - own_rate_) : own_rate_;
+    rows.kinematic =
+        hinge_.free ? T(state_.angle_dot - own_rate_) : T(own_rate_ - T(state_.prescribed.rate));
     rows.balance = T(0);
+    rows.position = state_.angle - T(state_.prescribed.angle);
     if (!hinge_.free) return rows;
     const T spring = -(state_.angle * hinge_.stiffness + own_rate_ * hinge_.damping);
     rows.balance = math::dot(axis_, moment) + spring;
@@ -211,7 +225,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const auto from_top = [](const Vec3<T>& b) { return Vec3<T>(b(1), b(2), b(0)); };
   const auto to_top = [](const Vec3<T>& t) { return Vec3<T>(t(2), t(0), t(1)); };
   const auto angle_of = [](const Hinge& hinge, const JointState<T>& joint) {
-    return hinge.free ? joint.angle : T(0);
+    return hinge.free ? joint.angle : T(joint.prescribed.angle);
   };
 
   // Outward: motions. T: derivative of v_T's components in T plus omega x v is the acceleration.
@@ -266,6 +280,8 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Vec3<T> root_moment = state.hub_load.template tail<3>();
   w.force += root_force;
   w.moment += root_moment + cross(apex, root_force);
+  w.moment(1) += (hub_motion.omega(1) - T(state.speed)) * chain.rotor_torque.slope +
+                 T(chain.rotor_torque.torque);
   rows.teeter = teeter.take(w.moment);
 
   // The sum so far, applied at `arm` of the next body, in whose components C^T brings it.
@@ -282,6 +298,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   turning.inertia(1, 1) = chain.generator_inertia;
   pass_to(detail::active_and_inertia<T>(turning, generator.outer(), g_D), C_SD, same_point);
   rows.generator = generator.take(w.moment, true);
+  rows.generator.balance -= T(chain.generator_torque);
   pass_to(detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y), C_DY, bearing);
   rows.yaw = yaw.take(w.moment);
   pass_to(detail::active_and_inertia<T>(chain.tower_top, top, g_T), C_YT, same_point);

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "samara/elements/joint_motion.hpp"
+#include "samara/elements/torque_line.hpp"
 #include "samara/math/types.hpp"
 
 namespace samara::model {
@@ -46,6 +49,9 @@ struct SupportDefinition {
 /// Nothing at all.
 SupportDefinition free_end();
 
+/// Damping ratios of a clamped beam's first modes: bending about b2, about b3, torsion.
+using ModalDamping = std::array<std::optional<double>, 3>;
+
 struct BeamDefinition {
   double length = 0.0;                      ///< arc length [m], > 0
   std::vector<Vector3> reference_line;      ///< points in axes a [m]; empty = straight along b1
@@ -54,24 +60,56 @@ struct BeamDefinition {
   int order = 1;                            ///< Gauss points an element, 1 to 6
   std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
   Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component
+  ModalDamping modal_damping{};             ///< from which mu was found, if it was
   double tip_mass = 0.0;                    ///< [kg], >= 0
   std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`
   SupportDefinition support;                      ///< of the root
   SupportDefinition end_support = free_end();     ///< of the end, without a mass
 };
 
-enum class JointKind { free, locked };
+/// locked: at zero; prescribed: its angle is a given function of time.
+enum class JointKind { free, locked, prescribed };
+
+/// angle + amplitude cos(frequency t + phase).
+struct JointHistory {
+  double angle = 0.0;      ///< mean [rad]
+  double amplitude = 0.0;  ///< [rad]
+  int per_rev = 0;         ///< the frequency as a multiple of the rotor speed; 0: `frequency` holds
+  double frequency = 0.0;  ///< [rad/s]
+  double phase = 0.0;      ///< [rad]
+
+  bool is_constant() const { return amplitude == 0.0; }
+
+  /// At time t [s] where the rotor turns with `rotor_speed` [rad/s].
+  elements::JointMotion at(double t, double rotor_speed) const;
+};
 
 struct JointDefinition {
   JointKind kind = JointKind::locked;
-  double stiffness = 0.0;  ///< [N m/rad]
-  double damping = 0.0;    ///< [N m s/rad]
+  double stiffness = 0.0;    ///< [N m/rad]
+  double damping = 0.0;      ///< [N m s/rad]
+  JointHistory motion = {};  ///< of a prescribed joint
+};
+
+/// A torque over a speed: by its value and slope at the mean speed, or a table.
+struct TorqueLaw {
+  double torque = 0.0;                           ///< [N m]
+  double slope = 0.0;                            ///< [N m s/rad]
+  std::vector<std::pair<double, double>> table;  ///< rising speed [rad/s], torque; empty: above
+
+  /// Whether a table reaches to a speed.
+  bool covers(double speed) const {
+    return table.empty() || (speed >= table.front().first && speed <= table.back().first);
+  }
+  /// Torque and slope at a speed; of a table linear between its entries, the slope at an entry the
+  /// mean of both sides.
+  elements::TorqueLine at(double speed) const;
 };
 
 struct GeneratorDefinition {
   JointKind kind = JointKind::locked;  ///< locked: turns at shaft.speed; free: its angle varies
   double inertia = 0.0;                ///< about the shaft, at the shaft's speed [kg m^2]
-  double torque_slope = 0.0;           ///< torque against the turning, by its speed [N m s/rad]
+  TorqueLaw law;                       ///< against the turning
 };
 
 struct NacelleDefinition {
@@ -93,13 +131,22 @@ struct ShaftDefinition {
   double inertia_lateral = 0.0;  ///< [kg m^2]
   JointDefinition torsion;       ///< between generator and rotor
   GeneratorDefinition generator;
+  TorqueLaw rotor;  ///< on the hub about h2
+};
+
+/// A mass on the hub.
+struct HubMassDefinition {
+  double mass = 0.0;                  ///< [kg], > 0
+  Vector3 center = Vector3::Zero();   ///< from the teeter pin, h1 h2 h3 [m]
+  Vector3 inertia = Vector3::Zero();  ///< about its own centre, h1 h2 h3 [kg m^2]
 };
 
 struct HubDefinition {
   double mass = 0.0;            ///< [kg]
   double center_of_mass = 0.0;  ///< along s2 from the teeter pin [m]
   Vector3 inertia =
-      Vector3::Zero();      ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
+      Vector3::Zero();  ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
+  std::vector<HubMassDefinition> point_masses;
   double radius = 0.0;      ///< shaft axis to blade root [m]
   JointDefinition teeter;   ///< locked = rigid hub
   double undersling = 0.0;  ///< along s2 from teeter pin to rotor apex [m]

@@ -21,8 +21,10 @@ struct Turbine {
   std::vector<Beam> blades;
   std::vector<BladeRoot> roots;  ///< one a blade
   elements::RigidChain chain;
-  double speed = 0.0;    ///< Omega0 [rad/s]
-  double azimuth = 0.0;  ///< of blade 1 at t = 0 [rad]
+  JointHistory yaw_motion;     ///< of a yaw that is not free
+  JointHistory teeter_motion;  ///< of a teeter that is not free
+  double speed = 0.0;          ///< Omega0 [rad/s]
+  double azimuth = 0.0;        ///< of blade 1 at t = 0 [rad]
   bool identical_blades = true;
   int degrees_of_freedom = 0;  ///< elastic strains of all points + free joints
 

@@ -96,7 +96,8 @@ class PeriodicSystem {
   virtual const std::vector<EnergyGroup>& energy_groups() const = 0;
   virtual const std::vector<NeutralCoordinate>& neutral_coordinates() const = 0;
 
-  /// The start of every trim: the undeformed system in its prescribed motion.
+  /// The start of every trim: the undeformed system in its prescribed motion. It depends on t where
+  /// constraints_are_autonomous() does not hold.
   virtual void reference_state(double t, Vec z) const = 0;
 
   virtual petsc::Handle<Vec> make_state() const = 0;

@@ -126,7 +126,7 @@ class TurbineResidual {
                  std::vector<T>& r) const;
   template <class T>
   static void put_joint(int first, bool free, const elements::JointRows<T>& rows,
-                        const std::vector<T>& z, std::vector<T>& r);
+                        std::vector<T>& r);
 
   void place_beams();
   static void find_changes(PlacedBeam& placed);
@@ -170,6 +170,8 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
     joint->speed_dot = make(z_dot[first + 1], at_joint_rates + local + 1);
     local += 2;
   }
+  state.yaw.prescribed = turbine_.yaw_motion.at(t, turbine_.speed);
+  state.teeter.prescribed = turbine_.teeter_motion.at(t, turbine_.speed);
   state.azimuth = turbine_.azimuth_at(t);
   state.speed = turbine_.speed;
   return state;
@@ -211,18 +213,18 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
   if (turbine_.has_tower)
     for (int i = 0; i < 6; ++i) r[index(layout_.tower_tip() + 12 + i)] = rows.top(i);
   const elements::RigidChain& chain = turbine_.chain;
-  put_joint(layout_.yaw(), chain.yaw.free, rows.yaw, z, r);
-  put_joint(layout_.teeter(), chain.teeter.free, rows.teeter, z, r);
-  put_joint(layout_.shaft_torsion(), chain.torsion.free, rows.torsion, z, r);
-  put_joint(layout_.generator(), chain.generator.free, rows.generator, z, r);
+  put_joint(layout_.yaw(), chain.yaw.free, rows.yaw, r);
+  put_joint(layout_.teeter(), chain.teeter.free, rows.teeter, r);
+  put_joint(layout_.shaft_torsion(), chain.torsion.free, rows.torsion, r);
+  put_joint(layout_.generator(), chain.generator.free, rows.generator, r);
   for (const int i : layout_.padding()) r[index(i)] = z[index(i)];
 }
 
 template <class T>
 void TurbineResidual::put_joint(int first, bool free, const elements::JointRows<T>& rows,
-                                const std::vector<T>& z, std::vector<T>& r) {
+                                std::vector<T>& r) {
   const auto at_joint = static_cast<std::size_t>(first);
-  r[at_joint] = free ? rows.kinematic : z[at_joint];
+  r[at_joint] = free ? rows.kinematic : rows.position;
   r[at_joint + 1] = free ? rows.balance : rows.kinematic;
 }
 

@@ -32,7 +32,7 @@ class TurbineSystem final : public PeriodicSystem {
   const std::vector<Unknown>& unknowns() const override;
   const std::vector<RowRole>& rows() const override;
   const std::vector<bool>& differential() const override;
-  bool constraints_are_autonomous() const override { return true; }
+  bool constraints_are_autonomous() const override;
   bool is_conservative() const override;
   const RotorSymmetry& symmetry() const override;
   const std::vector<EnergyGroup>& energy_groups() const override;

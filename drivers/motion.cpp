@@ -1,10 +1,9 @@
-// What loads and supports a command can take.
+// What loads, prescribed motions and supports a command can take.
 #include "samara/base/error.hpp"
 
 #include "commands.hpp"
 
 namespace samara::drivers {
-
 namespace {
 
 /// A root that moves needs inertia in every direction that moves.
@@ -23,18 +22,30 @@ void require_mass(const io::Case& input, const std::string& key,
                      " may turn, and has no inertia; hint: give inertia: [I1, I2, I3], each > 0");
 }
 
-}  // namespace
-
-void require_motion(const io::Case& input) {
-  require_repeating_loads(input);
-  if (input.turbine.has_tower) require_mass(input, "tower.support", input.turbine.tower.support);
-  require_mass(input, "blades.support", input.turbine.blades.beam.support);
-}
-
-void require_repeating_loads(const io::Case& input) {
+/// @throws InputError where more harmonics are asked for than the trim has.
+void require_harmonics(const io::Case& input, const std::string& place, int per_rev) {
   const analysis::TrimOptions& trim = input.trim;
   const bool truncates = input.turbine.shaft.speed > 0.0 && !trim.automatic &&
                          trim.method == analysis::TrimMethod::harmonic_balance;
+  if (truncates && per_rev > trim.harmonics)
+    throw InputError(
+        place + ".harmonic.per_rev is " + std::to_string(per_rev) +
+        ", more than trim.harmonics; hint: --set trim.harmonics=" + std::to_string(per_rev));
+}
+
+void require_repeating_motion(const io::Case& input, const std::string& joint,
+                              const model::JointHistory& motion) {
+  const std::string place = input.path + ": " + joint;
+  if (!motion.is_constant() && motion.per_rev == 0)
+    throw InputError(place +
+                     " does not repeat with the rotor; hint: harmonic: {per_rev: ...}, or samara "
+                     "static, which takes its angle at t = 0");
+  require_harmonics(input, place, motion.per_rev);
+}
+
+}  // namespace
+
+void require_motion(const io::Case& input) {
   for (std::size_t i = 0; i < input.turbine.loads.size(); ++i) {
     const model::LoadHistory& history = input.turbine.loads[i].history;
     const std::string place = input.path + ": loads[" + std::to_string(i) + "]";
@@ -42,11 +53,12 @@ void require_repeating_loads(const io::Case& input) {
       throw InputError(place +
                        " does not repeat with the rotor; hint: harmonic: {per_rev: ...}, or samara "
                        "static, which takes the loads at t = 0");
-    if (truncates && history.per_rev > trim.harmonics)
-      throw InputError(place + ".harmonic.per_rev is " + std::to_string(history.per_rev) +
-                       ", more than trim.harmonics; hint: --set trim.harmonics=" +
-                       std::to_string(history.per_rev));
+    require_harmonics(input, place, history.per_rev);
   }
+  require_repeating_motion(input, "nacelle.yaw", input.turbine.nacelle.yaw.motion);
+  require_repeating_motion(input, "hub.teeter", input.turbine.hub.teeter.motion);
+  if (input.turbine.has_tower) require_mass(input, "tower.support", input.turbine.tower.support);
+  require_mass(input, "blades.support", input.turbine.blades.beam.support);
 }
 
 }  // namespace samara::drivers
