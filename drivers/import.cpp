@@ -1,5 +1,5 @@
 // samara import: the deck of another program as a case file.
-#include "samara/io/import.hpp"
+#include "samara/decks/import.hpp"
 
 #include <array>
 #include <filesystem>
@@ -14,13 +14,13 @@ namespace samara::drivers {
 namespace {
 
 /// The lines of one fate, in the order of the deck.
-std::string report_table(const io::Import& import, io::Fate fate) {
+std::string report_table(const decks::Import& import, decks::Fate fate) {
   Table table;
   table.add_column("file", "", Align::left);
   table.add_column("key", "", Align::left);
   table.add_column("", "", Align::left);
   int rows = 0;
-  for (const io::ImportLine& line : import.report) {
+  for (const decks::ImportLine& line : import.report) {
     if (line.fate != fate) continue;
     table.add_row({std::filesystem::path(line.place).filename().string(), line.key, line.words});
     ++rows;
@@ -31,15 +31,16 @@ std::string report_table(const io::Import& import, io::Fate fate) {
 }  // namespace
 
 void run_import(const CommandLine& line) {
-  if (!line.result_path.empty()) io::require_case_path(line.result_path);
-  const io::ImportOptions options{line.tower_only};
-  const io::Import import = line.format == "openfast" ? io::import_openfast(line.case_path, options)
-                                                      : io::import_windio(line.case_path, options);
-  if (!line.result_path.empty()) io::write_case(line.result_path, import);
-  constexpr std::array<std::pair<const char*, io::Fate>, 3> blocks{
-      {{"taken: the value stands in the case", io::Fate::taken},
-       {"derived: the case holds what follows from it", io::Fate::derived},
-       {"ignored: the case holds nothing of it", io::Fate::ignored}}};
+  if (!line.result_path.empty()) decks::require_case_path(line.result_path);
+  const decks::ImportOptions options{line.tower_only};
+  const decks::Import import = line.format == "openfast"
+                                   ? decks::import_openfast(line.case_path, options)
+                                   : decks::import_windio(line.case_path, options);
+  if (!line.result_path.empty()) decks::write_case(line.result_path, import);
+  constexpr std::array<std::pair<const char*, decks::Fate>, 3> blocks{
+      {{"taken: the value stands in the case", decks::Fate::taken},
+       {"derived: the case holds what follows from it", decks::Fate::derived},
+       {"ignored: the case holds nothing of it", decks::Fate::ignored}}};
   for (const auto& [title, fate] : blocks)
     std::cout << title << "\n\n" << report_table(import, fate) << "\n";
   if (!line.result_path.empty()) std::cout << "case: " << line.result_path << "\n";

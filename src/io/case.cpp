@@ -12,10 +12,10 @@
 #include "samara/base/error.hpp"
 #include "samara/model/beam_modes.hpp"
 
-#include "whole_file.hpp"
+#include "samara/io/whole_file.hpp"
 #include "yaml_reader.hpp"
 #include "yaml_settings.hpp"
-#include "yaml_tree.hpp"
+#include "samara/io/yaml_tree.hpp"
 
 namespace samara::io {
 namespace {

@@ -18,7 +18,7 @@
 #include "samara/base/version.hpp"
 
 #include "hdf5_file.hpp"
-#include "whole_file.hpp"
+#include "samara/io/whole_file.hpp"
 
 namespace samara::io {
 namespace {

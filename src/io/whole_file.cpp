@@ -1,4 +1,4 @@
-#include "whole_file.hpp"
+#include "samara/io/whole_file.hpp"
 
 #include <array>
 #include <cerrno>

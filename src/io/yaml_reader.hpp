@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "yaml_tree.hpp"
+#include "samara/io/yaml_tree.hpp"
 
 namespace samara::io {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "yaml_reader.hpp"
-#include "yaml_tree.hpp"
+#include "samara/io/yaml_tree.hpp"
 
 namespace samara::io {
 

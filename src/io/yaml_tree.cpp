@@ -1,4 +1,4 @@
-#include "yaml_tree.hpp"
+#include "samara/io/yaml_tree.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -11,7 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
 from program import MINIMAL, SOURCE, ProgramTest  # noqa: E402
 
-DECKS = SOURCE / "tests/io/decks"
+DECKS = SOURCE / "tests/decks/files"
 THREE = DECKS / "three/Main.fst"
 TEETER = DECKS / "teeter/Main.fst"
 SECOND = DECKS / "windio/second.yaml"

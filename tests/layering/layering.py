@@ -16,6 +16,7 @@ ROOMS = {  # room: the rooms it may include, itself always
     "system": ["base", "math", "petsc", "elements", "model"],
     "analysis": ["base", "math", "petsc"],
     "io": ["base", "math", "petsc", "elements", "model", "system", "analysis"],
+    "decks": ["base", "math", "elements", "model", "io"],
 }
 DRIVERS = "drivers"  # may include every room
 

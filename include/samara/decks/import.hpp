@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace samara::io {
+namespace samara::decks {
 
 /// What became of a key of the deck.
 enum class Fate {
@@ -44,4 +44,4 @@ void require_case_path(const std::string& path);
 /// Writes the case as a whole or not at all.
 void write_case(const std::string& path, const Import& import);
 
-}  // namespace samara::io
+}  // namespace samara::decks

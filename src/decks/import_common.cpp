@@ -7,12 +7,11 @@
 
 #include "samara/base/error.hpp"
 #include "samara/io/case.hpp"
+#include "samara/io/whole_file.hpp"
+#include "samara/io/yaml_tree.hpp"
 #include "samara/model/definition.hpp"
 
-#include "whole_file.hpp"
-#include "yaml_tree.hpp"
-
-namespace samara::io {
+namespace samara::decks {
 namespace {
 
 /// Of the length, between the two stations of a jump.
@@ -127,7 +126,7 @@ BeamMass integrate_mass(const DraftBeam& beam, double length) {
 
 void check_import(const Import& import) {
   try {
-    parse_case("the imported case", import.text, {});
+    io::parse_case("the imported case", import.text, {});
   } catch (const InputError& error) {
     throw InputError(std::string("the deck makes no valid case:\n") + error.what());
   }
@@ -144,13 +143,13 @@ std::string clean_text(const std::string& text) {
 }
 
 void require_case_path(const std::string& path) {
-  if (!require_writable(path)) return;
+  if (!io::require_writable(path)) return;
   std::ifstream stream(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   bool is_case = false;
   try {
-    is_case = parse_yaml(text).find("samara") != nullptr;
-  } catch (const YamlError&) {
+    is_case = io::parse_yaml(text).find("samara") != nullptr;
+  } catch (const io::YamlError&) {
     is_case = false;
   }
   if (!is_case)
@@ -160,7 +159,7 @@ void require_case_path(const std::string& path) {
 }
 
 void write_case(const std::string& path, const Import& import) {
-  write_whole_file(path, import.text);
+  io::write_whole_file(path, import.text);
 }
 
-}  // namespace samara::io
+}  // namespace samara::decks

@@ -11,14 +11,14 @@
 #include <unistd.h>
 
 #include "samara/base/error.hpp"
+#include "samara/decks/import.hpp"
 #include "samara/io/case.hpp"
-#include "samara/io/import.hpp"
 
 namespace samara::test {
 
 namespace fs = std::filesystem;
 
-inline const fs::path decks = fs::path(SAMARA_SOURCE_DIR) / "tests/io/decks";
+inline const fs::path deck_files = fs::path(SAMARA_SOURCE_DIR) / "tests/decks/files";
 
 inline std::string read_file(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -33,7 +33,7 @@ struct DeckFolder {
     path = fs::temp_directory_path() /
            ("samara_import_" + std::to_string(::getpid()) + "_" + std::to_string(number++));
     fs::create_directories(path);
-    fs::copy(decks / name, path / name, fs::copy_options::recursive);
+    fs::copy(deck_files / name, path / name, fs::copy_options::recursive);
     path /= name;
   }
   ~DeckFolder() {
@@ -56,7 +56,7 @@ struct DeckFolder {
   std::string operator/(const std::string& file) const { return (path / file).string(); }
 };
 
-inline io::Case parse(const io::Import& import) {
+inline io::Case parse(const decks::Import& import) {
   return io::parse_case("case.yaml", import.text, {});
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace samara::io {
+namespace samara::decks {
 
 /// What is wrong with a deck of several files, in the order found.
 class DeckErrors {
@@ -101,4 +101,4 @@ class Deck {
   bool ends_with_line_ = true;
 };
 
-}  // namespace samara::io
+}  // namespace samara::decks

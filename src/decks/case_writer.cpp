@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cstdio>
 
-namespace samara::io {
+namespace samara::decks {
 namespace {
 
 constexpr std::size_t comment_column = 44;
@@ -204,4 +204,4 @@ std::string rounded(double value, int digits) {
 
 std::string write_case_text(const CaseDraft& draft) { return Writer(draft).run(); }
 
-}  // namespace samara::io
+}  // namespace samara::decks

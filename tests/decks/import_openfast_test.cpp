@@ -11,9 +11,9 @@ namespace {
 
 using namespace samara;
 using namespace samara::test;
-using io::Import;
-using io::import_openfast;
-using io::ImportLine;
+using decks::Import;
+using decks::import_openfast;
+using decks::ImportLine;
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double rounding = 1e-13;
@@ -150,8 +150,8 @@ BOOST_AUTO_TEST_CASE(the_misfit_of_the_second_mode_is_reported) {
     BOOST_REQUIRE(line != nullptr);
     BOOST_TEST(holds(line->words, "gives this one"));
   }
-  BOOST_TEST((find_line(import, "FAStTunr(2)")->fate == io::Fate::ignored));
-  BOOST_TEST((find_line(import, "FlStTunr(2)")->fate == io::Fate::derived));
+  BOOST_TEST((find_line(import, "FAStTunr(2)")->fate == decks::Fate::ignored));
+  BOOST_TEST((find_line(import, "FlStTunr(2)")->fate == decks::Fate::derived));
 }
 
 BOOST_AUTO_TEST_CASE(freedoms_without_their_driver_are_locked_and_said) {

@@ -9,10 +9,9 @@
 #include <utility>
 
 #include "samara/base/error.hpp"
+#include "samara/io/whole_file.hpp"
 
-#include "whole_file.hpp"
-
-namespace samara::io {
+namespace samara::decks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,7 +74,7 @@ std::vector<DeckWord> split(const std::string& line) {
 }
 
 std::string read_text(const std::string& path) {
-  std::string text = read_whole_file(path, max_megabytes, "deck");
+  std::string text = io::read_whole_file(path, max_megabytes, "deck");
   if (text.find('\0') != std::string::npos)
     throw InputError(path + ": not a plain text file; hint: UTF-16 must be saved as UTF-8");
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
@@ -383,4 +382,4 @@ std::vector<DeckRow> Deck::rows_after(int line) {
   return rows;
 }
 
-}  // namespace samara::io
+}  // namespace samara::decks

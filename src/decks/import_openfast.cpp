@@ -13,7 +13,7 @@
 
 #include "import_common.hpp"
 
-namespace samara::io {
+namespace samara::decks {
 namespace {
 
 /// A line of key points is straight where it stays this close to its axis, of its length.
@@ -278,7 +278,8 @@ class Importer {
     const double ratio = deck.number("GBRatio");
     draft_.generator_inertia = generator * ratio * ratio;
     const std::string sum =
-        "shaft.generator.inertia = GenIner GBRatio^2 = " + rounded(draft_.generator_inertia) + " kg m^2";
+        "shaft.generator.inertia = GenIner GBRatio^2 = " + rounded(draft_.generator_inertia) +
+        " kg m^2";
     say(deck, "GenIner", Fate::derived, sum);
     say(deck, "GBRatio", Fate::derived, sum);
     note("shaft.generator", "GenIner GBRatio^2; GenDOF: the torque of ServoDyn is not read");
@@ -802,8 +803,8 @@ class Importer {
     return twist;
   }
 
-  /// Place of a key point as a fraction of the polygon through all points; along the spline it is
-  /// the same to second order in the angle between two chords.
+  /// io::Place of a key point as a fraction of the polygon through all points; along the spline it
+  /// is the same to second order in the angle between two chords.
   static double arc_fraction(const std::vector<Vector3>& line, std::size_t i) {
     double part = 0.0;
     double whole = 0.0;
@@ -1020,4 +1021,4 @@ Import import_openfast(const std::string& path, const ImportOptions& options) {
   return Importer(path, options).run();
 }
 
-}  // namespace samara::io
+}  // namespace samara::decks

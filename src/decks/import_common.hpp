@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "samara/io/import.hpp"
+#include "samara/decks/import.hpp"
 #include "samara/math/types.hpp"
 
 #include "case_writer.hpp"
 #include "openfast_deck.hpp"
 
-namespace samara::io {
+namespace samara::decks {
 
 /// A property along a beam, linear between its points. A place given twice is a jump.
 struct Curve {
@@ -61,4 +61,4 @@ void check_import(const Import& import);
 /// Texts of a deck may be in any encoding; the case is UTF-8.
 std::string clean_text(const std::string& text);
 
-}  // namespace samara::io
+}  // namespace samara::decks

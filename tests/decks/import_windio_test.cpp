@@ -8,12 +8,12 @@ namespace {
 
 using namespace samara;
 using namespace samara::test;
-using io::Import;
-using io::import_windio;
+using decks::Import;
+using decks::import_windio;
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double rounding = 1e-13;
-constexpr io::ImportOptions tower_only{true};
+constexpr decks::ImportOptions tower_only{true};
 
 bool is_near(double a, double b) {
   return std::abs(a - b) <= rounding * std::max(1.0, std::abs(b));

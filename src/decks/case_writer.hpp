@@ -8,7 +8,7 @@
 
 #include "samara/math/types.hpp"
 
-namespace samara::io {
+namespace samara::decks {
 
 /// A section as the case file states it: section axes b1 b2 b3, twist in degrees.
 struct DraftSection {
@@ -81,4 +81,4 @@ std::string exact(double value);
 /// Few digits, for people.
 std::string rounded(double value, int digits = 6);
 
-}  // namespace samara::io
+}  // namespace samara::decks

@@ -8,13 +8,13 @@
 #include <set>
 
 #include "samara/base/error.hpp"
+#include "samara/io/whole_file.hpp"
+#include "samara/io/yaml_tree.hpp"
 #include "samara/model/definition.hpp"
 
 #include "import_common.hpp"
-#include "whole_file.hpp"
-#include "yaml_tree.hpp"
 
-namespace samara::io {
+namespace samara::decks {
 namespace {
 
 constexpr double straight_tolerance = 1e-9;
@@ -40,7 +40,7 @@ struct Material {
 };
 
 std::string read_text(const std::string& path) {
-  std::string text = read_whole_file(path, max_megabytes, "deck");
+  std::string text = io::read_whole_file(path, max_megabytes, "deck");
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   if (!text.empty() && text.back() != '\n' && text.back() != '\r')
     throw InputError(path + ":" + std::to_string(1 + std::count(text.begin(), text.end(), '\n')) +
@@ -49,10 +49,10 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
-YamlNode parse_deck(const std::string& path) {
+io::YamlNode parse_deck(const std::string& path) {
   try {
-    return parse_yaml(read_text(path));
-  } catch (const YamlError& error) {
+    return io::parse_yaml(read_text(path));
+  } catch (const io::YamlError& error) {
     const std::string line =
         error.place.line > 0 ? ":" + std::to_string(error.place.line) : std::string();
     throw InputError(path + line + ": " + error.what());
@@ -60,8 +60,8 @@ YamlNode parse_deck(const std::string& path) {
 }
 
 /// YAML 1.1 has "15.e+6" and "+1."; from_chars reads all but the sign.
-std::optional<double> parse_number(const YamlNode& node) {
-  if (node.kind != YamlNode::Kind::scalar || node.quoted) return {};
+std::optional<double> parse_number(const io::YamlNode& node) {
+  if (node.kind != io::YamlNode::Kind::scalar || node.quoted) return {};
   return parse_deck_number(node.text);
 }
 
@@ -105,8 +105,8 @@ class Importer {
 
   using Paths = std::vector<std::string>;
 
-  const YamlNode* find(const std::string& path) const {
-    const YamlNode* node = &root_;
+  const io::YamlNode* find(const std::string& path) const {
+    const io::YamlNode* node = &root_;
     std::size_t start = 0;
     while (node != nullptr && start <= path.size()) {
       const std::size_t end = std::min(path.find('.', start), path.size());
@@ -119,17 +119,18 @@ class Importer {
   /// The first of several spellings; empty where the deck has none of them.
   std::string choose(const Paths& paths) const {
     for (const std::string& path : paths)
-      if (const YamlNode* node = find(path); node != nullptr && node->kind != YamlNode::Kind::empty)
+      if (const io::YamlNode* node = find(path);
+          node != nullptr && node->kind != io::YamlNode::Kind::empty)
         return path;
     return "";
   }
 
-  std::string place(const YamlNode& node) const {
+  std::string place(const io::YamlNode& node) const {
     return path_ + (node.place.line > 0 ? ":" + std::to_string(node.place.line) : std::string());
   }
 
   void refuse(const std::string& path, const std::string& what) {
-    const YamlNode* node = find(path);
+    const io::YamlNode* node = find(path);
     errors_.add(node == nullptr ? path_ : place(*node), path + ": " + what);
   }
 
@@ -146,7 +147,7 @@ class Importer {
   }
 
   void say(const std::string& path, Fate fate, const std::string& words) {
-    const YamlNode* node = find(path);
+    const io::YamlNode* node = find(path);
     if (node == nullptr) return;
     used_.insert(path);
     report_.push_back({place(*node), path, fate, words});
@@ -155,11 +156,11 @@ class Importer {
   void note(const std::string& key, const std::string& words) { draft_.notes[key] = words; }
 
   /// A key given twice would be read once, whichever was meant.
-  void refuse_duplicates(const YamlNode& node, const std::string& path) {
-    for (const YamlNode& child : node.children) {
+  void refuse_duplicates(const io::YamlNode& node, const std::string& path) {
+    for (const io::YamlNode& child : node.children) {
       const std::string below =
           child.key.empty() ? path : (path.empty() ? child.key : path + "." + child.key);
-      if (node.kind == YamlNode::Kind::map && node.find(child.key) != &child)
+      if (node.kind == io::YamlNode::Kind::map && node.find(child.key) != &child)
         errors_.add(place(child), below + ": given twice, first in line " +
                                       std::to_string(node.find(child.key)->place.line));
       refuse_duplicates(child, below);
@@ -172,13 +173,13 @@ class Importer {
     report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
   }
 
-  double number_at(const std::string& path, const YamlNode& node) {
+  double number_at(const std::string& path, const io::YamlNode& node) {
     const std::optional<double> value = parse_number(node);
     if (!value)
       errors_.add(place(node),
                   path + ": expected a number" +
-                      (node.kind == YamlNode::Kind::scalar ? ", got \"" + node.text + "\""
-                                                           : std::string()));
+                      (node.kind == io::YamlNode::Kind::scalar ? ", got \"" + node.text + "\""
+                                                               : std::string()));
     return value.value_or(0.0);
   }
 
@@ -190,22 +191,22 @@ class Importer {
     return value;
   }
 
-  std::vector<double> numbers_at(const std::string& path, const YamlNode& node) {
+  std::vector<double> numbers_at(const std::string& path, const io::YamlNode& node) {
     std::vector<double> values;
-    if (node.kind != YamlNode::Kind::list) {
+    if (node.kind != io::YamlNode::Kind::list) {
       errors_.add(place(node), path + ": expected a list of numbers");
       return values;
     }
-    for (const YamlNode& child : node.children) values.push_back(number_at(path, child));
+    for (const io::YamlNode& child : node.children) values.push_back(number_at(path, child));
     return values;
   }
 
   /// `grid` and a list of the same size.
   Curve curve(const std::string& path, const std::string& values_key = "values") {
     Curve result;
-    const YamlNode* node = find(path);
-    const YamlNode* grid = node == nullptr ? nullptr : node->find("grid");
-    const YamlNode* values = node == nullptr ? nullptr : node->find(values_key);
+    const io::YamlNode* node = find(path);
+    const io::YamlNode* grid = node == nullptr ? nullptr : node->find("grid");
+    const io::YamlNode* values = node == nullptr ? nullptr : node->find(values_key);
     if (grid == nullptr || values == nullptr) {
       errors_.add(node == nullptr ? path_ : place(*node),
                   path + ": missing key \"" + (grid == nullptr ? "grid" : values_key) + "\"");
@@ -234,7 +235,7 @@ class Importer {
   // ---- the top
 
   void read_version() {
-    const YamlNode* version = root_.find("windIO_version");
+    const io::YamlNode* version = root_.find("windIO_version");
     is_first_ = version == nullptr || version->text.starts_with("1");
     if (!is_first_ && !version->text.starts_with("2"))
       errors_.add(place(*version),
@@ -247,7 +248,7 @@ class Importer {
   double to_degrees(double angle) const { return is_first_ ? angle * degrees : angle; }
 
   void read_top() {
-    if (const YamlNode* name = root_.find("name")) {
+    if (const io::YamlNode* name = root_.find("name")) {
       draft_.title = clean_text(name->text);
       say("name", Fate::taken, "title");
     }
@@ -291,7 +292,7 @@ class Importer {
                                         path + ".elastic_properties.inertia_matrix"});
     if (inertia.empty() || find(inertia + ".mass") == nullptr) return;
     const Curve mass = curve(inertia, "mass");
-    const YamlNode& values = *find(inertia + ".mass");
+    const io::YamlNode& values = *find(inertia + ".mass");
     for (std::size_t i = 0; i < mass.values.size(); ++i)
       if (std::abs(mass.values[i]) > most_mass)
         errors_.add(place(values), inertia + ".mass: " + rounded(mass.values[i]) + " kg/m at " +
@@ -388,8 +389,8 @@ class Importer {
   Vector3 point_of(const std::string& path, const std::string& words) {
     Vector3 point = Vector3::Zero();
     if (path.empty()) return point;
-    const YamlNode& node = *find(path);
-    const std::vector<double> values = node.kind == YamlNode::Kind::scalar
+    const io::YamlNode& node = *find(path);
+    const std::vector<double> values = node.kind == io::YamlNode::Kind::scalar
                                            ? std::vector<double>{number_at(path, node)}
                                            : numbers_at(path, node);
     if (values.empty() || values.size() > 3) refuse(path, "expected up to 3 numbers");
@@ -530,8 +531,8 @@ class Importer {
       missing("structural_damping", key);
       return;
     }
-    const YamlNode* node = find(path);
-    const YamlNode* list = node->find("mu") != nullptr ? node->find("mu") : node;
+    const io::YamlNode* node = find(path);
+    const io::YamlNode* list = node->find("mu") != nullptr ? node->find("mu") : node;
     const std::vector<double> mu = numbers_at(path, *list);
     if (mu.size() != 6 || *std::min_element(mu.begin(), mu.end()) < 0.0) {
       refuse(path, "expected 6 numbers >= 0");
@@ -543,13 +544,13 @@ class Importer {
   }
 
   std::optional<Material> find_material(const std::string& name, const std::string& user) {
-    const YamlNode* list = root_.find("materials");
+    const io::YamlNode* list = root_.find("materials");
     if (list == nullptr) {
       errors_.add(path_, "missing key \"materials\"");
       return {};
     }
-    for (const YamlNode& node : list->children) {
-      const YamlNode* own = node.find("name");
+    for (const io::YamlNode& node : list->children) {
+      const io::YamlNode* own = node.find("name");
       if (own == nullptr || own->text != name) continue;
       Material material;
       double poisson = 0.0;
@@ -558,7 +559,7 @@ class Importer {
            {std::pair<const char*, double*>{"rho", &material.density},
             {"E", &material.young},
             {has_shear ? "G" : "nu", has_shear ? &material.shear : &poisson}}) {
-        const YamlNode* entry = node.find(key);
+        const io::YamlNode* entry = node.find(key);
         const std::string where = "materials." + name + "." + key;
         if (entry == nullptr) {
           errors_.add(place(node), where + ": missing, " + user + " needs it");
@@ -602,8 +603,8 @@ class Importer {
     const double factor =
         number({outfitting}, Fate::derived, "multiplies mass and inertia of all sections");
     if (!(factor > 0.0)) refuse(outfitting, "expected a number > 0");
-    const YamlNode* layers = find(structure + ".layers");
-    if (layers == nullptr || layers->kind != YamlNode::Kind::list || layers->children.empty()) {
+    const io::YamlNode* layers = find(structure + ".layers");
+    if (layers == nullptr || layers->kind != io::YamlNode::Kind::list || layers->children.empty()) {
       errors_.add(path_, "missing key \"" + structure + ".layers\", a list");
       return;
     }
@@ -636,14 +637,14 @@ class Importer {
   }
 
   /// Rings one inside the other, the first layer outside.
-  void read_layers(const std::string& path, const YamlNode& layers, const Curve& diameter,
+  void read_layers(const std::string& path, const io::YamlNode& layers, const Curve& diameter,
                    double factor) {
     std::vector<Curve> thickness;
     std::vector<Material> materials;
     std::vector<const std::vector<double>*> grids{&diameter.grid};
-    for (const YamlNode& layer : layers.children) {
-      const YamlNode* material = layer.find("material");
-      const YamlNode* thick = layer.find("thickness");
+    for (const io::YamlNode& layer : layers.children) {
+      const io::YamlNode* material = layer.find("material");
+      const io::YamlNode* thick = layer.find("thickness");
       if (material == nullptr || thick == nullptr || thick->find("grid") == nullptr ||
           thick->find("values") == nullptr) {
         errors_.add(place(layer), path +
@@ -833,8 +834,8 @@ class Importer {
   /// windIO 1.0: a list of 21 numbers at each place.
   Entries read_rows(const std::string& path) {
     Entries entries;
-    const YamlNode* grid = find(path + ".grid");
-    const YamlNode* values = find(path + ".values");
+    const io::YamlNode* grid = find(path + ".grid");
+    const io::YamlNode* values = find(path + ".values");
     if (grid == nullptr || values == nullptr) {
       refuse(path, std::string("missing key \"") + (grid == nullptr ? "grid" : "values") + "\"");
       return entries;
@@ -917,9 +918,9 @@ class Importer {
   bool is_used(const std::string& path) const { return used_.contains(path); }
 
   /// Names what nothing has read, as high in the tree as it can.
-  void report_rest(const YamlNode& node, const std::string& path) {
-    if (node.kind != YamlNode::Kind::map) return;
-    for (const YamlNode& child : node.children) {
+  void report_rest(const io::YamlNode& node, const std::string& path) {
+    if (node.kind != io::YamlNode::Kind::map) return;
+    for (const io::YamlNode& child : node.children) {
       const std::string below = path.empty() ? child.key : path + "." + child.key;
       if (is_used(below) || below == "materials") continue;
       if (is_used_below(below) || below == "components")
@@ -931,7 +932,7 @@ class Importer {
 
   std::string path_;
   ImportOptions options_;
-  YamlNode root_;
+  io::YamlNode root_;
   DeckErrors errors_;
   CaseDraft draft_;
   std::vector<ImportLine> report_;
@@ -946,4 +947,4 @@ Import import_windio(const std::string& path, const ImportOptions& options) {
   return Importer(path, options).run();
 }
 
-}  // namespace samara::io
+}  // namespace samara::decks
