@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <system_error>
 
@@ -337,6 +338,15 @@ void MapReader::finish() {
     if (!missing.hint.empty()) what += " (" + missing.hint + ")";
     errors_.add(node_.place, where_, what);
   }
+}
+
+void read_angle(MapReader& map, std::string_view key, double& angle, const NumberRule& rule) {
+  double degrees = 0.0;
+  if (map.read(key, degrees, rule)) angle = degrees * std::numbers::pi / 180.0;
+}
+
+void read_vector(MapReader& map, std::string_view key, Vector3& vector, const NumberRule& rule) {
+  map.read(key, std::span<double>(vector.data(), 3), rule);
 }
 
 }  // namespace samara::io

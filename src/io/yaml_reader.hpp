@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "samara/io/yaml_tree.hpp"
+#include "samara/math/types.hpp"
 
 namespace samara::io {
 
@@ -130,5 +131,10 @@ class MapReader {
   std::vector<std::string> known_;
   std::vector<Missing> missing_;
 };
+
+/// Reads an angle key in degrees into radians.
+void read_angle(MapReader& map, std::string_view key, double& angle, const NumberRule& rule);
+
+void read_vector(MapReader& map, std::string_view key, Vector3& vector, const NumberRule& rule);
 
 }  // namespace samara::io
