@@ -49,11 +49,15 @@ class Equilibrium {
         jacobian_(system.make_jacobian()),
         unloaded_jacobian_(unloaded_->make_jacobian()),
         solver_("static_", equilibrate) {
-    for (Eigen::Index i = 0; i < size_; ++i)
-      if (system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
-        positions_.push_back(i);
-    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates())
+    for (Eigen::Index i = 0; i < size_; ++i) {
+      const system::UnknownRole role = system.unknowns()[static_cast<std::size_t>(i)].role;
+      if (role == system::UnknownRole::position) positions_.push_back(i);
+      if (role == system::UnknownRole::internal) loads_.push_back(i);
+    }
+    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates()) {
       std::erase(positions_, static_cast<Eigen::Index>(neutral.unknown));
+      loads_.push_back(neutral.unknown);
+    }
   }
 
   Point start() {
@@ -142,12 +146,10 @@ class Equilibrium {
   /// Largest change relative to the largest value, of positions and of internal loads.
   double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x) const {
     double worst = 0.0;
-    for (const system::UnknownRole role :
-         {system::UnknownRole::position, system::UnknownRole::internal}) {
+    for (const std::vector<Eigen::Index>* unknowns : {&positions_, &loads_}) {
       double moved = 0.0;
       double size = 0.0;
-      for (Eigen::Index i = 0; i < size_; ++i) {
-        if (loaded_.unknowns()[static_cast<std::size_t>(i)].role != role) continue;
+      for (const Eigen::Index i : *unknowns) {
         moved = std::max(moved, std::abs(change(i)));
         size = std::max(size, std::abs(x(i)));
       }
@@ -207,6 +209,7 @@ class Equilibrium {
   petsc::Handle<Mat> unloaded_jacobian_;
   DirectSolver solver_;
   std::vector<Eigen::Index> positions_;
+  std::vector<Eigen::Index> loads_;  ///< internal, and those that hold neutral coordinates
 };
 
 /// Along the path by one unit of arc length: ds^2 = |positions|^2 / D^2 + df^2 / f0^2, with f0 the
