@@ -1,5 +1,6 @@
 #include "samara/analysis/consistent_subspace.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <Eigen/QR>
@@ -106,6 +107,23 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
   fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
 }
 
+/// Places in eta of a coordinate and all its images under the rotor's symmetry, the first first.
+std::vector<std::size_t> ConsistentSubspace::images_of(std::size_t coordinate) const {
+  const system::RotorSymmetry& symmetry = system_.symmetry();
+  std::vector<std::size_t> places{coordinate};
+  if (symmetry.sectors < 2) return places;
+  PetscInt unknown = coordinates_[coordinate];
+  for (int q = 1; q < symmetry.sectors; ++q) {
+    unknown = symmetry.source[static_cast<std::size_t>(unknown)];
+    const auto found = std::find(coordinates_.begin(), coordinates_.end(), unknown);
+    const auto place = static_cast<std::size_t>(found - coordinates_.begin());
+    if (found == coordinates_.end()) throw InternalError("a coordinate without its image");
+    if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
 void ConsistentSubspace::tie_coordinates(const Eigen::SparseMatrix<double>& K) {
   if (constraints_.size() <= tied_.size()) return;
   // Beams held at both ends: what constraints leave when the positions have met theirs, W^T D p = 0
@@ -117,21 +135,46 @@ void ConsistentSubspace::tie_coordinates(const Eigen::SparseMatrix<double>& K) {
       Eigen::Map<const Eigen::VectorXd>(scale_.data(), degrees_of_freedom()).asDiagonal();
   const Eigen::HouseholderQR<Eigen::MatrixXd> tied_qr(D_tied);
   const Eigen::MatrixXd W = Eigen::MatrixXd(tied_qr.householderQ()).rightCols(excess);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(W.transpose() * D_free);
-  // Columns of D are scaled to entries of about one.
-  const Eigen::VectorXd pivot = pivots.matrixR().diagonal().head(excess).cwiseAbs();
-  if (pivot.minCoeff() < least_pivot)
-    throw InputError(
-        "the supports of a beam hold it twice in a direction in which it is rigid; hint: a spring "
-        "instead of a rigid direction of the support");
+  Eigen::MatrixXd rest = W.transpose() * D_free;
+  // Coordinates that the rotor's symmetry moves onto each other are tied together, or P would not
+  // map eta onto eta. Pivots: the image whose remaining column is shortest decides.
   std::vector<bool> chosen(coordinates_.size(), false);
-  for (Eigen::Index i = 0; i < excess; ++i)
-    chosen[static_cast<std::size_t>(pivots.colsPermutation().indices()(i))] = true;
+  for (Eigen::Index count = 0; count < excess;) {
+    std::vector<std::size_t> best;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+      const std::vector<std::size_t> alike = images_of(i);
+      if (chosen[i] || alike.front() != i) continue;
+      if (count + static_cast<Eigen::Index>(alike.size()) > excess) continue;
+      double shortest = rest.col(static_cast<Eigen::Index>(i)).norm();
+      for (const std::size_t j : alike)
+        shortest = std::min(shortest, rest.col(static_cast<Eigen::Index>(j)).norm());
+      if (shortest > largest) {
+        largest = shortest;
+        best = alike;
+      }
+    }
+    for (const std::size_t i : best) {
+      const Eigen::VectorXd column = rest.col(static_cast<Eigen::Index>(i));
+      // Columns of D are scaled to entries of about one.
+      if (column.norm() < least_pivot) best.clear();
+      if (best.empty()) break;
+      const Eigen::VectorXd direction = column.normalized();
+      rest -= direction * (direction.transpose() * rest);
+      chosen[i] = true;
+      ++count;
+    }
+    if (best.empty())
+      throw InputError(
+          "the supports of a beam hold it twice in a direction in which it is rigid; hint: a "
+          "spring instead of a rigid direction of the support");
+  }
   std::vector<PetscInt> coordinates;
   std::vector<double> scale;
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     if (chosen[i]) {
       tied_.push_back(coordinates_[i]);
+      tied_scale_.push_back(scale_[i]);
       continue;
     }
     coordinates.push_back(coordinates_[i]);
@@ -224,7 +267,10 @@ void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
     const petsc::WriteView view(z);
     for (std::size_t i = 0; i < tied_.size(); ++i)
       view[tied_[i]] += change(static_cast<Eigen::Index>(i));
-    if (change.size() == 0 || change.norm() < tolerance) break;
+    Eigen::VectorXd scaled = change;
+    for (std::size_t i = 0; i < tied_scale_.size(); ++i)
+      scaled(scaled.size() - static_cast<Eigen::Index>(tied_scale_.size() - i)) /= tied_scale_[i];
+    if (change.size() == 0 || scaled.norm() < tolerance) break;
     if (step == most_steps)
       throw ConvergenceError("no consistent state: the constraints do not converge");
   }

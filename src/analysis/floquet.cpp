@@ -152,9 +152,10 @@ class Analysis {
     Eigen::MatrixXd result(pairs.rows(), pairs.cols());
     for (Eigen::Index i = 0; i < d; ++i) {
       const auto unknown = static_cast<std::size_t>(coordinates[static_cast<std::size_t>(i)]);
-      const auto source =
-          std::find(coordinates.begin(), coordinates.end(), symmetry.source[unknown]) -
-          coordinates.begin();
+      const auto found =
+          std::find(coordinates.begin(), coordinates.end(), symmetry.source[unknown]);
+      if (found == coordinates.end()) throw InternalError("a coordinate without its image");
+      const auto source = found - coordinates.begin();
       const double factor = symmetry.sign[unknown] * scale[static_cast<std::size_t>(source)] /
                             scale[static_cast<std::size_t>(i)];
       result.row(i) = factor * pairs.row(source);

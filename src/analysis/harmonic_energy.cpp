@@ -69,7 +69,9 @@ Eigen::MatrixXd square_root(const EnergyGroup& group) {
   const Eigen::LDLT<Eigen::MatrixXd> factors(weight);
   const Eigen::VectorXd pivots = factors.vectorD();
   const double least = no_energy * pivots.maxCoeff();
-  const Eigen::MatrixXd upper = Eigen::MatrixXd(factors.matrixU()) * factors.transpositionsP();
+  // Transpositions do not associate: from the right they would come in the wrong order.
+  const Eigen::MatrixXd permutation = factors.transpositionsP() * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd upper = Eigen::MatrixXd(factors.matrixU()) * permutation;
   Eigen::MatrixXd root(n, n);
   Eigen::Index rows = 0;
   for (Eigen::Index i = 0; i < n; ++i)

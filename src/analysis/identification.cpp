@@ -68,9 +68,12 @@ std::string moving_joint(const system::PeriodicSystem& system, const Eigen::Matr
     const system::Unknown& unknown = system.unknowns()[i];
     const bool joint = unknown.name.ends_with(" angle");
     const double size = shape.row(static_cast<Eigen::Index>(i)).squaredNorm();
-    if (!joint || size <= largest) continue;
+    if (!(joint || unknown.is_free) || size <= largest) continue;
     largest = size;
-    name = unknown.name.substr(0, unknown.name.size() - std::string(" angle").size());
+    const std::string ending =
+        joint ? " angle" : unknown.name.substr(unknown.name.find(" support"));
+    name = unknown.name.substr(0, unknown.name.size() - ending.size());
+    if (!joint) name = name.substr(0, name.find(' ')) + " hinge";
   }
   return name;
 }
@@ -120,7 +123,7 @@ std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd
   for (const EnergyGroup& group : system.energy_groups()) blades = std::max(blades, group.blade);
   const std::string part = largest.substr(0, largest.find('/'));
   const std::string motion = largest.substr(largest.find('/') + 1);
-  if (part == "joint") return motion;
+  if (part == "joint" || part == "support") return motion;
   if (part != "blade" || blades != 2) return part + " " + motion;
   const double alike = blade_correlation(system.energy_groups(), motion, shape);
   if (alike > clear_correlation) return "blade " + motion + " symmetric";

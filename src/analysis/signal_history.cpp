@@ -24,6 +24,15 @@ SignalHistory::SignalHistory(const system::PeriodicSystem& system, int sectors, 
   values_.resize(energy().signals() * steps, states);
 }
 
+SignalHistory::~SignalHistory() {
+  for (Block& block : blocks_)
+    for (MPI_Request& request : block.requests) {
+      if (request == MPI_REQUEST_NULL) continue;
+      MPI_Cancel(&request);
+      MPI_Request_free(&request);
+    }
+}
+
 void SignalHistory::append(const Eigen::MatrixXd& states) {
   if (ranks_.size == 1) {
     energy().take(states, values_.middleRows(taken_ * energy().signals(), energy().signals()));

@@ -19,6 +19,10 @@ class SignalHistory {
   /// `states` initial states, dealt to the ranks in turn.
   SignalHistory(const system::PeriodicSystem& system, int sectors, long steps, Eigen::Index states,
                 const Ranks& ranks);
+  /// Waits for nothing: messages on their way are given up where an analysis ends early.
+  ~SignalHistory();
+  SignalHistory(const SignalHistory&) = delete;
+  SignalHistory& operator=(const SignalHistory&) = delete;
 
   /// The share of this rank.
   HarmonicEnergy& energy() { return energies_[static_cast<std::size_t>(ranks_.rank)]; }

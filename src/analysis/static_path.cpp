@@ -330,13 +330,27 @@ class PathFollower {
     }
   }
 
-  /// Counts large rotations from where they are now: the next step may turn as far again. True
-  /// where the point has been rewritten.
+  /// Counts large rotations from where they are now: the next step may turn as far again. The point
+  /// is corrected, for a coarse mesh depends a little on what rotations count from. True where the
+  /// point has been rewritten.
   bool recount(Point& point) {
-    std::unique_ptr<system::PeriodicSystem> system = equilibrium_->counted_from(point);
+    Point anew = point;
+    std::unique_ptr<system::PeriodicSystem> system = equilibrium_->counted_from(anew);
     if (!system) return false;
-    equilibrium_ = std::make_unique<Equilibrium>(*system);
+    auto other = std::make_unique<Equilibrium>(*system);
+    std::swap(equilibrium_, other);
+    try {
+      correct(anew, nullptr);
+    } catch (const DomainError&) {
+      std::swap(equilibrium_, other);
+      return false;
+    } catch (const ConvergenceError&) {  // at a limit point, say: later, then
+      std::swap(equilibrium_, other);
+      return false;
+    }
+    other.reset();  // before the system that it is of
     recounted_ = std::move(system);
+    point = anew;
     return true;
   }
 

@@ -100,7 +100,7 @@ class Describer {
       }
       if (beam.support.is_elastic(i))
         result_.groups.push_back({EnergyGroup::Kind::strain,
-                                  "joint",
+                                  "support",
                                   blade == 0 ? "foundation" : "blade support",
                                   blade,
                                   frame,
@@ -116,7 +116,7 @@ class Describer {
         result_.rows[static_cast<std::size_t>(tip + 12 + i)] = RowRole::constraint;
       if (beam.end_support.stiffness(i, i) > 0.0)
         result_.groups.push_back({EnergyGroup::Kind::strain,
-                                  "joint",
+                                  "support",
                                   "blade end support",
                                   blade,
                                   Frame::rotating,

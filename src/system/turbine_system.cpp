@@ -215,9 +215,11 @@ bool TurbineSystem::is_conservative() const {
   const elements::RigidChain& chain = turbine.chain;
   for (const elements::Hinge* hinge : {&chain.yaw, &chain.teeter, &chain.torsion, &chain.generator})
     if (hinge->free && hinge->damping != 0.0) return false;
-  for (const PlacedBeam& placed : assembly_->equations.beams())
+  for (const PlacedBeam& placed : assembly_->equations.beams()) {
+    if (placed.beam->has_support && placed.beam->support.damping != 0.0) return false;
     for (const elements::BeamPoint& point : placed.beam->points)
       if (!point.damping.isZero(0.0)) return false;
+  }
   // A constant torque has a potential where its axis moves as prescribed.
   const bool axis_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free;
   if (axis_moves && chain.rotor_torque.torque != 0.0) return false;

@@ -260,6 +260,7 @@ class TurbineTangents::Scatter {
                         const std::vector<double>& z_dot) {
     const model::Beam& beam = *placed.beam;
     for (int i = 0; i < 6; ++i) add(K_, placed.root + i, placed.root + i, 1.0);
+    Vector6 tip_balance = Vector6::Zero();
     const auto add_end = [&](int first, int point, const Vector3& x, const Matrix3& reference,
                              const Matrix6& mass, bool balance) {
       for (int i = 0; i < 6; ++i) {
@@ -278,10 +279,14 @@ class TurbineTangents::Scatter {
       if (!balance) return;
       add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub);
       add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub);
+      for (int i = 0; i < 3 && first == placed.tip; ++i) {
+        tip_balance(i) = terms.force(i).value();
+        tip_balance(3 + i) = terms.moment(i).value();
+      }
     };
     add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.reference(beam.elements - 1),
             beam.tip_mass, placed.on_hub);
-    if (placed.on_hub) add_end_support_tangent(placed, z);
+    if (placed.on_hub) add_end_support_tangent(placed, z, tip_balance);
     for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
       const model::MassNode& node = beam.mass_nodes[m];
       const int next = node.end * beam.order;
@@ -324,29 +329,32 @@ class TurbineTangents::Scatter {
     add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub);
   }
 
-  /// A rigid direction has no balance: its row says that the end does not move.
-  void add_end_support_tangent(const PlacedBeam& placed, const std::vector<double>& z) {
+  /// The rows of the end, whose balance has been added before.
+  void add_end_support_tangent(const PlacedBeam& placed, const std::vector<double>& z,
+                               const Vector6& balance) {
     using EndDual = math::Dual<6>;
     const elements::EndSupport& support = placed.beam->end_support;
-    const bool any =
-        std::any_of(support.rigid.begin(), support.rigid.end(), [](bool r) { return r; });
-    if (!any && support.stiffness.isZero(0.0)) return;
+    if (support.is_none()) return;
+    const Vector6 position = Eigen::Map<const Vector6>(z.data() + placed.tip);
     Vec6<EndDual> end;
+    for (int i = 0; i < 6; ++i) end(i) = math::independent<6>(position(i), i);
+    const Vec6<EndDual> rows = elements::end_support_rows<EndDual>(support, placed.end_reference,
+                                                                   end, balance.cast<EndDual>());
+    const auto rows_of = [&](const Vector6& some) -> Vector6 {
+      return elements::end_support_rows<double>(support, placed.end_reference, position, some);
+    };
+    Matrix6 by_balance;  // in which the rows are linear
     for (int i = 0; i < 6; ++i)
-      end(i) = math::independent<6>(z[static_cast<std::size_t>(placed.tip + i)], i);
-    const Vec6<EndDual> load =
-        elements::end_support_load<EndDual>(support, placed.end_reference, end);
-    BlockMatrix::Block K = K_.at(placed.tip / block, placed.tip / block);
-    for (int i = 0; i < 6; ++i) {
-      if (support.rigid[static_cast<std::size_t>(i)]) clear_row(placed.tip + 12 + i);
-      K.block<1, 6>(12 + i, 0) += load(i).derivatives().transpose();
-    }
-  }
-
-  void clear_row(int row) {
+      by_balance.col(i) = rows_of(Vector6::Unit(i)) - rows_of(Vector6::Zero());
+    const int row = placed.tip / block;
     for (BlockMatrix* matrix : {&K_, &M_})
-      for (const int column : matrix->columns()[static_cast<std::size_t>(row / block)])
-        matrix->at(row / block, column).row(row % block).setZero();
+      for (const int column : matrix->columns()[static_cast<std::size_t>(row)]) {
+        BlockMatrix::Block target = matrix->at(row, column);
+        const Eigen::Matrix<double, 6, block> before = target.middleRows<6>(12);
+        target.middleRows<6>(12) = by_balance * before;
+      }
+    BlockMatrix::Block K = K_.at(row, row);
+    for (int i = 0; i < 6; ++i) K.block<1, 6>(12 + i, 0) += rows(i).derivatives().transpose();
   }
 
   /// `points`: tangents of the beam's points.

@@ -1,6 +1,8 @@
 // Identification of modes whose history is written down here.
 #include "samara/analysis/identification.hpp"
 
+#include <random>
+
 #include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/harmonic_energy.hpp"
@@ -154,6 +156,57 @@ BOOST_AUTO_TEST_CASE(coupled_weights_count_both_ways) {
   const Identified found = identify(system, history);
   BOOST_TEST(found.mode.kinetic_energy == 0.5 * (3.0 * 4.0 + 2.0 * 0.5 * 2.0 + 2.0),
              boost::test_tools::tolerance(1e-13));
+}
+
+/// One kinetic group of six unknowns with a given weight.
+class Body final : public SmallSystem {
+ public:
+  explicit Body(const Eigen::MatrixXd& weight) {
+    std::vector<PetscInt> unknowns;
+    for (int i = 0; i < 6; ++i) {
+      unknowns.push_back(static_cast<PetscInt>(unknowns_.size()));
+      add_velocity("V" + std::to_string(i));
+    }
+    groups_.push_back({EnergyGroup::Kind::kinetic,
+                       "body",
+                       "",
+                       0,
+                       Frame::fixed,
+                       unknowns,
+                       {weight.data(), weight.data() + weight.size()}});
+  }
+  void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd&,
+                   Eigen::MatrixXd&) const override {}
+};
+
+BOOST_AUTO_TEST_CASE(energy_of_a_body_is_that_of_its_mass_matrix) {
+  std::minstd_rand random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto fill = [&](Eigen::MatrixXd m) {
+    return m.unaryExpr([&](double) { return uniform(random); }).eval();
+  };
+  std::vector<Eigen::MatrixXd> weights;
+  for (int rank = 1; rank <= 6; ++rank)  // semi-definite, pivots in any order
+    for (int trial = 0; trial < 5; ++trial) {
+      const Eigen::MatrixXd root = fill(Eigen::MatrixXd(rank, 6));
+      weights.push_back(root.transpose() * root);
+    }
+  Eigen::Matrix<double, 6, 1> diagonal;
+  diagonal << 6900.0, 6900.0, 6900.0, 0.0, 0.0, 16599.0;
+  weights.push_back(diagonal.asDiagonal());
+  for (const Eigen::MatrixXd& weight : weights) {
+    const Body body(weight);
+    analysis::HarmonicEnergy energy(body);
+    const Eigen::MatrixXd v = fill(Eigen::MatrixXd(6, 2));
+    Eigen::MatrixXd real(energy.signals(), 1);
+    Eigen::MatrixXd imaginary(energy.signals(), 1);
+    energy.take(v.col(0), real);
+    energy.take(v.col(1), imaginary);
+    const double found =
+        energy.energies(real.data(), imaginary.data(), Eigen::VectorXcd::Ones(1)).sum();
+    const double expected = 0.5 * (v.transpose() * weight * v).trace();
+    BOOST_TEST(found == expected, boost::test_tools::tolerance(1e-11));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(ties_go_to_the_smallest_harmonic_that_is_not_negative) {

@@ -48,6 +48,7 @@ class ConsistentSubspace {
 
  private:
   Eigen::MatrixXd positions(double t) const;
+  std::vector<std::size_t> images_of(std::size_t coordinate) const;
   void tie_coordinates(const Eigen::SparseMatrix<double>& K);
 
   const system::PeriodicSystem& system_;
@@ -57,6 +58,7 @@ class ConsistentSubspace {
   std::vector<bool> carried_;
   std::vector<PetscInt> constraints_;  ///< rows
   std::vector<PetscInt> tied_;         ///< what constraint rows determine: positions
+  std::vector<double> tied_scale_;     ///< of the last ones of these, which are internal loads
   std::vector<PetscInt> kinematic_;    ///< rows
   std::vector<PetscInt> velocities_;   ///< unknowns
   bool fixed_constraints_ = false;

@@ -22,16 +22,19 @@ struct RootSupport {
 struct EndSupport {
   Matrix6 stiffness = Matrix6::Zero();
   std::array<bool, 6> rigid{};
+
+  bool is_none() const { return rigid == std::array<bool, 6>{} && stiffness.isZero(0.0); }
 };
 
 template <class T>
 struct RootSupportTerms {
-  Vec6<T> law;   ///< position less compliance times load; the load where nothing holds
+  Vec6<T> law;   ///< position less compliance times elastic load; the load where nothing holds
   Vec6<T> load;  ///< of the node on its springs, in a
   Vec6<T> root;  ///< the same on what carries the springs, moment about the undeformed root
 };
 
-/// z: u, theta; V, Omega; F_hat, M_hat, the elastic loads.
+/// z: u, theta; V, Omega; F_hat and m_hat, the elastic loads that work on u and theta. The moment
+/// that works on a rotation is M with M . omega = m . theta_dot, M = Q^-1 m.
 template <class T>
 RootSupportTerms<T> root_support_terms(const RootSupport& support,
                                        const Eigen::Matrix<T, point_size, 1>& z,
@@ -44,6 +47,9 @@ RootSupportTerms<T> root_support_terms(const RootSupport& support,
     for (int j = 0; j < 6; ++j)
       if (support.compliance(i, j) != 0.0) terms.law(i) -= z(12 + j) * support.compliance(i, j);
   }
+  const Vec3<T> theta = z.template segment<3>(3);
+  const Vec3<T> on_parameters = terms.load.template tail<3>();
+  terms.load.template tail<3>() = math::inverse_tangent_times(theta, on_parameters);
   const Vec3<T> force = terms.load.template head<3>();
   const Vec3<T> displacement = z.template head<3>();
   terms.root = terms.load;
@@ -51,22 +57,26 @@ RootSupportTerms<T> root_support_terms(const RootSupport& support,
   return terms;
 }
 
-/// Load of the end on its springs, and in rigid directions the position itself. `reference`:
-/// parameters of the rotation from which theta counts.
+/// Rows of the end, from its `balance` of forces and moments in a: where springs hold, the load
+/// that works on a position, Q M for moments, with that of the springs; in rigid directions the
+/// position. `reference`: parameters of the rotation from which theta counts.
 template <class T>
-Vec6<T> end_support_load(const EndSupport& support, const Vector3& reference, const Vec6<T>& end) {
+Vec6<T> end_support_rows(const EndSupport& support, const Vector3& reference, const Vec6<T>& end,
+                         const Vec6<T>& balance) {
   Vec6<T> position = end;
   if (!reference.isZero(0.0))
     position.template tail<3>() =
         math::compose<T>(Vec3<T>(end.template tail<3>()), reference.cast<T>());
-  Vec6<T> load;
+  const Vec3<T> theta = position.template tail<3>();
+  const Vec3<T> moment = balance.template tail<3>();
+  Vec6<T> rows = balance;
+  rows.template tail<3>() = math::tangent_times(theta, moment);
   for (int i = 0; i < 6; ++i) {
-    load(i) = T(0);
     for (int j = 0; j < 6; ++j)
-      if (support.stiffness(i, j) != 0.0) load(i) += position(j) * support.stiffness(i, j);
-    if (support.rigid[static_cast<std::size_t>(i)]) load(i) = position(i);
+      if (support.stiffness(i, j) != 0.0) rows(i) += position(j) * support.stiffness(i, j);
+    if (support.rigid[static_cast<std::size_t>(i)]) rows(i) = position(i);
   }
-  return load;
+  return rows;
 }
 
 }  // namespace samara::elements

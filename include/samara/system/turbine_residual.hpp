@@ -283,14 +283,11 @@ void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachm
   // The tower top's loads are Kane's rows.
   add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass,
           beam.reference(beam.elements - 1), " tip", placed.on_hub);
-  if (placed.on_hub) {
-    const Vec6<T> load =
-        elements::end_support_load<T>(beam.end_support, placed.end_reference,
-                                      Vec6<T>(Eigen::Map<const Vec6<T>>(z.data() + placed.tip)));
-    for (int i = 0; i < 6; ++i) {
-      T& row = r[static_cast<std::size_t>(placed.tip + 12 + i)];
-      row = beam.end_support.rigid[static_cast<std::size_t>(i)] ? load(i) : T(row + load(i));
-    }
+  if (placed.on_hub && !beam.end_support.is_none()) {
+    LongRows rows(r.data() + placed.tip + 12);
+    const Vec6<T> end = Eigen::Map<const Vec6<T>>(z.data() + placed.tip);
+    rows =
+        elements::end_support_rows<T>(beam.end_support, placed.end_reference, end, Vec6<T>(rows));
   }
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const model::MassNode& node = beam.mass_nodes[m];
@@ -300,7 +297,7 @@ void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachm
       add_support(placed, first, a, z, z_dot, r);
     else
       add_end(first, next - 1, node.x, node.mass, beam.reference(node.end - 1),
-              " mass " + std::to_string(m + 1), true);
+              " mass " + std::to_string(beam.has_support ? m : m + 1), true);
     LongRows(r.data() + placed.points[static_cast<std::size_t>(next)]) -=
         at(z, first).template head<6>();
   }
