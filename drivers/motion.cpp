@@ -1,4 +1,5 @@
 // What loads, prescribed motions and supports a command can take.
+#include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 
 #include "commands.hpp"
@@ -11,15 +12,20 @@ void require_mass(const io::Case& input, const std::string& key,
                   const model::SupportDefinition& support) {
   bool displaces = false;
   bool turns = false;
-  for (std::size_t i = 0; i < 6; ++i)
-    if (!support.rigid[i]) (i < 3 ? displaces : turns) = true;
-  if ((displaces || turns) && !(support.mass > 0.0))
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!support.rigid[i]) displaces = true;
+    if (!support.rigid[3 + i] && !(support.inertia(static_cast<Eigen::Index>(i)) > 0.0))
+      turns = true;
+  }
+  if (displaces && !(support.mass > 0.0))
     throw InputError(input.path + ": " + key +
-                     " may move, and has no mass; hint: give the mass and inertia of what stands "
+                     " may move without a mass; hint: give the mass and inertia of what stands "
                      "on the springs (a foundation, a bearing); samara static needs none");
-  if (turns && !(support.inertia.minCoeff() > 0.0))
+  if (turns)
     throw InputError(input.path + ": " + key +
-                     " may turn, and has no inertia; hint: give inertia: [I1, I2, I3], each > 0");
+                     " may turn about an axis without inertia; hint: instead of a word give "
+                     "stiffness: {theta1: free, ...} with inertia: [I1, I2, I3], > 0 where it may "
+                     "turn; samara static needs none");
 }
 
 /// @throws InputError where more harmonics are asked for than the trim has.
@@ -31,6 +37,13 @@ void require_harmonics(const io::Case& input, const std::string& place, int per_
     throw InputError(
         place + ".harmonic.per_rev is " + std::to_string(per_rev) +
         ", more than trim.harmonics; hint: --set trim.harmonics=" + std::to_string(per_rev));
+  const bool shoots = trim.method == analysis::TrimMethod::shooting;
+  const int most = shoots ? analysis::shooting_harmonics(trim.steps) : analysis::auto_harmonics;
+  if (input.turbine.shaft.speed > 0.0 && (shoots || trim.automatic) && per_rev > most)
+    throw InputError(place + ".harmonic.per_rev is " + std::to_string(per_rev) +
+                     ", more than the " + std::to_string(most) + " harmonics of trim." +
+                     (shoots ? "method: shooting" : "harmonics: auto") +
+                     "; hint: --set trim.harmonics=" + std::to_string(per_rev));
 }
 
 void require_repeating_motion(const io::Case& input, const std::string& joint,

@@ -166,6 +166,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
                             const PeriodicSolution& solution) {
   require_constant(system, solution);
   const ConsistentSubspace subspace(system, solution);
+  if (subspace.degrees_of_freedom() == 0)
+    throw InputError("modes: nothing can move, all strains and joints are rigid");
   const double speed = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const double rate = speed > 0.0 ? speed : 1.0;
   const auto checked = [&](double sigma) {

@@ -68,12 +68,16 @@ std::string moving_joint(const system::PeriodicSystem& system, const Eigen::Matr
     const system::Unknown& unknown = system.unknowns()[i];
     const bool joint = unknown.name.ends_with(" angle");
     const double size = shape.row(static_cast<Eigen::Index>(i)).squaredNorm();
-    if (!(joint || unknown.is_free) || size <= largest) continue;
+    const bool support = unknown.name.find(" support theta") != std::string::npos;
+    if (!(joint || support) || size <= largest) continue;
     largest = size;
-    const std::string ending =
-        joint ? " angle" : unknown.name.substr(unknown.name.find(" support"));
-    name = unknown.name.substr(0, unknown.name.size() - ending.size());
-    if (!joint) name = name.substr(0, name.find(' ')) + " hinge";
+    const std::string beam = unknown.name.substr(0, unknown.name.find(' '));
+    if (joint)
+      name = unknown.name.substr(0, unknown.name.size() - std::string(" angle").size());
+    else if (unknown.is_free)
+      name = beam + " hinge";
+    else
+      name = beam == "tower" ? "foundation" : beam + " support";
   }
   return name;
 }

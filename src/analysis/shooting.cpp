@@ -194,7 +194,7 @@ class Shooting {
   }
 
   Trim result(int revolutions) const {
-    const int harmonics = std::min(most_harmonics, (steps_ - 1) / 3);
+    const int harmonics = shooting_harmonics(steps_);
     Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(system_.size(), 2 * harmonics + 1);
     const std::vector<bool>& carried = subspace_->carried();
     for (int k = 0; k < steps_; ++k) {
@@ -246,6 +246,8 @@ class Shooting {
 };
 
 }  // namespace
+
+int shooting_harmonics(int steps) { return std::min(most_harmonics, (steps - 1) / 3); }
 
 Trim solve_shooting(const system::PeriodicSystem& system, int steps, double tolerance,
                     Observer& observer) {

@@ -12,8 +12,6 @@
 namespace samara::analysis {
 namespace {
 
-constexpr int most_harmonics = 60;
-
 /// Relative to the largest internal load: below it a constant is the solution.
 constexpr double rounding = 1e-11;
 /// Of the largest residual of the undeformed system: what changes by more is no rounding.
@@ -62,7 +60,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
                      const std::optional<Trim>& constant, Observer& observer) {
   std::vector<std::pair<int, double>> history;
   if (constant) history = constant->history;
-  for (int harmonics = std::max(1, options.least_harmonics); harmonics <= most_harmonics;
+  for (int harmonics = std::max(1, options.least_harmonics); harmonics <= auto_harmonics;
        ++harmonics) {
     if (!is_closed(harmonics, system.symmetry().sectors)) continue;
     Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, nullptr);
@@ -74,7 +72,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
     observer.note(text.str());
     if (trim.residual_between <= allowed_residual(trim, options.auto_tolerance)) return trim;
   }
-  throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(most_harmonics) +
+  throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(auto_harmonics) +
                          " and the residual between the samples is still too large; hint: give "
                          "trim.harmonics or a larger trim.auto_tolerance");
 }

@@ -349,6 +349,9 @@ void read_support(MapReader& beam, std::string_view key, bool at_root,
   }
   map.finish();
   if (errors.size() > errors_before) return;
+  if (support.is_clamp() && (support.mass > 0.0 || support.damping > 0.0))
+    errors.add(find_blame(*node), beam.where(key),
+               "mass and damping of a support that is rigid in all directions do nothing");
   const std::string fault = model::find_support_fault(support);
   if (!fault.empty()) errors.add(find_blame(*node), beam.where(key), fault);
   support.stiffness = symmetrize(support.stiffness);

@@ -94,8 +94,8 @@ bool is_semi_definite(const Matrix6& matrix) {
 /// Between stations they are the values at the points, which are taken then (none is returned), as
 /// they are where an integral is no possible section.
 std::vector<MeanSection> mean_sections(const BeamDefinition& definition,
-                                       const math::QuadratureRule& rule, double start,
-                                       double span) {
+                                       const math::QuadratureRule& rule, const ReferenceLine& line,
+                                       double start, double span) {
   std::vector<double> cuts{start};
   for (const SectionDefinition& section : definition.sections)
     if (section.at > start && section.at < start + span) cuts.push_back(section.at);
@@ -103,17 +103,24 @@ std::vector<MeanSection> mean_sections(const BeamDefinition& definition,
   cuts.push_back(start + span);
   const math::QuadratureRule fine = math::gauss_rule(fine_points);
   std::vector<MeanSection> means(rule.points.size());
+  const auto axes_at = [&](double at) {
+    return line.at(at, interpolate_section(definition, at).twist).C_ab;
+  };
   for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
     for (std::size_t q = 0; q < fine.points.size(); ++q) {
       const double at = cuts[c] + (cuts[c + 1] - cuts[c]) * fine.points[q];
       const double length = (cuts[c + 1] - cuts[c]) / span * fine.weights[q];
       const SectionDefinition section = interpolate_section(definition, at);
       const Matrix6 compliance = compliance_of(section);
+      const Matrix3 axes = axes_at(at);
       for (std::size_t j = 0; j < means.size(); ++j) {
         const double share = math::lagrange(rule.points, static_cast<int>(j), (at - start) / span) *
                              length / rule.weights[j];
-        means[j].mass += share * section.mass;
-        means[j].compliance += share * compliance;
+        Matrix6 turn = Matrix6::Zero();  // into the axes of the point
+        turn.topLeftCorner<3, 3>() = axes_at(start + span * rule.points[j]).transpose() * axes;
+        turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
+        means[j].mass += share * turn * section.mass * turn.transpose();
+        means[j].compliance += share * turn * compliance * turn.transpose();
       }
     }
   }
@@ -185,7 +192,7 @@ Beam build_beam(const std::string& name, const BeamDefinition& definition, doubl
   for (int e = 0; e < definition.elements; ++e) {
     const double start = beam.ends[static_cast<std::size_t>(e)];
     const double span = beam.ends[static_cast<std::size_t>(e) + 1] - start;
-    const std::vector<MeanSection> means = mean_sections(definition, rule, start, span);
+    const std::vector<MeanSection> means = mean_sections(definition, rule, line, start, span);
     for (const double& xi : rule.points) {
       const double fraction = start + span * xi;
       const SectionDefinition section = interpolate_section(definition, fraction);

@@ -200,6 +200,67 @@ BOOST_AUTO_TEST_CASE(damping_of_the_foundation_gives_each_mode_mu_omega_over_two
   BOOST_TEST(seen == 6);
 }
 
+BOOST_AUTO_TEST_CASE(unequal_springs_that_have_turned_neither_feed_nor_take) {
+  // A coned and pitched blade pulls its springs out of line; they keep a potential, root and end.
+  for (const bool at_end : {false, true}) {
+    BeamCase beam;
+    beam.length = 10.0;
+    beam.hub_radius = 1.0;
+    beam.inertia = Vector3(2e-2, 1e-2, 1e-2);
+    beam.stiffness << 1e9, 0.0, 0.0, 1e5, 2e5, 4e5;
+    beam.elements = 2;
+    beam.order = 5;
+    beam.speed = at_end ? 4.0 : 6.0;
+    model::TurbineDefinition definition = definition_of(beam);
+    definition.blades.precone = (at_end ? 25.0 : 15.0) * pi / 180.0;
+    definition.blades.pitch = 25.0 * pi / 180.0;
+    model::SupportDefinition& springs =
+        at_end ? definition.blades.beam.end_support : definition.blades.beam.support;
+    springs = support(at_end ? "fffsss" : "rrrsss", 1.0);
+    springs.stiffness.diagonal() << 0.0, 0.0, 0.0, 3e3, 6e3, 3e4;
+    springs.mass = at_end ? 0.0 : 1.0;
+    springs.inertia.setConstant(at_end ? 0.0 : 0.5);
+    const analysis::ModeSet set = constant_modes_of(definition);
+    BOOST_TEST(set.conservative);
+    for (std::size_t m = 0; m < 4; ++m)
+      BOOST_TEST(std::abs(set.modes[m].exponent.real()) < 1e-6, set.modes[m].label);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_damped_foundation_is_not_conservative) {
+  Rod rod;
+  BOOST_TEST(constant_modes_of(rod_on_springs(rod)).conservative);
+  rod.damping = 1e-3;
+  BOOST_TEST(!constant_modes_of(rod_on_springs(rod)).conservative);
+}
+
+BOOST_AUTO_TEST_CASE(held_ends_of_three_blades_keep_the_symmetry) {
+  model::TurbineDefinition definition = beam_between("rrrrrr", "ffrfff");
+  definition.blades.count = 3;
+  definition.blades.beam.elements = 2;
+  definition.blades.pitch = 0.3;
+  definition.shaft.speed = 2.0;
+  definition.gravity = 0.5;
+  analysis::TrimOptions options;
+  options.harmonics = 3;
+  const analysis::Floquet blade =
+      floquet_of(definition, 300, analysis::FloquetPeriod::automatic, options);
+  const analysis::Floquet full =
+      floquet_of(definition, 300, analysis::FloquetPeriod::full, options);
+  BOOST_TEST(blade.sectors == 3);
+  BOOST_TEST_REQUIRE(blade.set.modes.size() == full.set.modes.size());
+  int resolved = 0;
+  for (const analysis::Mode& mode : blade.set.modes) {
+    if (!mode.resolved) continue;
+    ++resolved;
+    double nearest_one = 1.0;
+    for (const analysis::Mode& other : full.set.modes)
+      nearest_one = std::min(nearest_one, std::abs(other.exponent - mode.exponent));
+    BOOST_TEST(nearest_one < 1e-6 * std::abs(mode.exponent), mode.label);
+  }
+  BOOST_TEST(resolved >= 3);
+}
+
 BOOST_AUTO_TEST_CASE(a_stiff_foundation_is_a_clamp) {
   io::Case input = lee("baseline", {"shaft.speed=0"});
   const std::vector<double> clamped = frequencies(constant_modes_of(input.turbine));

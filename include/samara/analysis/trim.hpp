@@ -31,6 +31,12 @@ struct Trim {
   std::vector<std::pair<int, double>> history;
 };
 
+/// Harmonics that `harmonics: auto` tries, at the most.
+inline constexpr int auto_harmonics = 60;
+
+/// Harmonics of the series that shooting with `steps` steps a revolution gives.
+int shooting_harmonics(int steps);
+
 /// Solves for the periodic steady state from the undeformed system in its prescribed motion.
 /// Serial: every rank computes the same.
 /// @throws ConvergenceError with PETSc's reason and a hint.
