@@ -121,6 +121,18 @@ std::string mesh_words(const model::Beam& beam) {
   return count(beam.elements, "element") + " of order " + std::to_string(beam.order);
 }
 
+std::string support_words(const model::SupportDefinition& support) {
+  if (support.is_clamp()) return "clamped";
+  int springs = 0;
+  int free = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (support.free[i]) ++free;
+    if (!support.free[i] && !support.rigid[i]) ++springs;
+  }
+  return "on springs in " + count(springs, "direction") + ", free in " + std::to_string(free) +
+         ", with " + general(support.mass, 6) + " kg, which count with the beam";
+}
+
 std::string facts(const io::Case& input, const system::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
@@ -160,8 +172,11 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
       line(name, general(at_speed.torque, 5) + " N m at the rotor speed, slope " +
                      general(at_speed.slope, 5) + " N m s/rad");
   };
-  torque("generator torque", shaft.generator.law);
+  if (turbine.chain.generator.free) torque("generator torque", shaft.generator.law);
   torque("rotor torque", shaft.rotor);
+  if (definition.has_tower) line("tower foot", support_words(definition.tower.support));
+  if (!definition.blades.beam.support.is_clamp())
+    line("blade roots", support_words(definition.blades.beam.support));
   line("gravity", general(definition.gravity, 6) + " m/s^2");
   if (!definition.loads.empty())
     line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));
@@ -173,8 +188,9 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
       name.clear();
     }
   };
-  damping("blade damping", damping_lines(definition.blades.beam, turbine.blades.front(),
-                                         {"flap", "lead-lag", "torsion"}));
+  damping("blade damping",
+          damping_lines(definition.blades.beam, model::build_beam("blade", definition.blades.beam),
+                        {"flap", "lead-lag", "torsion"}));
   if (turbine.has_tower)
     damping("tower damping",
             damping_lines(definition.tower, turbine.tower, {"fore-aft", "lateral", "torsion"}));

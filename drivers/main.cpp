@@ -36,8 +36,7 @@ constexpr std::array<Command, 6> commands{{
     {"modes", "modes of a parked rotor, or of a balanced one in its own axes",
      "Finds all modes about the steady state where the coefficients do not depend on the azimuth:\n"
      "a parked rotor, or a balanced one in its own axes. Elsewhere use samara floquet.\n",
-     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, require_motion,
-     run_modes},
+     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, require_motion, run_modes},
     {"trim", "the periodic steady state",
      "Finds the periodic steady state: deflections and loads as harmonics of the rotor speed.\n",
      "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true,

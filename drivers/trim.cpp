@@ -24,6 +24,9 @@ constexpr int instants = 180;
 /// Relative to the size of what it is part of: below it a value is rounding.
 constexpr double rounding = 1e-9;
 
+/// Of the largest load: a residual between the samples beyond it is said to be rough.
+constexpr double rough_residual = 1e-3;
+
 /// A line of the table: an unknown that people ask for.
 struct Output {
   std::string name;
@@ -158,6 +161,9 @@ std::string summary(const io::Case& input, const Trim& trim) {
   text += "residual     " + scientific(trim.residual, 1) + " at the samples, " +
           scientific(trim.residual_between, 1) + " between them [N, N m]; largest load " +
           general(trim.load_level, 4) + "\n";
+  if (trim.residual_between > rough_residual * trim.load_level)
+    text += "rough        loads out of balance between the samples by more than " +
+            general(rough_residual, 1) + " of the largest; hint: more trim.harmonics\n";
   for (const analysis::HeldCoordinate& held : trim.held) {
     const double zero = rounding * std::max(trim.load_level, 1.0);
     if (held.name == "generator") {

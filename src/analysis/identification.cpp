@@ -177,10 +177,13 @@ void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
   unite_degenerate(set, stems);
   for (const std::string& stem : stems) ++count[stem];
   std::map<std::string, int> number;
-  for (std::size_t i = 0; i < stems.size(); ++i) {
-    const std::string& stem = stems[i];
-    set.modes[i].label = count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
-  }
+  // Modes beyond the step's reach come anywhere among the others, and do not use up their numbers.
+  for (const bool resolved : {true, false})
+    for (std::size_t i = 0; i < stems.size(); ++i) {
+      if (set.modes[i].resolved != resolved) continue;
+      const std::string& stem = stems[i];
+      set.modes[i].label = count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
+    }
 }
 
 }  // namespace samara::analysis

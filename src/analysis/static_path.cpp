@@ -320,7 +320,11 @@ class PathFollower {
       throw DomainError(text.str());
     } catch (const ConvergenceError& error) {
       text << error.what() << "; hint: ";
-      if (tried_ > options_.most_steps)
+      if (path_.states.empty())
+        text
+            << "something may move that nothing holds (a hinge, a pinned beam about its own axis), "
+               "or is held twice";
+      else if (tried_ > options_.most_steps)
         text << "more static.max_steps; the path may never reach the whole loads";
       else if (options_.method == StaticMethod::load)
         text << "more static.steps; static.method: arc_length where the load can rise no more";
