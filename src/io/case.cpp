@@ -51,6 +51,9 @@ void read_motion(MapReader& map, model::JointDefinition& joint) {
       if (entry != nullptr) map.refuse(*entry, key, "only a joint: prescribed has a motion");
     return;
   }
+  for (const char* key : {"stiffness", "damping"})
+    if (const YamlNode* entry = map.node().find(key))
+      map.refuse(*entry, key, "a prescribed joint moves as it is told, whatever springs it has");
   if (angle == nullptr && harmonic == nullptr)
     map.require("angle_deg", "of a prescribed joint, or \"harmonic\"");
   read_angle(map, "angle_deg", joint.motion.angle, half_turn);
