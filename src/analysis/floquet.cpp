@@ -63,6 +63,8 @@ class Analysis {
         stride_(std::max(1, (steps + shape_samples - 1) / shape_samples)) {}
 
   Floquet run() {
+    if (states_ == 0)
+      throw InputError("floquet: nothing can move, all strains and joints are rigid");
     in_stage("steps", [this] { integrate(); });
     in_stage("eigenproblem", [this] { solve_eigenproblem(); });
     in_stage("identification", [this] {
@@ -533,8 +535,6 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
                            const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
   if (system.period() == 0.0)
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
-  if (ConsistentSubspace(system, solution).degrees_of_freedom() == 0)
-    throw InputError("floquet: nothing can move, all strains and joints are rigid");
   const int repeats = system.symmetry().sectors;
   if (options.period == FloquetPeriod::blade && repeats < 2)
     throw InputError(

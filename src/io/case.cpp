@@ -233,32 +233,13 @@ void read_teeter(const YamlNode& node, const std::string& where, model::HubDefin
   map.finish();
 }
 
-void read_hub_masses(MapReader& map, std::vector<model::HubMassDefinition>& masses) {
-  const YamlNode* list = map.find("point_masses");
-  if (list == nullptr) return;
-  if (list->kind != YamlNode::Kind::list) {
-    map.refuse(*list, "point_masses", "expected a list, " + describe(*list));
-    return;
-  }
-  for (std::size_t i = 0; i < list->children.size(); ++i) {
-    MapReader entry(list->children[i], join_path(map.where("point_masses"), i), map.errors());
-    model::HubMassDefinition lump;
-    entry.require("mass");
-    entry.read("mass", lump.mass, positive);
-    read_vector(entry, "center", lump.center, any_number);
-    read_vector(entry, "inertia", lump.inertia, non_negative);
-    entry.finish();
-    masses.push_back(lump);
-  }
-}
-
 void read_hub(const YamlNode& node, model::HubDefinition& hub, ErrorList& errors) {
   MapReader map(node, "hub", errors);
   map.read("mass", hub.mass, non_negative);
   map.read("center_of_mass", hub.center_of_mass, any_number);
   read_vector(map, "inertia", hub.inertia, non_negative);
   map.read("radius", hub.radius, non_negative);
-  read_hub_masses(map, hub.point_masses);
+  read_mass_list(map, hub.point_masses, [](MapReader&, model::HubMassDefinition&) {});
   if (const YamlNode* entry = map.find("teeter")) {
     read_teeter(*entry, map.where("teeter"), hub, errors);
   }

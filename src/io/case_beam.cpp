@@ -19,9 +19,11 @@ constexpr double length_tolerance = 1e-3;
 constexpr NumberRule beyond_the_root{"a number above 0, to 1", std::numeric_limits<double>::min(),
                                      1.0};
 
-bool is_rigid(const YamlNode& node) {
-  return node.kind == YamlNode::Kind::scalar && node.text == "rigid";
+bool is_word(const YamlNode& node, std::string_view word) {
+  return node.kind == YamlNode::Kind::scalar && node.text == word;
 }
+
+bool is_rigid(const YamlNode& node) { return is_word(node, "rigid"); }
 
 void read_stiffness_map(const YamlNode& node, const std::string& where,
                         model::SectionDefinition& section, ErrorList& errors) {
@@ -246,31 +248,12 @@ void read_length(MapReader& map, const Matrix3& to_a, model::BeamDefinition& bea
 }
 
 void read_point_masses(MapReader& map, std::vector<model::PointMassDefinition>& masses) {
-  const YamlNode* list = map.find("point_masses");
-  if (list == nullptr) return;
-  if (list->kind != YamlNode::Kind::list) {
-    map.refuse(*list, "point_masses", "expected a list, " + describe(*list));
-    return;
-  }
-  for (std::size_t i = 0; i < list->children.size(); ++i) {
-    const YamlNode& node = list->children[i];
-    MapReader entry(node, join_path(map.where("point_masses"), i), map.errors());
-    model::PointMassDefinition lump;
+  read_mass_list(map, masses, [](MapReader& entry, model::PointMassDefinition& lump) {
     entry.require("at");
-    entry.require("mass");
     entry.read("at", lump.at, beyond_the_root);
-    entry.read("mass", lump.mass, positive);
-    entry.read("center", {lump.center.data(), 3}, any_number);
-    entry.read("inertia", {lump.inertia.data(), 3}, non_negative);
-    entry.finish();
-    masses.push_back(lump);
-  }
+  });
   std::stable_sort(masses.begin(), masses.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
-}
-
-bool is_word(const YamlNode& node, std::string_view word) {
-  return node.kind == YamlNode::Kind::scalar && node.text == word;
 }
 
 /// Reads springs by direction; what is not given stays as it is.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include "samara/model/definition.hpp"
 
@@ -26,5 +27,28 @@ void read_beam(MapReader& map, const Matrix3& to_a, const RatioKeys& ratios,
 /// Reads what holds an end: a word, or springs, at the root with a body on them.
 void read_support(MapReader& beam, std::string_view key, bool at_root,
                   model::SupportDefinition& support);
+
+/// Reads the list `point_masses` of a beam or of the hub; `read_own` takes what an entry has beside
+/// mass, center and inertia.
+template <class Mass, class Own>
+void read_mass_list(MapReader& map, std::vector<Mass>& masses, const Own& read_own) {
+  const YamlNode* list = map.find("point_masses");
+  if (list == nullptr) return;
+  if (list->kind != YamlNode::Kind::list) {
+    map.refuse(*list, "point_masses", "expected a list, " + describe(*list));
+    return;
+  }
+  for (std::size_t i = 0; i < list->children.size(); ++i) {
+    MapReader entry(list->children[i], join_path(map.where("point_masses"), i), map.errors());
+    Mass lump;
+    read_own(entry, lump);
+    entry.require("mass");
+    entry.read("mass", lump.mass, positive);
+    read_vector(entry, "center", lump.center, any_number);
+    read_vector(entry, "inertia", lump.inertia, non_negative);
+    entry.finish();
+    masses.push_back(lump);
+  }
+}
 
 }  // namespace samara::io
