@@ -2,48 +2,21 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string_view>
 
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
+#include "samara/base/words.hpp"
 
 namespace samara::drivers {
 namespace {
 
-/// Number of letters to change, add, leave out or swap with the next to make one word of the other.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before(b.size() + 1);
-  std::vector<std::size_t> row(b.size() + 1);
-  std::vector<std::size_t> next(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    next[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      next[j] =
-          std::min({row[j] + 1, next[j - 1] + 1, row[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        next[j] = std::min(next[j], before[j - 2] + 1);
-    }
-    std::swap(before, row);
-    std::swap(row, next);
-  }
-  return row.back();
-}
-
 /// `; did you mean "..."?`, or nothing where no word resembles the given one.
 std::string suggest(const std::string& word, const std::vector<std::string>& words) {
-  const std::string* best = nullptr;
-  std::size_t least = 1 + word.size() / 3;
-  for (const std::string& candidate : words) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance > least || (best != nullptr && distance == least)) continue;
-    best = &candidate;
-    least = distance;
-  }
-  return best == nullptr ? "" : "; did you mean \"" + *best + "\"?";
+  const std::string similar = find_similar(word, words);
+  return similar.empty() ? "" : "; did you mean \"" + similar + "\"?";
 }
 
 std::vector<std::string> names_of(std::span<const Command> commands) {
@@ -123,6 +96,9 @@ class Parser {
       line_.tower_only = true;
     else if (word == "--report")
       line_.report = true;
+    else if (name == "--restart")
+      set_once(line_.restart_path, name,
+               value_of(name, "a result to go on from, e.g. --restart run.h5", value));
     else if (name == "--csv")
       set_once(line_.csv_path, name, value_of(name, "a path, e.g. --csv modes.csv", value));
     else
@@ -131,7 +107,7 @@ class Parser {
 
   static std::string unknown_option_words(const std::string& name) {
     const std::string suggestion =
-        suggest(name, {"--set", "--csv", "--tower-only", "--report", "--help", "--version"});
+        suggest(name, {"--set", "--csv", "--restart", "--tower-only", "--report", "--help", "--version"});
     return suggestion.empty() ? "; hint: samara --help; options of PETSc have one dash"
                               : suggestion;
   }
@@ -215,6 +191,8 @@ class Parser {
                  line_.petsc_options[i - 1] + ", the case comes before the options of PETSc";
       throw InputError("missing case file: samara " + name + " CASE.yaml; hint: " + hint);
     }
+    if (!line_.restart_path.empty() && name != "transient")
+      throw InputError("--restart: samara " + name + " has no use for it, samara transient has");
     if (!line_.csv_path.empty() && !line_.command->has_csv)
       throw InputError("--csv: samara " + name + " has no table to write");
     if (!line_.csv_path.empty() && line_.csv_path == line_.result_path)
@@ -257,6 +235,7 @@ constexpr char option_lines[] =
   -o RESULT.h5      the result; without it the case's name with .h5, in the current folder.
                     Only a file that samara wrote is ever overwritten
   --csv FILE.csv    the table as comma-separated values, too
+  --restart FILE.h5 goes on from the last checkpoint of a result (transient)
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
   -name [value]     anything else with one dash goes to PETSc and SLEPc

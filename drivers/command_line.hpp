@@ -38,6 +38,7 @@ struct CommandLine {
   std::vector<std::string> settings;
   std::string result_path;  ///< empty: not given
   std::string csv_path;     ///< empty: none wanted
+  std::string restart_path;  ///< of a result to go on from; empty: not given
   std::vector<std::string> petsc_options;
 };
 

@@ -11,11 +11,15 @@ void run_static(const Job& job);
 void run_modes(const Job& job);
 void run_trim(const Job& job);
 void run_floquet(const Job& job);
+void run_transient(const Job& job);
 
 void run_import(const CommandLine& line);
 
 /// Floquet's theory needs a period.
 void require_speed(const io::Case& input);
+
+/// A history needs its length and its step.
+void require_transient(const io::Case& input);
 
 /// Statics is of what stands still.
 void require_rest(const io::Case& input);

@@ -19,9 +19,7 @@ std::string libraries_in_a_line() {
 void write_files(const Job& job, const std::function<void(io::ResultFile&)>& write_result,
                  const std::function<void(const std::string&)>& write_csv) {
   if (!job.result_path.empty()) {
-    io::ResultFile file(job.result_path, job.input,
-                        {job.command_line, petsc::Session::options(), libraries_in_a_line(),
-                         petsc::Session::size()});
+    io::ResultFile file(job.result_path, job.input, record_of(job));
     write_result(file);
     file.publish();
   }
@@ -29,6 +27,11 @@ void write_files(const Job& job, const std::function<void(io::ResultFile&)>& wri
 }
 
 }  // namespace
+
+io::RunRecord record_of(const Job& job) {
+  return {job.command_line, petsc::Session::options(), libraries_in_a_line(),
+          petsc::Session::size()};
+}
 
 void deliver(const Job& job, const std::string& tables,
              const std::function<void(io::ResultFile&)>& write_result,

@@ -15,7 +15,11 @@ struct Job {
   std::string command_line;  ///< as typed
   std::string result_path;   ///< empty: no result is wanted
   std::string csv_path;      ///< empty: no table is wanted
+  std::string restart_path;  ///< empty: the run starts at its beginning
 };
+
+/// How the result came about, for its attributes.
+io::RunRecord record_of(const Job& job);
 
 /// Writes the files and prints the tables; the tables also where a file cannot be written, for they
 /// may have taken long. The first rank alone calls it.

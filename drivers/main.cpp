@@ -22,7 +22,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 6> commands{{
+constexpr std::array<Command, 7> commands{{
     {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
      "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
      "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
@@ -46,6 +46,11 @@ constexpr std::array<Command, 6> commands{{
      "frequencies, damping, harmonics, and where the energy is.\n",
      "inputs/lee2002/baseline.yaml --set blades.elements=8 --csv modes.csv", true, true,
      require_speed, run_floquet},
+    {"transient", "the motion in time, with loads by OpenFAST's channel names",
+     "Follows the turbine in time from its periodic steady state or from rest. Motions and loads go\n"
+     "into the result while it runs, by the channel names of OpenFAST.\n",
+     "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"", true, true,
+     require_transient, run_transient},
     {"import", "a case file from a turbine of OpenFAST or windIO",
      "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it as a\n"
      "case file, and reports key by key what was taken, derived or ignored, and why. See\n"
@@ -100,6 +105,7 @@ Job prepare(const CommandLine& line) {
   job.command_line = line.text;
   job.result_path = line.result_path;
   job.csv_path = line.csv_path;
+  job.restart_path = line.restart_path;
   if (job.result_path.empty() && line.command->writes_result)
     job.result_path = std::filesystem::path(line.case_path).stem().string() + ".h5";
   if (Session::launch_rank() != 0) return job;

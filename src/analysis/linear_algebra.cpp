@@ -21,9 +21,17 @@ void multiply_each(Vec factors, const std::vector<double>& by) {
   for (std::size_t i = 0; i < by.size(); ++i) view[static_cast<PetscInt>(i)] *= by[i];
 }
 
-/// rows matrix columns, in place. MatDiagonalScale takes as long as the tangents for block
-/// matrices.
-void scale(Mat matrix, const Equilibration& scaling) {
+/// All eigenvalues are equal: their order is the caller's affair, and SLEPc's way of sorting (swaps
+/// in the Schur form) fails on the degenerate pairs of identical blades.
+PetscErrorCode keep_order(PetscScalar, PetscScalar, PetscScalar, PetscScalar, PetscInt* result,
+                          void*) noexcept {
+  *result = 0;
+  return 0;
+}
+
+}  // namespace
+
+void apply_scaling(const Equilibration& scaling, Mat matrix) {
   PetscBool is_blocked = PETSC_FALSE;
   petsc::check(
       PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQBAIJ, &is_blocked));
@@ -58,15 +66,14 @@ void scale(Mat matrix, const Equilibration& scaling) {
   petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
 }
 
-/// All eigenvalues are equal: their order is the caller's affair, and SLEPc's way of sorting (swaps
-/// in the Schur form) fails on the degenerate pairs of identical blades.
-PetscErrorCode keep_order(PetscScalar, PetscScalar, PetscScalar, PetscScalar, PetscInt* result,
-                          void*) noexcept {
-  *result = 0;
-  return 0;
+void round_to_powers_of_two(Equilibration& scaling) {
+  for (const petsc::Handle<Vec>* factors : {&scaling.rows, &scaling.columns}) {
+    PetscInt size = 0;
+    petsc::check(VecGetLocalSize(factors->get(), &size));
+    const petsc::WriteView view(factors->get());
+    for (PetscInt i = 0; i < size; ++i) view[i] = std::exp2(std::round(std::log2(view[i])));
+  }
 }
-
-}  // namespace
 
 Equilibration equilibrate(Mat matrix) {
   Equilibration scaling;
@@ -159,7 +166,7 @@ void DirectSolver::factor(Mat matrix) {
     petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
     petsc::check(KSPSetFromOptions(solver_.get()));
   }
-  scale(matrix, scaling_);
+  apply_scaling(scaling_, matrix);
   petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
   petsc::check(KSPSetUp(solver_.get()));
   matrix_ = matrix;

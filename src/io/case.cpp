@@ -14,6 +14,7 @@
 #include "samara/io/yaml_tree.hpp"
 
 #include "case_beam.hpp"
+#include "case_transient.hpp"
 #include "yaml_reader.hpp"
 #include "yaml_settings.hpp"
 
@@ -451,6 +452,7 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
+  if (const YamlNode* node = map.find("transient")) read_transient(*node, result.transient, errors);
   map.finish();
   check_teeter(root, turbine, errors);
   if (turbine.shaft.speed == 0.0) return;
@@ -524,6 +526,7 @@ Case parse_case(const std::string& path, const std::string& text,
   if (root.kind == YamlNode::Kind::map) apply_settings(settings, root, errors);
   if (check_version(root, errors)) read_turbine(root, result, errors);
   errors.throw_if_any();
+  result.model_text = model_text_of(root);
   return result;
 }
 

@@ -119,6 +119,27 @@ void Hdf5File::write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const
                  values.data()));
 }
 
+void Hdf5File::write_joined(const std::string& name, const std::vector<std::string>& files,
+                            const std::vector<std::size_t>& rows, const Shape& shape,
+                            const Meaning& meaning) {
+  const Hdf5Id creation(check(H5Pcreate(H5P_DATASET_CREATE)), H5Pclose);
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  check(H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &missing));
+  const int rank = static_cast<int>(shape.size());
+  Shape start(shape.size(), 0);
+  Shape count = shape;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    count[0] = rows[i];
+    const Hdf5Id part(check(H5Screate_simple(rank, count.data(), nullptr)), H5Sclose);
+    const Hdf5Id whole(check(H5Screate_simple(rank, shape.data(), nullptr)), H5Sclose);
+    check(H5Sselect_hyperslab(whole.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                              nullptr));
+    check(H5Pset_virtual(creation.get(), whole.get(), files[i].c_str(), name.c_str(), part.get()));
+    start[0] += rows[i];
+  }
+  make_dataset(name, H5T_IEEE_F64LE, shape, meaning, creation.get());
+}
+
 void Hdf5File::set_text(hid_t object, const std::string& name, const std::string& text) {
   const Hdf5Id attribute(check(H5Acreate2(object, name.c_str(), text_type_.get(),
                                           scalar_space_.get(), H5P_DEFAULT, H5P_DEFAULT)),

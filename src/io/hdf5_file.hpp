@@ -66,6 +66,12 @@ class Hdf5File {
   Hdf5Id make_slices(const std::string& name, const Shape& shape, const Meaning& meaning);
   void write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values);
 
+  /// Makes a dataset that shows the datasets `name` of other files one after the other along the
+  /// first axis: `shape` of the whole, `rows` of each file, paths relative to this file's folder.
+  void write_joined(const std::string& name, const std::vector<std::string>& files,
+                    const std::vector<std::size_t>& rows, const Shape& shape,
+                    const Meaning& meaning);
+
   /// Attributes of a group or dataset that exists ("/" is the root).
   void set_attribute(const std::string& object, const std::string& name, const std::string& text);
   void set_attribute(const std::string& object, const std::string& name, double value);

@@ -18,6 +18,7 @@
 #include "samara/base/version.hpp"
 
 #include "hdf5_file.hpp"
+#include "samara/io/history_file.hpp"
 #include "samara/io/whole_file.hpp"
 
 namespace samara::io {
@@ -359,6 +360,63 @@ void ResultFile::write_static(const analysis::StaticPath& path) {
   file.set_attribute("/static", "convergence",
                      std::string("the last Newton correction of every state was below the "
                                  "tolerance"));
+}
+
+void ResultFile::write_history(const HistoryContent& history) {
+  Hdf5File& file = storage_->file;
+  const auto write_texts = [&](const std::string& name, const auto& member,
+                               const std::string& description) {
+    std::vector<std::string> texts;
+    for (const system::Channel& channel : history.channels) texts.push_back(channel.*member);
+    file.write("/transient/channel_" + name, texts, {"", no_frame, description});
+  };
+  write_texts("name", &system::Channel::name, "the columns of values, by OpenFAST's names");
+  write_texts("unit", &system::Channel::unit, "unit of each channel");
+  write_texts("frame", &system::Channel::frame, "axes of each channel");
+  write_texts("description", &system::Channel::description, "each channel in words");
+  std::vector<std::string> files;
+  std::vector<std::size_t> rows;
+  std::vector<int> counts;
+  hsize_t all = history.time.size();
+  for (const HistorySegment& segment : history.segments) {
+    files.push_back(segment.file);
+    rows.push_back(segment.rows);
+    counts.push_back(static_cast<int>(segment.rows));
+    all += segment.rows;
+  }
+  const Meaning of_time{"s", no_frame, "of each row"};
+  const Meaning of_values{"of channel_unit", "of channel_frame", "[row, channel]"};
+  if (files.empty()) {
+    write_values("/transient/time", history.time, of_time);
+    file.write("/transient/values", history.values, {all, history.channels.size()}, of_values);
+  } else {
+    file.write_joined("/transient/time", files, rows, {all}, of_time);
+    file.write_joined("/transient/values", files, rows, {all, history.channels.size()}, of_values);
+  }
+  file.write("/transient/segment_file", files,
+             {"", no_frame, "files that hold the rows, in the folder of this one; none: all here"});
+  file.write("/transient/segment_rows", counts, {"1", no_frame, "rows of each segment"});
+  file.write("/transient/model", history.model,
+             {"", no_frame, "the keys of the case that make the model"});
+  file.set_attribute("/transient", "status", history.status);
+  if (!history.checkpoint) return;
+  const analysis::TransientStart& point = *history.checkpoint;
+  const std::vector<double> state(point.z.data(), point.z.data() + point.z.size());
+  write_values("/transient/checkpoint/state", state,
+               {"of /model/unknowns/unit", unknown_frame, "from which the run can go on"});
+  std::vector<std::string> held;
+  std::vector<double> loads;
+  for (const analysis::HeldCoordinate& coordinate : point.held) {
+    held.push_back(coordinate.name);
+    loads.push_back(coordinate.load);
+  }
+  file.write("/transient/checkpoint/held_name", held,
+             {"", no_frame, "coordinates on which a constant load acts"});
+  write_values("/transient/checkpoint/held_load", loads, {"N m", "about the joint", "that load"});
+  file.set_attribute("/transient/checkpoint", "time", point.time);
+  file.set_attribute("/transient/checkpoint", "origin", point.origin);
+  file.set_attribute("/transient/checkpoint", "step", static_cast<double>(point.step));
+  file.set_attribute("/transient/checkpoint", "rows", static_cast<double>(history.checkpoint_rows));
 }
 
 void ResultFile::write_floquet(const analysis::Floquet& floquet) {

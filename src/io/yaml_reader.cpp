@@ -9,14 +9,13 @@
 #include <system_error>
 
 #include "samara/base/error.hpp"
+#include "samara/base/words.hpp"
 
 namespace samara::io {
 namespace {
 
 constexpr std::size_t max_errors_shown = 100;
 constexpr std::size_t max_text_shown = 40;
-
-char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Quotes a text of the user: shortened, and without line breaks that would break our lines.
 std::string quote(std::string_view text) {
@@ -74,32 +73,6 @@ std::string suggest_number(const YamlNode& node) {
   for (char& c : mended) c = c == 'd' || c == 'D' ? 'e' : c;
   if (mended != node.text && parse_number(mended)) return "; did you mean " + mended + "?";
   return {};
-}
-
-/// Edits (insert, remove, replace, swap neighbours; case does not count) from one word to another.
-std::size_t compute_edit_distance(std::string_view a, std::string_view b) {
-  const std::size_t width = b.size() + 1;
-  std::vector<std::size_t> table((a.size() + 1) * width);
-  const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& {
-    return table[i * width + j];
-  };
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        at(i, j) = i + j;
-        continue;
-      }
-      const auto same = [&](std::size_t p, std::size_t q) {
-        return to_lower(a[p - 1]) == to_lower(b[q - 1]);
-      };
-      at(i, j) =
-          std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, at(i - 1, j - 1) + (same(i, j) ? 0u : 1u)});
-      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) {
-        at(i, j) = std::min(at(i, j), at(i - 2, j - 2) + 1);
-      }
-    }
-  }
-  return at(a.size(), b.size());
 }
 
 std::string list_words(const std::vector<std::string>& words, const char* last_link) {
@@ -188,23 +161,6 @@ Place find_blame(const YamlNode& node) {
     if (place.setting > blame.setting) blame = place;
   }
   return blame;
-}
-
-std::string find_similar(std::string_view word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = compute_edit_distance(word, candidate);
-    if (distance < best_distance && distance < candidate.size()) {
-      best = candidate;
-      best_distance = distance;
-    }
-  }
-  if (!best.empty()) return best;
-  for (const std::string& candidate : candidates) {
-    if (!word.empty() && candidate.starts_with(std::string(word) + "_")) return candidate;
-  }
-  return {};
 }
 
 bool read_number(const YamlNode& node, const std::string& where, const NumberRule& rule,

@@ -62,9 +62,6 @@ std::string describe(const YamlNode& node);
 /// The place to blame for a value made of several: the last --set argument in it, else its own.
 Place find_blame(const YamlNode& node);
 
-/// Returns the word that `word` is probably meant to be, or an empty string.
-std::string find_similar(std::string_view word, const std::vector<std::string>& candidates);
-
 /// These leave `value` alone and add an error where the node is not what the rule asks for.
 bool read_number(const YamlNode& node, const std::string& where, const NumberRule& rule,
                  double& value, ErrorList& errors);

@@ -92,6 +92,7 @@ BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   BladeRoot root;
   root.C_Ha = turned * cone * feather;
   root.position = radius * root.C_Ha.col(0);
+  root.pitch = pitch;
   return root;
 }
 

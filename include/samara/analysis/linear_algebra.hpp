@@ -23,6 +23,12 @@ struct Equilibration {
 
 Equilibration equilibrate(Mat matrix);
 
+/// rows matrix columns, in place; faster than MatDiagonalScale for block matrices.
+void apply_scaling(const Equilibration& scaling, Mat matrix);
+
+/// The factors rounded to powers of two: scaling with them and back loses no digit.
+void round_to_powers_of_two(Equilibration& scaling);
+
 /// Factors from the roles of unknowns: positions 1, velocities `rate` [1/s], internal loads the
 /// median inertia load that belongs to them; rows by their largest entry. The matrix of (19) has
 /// condition 6e17 as it is, 1e8 equilibrated and 2e3 so (the paper's turbine, 500 steps), and so

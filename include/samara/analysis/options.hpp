@@ -1,4 +1,4 @@
-// What the user asks of the analyses (the keys `trim`, `floquet` and `static` of a case file).
+// What the user asks of the analyses (the keys `trim`, `floquet`, `static` and `transient` of a case file).
 #pragma once
 
 namespace samara::analysis {
@@ -29,6 +29,16 @@ struct StaticOptions {
   int steps = 10;           ///< of the load factor from 0 to 1; arc length: 1/steps is the first
   double tolerance = 1e-9;  ///< of the last Newton correction, relative to the solution
   int most_steps = 1000;    ///< of the path, cut ones included
+};
+
+enum class TransientMethod { bdf2, midpoint };
+
+struct TransientOptions {
+  TransientMethod method = TransientMethod::bdf2;
+  double duration = 0.0;    ///< [s], > 0
+  double step = 0.0;        ///< [s], > 0
+  double tolerance = 1e-9;  ///< of the last Newton correction's error, relative to the state
+  long checkpoint_steps = 0;  ///< between checkpoints; 0: none
 };
 
 }  // namespace samara::analysis

@@ -101,6 +101,20 @@ struct ChainRows {
                            ///< torque that is added to it acts back on the nacelle
 };
 
+/// What is asked of the chain beside its rows.
+template <class T>
+struct ChainReport {
+  T azimuth;           ///< of S against the bearing [rad]
+  T yaw, teeter;       ///< angles [rad]
+  T yaw_rate;          ///< [rad/s]
+  T generator_rate;    ///< of G against the nacelle [rad/s]
+  T shaft_rate;        ///< of S against the nacelle [rad/s]
+  T teeter_rate;       ///< [rad/s]
+  Vec6<T> rotor_load;  ///< force and moment of the hub on the shaft at the teeter pin, in S [N, N m]
+  Vec6<T> top_load;    ///< of the nacelle on T at the tower top, in t1 t2 t3 [N, N m]
+  Vec3<T> top_acceleration;  ///< of T, in t1 t2 t3 [m/s^2]
+};
+
 namespace detail {
 
 /// Velocity and acceleration of a frame and of a point of it, components in the frame.
@@ -175,7 +189,7 @@ class JointWalk {
   /// components of the body behind it.
   JointWalk(const Hinge& hinge, const Vector3& axis, const JointState<T>& state,
             const Motion<T>& inner, double rate = 0.0)
-      : hinge_(hinge), axis_(axis.cast<T>()), state_(state) {
+      : hinge_(hinge), axis_(axis.cast<T>()), state_(state), carried_rate_(rate) {
     own_rate_ = state.speed - math::dot(axis_, inner.omega) - T(rate);
     if (hinge.free) {
       outer_ = with_outer_speed<T>(axis_, state.speed, state.speed_dot, inner);
@@ -187,6 +201,9 @@ class JointWalk {
   }
 
   const Motion<T>& outer() const { return outer_; }
+
+  /// Of the body behind the joint against the one before it.
+  T relative_rate() const { return own_rate_ + T(carried_rate_); }
 
   /// The joint's rows, from the moment about its point of all that lies behind, which is left
   /// without the component that the joint does not pass on, but for its spring and damper.
@@ -210,6 +227,7 @@ class JointWalk {
   const JointState<T>& state_;
   Motion<T> outer_;
   T own_rate_;
+  double carried_rate_;
 };
 
 }  // namespace detail
@@ -217,7 +235,8 @@ class JointWalk {
 /// The rows and the motion that the blades need. A test of Kane's method against Lagrange's
 /// equations is in tests/elements/rigid_chain_test.cpp.
 template <class T>
-ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, HubMotion<T>& hub) {
+ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, HubMotion<T>& hub,
+                         ChainReport<T>* report = nullptr) {
   using detail::JointWalk;
   using detail::Motion;
   using detail::Wrench;
@@ -283,6 +302,18 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   w.moment(1) += (hub_motion.omega(1) - T(state.speed)) * chain.rotor_torque.slope +
                  T(chain.rotor_torque.torque);
   rows.teeter = teeter.take(w.moment);
+  if (report != nullptr) {
+    report->azimuth = azimuth;
+    report->yaw = q_y;
+    report->teeter = q_h;
+    report->yaw_rate = yaw.relative_rate();
+    report->generator_rate = generator.relative_rate();
+    report->shaft_rate = generator.relative_rate() + torsion.relative_rate();
+    report->teeter_rate = teeter.relative_rate();
+    report->rotor_load << C_HS.transpose() * w.force, C_HS.transpose() * w.moment;
+    report->top_acceleration = top.a;
+  }
+
 
   // The sum so far, applied at `arm` of the next body, in whose components C^T brings it.
   const auto pass_to = [&w](const Wrench<T>& own, const Mat3<T>& C, const Vec3<T>& arm) {
@@ -302,6 +333,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   pass_to(detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y), C_DY, bearing);
   rows.yaw = yaw.take(w.moment);
   pass_to(detail::active_and_inertia<T>(chain.tower_top, top, g_T), C_YT, same_point);
+  if (report != nullptr) report->top_load << w.force, w.moment;
   const Vec3<T> F_hat = C_top * Vec3<T>(state.top_load.template head<3>());
   const Vec3<T> M_hat = C_top * Vec3<T>(state.top_load.template tail<3>());
   rows.top.template head<3>() = to_top(w.force) - F_hat;

@@ -6,8 +6,27 @@
 
 #include "samara/analysis/options.hpp"
 #include "samara/model/definition.hpp"
+#include "samara/system/turbine_channels.hpp"
 
 namespace samara::io {
+
+/// From where a transient starts.
+enum class TransientOrigin {
+  trim,        ///< on the periodic steady state
+  undeformed,  ///< without strains, in its prescribed motion
+};
+
+/// Between restart points [s].
+inline constexpr double default_checkpoint = 60.0;
+
+struct TransientCase {
+  bool is_given = false;
+  analysis::TransientOptions options;
+  TransientOrigin start = TransientOrigin::trim;
+  long output_steps = 1;                  ///< between rows of the history
+  std::vector<std::string> channels;      ///< empty: all but those of stations
+  system::ChannelStations stations;
+};
 
 struct Case {
   std::string path;
@@ -17,6 +36,8 @@ struct Case {
   analysis::TrimOptions trim;
   analysis::FloquetOptions floquet;
   analysis::StaticOptions statics;
+  TransientCase transient;
+  std::string model_text;  ///< what makes the model, in one spelling: equal for equal models
 };
 
 /// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys before

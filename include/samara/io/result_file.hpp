@@ -36,6 +36,8 @@ struct RunRecord {
   int ranks = 1;
 };
 
+struct HistoryContent;
+
 class ResultFile {
  public:
   /// Starts the file with /case and the attributes of the root.
@@ -50,6 +52,8 @@ class ResultFile {
   void write_trim(const analysis::Trim& trim);
   /// /static
   void write_static(const analysis::StaticPath& path);
+  /// /transient
+  void write_history(const HistoryContent& history);
   /// /floquet
   void write_floquet(const analysis::Floquet& floquet);
   /// /modes: what /floquet has, without what belongs to a period.

@@ -13,6 +13,7 @@ namespace samara::model {
 struct BladeRoot {
   Vector3 position = Vector3::Zero();  ///< from the apex, components in H [m]
   Matrix3 C_Ha = Matrix3::Identity();  ///< blade axes a to hub axes
+  double pitch = 0.0;                  ///< of a about -b1 [rad]
 };
 
 struct Turbine {

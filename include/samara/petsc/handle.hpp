@@ -4,6 +4,7 @@
 #include <petscksp.h>
 #include <petscmat.h>
 #include <petscsnes.h>
+#include <petscts.h>
 #include <petscvec.h>
 #include <slepceps.h>
 
@@ -17,7 +18,7 @@ namespace samara::petsc {
 void check(PetscErrorCode code,
            const std::source_location& where = std::source_location::current());
 
-/// Sole owner of a PETSc object (Vec, Mat, KSP, SNES, EPS, IS); moves, never copies.
+/// Sole owner of a PETSc object (Vec, Mat, KSP, SNES, TS, EPS, IS); moves, never copies.
 template <class Object>
 class Handle {
  public:
@@ -48,6 +49,7 @@ class Handle {
     if constexpr (std::is_same_v<Object, Mat>) MatDestroy(&object_);
     if constexpr (std::is_same_v<Object, KSP>) KSPDestroy(&object_);
     if constexpr (std::is_same_v<Object, SNES>) SNESDestroy(&object_);
+    if constexpr (std::is_same_v<Object, TS>) TSDestroy(&object_);
     if constexpr (std::is_same_v<Object, EPS>) EPSDestroy(&object_);
     if constexpr (std::is_same_v<Object, IS>) ISDestroy(&object_);
     if constexpr (std::is_same_v<Object, VecScatter>) VecScatterDestroy(&object_);

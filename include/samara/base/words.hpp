@@ -1,0 +1,16 @@
+// Words that users type.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace samara {
+
+/// Of a letter of ASCII, whatever the locale.
+inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// Returns the word that `word` is probably meant to be, or an empty string.
+std::string find_similar(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace samara

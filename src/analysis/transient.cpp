@@ -1,0 +1,466 @@
+#include "samara/analysis/transient.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <sstream>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/base/error.hpp"
+#include "samara/petsc/session.hpp"
+
+namespace samara::analysis {
+namespace {
+
+/// Newton with an old tangent goes on while each correction is this much smaller than the last.
+constexpr double slow_contraction = 0.1;
+/// The first steps after a start differ in what multiplies M.
+constexpr int starting_steps = 3;
+/// Of the state: corrections this small that no longer shrink are rounding.
+constexpr double stagnation = 1e-8;
+constexpr double rounding = 1e-9;
+/// Of the step: the first one of BDF2, which begins with a step of first order. The next ones may
+/// be twice as long each. So the error of the start is a thousandth of what it would be.
+constexpr double first_step = 1.0 / 32.0;
+constexpr int most_newton_steps = 20;
+/// Of a step: the one that finds the rates at the start.
+constexpr double start_fraction = 1e-3;
+constexpr int start_iterations = 4;
+
+/// The system as TS sees it, and how TS is led from one instant of the grid to the next.
+class Integration {
+ public:
+  Integration(const system::PeriodicSystem& system, const TransientStart& start,
+              const TransientOptions& options, TransientObserver& observer)
+      : system_(system),
+        options_(options),
+        observer_(observer),
+        held_(start.held),
+        start_rates_(start.z_dot),
+        origin_(start.origin),
+        step_(start.step),
+        last_step_(
+            static_cast<long>(std::ceil(options.duration / options.step * (1.0 - rounding)))),
+        z_(system.make_state()),
+        z_dot_(system.make_state()),
+        r_(system.make_state()),
+        jacobian_(system.make_jacobian()) {
+    scale_system();
+    petsc::check(VecDuplicate(z_.get(), x_.fill()));
+    write_state(start.z);
+    make_integrator(start.time);
+    limit_ = start_limit();
+  }
+
+  TransientRun run() {
+    const petsc::Stage stage("transient");
+    if (step_ == 0) sample_start();
+    const PetscErrorCode code = TSSolve(ts_.get(), x_.get());
+    if (code != 0 && error_) std::rethrow_exception(error_);
+    petsc::check(code);
+    TSConvergedReason reason = TS_CONVERGED_ITERATING;
+    petsc::check(TSGetConvergedReason(ts_.get(), &reason));
+    if (reason < 0) fail(TSConvergedReasons[reason]);
+    TransientRun run;
+    run.end = state();
+    run.complete = complete_;
+    TSType type = nullptr;
+    petsc::check(TSGetType(ts_.get(), &type));
+    run.method = type;
+    run.steps = steps_;
+    run.newton_steps = newton_steps_;
+    run.factorizations = factorizations_;
+    run.cuts = cuts_;
+    return run;
+  }
+
+ private:
+  // ---- the system, scaled ----------------------------------------------------------------------
+
+  void scale_system() {
+    const double shift = 1.5 / options_.step;
+    system_.reference_state(origin_, z_.get());
+    petsc::check(VecSet(z_dot_.get(), 0.0));
+    system_.tangents(origin_, z_.get(), z_dot_.get(), shift, jacobian_.get(), nullptr);
+    scaling_ = scale_by_role(system_, jacobian_.get(), 1.0 / options_.step);
+    round_to_powers_of_two(scaling_);
+  }
+
+  void write_state(const Eigen::VectorXd& z) {
+    {
+      const petsc::WriteView view(x_.get());
+      Eigen::Map<Eigen::VectorXd>(view.data(), z.size()) = z;
+    }
+    petsc::check(VecPointwiseDivide(x_.get(), x_.get(), scaling_.columns.get()));
+  }
+
+  TransientStart state() {
+    TransientStart point;
+    petsc::check(TSGetTime(ts_.get(), &point.time));
+    point.step = step_;
+    point.origin = origin_;
+    petsc::check(VecPointwiseMult(r_.get(), x_.get(), scaling_.columns.get()));
+    const petsc::ReadView view(r_.get());
+    point.z = Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
+    point.held = held_;
+    return point;
+  }
+
+  void unscale(Vec x, Vec x_dot) {
+    petsc::check(VecPointwiseMult(z_.get(), x, scaling_.columns.get()));
+    petsc::check(VecPointwiseMult(z_dot_.get(), x_dot, scaling_.columns.get()));
+  }
+
+  void residual(double t, Vec x, Vec x_dot, Vec f) {
+    unscale(x, x_dot);
+    t_ = t;
+    system_.residual(t, z_.get(), z_dot_.get(), f);
+    if (!held_.empty()) {
+      const petsc::WriteView view(f);
+      for (std::size_t i = 0; i < held_.size(); ++i)
+        view[system_.neutral_coordinates()[i].row] += held_[i].load;
+    }
+    petsc::check(VecPointwiseMult(f, f, scaling_.rows.get()));
+  }
+
+  void tangent(double t, Vec x, Vec x_dot, double shift, Mat matrix) {
+    unscale(x, x_dot);
+    system_.tangents(t, z_.get(), z_dot_.get(), shift, matrix, nullptr);
+    apply_scaling(scaling_, matrix);
+    ++factorizations_;
+    is_new_tangent_ = true;
+  }
+
+  /// The first row of the history. Where the rates are not known yet, rates and internal loads are
+  /// those of a backward Euler step that is too short to move anything.
+  void sample_start() {
+    const TransientStart start = state();
+    const double dt = start_fraction * options_.step;
+    const auto copy = [](const Eigen::VectorXd& values, Vec target) {
+      const petsc::WriteView view(target);
+      Eigen::Map<Eigen::VectorXd>(view.data(), values.size()) = values;
+    };
+    Eigen::VectorXd z = start.z;
+    Eigen::VectorXd z_dot = start_rates_;
+    if (z_dot.size() == 0) {
+      z_dot = Eigen::VectorXd::Zero(z.size());
+      DirectSolver solver("transient_start_", [this, dt](Mat matrix) {
+        return scale_by_role(system_, matrix, 1.0 / dt);
+      });
+      for (int i = 0; i < start_iterations; ++i) {
+        copy(z, z_.get());
+        copy(z_dot, z_dot_.get());
+        system_.residual(start.time + dt, z_.get(), z_dot_.get(), r_.get());
+        for (std::size_t k = 0; k < held_.size(); ++k) {
+          const petsc::WriteView view(r_.get());
+          view[system_.neutral_coordinates()[k].row] += held_[k].load;
+        }
+        system_.tangents(start.time + dt, z_.get(), z_dot_.get(), 1.0 / dt, jacobian_.get(),
+                         nullptr);
+        solver.factor(jacobian_.get());
+        Eigen::MatrixXd change(z.size(), 1);
+        {
+          const petsc::ReadView view(r_.get());
+          change.col(0) = Eigen::Map<const Eigen::VectorXd>(view.data(), z.size());
+        }
+        solver.solve(change);
+        z -= change.col(0);
+        z_dot = (z - start.z) / dt;
+      }
+    }
+    copy(z, z_.get());
+    copy(z_dot, z_dot_.get());
+    observer_.sample({start.time, z_.get(), z_dot_.get(), 0, true});
+  }
+
+  // ---- TS --------------------------------------------------------------------------------------
+
+  void make_integrator(double time) {
+    petsc::check(TSCreate(PETSC_COMM_SELF, ts_.fill()));
+    TS ts = ts_.get();
+    petsc::check(TSSetOptionsPrefix(ts, "transient_"));
+    petsc::check(TSSetApplicationContext(ts, this));
+    petsc::check(TSSetProblemType(ts, TS_NONLINEAR));
+    petsc::check(TSSetEquationType(ts, TS_EQ_IMPLICIT));
+    petsc::check(TSSetIFunction(ts, nullptr, form_function, this));
+    petsc::check(TSSetIJacobian(ts, jacobian_.get(), jacobian_.get(), form_jacobian, this));
+    petsc::check(TSSetType(ts, options_.method == TransientMethod::bdf2 ? TSBDF : TSTHETA));
+    if (options_.method == TransientMethod::bdf2) petsc::check(TSBDFSetOrder(ts, 2));
+    if (options_.method == TransientMethod::midpoint) petsc::check(TSThetaSetTheta(ts, 0.5));
+    TSAdapt adapt = nullptr;
+    petsc::check(TSGetAdapt(ts, &adapt));
+    petsc::check(TSAdaptSetType(adapt, TSADAPTNONE));
+    petsc::check(TSSetTime(ts, time));
+    petsc::check(TSSetTimeStep(ts, options_.step));
+    petsc::check(TSSetMaxTime(ts, 0.5 * PETSC_MAX_REAL));
+    petsc::check(TSSetMaxSteps(ts, PETSC_MAX_INT - 1));
+    petsc::check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
+    petsc::check(TSSetMaxSNESFailures(ts, -1));  // TS counts those of a step by itself
+    petsc::check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
+    petsc::check(TSSetPreStep(ts, before_step));
+    petsc::check(TSSetPreStage(ts, before_stage));
+    petsc::check(TSSetPostStep(ts, after_step));
+    petsc::check(TSGetSNES(ts, &snes_));
+    petsc::check(SNESSetTolerances(snes_, 0.0, 0.0, 0.0, most_newton_steps, PETSC_MAX_INT));
+    petsc::check(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
+    SNESLineSearch search = nullptr;
+    petsc::check(SNESGetLineSearch(snes_, &search));
+    petsc::check(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+    petsc::check(SNESSetLagJacobianPersists(snes_, PETSC_TRUE));
+    KSP linear = nullptr;
+    PC preconditioner = nullptr;
+    petsc::check(SNESGetKSP(snes_, &linear));
+    petsc::check(KSPSetType(linear, KSPPREONLY));
+    petsc::check(KSPGetPC(linear, &preconditioner));
+    petsc::check(PCSetType(preconditioner, PCLU));
+    petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
+    petsc::check(TSSetFromOptions(ts));
+  }
+
+  double grid(long step) const { return origin_ + static_cast<double>(step) * options_.step; }
+
+  static Integration& of(TS ts) {
+    void* context = nullptr;
+    TSGetApplicationContext(ts, &context);
+    return *static_cast<Integration*>(context);
+  }
+
+  template <class Work>
+  PetscErrorCode guarded(const Work& work) noexcept {
+    try {
+      work();
+    } catch (...) {
+      error_ = std::current_exception();
+      return PETSC_ERR_USER;
+    }
+    return 0;
+  }
+
+  /// The rest of the way to the next instant of the grid, in equal parts no longer than the limit.
+  static PetscErrorCode before_step(TS ts) noexcept {
+    Integration& self = of(ts);
+    return self.guarded([&] {
+      double t = 0.0;
+      petsc::check(TSGetTime(ts, &t));
+      const double rest = self.grid(self.step_ + 1) - t;
+      const double parts = std::ceil(rest / self.limit_ * (1.0 - rounding));
+      self.asked_ = rest / std::max(parts, 1.0);
+      petsc::check(TSSetTimeStep(ts, self.asked_));
+    });
+  }
+
+  static PetscErrorCode before_stage(TS ts, PetscReal) noexcept {
+    Integration& self = of(ts);
+    return self.guarded([&] {
+      if (self.steps_since_start_ < starting_steps) self.renew_tangent();
+    });
+  }
+
+  /// The longest step after a start.
+  double start_limit() const {
+    PetscBool is_bdf = PETSC_FALSE;
+    petsc::check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ts_.get()), TSBDF, &is_bdf));
+    return options_.step * (is_bdf != PETSC_FALSE ? first_step : 1.0);
+  }
+
+  void renew_tangent() { petsc::check(SNESSetLagJacobian(snes_, -2)); }
+
+  static PetscErrorCode after_step(TS ts) noexcept {
+    Integration& self = of(ts);
+    return self.guarded([&] { self.finish_step(); });
+  }
+
+  void finish_step() {
+    TS ts = ts_.get();
+    double t = 0.0;
+    double next = 0.0;
+    double before = 0.0;
+    petsc::check(TSGetTime(ts, &t));
+    petsc::check(TSGetPrevTime(ts, &before));
+    petsc::check(TSGetTimeStep(ts, &next));
+    const double taken = t - before;
+    const bool was_cut = taken < asked_ * (1.0 - rounding);
+    if (was_cut) ++cuts_;
+    limit_ = was_cut ? taken : std::min(2.0 * limit_, options_.step);
+    ++steps_;
+    ++steps_since_start_;
+    const bool on_grid = std::abs(t - grid(step_ + 1)) <= rounding * options_.step;
+    if (on_grid) {
+      ++step_;
+      petsc::check(TSSetTime(ts, grid(step_)));
+    }
+    const bool goes_on = observer_.sample({t_, z_.get(), z_dot_.get(), step_, on_grid});
+    if (on_grid && step_ < last_step_ && options_.checkpoint_steps > 0 &&
+        step_ % options_.checkpoint_steps == 0)
+      make_checkpoint();
+    complete_ = step_ >= last_step_;
+    if (!goes_on || complete_) petsc::check(TSSetConvergedReason(ts, TS_CONVERGED_USER));
+  }
+
+  void make_checkpoint() {
+    petsc::check(TSRestartStep(ts_.get()));
+    steps_since_start_ = 0;
+    limit_ = start_limit();
+    observer_.checkpoint(state());
+  }
+
+  static PetscErrorCode form_function(TS ts, PetscReal t, Vec x, Vec x_dot, Vec f,
+                                      void* pointer) noexcept {
+    Integration& self = *static_cast<Integration*>(pointer);
+    try {
+      self.residual(t, x, x_dot, f);
+    } catch (const DomainError&) {
+      self.error_ = std::current_exception();
+      SNES snes = nullptr;
+      TSGetSNES(ts, &snes);
+      return SNESSetFunctionDomainError(snes);
+    } catch (...) {
+      self.error_ = std::current_exception();
+      return PETSC_ERR_USER;
+    }
+    return 0;
+  }
+
+  static PetscErrorCode form_jacobian(TS ts, PetscReal t, Vec x, Vec x_dot, PetscReal shift, Mat,
+                                      Mat matrix, void* pointer) noexcept {
+    Integration& self = *static_cast<Integration*>(pointer);
+    try {
+      self.tangent(t, x, x_dot, shift, matrix);
+    } catch (const DomainError&) {
+      self.error_ = std::current_exception();
+      SNES snes = nullptr;
+      TSGetSNES(ts, &snes);
+      return SNESSetJacobianDomainError(snes);
+    } catch (...) {
+      self.error_ = std::current_exception();
+      return PETSC_ERR_USER;
+    }
+    return 0;
+  }
+
+  /// The error that is left after a correction d that shrinks the residual by rho is about
+  /// rho / (1 - rho) |d|.
+  static PetscErrorCode test_convergence(SNES snes, PetscInt iteration, PetscReal size,
+                                         PetscReal change, PetscReal residual,
+                                         SNESConvergedReason* reason, void* pointer) noexcept {
+    Integration& self = *static_cast<Integration*>(pointer);
+    *reason = SNES_CONVERGED_ITERATING;
+    const double before = self.last_residual_;
+    self.last_residual_ = residual;
+    if (!std::isfinite(residual)) {
+      *reason = SNES_DIVERGED_FNORM_NAN;
+      return 0;
+    }
+    if (residual == 0.0) {
+      *reason = SNES_CONVERGED_FNORM_ABS;
+      return 0;
+    }
+    if (iteration == 0) return 0;
+    ++self.newton_steps_;
+    const double contraction = residual / before;
+    if (contraction < 1.0 &&
+        contraction / (1.0 - contraction) * change <= self.options_.tolerance * size) {
+      *reason = SNES_CONVERGED_SNORM_RELATIVE;
+      return 0;
+    }
+    // The tangent is as good as it can be: what is left is rounding.
+    if (self.is_new_tangent_ && contraction > slow_contraction && change <= stagnation * size) {
+      *reason = SNES_CONVERGED_SNORM_RELATIVE;
+      return 0;
+    }
+    self.is_new_tangent_ = false;
+    if (contraction <= slow_contraction) return 0;
+    return SNESSetLagJacobian(snes, -2);
+  }
+
+  // ---- failure ---------------------------------------------------------------------------------
+
+  [[noreturn]] void fail(const std::string& reason) {
+    std::ostringstream text;
+    double t = 0.0;
+    petsc::check(TSGetTime(ts_.get(), &t));
+    text << "transient: no step from t = " << t << " s (" << reason << ")";
+    Vec change = nullptr;
+    petsc::check(SNESGetSolutionUpdate(snes_, &change));
+    if (change != nullptr) {
+      const petsc::ReadView view(change);
+      const Eigen::Map<const Eigen::VectorXd> values(view.data(), system_.size());
+      Eigen::Index worst = 0;
+      values.cwiseAbs().maxCoeff(&worst);
+      text << "; what changes most: " << system_.unknowns()[static_cast<std::size_t>(worst)].name;
+    }
+    if (error_) {
+      try {
+        std::rethrow_exception(error_);
+      } catch (const std::exception& error) {
+        text << "; " << error.what();
+      }
+    }
+    text << "; hint: a smaller transient.step; -transient_snes_monitor shows the corrections";
+    throw ConvergenceError(text.str());
+  }
+
+  const system::PeriodicSystem& system_;
+  const TransientOptions& options_;
+  TransientObserver& observer_;
+  std::vector<HeldCoordinate> held_;
+  Eigen::VectorXd start_rates_;
+  double origin_;
+  long step_;           ///< of the grid, done
+  long last_step_;      ///< of the grid
+  double limit_ = 0.0;  ///< of the step [s], less than its length after a cut
+  double asked_ = 0.0;
+  petsc::Handle<Vec> z_;      ///< of the last residual
+  petsc::Handle<Vec> z_dot_;  ///< of the last residual
+  petsc::Handle<Vec> r_;
+  petsc::Handle<Mat> jacobian_;
+  Equilibration scaling_;
+  petsc::Handle<Vec> x_;  ///< z, scaled
+  petsc::Handle<TS> ts_;
+  SNES snes_ = nullptr;
+  double t_ = 0.0;  ///< of the last residual
+  double last_residual_ = 0.0;
+  int steps_since_start_ = 0;
+  bool is_new_tangent_ = false;  ///< since the last correction
+  bool complete_ = true;
+  long steps_ = 0;
+  long newton_steps_ = 0;
+  long factorizations_ = 0;
+  long cuts_ = 0;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+TransientRun run_transient(const system::PeriodicSystem& system, const TransientStart& start,
+                           const TransientOptions& options, TransientObserver& observer) {
+  return Integration(system, start, options, observer).run();
+}
+
+TransientStart start_undeformed(const system::PeriodicSystem& system, double t) {
+  const petsc::Handle<Vec> z = system.make_state();
+  system.reference_state(t, z.get());
+  const petsc::ReadView view(z.get());
+  TransientStart start;
+  start.time = t;
+  start.origin = t;
+  start.z = Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+  return start;
+}
+
+TransientStart start_on(const system::PeriodicSystem& system, const Trim& trim, double t) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  trim.solution.evaluate(t, z.get(), z_dot.get());
+  const petsc::ReadView view(z.get());
+  TransientStart start;
+  start.time = t;
+  start.origin = t;
+  const petsc::ReadView rates(z_dot.get());
+  start.z = Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+  start.z_dot = Eigen::Map<const Eigen::VectorXd>(rates.data(), system.size());
+  start.held = trim.held;
+  return start;
+}
+
+}  // namespace samara::analysis

@@ -1,0 +1,18 @@
+// The block `transient` of a case file, and what of a case makes the model.
+#pragma once
+
+#include <string>
+
+#include "samara/io/case.hpp"
+
+#include "yaml_reader.hpp"
+
+namespace samara::io {
+
+void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& errors);
+
+/// The keys that make the model, one a line in the order of their names: `blades.length: 8.42`.
+/// Numbers are spelled one way, comments and the keys of the analyses are not in it.
+std::string model_text_of(const YamlNode& root);
+
+}  // namespace samara::io

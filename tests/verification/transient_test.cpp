@@ -1,0 +1,308 @@
+// Time histories against public codes, closed forms, Floquet's theory and themselves.
+#include <array>
+#include <map>
+
+#include <Eigen/LU>
+#include <boost/test/unit_test.hpp>
+
+#include "samara/analysis/consistent_subspace.hpp"
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/system/turbine_channels.hpp"
+
+#include "history.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using analysis::TransientMethod;
+using analysis::TransientSample;
+using analysis::TransientStart;
+using boost::test_tools::tolerance;
+
+namespace {
+
+constexpr TransientMethod methods[] = {TransientMethod::bdf2, TransientMethod::midpoint};
+
+/// Case T1: a slender beam (Wright et al. 1982 with axial and shear stiffness) that is turned at
+/// 6 rad/s from its undeformed state, with weight in the plane of rotation.
+model::TurbineDefinition spun_up_beam(int elements, int order) {
+  BeamCase beam;
+  beam.length = 10.0;
+  beam.speed = 6.0;
+  beam.inertia = Vector3(2e-4, 1e-4, 1e-4);
+  beam.stiffness << 1e8, 4e7, 4e7, 8e3, 1e4, 1e4;
+  beam.elements = elements;
+  beam.order = order;
+  model::TurbineDefinition definition = definition_of(beam);
+  definition.gravity = 9.81;
+  return definition;
+}
+
+std::unique_ptr<system::TurbineSystem> system_of(const model::TurbineDefinition& definition) {
+  return std::make_unique<system::TurbineSystem>(model::build_turbine(definition), PETSC_COMM_SELF);
+}
+
+analysis::Trim trim_of(const system::PeriodicSystem& system, int harmonics) {
+  analysis::Observer observer;
+  analysis::TrimOptions options;
+  options.harmonics = harmonics;
+  return analysis::find_trim(system, options, observer);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(spun_up_beam_follows_three_public_codes) {
+  // Three public codes agree to about 1e-3 on the axial and in-plane displacement of the tip at 1,
+  // 5 and 10 s; their in-plane axis points to the trailing edge: one mode q of frequency w under
+  // the weight g sin(Omega t) from rest is at first g / (Omega^2 - w^2) ((Omega/w) sin w t - sin
+  // Omega t) < 0 in the direction of motion.
+  const auto system = system_of(spun_up_beam(2, 4));
+  const int tip = system->layout().blade_tip(0);
+  const double step = 0.002;
+  std::map<long, Vector3> tips;
+  Keeper<double> watch([&](const TransientSample& sample) {
+    tips[sample.step] = values_of(sample.z).segment<3>(tip);
+    return 0.0;
+  });
+  analysis::run_transient(*system, analysis::start_undeformed(*system, 0.0),
+                          steps_of(step, 10.0, TransientMethod::bdf2), watch);
+  constexpr double codes = 2e-3;
+  const double expected[3][3] = {
+      {1.0, -0.04699, 0.91917}, {5.0, -0.15026, -1.62739}, {10.0, -0.04562, 0.90906}};
+  for (const auto& [t, axial, toward_trailing_edge] : expected) {
+    const Vector3& u = tips.at(std::lround(t / step));
+    BOOST_TEST(std::abs(u(0) - axial) < codes);
+    BOOST_TEST(std::abs(-u(1) - toward_trailing_edge) < codes);
+    BOOST_TEST(u(2) == 0.0, tolerance(1e-9));
+  }
+  const double omega = 4.26292;
+  const double one_mode = (6.0 / omega * std::sin(omega) - std::sin(6.0)) / (36.0 - omega * omega);
+  BOOST_TEST(one_mode < 0.0);
+  BOOST_TEST(tips.at(500)(1) < 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(two_integrators_agree_on_the_spun_beam) {
+  const auto system = system_of(spun_up_beam(4, 4));
+  const TransientStart start = analysis::start_on(*system, trim_of(*system, 12), 0.0);
+  std::map<TransientMethod, Eigen::VectorXd> ends;
+  for (const TransientMethod method : methods)
+    ends[method] = state_after(*system, start, steps_of(0.00025, 2.0, method));
+  BOOST_TEST(position_difference(*system, ends[TransientMethod::bdf2],
+                                 ends[TransientMethod::midpoint]) < 1e-5);
+}
+
+BOOST_AUTO_TEST_CASE(both_integrators_are_of_second_order_on_the_turbine_with_gravity) {
+  const io::Case input = lee("baseline", with(mesh(true, 3, 2), {"gravity=9.80665"}));
+  const auto system = system_of(input.turbine);
+  // Not the steady state: of the undeformed turbine the first steps would hold its shock.
+  const TransientStart start = analysis::start_on(*system, trim_of(*system, 10), 0.0);
+  for (const TransientMethod method : methods) {
+    std::vector<Eigen::VectorXd> ends;
+    for (const double step : {0.01, 0.005, 0.0025, 0.00125})
+      ends.push_back(state_after(*system, start, steps_of(step, 1.0, method)));
+    const double coarse = position_difference(*system, ends[0], ends[1]);
+    const double middle = position_difference(*system, ends[1], ends[2]);
+    const double fine = position_difference(*system, ends[2], ends[3]);
+    BOOST_TEST_MESSAGE("differences " << coarse << " " << middle << " " << fine);
+    BOOST_TEST(std::log2(middle / fine) == 2.0, tolerance(0.1));
+    BOOST_TEST(coarse > middle);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(stable_machine_stays_on_its_steady_state) {
+  const io::Case input =
+      io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml",
+                    {"blades.elements=3", "blades.order=2", "tower.elements=3", "tower.order=2"});
+  const auto system = system_of(input.turbine);
+  const analysis::Trim trim = trim_of(*system, 8);
+  const double duration = 10.0 * system->period();
+  const petsc::Handle<Vec> z = system->make_state();
+  const petsc::Handle<Vec> z_dot = system->make_state();
+  trim.solution.evaluate(duration, z.get(), z_dot.get());
+  const Eigen::VectorXd steady = values_of(z.get());
+  const double deflection = position_difference(*system, steady, 0.0 * steady);
+  for (const TransientMethod method : methods) {
+    std::vector<Eigen::VectorXd> ends;
+    for (const int steps : {4000, 8000})
+      ends.push_back(state_after(*system, analysis::start_on(*system, trim, 0.0),
+                                 steps_of(duration / steps, duration, method)));
+    const double coarse = position_difference(*system, ends[0], steady);
+    const double fine = position_difference(*system, ends[1], steady);
+    const Eigen::VectorXd limit = (4.0 * ends[1] - ends[0]) / 3.0;
+    BOOST_TEST_MESSAGE("off by " << coarse / deflection << " " << fine / deflection << " "
+                                 << position_difference(*system, limit, steady) / deflection);
+    BOOST_TEST(coarse / fine == 4.0, tolerance(0.15));
+    BOOST_TEST(position_difference(*system, limit, steady) < 1e-6 * deflection);
+  }
+}
+
+namespace {
+
+/// Kinetic and strain energy of a state [J].
+double energy_of(const system::PeriodicSystem& system, const Eigen::VectorXd& z) {
+  double energy = 0.0;
+  for (const system::EnergyGroup& group : system.energy_groups()) {
+    const auto n = static_cast<Eigen::Index>(group.unknowns.size());
+    Eigen::VectorXd part(n);
+    for (Eigen::Index i = 0; i < n; ++i) part(i) = z(group.unknowns[static_cast<std::size_t>(i)]);
+    energy += 0.5 * part.dot(Eigen::Map<const Eigen::MatrixXd>(group.weight.data(), n, n) * part);
+  }
+  return energy;
+}
+
+/// A resolved mode and its shape at t = 0, the largest position 1.
+struct FoundMode {
+  analysis::Mode mode;
+  Eigen::VectorXcd shape;
+};
+
+FoundMode mode_of(const system::PeriodicSystem& system, const analysis::Trim& trim,
+                  const std::string& label) {
+  analysis::Observer observer;
+  const analysis::ModeSet set =
+      analysis::find_floquet_modes(system, trim.solution, {800}, PETSC_COMM_SELF, observer).set;
+  for (std::size_t i = 0; i < set.modes.size(); ++i)
+    if (set.modes[i].label == label) return {set.modes[i], set.shapes[i].col(0)};
+  BOOST_FAIL("no mode " + label);
+  return {};
+}
+
+/// At rest against the steady state, displaced along a mode so far that its largest position
+/// differs by `amplitude`; everything else follows from the constraints.
+TransientStart released(const system::PeriodicSystem& system, const analysis::Trim& trim,
+                        const std::string& label, double amplitude) {
+  const Eigen::VectorXd shape = analysis::real_part(mode_of(system, trim, label).shape);
+  const analysis::ConsistentSubspace subspace(system, trim.solution);
+  TransientStart start = analysis::start_on(system, trim, 0.0);
+  const Eigen::VectorXd eta = subspace.coordinates_of(start.z + amplitude * shape);
+  const petsc::Handle<Vec> z = system.make_state();
+  {
+    const petsc::WriteView view(z.get());
+    Eigen::Map<Eigen::VectorXd>(view.data(), start.z.size()) = start.z;
+  }
+  subspace.find_state(0.0, eta, Eigen::VectorXd::Zero(eta.size()), z.get());
+  start.z = values_of(z.get());
+  start.z_dot.resize(0);
+  return start;
+}
+
+/// Energy and power of the shaft's drive.
+struct Budget {
+  double energy = 0.0;
+  double power = 0.0;
+};
+
+/// How much the energy grows beyond the work of the drive, over the energy in the deflections.
+double energy_gain(const system::TurbineSystem& system, const TransientStart& start, double step,
+                   TransientMethod method) {
+  const system::TurbineChannels torque(system, {}, {"RotTorq", "RotSpeed"});
+  Keeper<Budget> budget([&](const TransientSample& sample) {
+    std::array<double, 2> values{};
+    torque.evaluate(sample.t, sample.z, sample.z_dot, values);
+    const double power = -values[0] * 1e3 * values[1] * pi / 30.0;
+    return Budget{energy_of(system, values_of(sample.z)), power};
+  });
+  analysis::run_transient(system, start, steps_of(step, 20.0 * system.period(), method), budget);
+  double work = 0.0;
+  double largest = 0.0;
+  // From the first sample after the start, which is on the path of the steps as the others are.
+  const std::vector<Budget>& rows = budget.values;
+  for (std::size_t i = 2; i < rows.size(); ++i) {
+    work += 0.5 * (budget.times[i] - budget.times[i - 1]) * (rows[i].power + rows[i - 1].power);
+    largest = std::max(largest, std::abs(work));
+  }
+  return (rows.back().energy - rows[1].energy - work) / largest;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(energy_of_the_undamped_turbine_changes_by_the_work_of_the_drive) {
+  // The energies of the system leave out what the hub has beside the teeter's: it has none here.
+  const io::Case input = lee(
+      "baseline", with(mesh(true, 2, 2), {"nacelle.yaw.joint=locked", "hub.inertia=[0, 0, 0]"}));
+  const auto system = system_of(input.turbine);
+  const analysis::Trim trim = trim_of(*system, 0);
+  const TransientStart start = released(*system, trim, "tower lateral 1", 0.2);
+  const double period = system->period();
+  std::vector<double> gains;
+  for (const int steps : {200, 400, 800})
+    gains.push_back(energy_gain(*system, start, period / steps, TransientMethod::midpoint));
+  BOOST_TEST_MESSAGE("midpoint " << gains[0] << " " << gains[1] << " " << gains[2]);
+  BOOST_TEST(std::log2(std::abs(gains[0] / gains[1])) == 2.0, tolerance(0.15));
+  BOOST_TEST(std::log2(std::abs(gains[1] / gains[2])) == 2.0, tolerance(0.15));
+  BOOST_TEST(std::abs(gains[2]) < 1e-3);
+  for (const int steps : {200, 400}) {
+    const double gain = energy_gain(*system, start, period / steps, TransientMethod::bdf2);
+    BOOST_TEST_MESSAGE("bdf2 " << gain);
+    BOOST_TEST(gain < 0.0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(disturbance_along_a_mode_decays_and_oscillates_as_floquet_says) {
+  const io::Case input =
+      lee("baseline", with(mesh(true, 2, 2), {"gravity=9.80665", "tower.damping=2e-3",
+                                              "nacelle.yaw.joint=locked", "blades.damping=1e-3"}));
+  const auto system = system_of(input.turbine);
+  const analysis::Trim trim = trim_of(*system, 10);
+  const double period = system->period();
+  constexpr int steps = 400;
+  constexpr int revolutions = 20;
+  for (const std::string label : {"tower lateral 1", "blade flap symmetric 1"}) {
+    const FoundMode found = mode_of(*system, trim, label);
+    // Half the difference of a disturbance and its opposite: what is even in it drops out.
+    constexpr double amplitude = 1e-3;
+    std::array<std::vector<Eigen::VectorXd>, 2> histories;
+    for (const int side : {0, 1}) {
+      TransientStart start = analysis::start_on(*system, trim, 0.0);
+      start.z += (side == 0 ? amplitude : -amplitude) * analysis::real_part(found.shape);
+      start.z_dot.resize(0);
+      Keeper<Eigen::VectorXd> keeper(
+          [](const TransientSample& sample) { return values_of(sample.z); });
+      analysis::run_transient(
+          *system, start, steps_of(period / steps, revolutions * period, TransientMethod::midpoint),
+          keeper);
+      histories[static_cast<std::size_t>(side)] = keeper.values;
+    }
+    // Once a revolution: s(n+1) = 2 Re mu s(n) - |mu|^2 s(n-1) in every position.
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    const auto difference = [&](int row) -> Eigen::VectorXd {
+      const auto at = static_cast<std::size_t>(row);
+      return 0.5 * (histories[0][at] - histories[1][at]);
+    };
+    for (int n = 1; n + 1 < revolutions; ++n) {
+      const Eigen::VectorXd before = difference(1 + (n - 1) * steps);
+      const Eigen::VectorXd now = difference(1 + n * steps);
+      const Eigen::VectorXd after = difference(1 + (n + 1) * steps);
+      for (std::size_t i = 0; i < system->unknowns().size(); ++i) {
+        if (system->unknowns()[i].role != system::UnknownRole::position) continue;
+        const auto k = static_cast<Eigen::Index>(i);
+        const Eigen::Vector2d terms(now(k), -before(k));
+        normal += terms * terms.transpose();
+        right += terms * after(k);
+      }
+    }
+    const Eigen::Vector2d fit = normal.inverse() * right;
+    const double growth = 0.5 * std::log(fit(1)) / period;
+    BOOST_TEST_MESSAGE(label << ": " << growth << " against " << found.mode.exponent.real());
+    BOOST_TEST(growth == found.mode.exponent.real(), tolerance(1e-3));
+
+    // Crossings of zero of what moves most.
+    Eigen::Index largest = 0;
+    Eigen::VectorXd size = Eigen::VectorXd::Zero(found.shape.size());
+    for (std::size_t i = 0; i < system->unknowns().size(); ++i)
+      if (system->unknowns()[i].role == system::UnknownRole::position)
+        size(static_cast<Eigen::Index>(i)) = std::abs(found.shape(static_cast<Eigen::Index>(i)));
+    size.maxCoeff(&largest);
+    std::vector<double> crossings;
+    const double dt = period / steps;
+    for (int row = 1; row < revolutions * steps; ++row) {
+      const double a = difference(row)(largest);
+      const double b = difference(row + 1)(largest);
+      if ((a < 0.0) != (b < 0.0)) crossings.push_back(dt * (row - 0.5 + a / (a - b)));
+    }
+    const double frequency =
+        pi * static_cast<double>(crossings.size() - 1) / (crossings.back() - crossings.front());
+    BOOST_TEST_MESSAGE("frequency " << frequency << " against " << found.mode.exponent.imag());
+    BOOST_TEST(frequency == found.mode.exponent.imag(), tolerance(1e-3));
+  }
+}
