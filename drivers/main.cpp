@@ -88,6 +88,8 @@ Outcome attempt(const std::string& case_path, const Work& work) {
     return {3, with_name(error.what(), case_path)};
   } catch (const DomainError& error) {
     return {3, with_name(error.what(), case_path)};
+  } catch (const Interrupted& error) {
+    return {130, with_name(error.what(), case_path)};
   } catch (const std::bad_alloc&) {
     return {1, "samara: not enough memory\n"};
   } catch (const InternalError& error) {

@@ -223,6 +223,11 @@ void run_transient(const Job& job) {
               << channel_table(channels.channels(), recorder.extents())
               << "result: " << job.result_path << "\n"
               << std::flush;
+    if (!run.complete)
+      throw Interrupted("interrupted at t = " + general(run.end.time, 6) + " s; hint: --restart " +
+                        job.result_path + " goes on from its last checkpoint");
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     progress.finish();
     file.finish(std::string("failed: ") + error.what(), nullptr);

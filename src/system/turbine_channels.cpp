@@ -109,7 +109,7 @@ TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStati
       std::vector<std::string> words;
       for (const auto& one : known) words.push_back(one.first);
       const std::string similar = find_similar(name, words);
-      throw InputError("unknown channel \"" + name + "\"" +
+      throw InputError("transient.output.channels: unknown channel \"" + name + "\"" +
                        (similar.empty() ? "; samara check lists those of the turbine"
                                         : "; did you mean \"" + similar + "\"?"));
     }

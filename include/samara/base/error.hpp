@@ -24,6 +24,11 @@ class DomainError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The user ended the run (exit code 130, that of a program which Ctrl-C ends).
+class Interrupted : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// The environment failed, or the program has a defect (exit code 1).
 class InternalError : public std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -1,0 +1,221 @@
+"""samara transient: histories, restarts, runs that are killed, and what it refuses."""
+
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import BASELINE, MINIMAL, PROGRAM, SOURCE, ProgramTest  # noqa: E402
+
+LAND = SOURCE / "inputs/nrel5mw/land.yaml"
+COARSE = ["--set", "blades.elements=2", "--set", "tower.elements=2"]
+CHANNELS = "output: {channels: [RootMxb1, RootMyb1, TwrBsMyt, TTDspSS, Azimuth]}"
+
+
+def block(**keys):
+    """The key `transient` as one --set argument."""
+    words = ", ".join(f"{key}: {value}" for key, value in keys.items())
+    return ["--set", f"transient={{{words}, {CHANNELS}}}"]
+
+
+def history(path):
+    with h5py.File(path, "r") as file:
+        group = file["transient"]
+        names = list(group["channel_name"].asstr()[:])
+        return (group["time"][:], group["values"][:], names, group.attrs["status"])
+
+
+class Histories(ProgramTest):
+    def test_rows_channels_and_their_attributes(self):
+        run = self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
+                           *block(duration=1, step=0.01, start="undeformed"))
+        self.assertIn("result: a.h5", run.stdout)
+        times, values, names, status = history(self.folder / "a.h5")
+        self.assertEqual(status, "complete")
+        numpy.testing.assert_allclose(times, numpy.arange(101) * 0.01, atol=1e-12)
+        self.assertEqual(names, ["RootMxb1", "RootMyb1", "TwrBsMyt", "TTDspSS", "Azimuth"])
+        self.assertEqual(values.shape, (101, 5))
+        speed = 6.02 * 180 / numpy.pi
+        numpy.testing.assert_allclose(values[:, 4], (speed * times) % 360, atol=1e-9)
+        with h5py.File(self.folder / "a.h5") as file:
+            self.assertEqual(list(file["transient/channel_unit"].asstr()[:2]), ["kN-m", "kN-m"])
+            for name in ("time", "values", "channel_frame", "checkpoint/state"):
+                self.assertTrue(file["transient/" + name].attrs["description"])
+
+    def test_midpoint_rule_gives_its_rows_in_the_middle_of_the_steps(self):
+        self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
+                     *block(duration=0.1, step=0.01, method="midpoint"))
+        times = history(self.folder / "a.h5")[0]
+        numpy.testing.assert_allclose(times[1:], (numpy.arange(10) + 0.5) * 0.01, atol=1e-12)
+
+    def test_petsc_options_reach_the_integrator(self):
+        run = self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
+                           *block(duration=0.1, step=0.01), "-transient_ts_type", "beuler")
+        self.assertIn("beuler", run.stdout)
+        self.assertNotIn("options that nothing", run.stderr)
+
+    def test_every_tenth_row_is_the_same_as_of_all(self):
+        for name, output in (("all", 1), ("some", 10)):
+            keys = f"transient={{duration: 1, step: 0.01, output: {{every: {output * 0.01}}}}}"
+            self.succeed("transient", BASELINE, *COARSE, "-o", f"{name}.h5", "--set", keys)
+        every = history(self.folder / "all.h5")
+        tenth = history(self.folder / "some.h5")
+        numpy.testing.assert_array_equal(every[1][::10], tenth[1])
+
+    def test_ranks_give_the_same_history(self):
+        for ranks in (1, 2, 3):
+            self.succeed("transient", BASELINE, *COARSE, "-o", f"{ranks}.h5",
+                         *block(duration=0.5, step=0.01), ranks=ranks)
+        for ranks in (2, 3):
+            numpy.testing.assert_array_equal(history(self.folder / "1.h5")[1],
+                                             history(self.folder / f"{ranks}.h5")[1])
+
+
+class Restarts(ProgramTest):
+    def test_restart_goes_on_bit_by_bit(self):
+        self.succeed("transient", BASELINE, *COARSE, "-o", "whole.h5",
+                     *block(duration=3, step=0.01, checkpoint=0.5))
+        self.succeed("transient", BASELINE, *COARSE, "-o", "parts.h5",
+                     *block(duration=1, step=0.01, checkpoint=0.5))
+        self.succeed("transient", BASELINE, *COARSE, "-o", "parts.h5", "--restart", "parts.h5",
+                     *block(duration=2, step=0.01, checkpoint=0.5))
+        self.succeed("transient", BASELINE, *COARSE, "-o", "parts.h5", "--restart", "parts.h5",
+                     *block(duration=3, step=0.01, checkpoint=0.5))
+        whole = history(self.folder / "whole.h5")
+        parts = history(self.folder / "parts.h5")
+        for a, b in zip(whole, parts):
+            numpy.testing.assert_array_equal(a, b)
+
+    def test_restart_into_another_file_holds_the_rest(self):
+        self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
+                     *block(duration=1, step=0.01, checkpoint=0.5))
+        self.succeed("transient", BASELINE, *COARSE, "-o", "b.h5", "--restart", "a.h5",
+                     *block(duration=1.5, step=0.01, checkpoint=0.5))
+        times = history(self.folder / "b.h5")[0]
+        numpy.testing.assert_allclose(times, 1.0 + 0.01 * numpy.arange(1, 51), atol=1e-12)
+
+    def test_interrupted_run_ends_in_good_order(self):
+        command = [PROGRAM, "transient", LAND, "-o", "a.h5", *block(duration=5000, step=0.01)]
+        run = subprocess.Popen(list(map(str, command)), cwd=self.folder, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(3)
+        run.send_signal(signal.SIGINT)
+        out, err = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 130, err)
+        self.assertIn("interrupted", out)
+        times, values, _, status = history(self.folder / "a.h5")
+        self.assertEqual(status, "interrupted")
+        self.assertGreater(len(times), 100)
+        self.assertTrue(numpy.isfinite(values).all())
+
+    def test_killed_runs_leave_readable_results_and_checkpoints(self):
+        # Ten moments from the first checkpoint on; the history of a run that was not killed is the
+        # yardstick.
+        keys = block(duration=150, step=0.01, checkpoint=5)
+        self.succeed("transient", LAND, *COARSE, "-o", "whole.h5", *keys)
+        whole = history(self.folder / "whole.h5")
+        moments = random.Random(4)
+        usable = 0
+        for i in range(10):
+            name = f"killed{i}.h5"
+            command = [PROGRAM, "transient", LAND, *COARSE, "-o", name, *keys]
+            with open(os.devnull, "w", encoding="utf-8") as nothing:
+                run = subprocess.Popen(list(map(str, command)), cwd=self.folder,
+                                       stdout=nothing, stderr=nothing)
+                time.sleep(0.4 + 1.2 * moments.random())
+                run.send_signal(signal.SIGKILL)
+                run.wait()
+            path = self.folder / name
+            if not path.exists():
+                continue  # not even the first checkpoint
+            times, values, _, _ = history(path)
+            count = len(times)
+            numpy.testing.assert_array_equal(times, whole[0][:count])
+            numpy.testing.assert_array_equal(values, whole[1][:count])
+            usable += 1
+            if usable <= 2:
+                self.succeed("transient", LAND, *COARSE, "-o", name, "--restart", name, *keys)
+                for a, b in zip(history(path), whole):
+                    numpy.testing.assert_array_equal(a, b)
+        self.assertGreaterEqual(usable, 8)
+
+    def test_segments_are_found_from_any_folder_and_missed_by_name(self):
+        self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
+                     *block(duration=2, step=0.01, checkpoint=0.5))
+        segments = sorted((self.folder / "a.parts").iterdir())
+        self.assertGreater(len(segments), 2)
+        here = os.getcwd()
+        os.chdir("/")
+        try:
+            self.assertTrue(numpy.isfinite(history(self.folder / "a.h5")[1]).all())
+        finally:
+            os.chdir(here)
+        segments[1].unlink()
+        run = self.samara("transient", BASELINE, *COARSE, "-o", "a.h5", "--restart", "a.h5",
+                          *block(duration=3, step=0.01, checkpoint=0.5))
+        self.assertEqual(run.returncode, 2)
+        self.assertIn(segments[1].name, run.stderr)
+        self.assertIn("missing", run.stderr)
+
+
+class Refusals(ProgramTest):
+    def test_bad_keys(self):
+        def refuse(word, keys):
+            with self.subTest(keys=keys):
+                self.refuse("transient", BASELINE, "--set", "transient={" + keys + "}",
+                            words=[word])
+
+        refuse("expected a number > 0", "duration: 1, step: 0")
+        refuse("expected a number > 0", "duration: -1, step: 0.1")
+        refuse("missing key \"step\"", "duration: 1")
+        refuse("longer than transient.duration", "duration: 1, step: 2")
+        refuse("multiple of transient.step", "duration: 1, step: 0.1, checkpoint: 0.25")
+        refuse("did you mean \"RootMxb1\"",
+               "duration: 1, step: 0.1, output: {channels: [RootMbx1]}")
+        refuse("expected trim or undeformed", "duration: 1, step: 0.1, start: rest")
+
+    def test_missing_block(self):
+        self.refuse("transient", BASELINE, words=["missing key \"transient\"", "hint"])
+
+    def test_restarts_that_cannot_be(self):
+        path = self.write("case.yaml", MINIMAL)
+        keys = block(duration=1, step=0.01)
+        keys[1] = keys[1].replace(", TwrBsMyt, TTDspSS", "")
+        self.succeed("transient", path, "-o", "a.h5", *keys)
+        longer = [keys[0], keys[1].replace("duration: 1", "duration: 2")]
+        self.refuse("transient", path, *longer, "--set", "shaft.speed=5", "-o", "b.h5",
+                    "--restart", "a.h5", words=["another model", "shaft.speed: 6 there",
+                                                "shaft.speed: 5 here"])
+        self.refuse("transient", path, *keys, "-o", "b.h5", "--restart", "a.h5",
+                    words=["reaches to t = 1 s already"])
+        self.refuse("transient", path, *longer, "-o", "b.h5", "--restart", "case.yaml",
+                    words=["no result of samara"])
+        self.refuse("trim", path, "--restart", "a.h5", words=["samara transient has"])
+
+    def test_run_that_diverges_says_where_and_keeps_what_it_has(self):
+        # A soft blade on which a load grows until it has turned by half a turn.
+        path = self.write("case.yaml", MINIMAL.replace("speed: 6", "speed: 0") + """gravity: 0
+loads:
+  - {beam: blades, at: 1, moment: [0, -1000, 0], table: [[0, 0], [10, 10]]}
+""")
+        run = self.samara("transient", path, "-o", "a.h5", "--set",
+                          "transient={duration: 10, step: 0.01, start: undeformed}")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn("170 degrees", run.stderr)
+        self.assertIn("what changes most: blade 1", run.stderr)
+        times, values, _, status = history(self.folder / "a.h5")
+        self.assertIn("failed", status)
+        self.assertGreater(len(times), 10)
+        self.assertTrue(numpy.isfinite(values).all())
+
+
+if __name__ == "__main__":
+    unittest.main()
