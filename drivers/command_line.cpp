@@ -279,6 +279,7 @@ exit codes
   1  the environment failed, or samara has a defect
   2  something you can mend: the case, an option, a path
   3  an iteration did not converge
+  130 ended by Ctrl-C
 
 The keys of a case are explained in docs/case_file.md.
 )";

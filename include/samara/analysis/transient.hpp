@@ -1,4 +1,4 @@
-// The time history of r(t, z, z_dot) = 0 from a given state (docs/theory.md, section 6).
+// The time history of r(t, z, z_dot) = 0 from a given state (docs/theory.md, section 9).
 //
 // PETSc's TS integrates the system as it is, fully implicit, with the exact tangents K + shift M:
 // BDF2 (second order, damps what a step does not resolve) or the implicit midpoint rule (second
