@@ -8,6 +8,7 @@ pkg_check_modules(SLEPC REQUIRED IMPORTED_TARGET slepc>=3.18)
 set(BLA_VENDOR Generic)  # Debian's alternative: OpenBLAS where it is installed
 find_package(BLAS REQUIRED)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3>=3.3)
+pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser>=2.3)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(yaml-cpp 0.7 REQUIRED)
 # Not FindHDF5: it fails in a folder whose name has a space.
@@ -18,6 +19,7 @@ endif()
 
 # Debian's pkg-config files carry Debian's own compile flags (-D_FORTIFY_SOURCE, -Wdate-time).
 set_property(TARGET PkgConfig::PETSC PkgConfig::SLEPC PkgConfig::HDF5 PkgConfig::FFTW
+             PkgConfig::MUPARSER
              PROPERTY INTERFACE_COMPILE_OPTIONS "")
 
 add_library(samara_external_petsc INTERFACE)

@@ -1,6 +1,7 @@
 #include "samara/analysis/transient.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <sstream>
@@ -12,6 +13,8 @@
 namespace samara::analysis {
 namespace {
 
+/// What integrates this system, with the orders that docs/theory.md, section 9.1, states.
+constexpr std::array<const char*, 5> sound_types{TSBDF, TSTHETA, TSCN, TSALPHA, TSBEULER};
 /// Newton with an old tangent goes on while each correction is this much smaller than the last.
 constexpr double slow_contraction = 0.1;
 /// The first steps after a start differ in what multiplies M.
@@ -38,6 +41,7 @@ class Integration {
         held_(start.held),
         start_rates_(start.z_dot),
         origin_(start.origin),
+        start_time_(start.time),
         step_(start.step),
         last_step_(
             static_cast<long>(std::ceil(options.duration / options.step * (1.0 - rounding)))),
@@ -54,7 +58,7 @@ class Integration {
 
   TransientRun run() {
     const petsc::Stage stage("transient");
-    if (step_ == 0) sample_start();
+    if (start_time_ == origin_) sample_start();
     const PetscErrorCode code = TSSolve(ts_.get(), x_.get());
     if (code != 0 && error_) std::rethrow_exception(error_);
     petsc::check(code);
@@ -63,7 +67,8 @@ class Integration {
     if (reason < 0) fail(TSConvergedReasons[reason]);
     TransientRun run;
     run.end = state();
-    run.complete = complete_;
+    run.before = before_;
+    run.reason = reason_;
     TSType type = nullptr;
     petsc::check(TSGetType(ts_.get(), &type));
     run.method = type;
@@ -215,6 +220,19 @@ class Integration {
     petsc::check(PCSetType(preconditioner, PCLU));
     petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
     petsc::check(TSSetFromOptions(ts));
+    require_sound_type();
+  }
+
+  /// TS has types that cannot solve for z where M is singular, or change r; they would fail later.
+  void require_sound_type() const {
+    TSType type = nullptr;
+    petsc::check(TSGetType(ts_.get(), &type));
+    const std::string name = type;
+    if (std::find(sound_types.begin(), sound_types.end(), name) != sound_types.end()) return;
+    std::string words;
+    for (const char* sound : sound_types) words += std::string(words.empty() ? "" : ", ") + sound;
+    throw InputError("-transient_ts_type " + name +
+                     ": not for a system with constraints; those that are: " + words);
   }
 
   double grid(long step) const { return origin_ + static_cast<double>(step) * options_.step; }
@@ -242,11 +260,18 @@ class Integration {
     return self.guarded([&] {
       double t = 0.0;
       petsc::check(TSGetTime(ts, &t));
-      const double rest = self.grid(self.step_ + 1) - t;
+      self.before_ = self.state();
+      const double rest = self.target() - t;
       const double parts = std::ceil(rest / self.limit_ * (1.0 - rounding));
       self.asked_ = rest / std::max(parts, 1.0);
       petsc::check(TSSetTimeStep(ts, self.asked_));
     });
+  }
+
+  /// Where the step is to end: the next instant of the grid, or where the run is to stop.
+  double target() const {
+    const double next = grid(step_ + 1);
+    return options_.stop_at ? std::min(next, *options_.stop_at) : next;
   }
 
   static PetscErrorCode before_stage(TS ts, PetscReal) noexcept {
@@ -284,7 +309,9 @@ class Integration {
     limit_ = was_cut ? taken : std::min(2.0 * limit_, options_.step);
     ++steps_;
     ++steps_since_start_;
-    const bool on_grid = std::abs(t - grid(step_ + 1)) <= rounding * options_.step;
+    const double close = rounding * options_.step;
+    const bool on_grid = std::abs(t - grid(step_ + 1)) <= close;
+    const bool is_stop = options_.stop_at && std::abs(t - *options_.stop_at) <= close;
     if (on_grid) {
       ++step_;
       petsc::check(TSSetTime(ts, grid(step_)));
@@ -293,8 +320,15 @@ class Integration {
     if (on_grid && step_ < last_step_ && options_.checkpoint_steps > 0 &&
         step_ % options_.checkpoint_steps == 0)
       make_checkpoint();
-    complete_ = step_ >= last_step_;
-    if (!goes_on || complete_) petsc::check(TSSetConvergedReason(ts, TS_CONVERGED_USER));
+    if (step_ >= last_step_)
+      reason_ = TransientEnd::complete;
+    else if (is_stop)
+      reason_ = TransientEnd::stopped;
+    else if (!goes_on)
+      reason_ = TransientEnd::observer;
+    else
+      return;
+    petsc::check(TSSetConvergedReason(ts, TS_CONVERGED_USER));
   }
 
   void make_checkpoint() {
@@ -406,6 +440,7 @@ class Integration {
   std::vector<HeldCoordinate> held_;
   Eigen::VectorXd start_rates_;
   double origin_;
+  double start_time_;
   long step_;           ///< of the grid, done
   long last_step_;      ///< of the grid
   double limit_ = 0.0;  ///< of the step [s], less than its length after a cut
@@ -422,7 +457,8 @@ class Integration {
   double last_residual_ = 0.0;
   int steps_since_start_ = 0;
   bool is_new_tangent_ = false;  ///< since the last correction
-  bool complete_ = true;
+  TransientEnd reason_ = TransientEnd::complete;
+  TransientStart before_;
   long steps_ = 0;
   long newton_steps_ = 0;
   long factorizations_ = 0;

@@ -132,30 +132,6 @@ void read_torsion(const YamlNode& node, const std::string& where, model::JointDe
   map.finish();
 }
 
-/// Reads [[x, y], ...] with rising x, of which `names` are the words.
-void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
-                const std::array<const char*, 2>& names,
-                std::vector<std::pair<double, double>>& pairs) {
-  if (node.kind != YamlNode::Kind::list || node.children.empty()) {
-    map.refuse(
-        node, key,
-        std::string("expected a list of [") + names[0] + ", " + names[1] + "], " + describe(node));
-    return;
-  }
-  for (std::size_t i = 0; i < node.children.size(); ++i) {
-    const std::string where = join_path(map.where(key), i);
-    std::array<double, 2> entry{};
-    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
-                      map.errors())) {
-      continue;
-    }
-    if (!pairs.empty() && !(entry[0] > pairs.back().first))
-      map.errors().add(find_blame(node.children[i]), where,
-                       std::string(names[0]) + " must be more than in the entry before");
-    pairs.emplace_back(entry[0], entry[1]);
-  }
-}
-
 /// Reads the keys of a torque law of a rotor whose mean speed is known.
 void read_torque(MapReader& map, double speed, model::TorqueLaw& law) {
   map.read("torque", law.torque, any_number);
@@ -229,6 +205,14 @@ void read_teeter(const YamlNode& node, const std::string& where, model::HubDefin
   MapReader map(node, where, errors);
   if (node.find("joint") == nullptr) hub.teeter.kind = JointKind::free;
   read_joint(map, hub.teeter);
+  if (const YamlNode* entry = map.find("stops")) {
+    MapReader stops(*entry, map.where("stops"), errors);
+    for (const char* key : {"angle_deg", "stiffness"}) stops.require(key);
+    read_angle(stops, "angle_deg", hub.teeter_stops.angle, positive);
+    stops.read("stiffness", hub.teeter_stops.stiffness, positive);
+    stops.read("damping", hub.teeter_stops.damping, non_negative);
+    stops.finish();
+  }
   map.read("undersling", hub.undersling, any_number);
   read_angle(map, "delta3_deg", hub.delta3, quarter_turn);
   map.finish();

@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <sstream>
+
+#include "samara/base/error.hpp"
 
 namespace samara::io {
 namespace {
@@ -70,6 +73,106 @@ void read_output(const YamlNode& node, const std::string& where, TransientCase& 
   map.finish();
 }
 
+/// Reads `table` or `formula` of a quantity in time; what is read is times `unit`.
+void read_curve(MapReader& block, std::string_view key, double unit, bool is_speed, double duration,
+                std::optional<math::TimeCurve>& curve) {
+  const YamlNode* node = block.find(key);
+  if (node == nullptr) return;
+  MapReader map(*node, block.where(key), block.errors());
+  const YamlNode* table = map.find("table");
+  const YamlNode* formula = map.find("formula");
+  if (table == nullptr && formula == nullptr) map.require("table", "or \"formula\"");
+  if (table != nullptr && formula != nullptr)
+    map.refuse(*formula, "formula", "given together with table; leave one of them out");
+  const std::size_t errors_before = map.errors().size();
+  if (table != nullptr) {
+    std::vector<math::TimeCurve::Point> points;
+    read_pairs(map, "table", *table, {"t", "value"}, points);
+    if (map.errors().size() == errors_before &&
+        (points.front().first > 0.0 || points.back().first < duration || points.size() < 2)) {
+      std::ostringstream text;
+      text << "the table reaches from " << points.front().first << " to " << points.back().first
+           << " s, the run from 0 to " << duration << " s";
+      map.refuse(*table, "table", text.str());
+    }
+    for (math::TimeCurve::Point& point : points) point.second *= unit;
+    if (map.errors().size() == errors_before)
+      curve = is_speed ? math::TimeCurve::along(points) : math::TimeCurve::through(points);
+  } else if (formula != nullptr) {
+    try {
+      std::ostringstream scaled;
+      scaled.precision(17);
+      scaled << "(" << formula->text << ")*" << unit;
+      math::TimeCurve::formula(formula->text);  // whose errors show the user's own words
+      curve = math::TimeCurve::formula(scaled.str());
+    } catch (const InputError& error) {
+      map.refuse(*formula, "formula", error.what());
+    }
+  }
+  map.finish();
+}
+
+void read_trigger(MapReader& map, double duration, system::EventTrigger& trigger) {
+  const YamlNode* at = map.find("at");
+  const YamlNode* when = map.find("when");
+  if (at == nullptr && when == nullptr) map.require("at", "a time, or \"when\"");
+  if (at != nullptr && when != nullptr)
+    map.refuse(*when, "when", "given together with at; leave one of them out");
+  double time = 0.0;
+  if (at != nullptr && map.read("at", time, non_negative)) {
+    trigger.time = time;
+    if (!(time < duration)) {
+      std::ostringstream text;
+      text << "never comes: transient.duration is " << duration << " s";
+      map.refuse(*at, "at", text.str());
+    }
+  }
+  if (when == nullptr) return;
+  MapReader condition(*when, map.where("when"), map.errors());
+  if (const YamlNode* channel = condition.require("channel", "e.g. RotSpeed"))
+    trigger.channel = channel->text;
+  const YamlNode* above = condition.find("above");
+  const YamlNode* below = condition.find("below");
+  if ((above == nullptr) == (below == nullptr))
+    condition.refuse(*when, "", "expected one of above and below");
+  trigger.above = above != nullptr;
+  condition.read(trigger.above ? "above" : "below", trigger.level, any_number);
+  condition.finish();
+}
+
+void read_event(const YamlNode& node, const std::string& where, double duration,
+                system::TurbineEvent& event, ErrorList& errors) {
+  MapReader map(node, where, errors);
+  read_trigger(map, duration, event.trigger);
+  if (const YamlNode* entry = map.find("pitch")) {
+    system::PitchAction& action = event.pitch.emplace();
+    MapReader pitch(*entry, map.where("pitch"), errors);
+    for (const char* key : {"to_deg", "rate_deg"}) pitch.require(key);
+    read_angle(pitch, "to_deg", action.to, half_turn);
+    read_angle(pitch, "rate_deg", action.rate, positive);
+    pitch.read("blade", action.blade, 1, 1000);
+    pitch.finish();
+  }
+  map.read("generator_off", event.generator_off, {{"true", true}, {"false", false}});
+  map.read("brake", event.brake, positive);
+  if (!event.pitch && !event.generator_off && event.brake == 0.0 && errors.size() == 0)
+    map.refuse(node, "", "does nothing; expected pitch, generator_off or brake");
+  map.finish();
+}
+
+void read_events(MapReader& map, double duration, std::vector<system::TurbineEvent>& events) {
+  const YamlNode* list = map.find("events");
+  if (list == nullptr) return;
+  if (list->kind != YamlNode::Kind::list || list->children.empty()) {
+    map.refuse(*list, "events",
+               "expected a list of events (each starts with \"- \"), " + describe(*list));
+    return;
+  }
+  for (std::size_t i = 0; i < list->children.size(); ++i)
+    read_event(list->children[i], join_path(map.where("events"), i), duration,
+               events.emplace_back(), map.errors());
+}
+
 /// One spelling of every number.
 std::string canonical(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::scalar || node.quoted) return node.text;
@@ -126,6 +229,12 @@ void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& e
   } else {
     read_steps(map, "checkpoint", options.step, options.checkpoint_steps);
   }
+  constexpr double degree = std::numbers::pi / 180.0;
+  read_curve(map, "speed", 1.0, true, options.duration, transient.speed);
+  read_curve(map, "pitch_deg", degree, false, options.duration, transient.pitch);
+  read_curve(map, "yaw_deg", degree, false, options.duration, transient.yaw);
+  read_curve(map, "teeter_deg", degree, false, options.duration, transient.teeter);
+  read_events(map, options.duration, transient.events);
   if (const YamlNode* entry = map.find("output"))
     read_output(*entry, map.where("output"), transient, errors);
   map.finish();

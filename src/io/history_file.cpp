@@ -58,6 +58,7 @@ void HistoryFile::resume() {
                      ": has other channels than this run; hint: -o gives the result another name");
   content_.checkpoint = old.checkpoint;
   content_.checkpoint_rows = old.checkpoint_rows;
+  content_.checkpoint_events = old.checkpoint_events;
   if (old.segments.empty()) {
     content_.time = before.read_time(0, old.checkpoint_rows);
     content_.values = before.read_values(0, old.checkpoint_rows);
@@ -86,6 +87,7 @@ void HistoryFile::write_checkpoint(const analysis::TransientStart& point) {
   close_segment();
   content_.checkpoint = point;
   content_.checkpoint_rows = rows_;
+  content_.checkpoint_events = events_;
   publish();
 }
 
@@ -95,6 +97,7 @@ void HistoryFile::finish(const std::string& status, const analysis::TransientSta
   if (end != nullptr) {
     content_.checkpoint = *end;
     content_.checkpoint_rows = rows_;
+    content_.checkpoint_events = events_;
   }
   publish();
   remove_strangers();
@@ -187,6 +190,7 @@ HistoryReader::HistoryReader(const std::string& path) {
   const std::vector<double> loads = file.numbers("/transient/checkpoint/held_load");
   for (std::size_t i = 0; i < held.size(); ++i) point.held.push_back({held[i], "", loads.at(i)});
   content_.checkpoint = point;
+  content_.checkpoint_events = file.numbers("/transient/checkpoint/event_time");
   content_.checkpoint_rows =
       static_cast<std::size_t>(file.number_attribute("/transient/checkpoint", "rows"));
 }

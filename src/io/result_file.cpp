@@ -404,6 +404,8 @@ void ResultFile::write_history(const HistoryContent& history) {
   const std::vector<double> state(point.z.data(), point.z.data() + point.z.size());
   write_values("/transient/checkpoint/state", state,
                {"of /model/unknowns/unit", unknown_frame, "from which the run can go on"});
+  write_values("/transient/checkpoint/event_time", history.checkpoint_events,
+               {"s", no_frame, "when each of transient.events came; not-a-number: not yet"});
   std::vector<std::string> held;
   std::vector<double> loads;
   for (const analysis::HeldCoordinate& coordinate : point.held) {

@@ -301,6 +301,29 @@ void read_angle(MapReader& map, std::string_view key, double& angle, const Numbe
   if (map.read(key, degrees, rule)) angle = degrees * std::numbers::pi / 180.0;
 }
 
+void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
+                const std::array<const char*, 2>& names,
+                std::vector<std::pair<double, double>>& pairs) {
+  if (node.kind != YamlNode::Kind::list || node.children.empty()) {
+    map.refuse(
+        node, key,
+        std::string("expected a list of [") + names[0] + ", " + names[1] + "], " + describe(node));
+    return;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const std::string where = join_path(map.where(key), i);
+    std::array<double, 2> entry{};
+    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
+                      map.errors())) {
+      continue;
+    }
+    if (!pairs.empty() && !(entry[0] > pairs.back().first))
+      map.errors().add(find_blame(node.children[i]), where,
+                       std::string(names[0]) + " must be more than in the entry before");
+    pairs.emplace_back(entry[0], entry[1]);
+  }
+}
+
 void read_vector(MapReader& map, std::string_view key, Vector3& vector, const NumberRule& rule) {
   map.read(key, std::span<double>(vector.data(), 3), rule);
 }

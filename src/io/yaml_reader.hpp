@@ -1,6 +1,7 @@
 // Reads checked values out of a YAML tree and gathers everything that is wrong with it.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <limits>
 #include <span>
@@ -131,6 +132,11 @@ class MapReader {
 
 /// Reads an angle key in degrees into radians.
 void read_angle(MapReader& map, std::string_view key, double& angle, const NumberRule& rule);
+
+/// Reads [[x, y], ...] with rising x, of which `names` are the words.
+void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
+                const std::array<const char*, 2>& names,
+                std::vector<std::pair<double, double>>& pairs);
 
 void read_vector(MapReader& map, std::string_view key, Vector3& vector, const NumberRule& rule);
 

@@ -139,14 +139,14 @@ std::string find_mass_fault(const SectionDefinition& section) {
 }  // namespace
 
 elements::TorqueLine TorqueLaw::at(double speed) const {
-  if (table.empty()) return {torque, slope};
+  if (table.empty()) return {torque, slope, speed, {}};
   if (!covers(speed)) throw InternalError("a torque table does not reach to the speed");
   const auto slope_before = [this](std::size_t i) {
     return (table[i].second - table[i - 1].second) / (table[i].first - table[i - 1].first);
   };
   std::size_t i = 1;
   while (i + 1 < table.size() && table[i].first < speed) ++i;
-  elements::TorqueLine line{0.0, slope_before(i)};
+  elements::TorqueLine line{0.0, slope_before(i), speed, {}};
   line.torque = table[i].second + line.slope * (speed - table[i].first);
   if (i + 1 < table.size() && table[i].first == speed)
     line.slope = 0.5 * (slope_before(i) + slope_before(i + 1));

@@ -10,7 +10,11 @@ namespace samara::model {
 namespace {
 
 elements::Hinge hinge_of(const JointDefinition& joint) {
-  return {joint.kind == JointKind::free, joint.stiffness, joint.damping};
+  elements::Hinge hinge;
+  hinge.free = joint.kind == JointKind::free;
+  hinge.stiffness = joint.stiffness;
+  hinge.damping = joint.damping;
+  return hinge;
 }
 
 /// The hub and the masses on it as one body.
@@ -49,11 +53,15 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
       Vector3(shaft.inertia_lateral, shaft.inertia_axial, shaft.inertia_lateral).asDiagonal();
   chain.hub = hub_of(hub);
   chain.teeter = hinge_of(hub.teeter);
+  chain.teeter.stop_angle = hub.teeter_stops.angle;
+  chain.teeter.stop_stiffness = hub.teeter_stops.stiffness;
+  chain.teeter.stop_damping = hub.teeter_stops.damping;
   chain.torsion = hinge_of(shaft.torsion);
-  const elements::TorqueLine torque = shaft.generator.law.at(shaft.speed);
-  chain.generator = {shaft.generator.kind == JointKind::free, 0.0, torque.slope};
-  chain.generator_torque = torque.torque;
-  chain.rotor_torque = shaft.rotor.at(shaft.speed);
+  if (shaft.generator.kind == JointKind::free) {
+    chain.generator.free = true;
+    chain.generator_torque = shaft.generator.law.line_at(shaft.speed);
+  }
+  chain.rotor_torque = shaft.rotor.line_at(shaft.speed);
   chain.generator_inertia = shaft.generator.inertia;
   chain.height = shaft.height;
   chain.tilt = shaft.tilt;

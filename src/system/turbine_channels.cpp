@@ -173,9 +173,9 @@ class Quantities {
               of_body<T>(chain.top_load.template tail<3>()));
   }
 
-  void add_blade(int k, const std::vector<T>& z, const std::vector<T>& z_dot) {
+  void add_blade(double t, int k, const std::vector<T>& z, const std::vector<T>& z_dot) {
     const int first = ChannelCatalogue::blade_slot(k);
-    const double pitch = turbine_.roots[static_cast<std::size_t>(k)].pitch;
+    const double pitch = turbine_.pitch_at(static_cast<std::size_t>(k), t).value;
     const Mat3<T> to_cone = math::turn_about<double>(-Vector3::UnitX(), pitch).cast<T>();
     const Vec6<T> root = Eigen::Map<const Vec6<T>>(z.data() + layout_.blade_root(k));
     const Vec3<T> force = root.template head<3>();
@@ -282,7 +282,7 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
   const int blades = static_cast<int>(turbine.blades.size());
   Quantities<T> quantities(system_, size_);
   quantities.add_chain(t, z, z_dot);
-  for (int k = 0; k < blades; ++k) quantities.add_blade(k, z, z_dot);
+  for (int k = 0; k < blades; ++k) quantities.add_blade(t, k, z, z_dot);
   for (const Section& section : sections_) {
     const PlacedBeam& placed = system_.equations().beams()[static_cast<std::size_t>(section.beam)];
     quantities.add_section(section.slot, *placed.beam, placed.points, section.place, z, z_dot);

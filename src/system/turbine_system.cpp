@@ -207,12 +207,16 @@ const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const
 }
 
 bool TurbineSystem::constraints_are_autonomous() const {
-  return turbine().yaw_motion.is_constant() && turbine().teeter_motion.is_constant();
+  const model::Operation& operation = turbine().operation;
+  return turbine().yaw_motion.is_constant() && turbine().teeter_motion.is_constant() &&
+         !operation.yaw && !operation.teeter;
 }
 
 bool TurbineSystem::is_conservative() const {
   const model::Turbine& turbine = assembly_->turbine;
   const elements::RigidChain& chain = turbine.chain;
+  if (chain.teeter.free && chain.teeter.stop_angle > 0.0 && chain.teeter.stop_damping > 0.0)
+    return false;
   for (const elements::Hinge* hinge : {&chain.yaw, &chain.teeter, &chain.torsion, &chain.generator})
     if (hinge->free && hinge->damping != 0.0) return false;
   for (const PlacedBeam& placed : assembly_->equations.beams()) {
@@ -222,10 +226,14 @@ bool TurbineSystem::is_conservative() const {
   }
   // A constant torque has a potential where its axis moves as prescribed.
   const bool axis_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free;
-  if (axis_moves && chain.rotor_torque.torque != 0.0) return false;
+  if (axis_moves && !chain.rotor_torque.is_zero()) return false;
   // A dead force has a potential where the axes that it is fixed in move as prescribed.
   const bool hub_moves = axis_moves || chain.torsion.free || chain.generator.free;
-  if (hub_moves && chain.rotor_torque.slope != 0.0) return false;
+  const bool torque_varies = chain.rotor_torque.slope != 0.0 || !chain.rotor_torque.table.empty();
+  if (hub_moves && torque_varies) return false;
+  const elements::TorqueLine& generator = chain.generator_torque;
+  if (chain.generator.free && (generator.slope != 0.0 || !generator.table.empty())) return false;
+  if (chain.brake_torque != 0.0) return false;
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const model::BeamLoad& load : placed.beam->loads)
       if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub && hub_moves))
@@ -315,9 +323,9 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   const auto angle_at = [&](int joint) -> double& {
     return values[static_cast<std::size_t>(joint)];
   };
-  angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_motion.at(t, assembly.turbine.speed).angle;
+  angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_at(t).angle;
   angle_at(assembly.layout.teeter()) =
-      assembly.turbine.teeter_motion.at(t, assembly.turbine.speed).angle;
+      assembly.turbine.teeter_at(t).angle;
   std::vector<double> r(n, 0.0);
   assembly.undo_references(values);
   for (int pass = 0; pass < 5; ++pass) {
@@ -342,8 +350,8 @@ void TurbineSystem::reference_state(double t, Vec z) const {
 std::unique_ptr<PeriodicSystem> TurbineSystem::unloaded() const {
   model::Turbine bare = turbine();
   bare.chain.gravity = 0.0;
-  bare.chain.generator_torque = 0.0;
-  bare.chain.rotor_torque.torque = 0.0;
+  bare.chain.generator_torque = {};
+  bare.chain.rotor_torque = {};
   bare.tower.loads.clear();
   for (model::Beam& blade : bare.blades) blade.loads.clear();
   return std::make_unique<TurbineSystem>(bare, comm());

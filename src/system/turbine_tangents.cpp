@@ -109,6 +109,7 @@ class TurbineTangents::Scatter {
         M_(owner.M_) {}
 
   void evaluate(double t, const std::vector<double>& z, const std::vector<double>& z_dot) {
+    t_ = t;
     const auto make = [](double value, int i) { return math::independent<chain_inputs>(value, i); };
     elements::HubMotion<ChainDual> hub;
     const elements::ChainRows<ChainDual> rows = elements::rigid_chain(
@@ -125,9 +126,9 @@ class TurbineTangents::Scatter {
     }
     auto point = points_.begin();
     for (const PlacedBeam& placed : equations_.beams()) {
-      const Attachment<double> a = equations_.attachment(placed, motion);
+      const Attachment<double> a = equations_.attachment(placed, motion, t);
       MotionJacobian root = MotionJacobian::Zero();
-      if (placed.on_hub) root = placed.root_from_hub() * motion_jacobian;
+      if (placed.on_hub) root = placed.root_from_hub(equations_.pitch_of(placed, t)) * motion_jacobian;
       const auto first = point;
       for (int p = 0; p < placed.beam->point_count(); ++p)
         add_point_tangent(placed, p, root, at_point(placed, p, a, z, z_dot, *point++));
@@ -434,7 +435,7 @@ class TurbineTangents::Scatter {
     if (by_hub_load.isZero(0.0)) return;
     for (const PlacedBeam& placed : equations_.beams()) {
       if (!placed.on_hub) continue;
-      const Vector6 by_root = placed.hub_from_root().transpose() * by_hub_load;
+      const Vector6 by_root = placed.hub_from_root(equations_.pitch_of(placed, t_)).transpose() * by_hub_load;
       for (int i = 0; i < 6; ++i) add(K_, row, placed.root + i, by_root(i));
     }
   }
@@ -466,6 +467,7 @@ class TurbineTangents::Scatter {
   std::vector<PointTangents>& points_;
   BlockMatrix& K_;
   BlockMatrix& M_;
+  double t_ = 0.0;
 };
 
 TurbineTangents::TurbineTangents(const TurbineResidual& equations)

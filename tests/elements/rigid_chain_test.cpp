@@ -91,8 +91,8 @@ RigidChain random_chain(std::minstd_rand& random, const Joints& joints) {
   chain.torsion = {joints.torsion, 700.0, 40.0};
   chain.generator = {joints.generator, 0.0, 50.0};
   chain.generator_inertia = 6.0;
-  chain.generator_torque = 70.0;
-  chain.rotor_torque = {90.0, -25.0};
+  chain.generator_torque.torque = 70.0;
+  chain.rotor_torque = {90.0, -25.0, 1.7, {}};
   chain.tower_top = random_body(random, 2.0);
   chain.nacelle = random_body(random, 7.0);
   chain.shaft = random_body(random, 3.0);
@@ -408,10 +408,10 @@ Balance lagrange(const RigidChain& chain, const Instant& now, int i) {
   balance.add(-partial.segment<3>(6).dot(now.hub_load.head<3>()));
   balance.add(-partial.segment<3>(9).dot(now.hub_load.tail<3>()));
   // The torques: of the generator on its own angle, of the rotor along h2.
-  if (i == at_generator) balance.add(chain.generator_torque);
+  if (i == at_generator) balance.add(chain.generator_torque.torque);
   const double spin = load_speeds<double>(chain, now.prescribed, now.q, now.q_dot, now.t)(10);
   balance.add(-partial(10) * (chain.rotor_torque.torque +
-                              chain.rotor_torque.slope * (spin - now.prescribed.speed)));
+                              chain.rotor_torque.slope * (spin - chain.rotor_torque.speed)));
   return balance;
 }
 

@@ -74,7 +74,7 @@ class Multiblade {
     system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
     const Eigen::SparseMatrix<double> K = analysis::to_sparse(jacobian.get());
     const Eigen::SparseMatrix<double> M = analysis::to_sparse(mass.get());
-    const double psi = system_.turbine().azimuth_at(t);
+    const double psi = system_.turbine().turning_at(t).value;
     const auto functions = [](double angle) {
       return Eigen::Vector3d(1.0, std::cos(angle), std::sin(angle));
     };

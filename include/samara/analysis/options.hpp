@@ -1,6 +1,8 @@
 // What the user asks of the analyses (the keys `trim`, `floquet`, `static` and `transient` of a case file).
 #pragma once
 
+#include <optional>
+
 namespace samara::analysis {
 
 enum class TrimMethod { harmonic_balance, shooting };
@@ -39,6 +41,7 @@ struct TransientOptions {
   double step = 0.0;        ///< [s], > 0
   double tolerance = 1e-9;  ///< of the last Newton correction's error, relative to the state
   long checkpoint_steps = 0;  ///< between checkpoints; 0: none
+  std::optional<double> stop_at;  ///< [s], where the run ends if it is before the end
 };
 
 }  // namespace samara::analysis

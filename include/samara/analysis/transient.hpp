@@ -48,10 +48,17 @@ class TransientObserver : public Observer {
   virtual void checkpoint(const TransientStart& point) { (void)point; }
 };
 
+enum class TransientEnd {
+  complete,  ///< options.duration is over
+  stopped,   ///< at options.stop_at
+  observer,  ///< the observer ended it
+};
+
 struct TransientRun {
-  TransientStart end;    ///< the last state
-  bool complete = true;  ///< false: the observer ended it
-  std::string method;    ///< TS's type in words
+  TransientStart end;     ///< the last state
+  TransientStart before;  ///< the one a step before
+  TransientEnd reason = TransientEnd::complete;
+  std::string method;  ///< TS's type in words
   long steps = 0;
   long newton_steps = 0;
   long factorizations = 0;

@@ -12,10 +12,13 @@
 // The full nonlinear equations; valid for any angles (theta_T below 180 degrees).
 #pragma once
 
+#include <cmath>
+
 #include "samara/elements/beam_point.hpp"
 #include "samara/elements/joint_motion.hpp"
 #include "samara/elements/torque_line.hpp"
 #include "samara/math/rotation.hpp"
+#include "samara/math/scalar.hpp"
 
 namespace samara::elements {
 
@@ -30,14 +33,22 @@ struct Hinge {
   bool free = false;
   double stiffness = 0.0;  ///< [N m/rad]
   double damping = 0.0;    ///< [N m s/rad]
+  /// Stops: a second spring and damper from this angle on, both ways; 0: none [rad].
+  double stop_angle = 0.0;
+  double stop_stiffness = 0.0;  ///< [N m/rad]
+  double stop_damping = 0.0;    ///< [N m s/rad]
 };
+
+/// Below it the torque of a brake falls, to nothing at rest [rad/s].
+inline constexpr double brake_speed = 1e-2;
 
 struct RigidChain {
   double gravity = 0.0;  ///< along -n3 [m/s^2]
   Hinge yaw;
-  Hinge generator;                ///< about psi; its damping is the slope of the generator's torque
-  double generator_torque = 0.0;  ///< at the mean speed, against the turning [N m]
-  TorqueLine rotor_torque;        ///< on H along h2, by omega_H . h2
+  Hinge generator;              ///< about psi
+  TorqueLine generator_torque;  ///< against the turning, by the generator's speed in the nacelle
+  double brake_torque = 0.0;    ///< on the generator against its turning, whichever way [N m]
+  TorqueLine rotor_torque;      ///< on H along h2, by omega_H . h2
   Hinge torsion;
   Hinge teeter;
   RigidBody tower_top;                     ///< reference point: tower top; axes t1 t2 t3
@@ -74,6 +85,7 @@ struct ChainState {
   Vec6<T> hub_load;         ///< sum of the blade-root loads: force, moment about the apex, in H
   double azimuth = 0.0;     ///< psi [rad]
   double speed = 0.0;       ///< psi_dot [rad/s]
+  double speed_dot = 0.0;   ///< of a generator that is not free [rad/s^2]
 };
 
 /// The hub as the blades see it, components in H.
@@ -101,7 +113,7 @@ struct ChainRows {
                            ///< torque that is added to it acts back on the nacelle
 };
 
-/// What is asked of the chain beside its rows.
+/// What is asked of the chain beside its rows. It is only given where torque tables reach.
 template <class T>
 struct ChainReport {
   T azimuth;           ///< of S against the bearing [rad]
@@ -185,10 +197,10 @@ Wrench<T> active_and_inertia(const RigidBody& body, const Motion<T>& m, const Ve
 template <class T>
 class JointWalk {
  public:
-  /// `rate`: to which the joint's own is added. `inner`: the motion of the joint's point, in the
+  /// `rate`: to which the joint's own is added, as `acceleration` where it is not free. `inner`: the motion of the joint's point, in the
   /// components of the body behind it.
   JointWalk(const Hinge& hinge, const Vector3& axis, const JointState<T>& state,
-            const Motion<T>& inner, double rate = 0.0)
+            const Motion<T>& inner, double rate = 0.0, double acceleration = 0.0)
       : hinge_(hinge), axis_(axis.cast<T>()), state_(state), carried_rate_(rate) {
     own_rate_ = state.speed - math::dot(axis_, inner.omega) - T(rate);
     if (hinge.free) {
@@ -197,7 +209,8 @@ class JointWalk {
     }
     const JointMotion& own = state.prescribed;
     outer_ = with_relative_rate<T>(axis_, T(rate + own.rate), inner);
-    for (int i = 0; i < 3; ++i) outer_.alpha(i) += axis_(i) * T(own.acceleration);
+    for (int i = 0; i < 3; ++i)
+      outer_.alpha(i) += axis_(i) * T(own.acceleration + acceleration);
   }
 
   const Motion<T>& outer() const { return outer_; }
@@ -215,13 +228,22 @@ class JointWalk {
     rows.position = state_.angle - T(state_.prescribed.angle);
     if (!hinge_.free) return rows;
     const T spring = -(state_.angle * hinge_.stiffness + own_rate_ * hinge_.damping);
-    rows.balance = math::dot(axis_, moment) + spring;
+    rows.balance = math::dot(axis_, moment) + spring - stop_torque();
     if (pass_all) return rows;
     for (int i = 0; i < 3; ++i) moment(i) -= axis_(i) * rows.balance;
     return rows;
   }
 
+ 
  private:
+  /// Of the stops on what is behind the hinge, against the turning.
+  T stop_torque() const {
+    const double angle = math::plain_value(state_.angle);
+    if (hinge_.stop_angle == 0.0 || std::abs(angle) <= hinge_.stop_angle) return T(0);
+    const double end = angle > 0.0 ? hinge_.stop_angle : -hinge_.stop_angle;
+    return (state_.angle - T(end)) * hinge_.stop_stiffness + own_rate_ * hinge_.stop_damping;
+  }
+
   const Hinge& hinge_;
   Vec3<T> axis_;
   const JointState<T>& state_;
@@ -269,7 +291,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Vec3<T> bearing(T(0), T(0), T(chain.height));
   const JointWalk<T> generator(chain.generator, Vector3::UnitY(), state.generator,
                                detail::seen_from<T>(C_DY, detail::moved_to<T>(bearing, nacelle)),
-                               state.speed);
+                               state.speed, state.speed_dot);
   const Vec3<T> g_D = C_DY * g_Y;
 
   const T azimuth = angle_of(chain.generator, state.generator) +
@@ -299,8 +321,8 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Vec3<T> root_moment = state.hub_load.template tail<3>();
   w.force += root_force;
   w.moment += root_moment + cross(apex, root_force);
-  w.moment(1) += (hub_motion.omega(1) - T(state.speed)) * chain.rotor_torque.slope +
-                 T(chain.rotor_torque.torque);
+  if (!chain.rotor_torque.is_zero())
+    w.moment(1) += chain.rotor_torque.at(T(hub_motion.omega(1)));
   rows.teeter = teeter.take(w.moment);
   if (report != nullptr) {
     report->azimuth = azimuth;
@@ -329,11 +351,23 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   turning.inertia(1, 1) = chain.generator_inertia;
   pass_to(detail::active_and_inertia<T>(turning, generator.outer(), g_D), C_SD, same_point);
   rows.generator = generator.take(w.moment, true);
-  rows.generator.balance -= T(chain.generator_torque);
+  if (chain.generator.free) {
+    const T turning_rate = generator.relative_rate();
+    if (!chain.generator_torque.is_zero())
+      rows.generator.balance -= chain.generator_torque.at(turning_rate);
+    if (chain.brake_torque != 0.0)
+      rows.generator.balance -=
+          math::smooth_sign(T(turning_rate / brake_speed)) * chain.brake_torque;
+  }
   pass_to(detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y), C_DY, bearing);
   rows.yaw = yaw.take(w.moment);
   pass_to(detail::active_and_inertia<T>(chain.tower_top, top, g_T), C_YT, same_point);
-  if (report != nullptr) report->top_load << w.force, w.moment;
+  if (report != nullptr) {
+    report->top_load << w.force, w.moment;
+    chain.rotor_torque.require(math::plain_value(T(hub_motion.omega(1))));
+    if (chain.generator.free)
+      chain.generator_torque.require(math::plain_value(generator.relative_rate()));
+  }
   const Vec3<T> F_hat = C_top * Vec3<T>(state.top_load.template head<3>());
   const Vec3<T> M_hat = C_top * Vec3<T>(state.top_load.template tail<3>());
   rows.top.template head<3>() = to_top(w.force) - F_hat;

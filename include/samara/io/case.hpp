@@ -1,12 +1,14 @@
 // Reads a case file (YAML, docs/case_file.md) into the turbine and the options of the analyses.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "samara/analysis/options.hpp"
 #include "samara/model/definition.hpp"
 #include "samara/system/turbine_channels.hpp"
+#include "samara/system/turbine_events.hpp"
 
 namespace samara::io {
 
@@ -26,6 +28,11 @@ struct TransientCase {
   long output_steps = 1;                  ///< between rows of the history
   std::vector<std::string> channels;      ///< empty: all but those of stations
   system::ChannelStations stations;
+  std::optional<math::TimeCurve> speed;   ///< of the generator [rad/s]
+  std::optional<math::TimeCurve> pitch;   ///< of all blades [rad]
+  std::optional<math::TimeCurve> yaw;     ///< [rad]
+  std::optional<math::TimeCurve> teeter;  ///< [rad]
+  std::vector<system::TurbineEvent> events;
 };
 
 struct Case {

@@ -36,8 +36,9 @@ struct HistoryContent {
   std::vector<double> values;  ///< row by row
   std::string model;           ///< Case::model_text
   std::optional<analysis::TransientStart> checkpoint;
-  std::size_t checkpoint_rows = 0;  ///< rows up to the checkpoint
-  std::string status;               ///< "running", "complete", "interrupted", "failed: ..."
+  std::size_t checkpoint_rows = 0;        ///< rows up to the checkpoint
+  std::vector<double> checkpoint_events;  ///< when each event came [s]; not-a-number: not yet
+  std::string status;                     ///< "running", "complete", "interrupted", "failed: ..."
 };
 
 class HistoryFile {
@@ -54,6 +55,9 @@ class HistoryFile {
   /// All rows so far and the point to go on from are safe when it returns.
   void write_checkpoint(const analysis::TransientStart& point);
 
+  /// When the events came, for the checkpoints from now on.
+  void note_events(const std::vector<double>& times) { events_ = times; }
+
   /// Writes what is left. `end`: from which the history can go on, where there is such a point.
   void finish(const std::string& status, const analysis::TransientStart* end);
 
@@ -69,6 +73,7 @@ class HistoryFile {
   std::function<void(ResultFile&)> write_rest_;
   HistoryContent content_;
   std::size_t rows_ = 0;
+  std::vector<double> events_;
   std::string run_;  ///< starts the names of the segments of this run
   int next_segment_ = 1;
   std::chrono::steady_clock::time_point due_;

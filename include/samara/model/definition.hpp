@@ -84,6 +84,13 @@ struct JointHistory {
   elements::JointMotion at(double t, double rotor_speed) const;
 };
 
+/// A second spring and damper from an angle on, both ways.
+struct StopDefinition {
+  double angle = 0.0;      ///< [rad]; 0: no stops
+  double stiffness = 0.0;  ///< [N m/rad]
+  double damping = 0.0;    ///< [N m s/rad]
+};
+
 struct JointDefinition {
   JointKind kind = JointKind::locked;
   double stiffness = 0.0;    ///< [N m/rad]
@@ -104,6 +111,11 @@ struct TorqueLaw {
   /// Torque and slope at a speed; of a table linear between its entries, the slope at an entry the
   /// mean of both sides.
   elements::TorqueLine at(double speed) const;
+  /// The whole law of a rotor with this mean speed; nothing where the table does not reach to it.
+  elements::TorqueLine line_at(double mean_speed) const {
+    if (!covers(mean_speed)) return {};
+    return {torque, slope, mean_speed, table};
+  }
 };
 
 struct GeneratorDefinition {
@@ -149,6 +161,7 @@ struct HubDefinition {
   std::vector<HubMassDefinition> point_masses;
   double radius = 0.0;      ///< shaft axis to blade root [m]
   JointDefinition teeter;   ///< locked = rigid hub
+  StopDefinition teeter_stops;
   double undersling = 0.0;  ///< along s2 from teeter pin to rotor apex [m]
   double delta3 = 0.0;      ///< teeter axis from h1 toward h3 [rad]
 };

@@ -6,6 +6,7 @@
 #include "samara/elements/rigid_chain.hpp"
 #include "samara/model/beam.hpp"
 #include "samara/model/definition.hpp"
+#include "samara/model/operation.hpp"
 
 namespace samara::model {
 
@@ -29,7 +30,33 @@ struct Turbine {
   bool identical_blades = true;
   int degrees_of_freedom = 0;  ///< elastic strains of all points + free joints
 
-  double azimuth_at(double t) const { return azimuth + speed * t; }
+  Operation operation;
+
+  /// Azimuth of the generator, its rate and acceleration.
+  math::TimeCurve::Value turning_at(double t) const {
+    if (!operation.turning) return {azimuth + speed * t, speed, 0.0};
+    math::TimeCurve::Value turned = operation.turning->at(t);
+    turned.value += azimuth;
+    return turned;
+  }
+  /// The motion of a yaw or teeter that is not free.
+  elements::JointMotion yaw_at(double t) const { return motion_at(operation.yaw, yaw_motion, t); }
+  elements::JointMotion teeter_at(double t) const {
+    return motion_at(operation.teeter, teeter_motion, t);
+  }
+  /// Pitch of blade k (0-based) and its rates.
+  math::TimeCurve::Value pitch_at(std::size_t k, double t) const {
+    if (k >= operation.pitch.size() || !operation.pitch[k]) return {roots[k].pitch, 0.0, 0.0};
+    return operation.pitch[k]->at(t);
+  }
+
+ private:
+  elements::JointMotion motion_at(const std::optional<math::TimeCurve>& curve,
+                                  const JointHistory& history, double t) const {
+    if (!curve) return history.at(t, speed);
+    const math::TimeCurve::Value now = curve->at(t);
+    return {now.value, now.rate, now.acceleration};
+  }
 };
 
 /// @throws InputError where the definition cannot be built.

@@ -37,11 +37,16 @@ struct PlacedBeam {
   Vector3 position = Vector3::Zero();  ///< root from the apex, in H
   Matrix3 C_Ha = Matrix3::Identity();
 
-  /// v_a, omega_a, gravity of a blade root from the hub's motion: constant and linear.
-  Eigen::Matrix<double, 9, 9> root_from_hub() const;
+  int blade = -1;  ///< from 0; -1: the tower
+
+  /// Blade axes a to hub axes at a pitch beyond that of C_Ha.
+  Matrix3 axes(const math::TimeCurve::Value& pitch) const;
+
+  /// v_a, omega_a, gravity of a blade root from the hub's motion: linear.
+  Eigen::Matrix<double, 9, 9> root_from_hub(const math::TimeCurve::Value& pitch) const;
 
   /// Force and moment about the apex in H of a blade's root load.
-  Matrix6 hub_from_root() const;
+  Matrix6 hub_from_root(const math::TimeCurve::Value& pitch) const;
 
   /// First row of the strain and curvature balance of local node a of the element of point p. A
   /// mass node has a balance of its own for the element before it.
@@ -98,8 +103,11 @@ class TurbineResidual {
 
   /// The motion of a beam's root and the gravity there.
   template <class T>
-  elements::Attachment<T> attachment(const PlacedBeam& placed,
-                                     const elements::HubMotion<T>& hub) const;
+  elements::Attachment<T> attachment(const PlacedBeam& placed, const elements::HubMotion<T>& hub,
+                                     double t) const;
+
+  /// Pitch of a blade beyond that of its root's axes, and its rates; of the tower nothing.
+  math::TimeCurve::Value pitch_of(const PlacedBeam& placed, double t) const;
 
   /// The rotation before a change of reference, counted as there.
   template <class T>
@@ -150,7 +158,7 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
   Vec6<Value> load = Vec6<Value>::Zero();
   for (const PlacedBeam& placed : beams_)
     if (placed.on_hub)
-      load += placed.hub_from_root().template cast<Value>() *
+      load += placed.hub_from_root(pitch_of(placed, t)).template cast<Value>() *
               Eigen::Map<const Vec6<Value>>(z.data() + placed.root);
   elements::ChainState<T> state;
   for (int i = 0; i < 3; ++i) state.theta(i) = make(top(3 + i), at_theta + i);
@@ -170,27 +178,32 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
     joint->speed_dot = make(z_dot[first + 1], at_joint_rates + local + 1);
     local += 2;
   }
-  state.yaw.prescribed = turbine_.yaw_motion.at(t, turbine_.speed);
-  state.teeter.prescribed = turbine_.teeter_motion.at(t, turbine_.speed);
-  state.azimuth = turbine_.azimuth_at(t);
-  state.speed = turbine_.speed;
+  state.yaw.prescribed = turbine_.yaw_at(t);
+  state.teeter.prescribed = turbine_.teeter_at(t);
+  const math::TimeCurve::Value turning = turbine_.turning_at(t);
+  state.azimuth = turning.value;
+  state.speed = turning.rate;
+  state.speed_dot = turning.acceleration;
   return state;
 }
 
 template <class T>
 elements::Attachment<T> TurbineResidual::attachment(const PlacedBeam& placed,
-                                                    const elements::HubMotion<T>& hub) const {
+                                                    const elements::HubMotion<T>& hub,
+                                                    double t) const {
   elements::Attachment<T> a;
   if (!placed.on_hub) {
     a.gravity(0) = T(-turbine_.chain.gravity);  // the tower's b1 is n3
     return a;
   }
+  const math::TimeCurve::Value pitch = pitch_of(placed, t);
   Eigen::Matrix<T, 9, 1> motion;
   motion << hub.velocity, hub.omega, hub.gravity;
-  const Eigen::Matrix<T, 9, 1> seen = placed.root_from_hub().template cast<T>() * motion;
+  const Eigen::Matrix<T, 9, 1> seen = placed.root_from_hub(pitch).template cast<T>() * motion;
   a.v = seen.template segment<3>(0);
   a.omega = seen.template segment<3>(3);
   a.gravity = seen.template segment<3>(6);
+  a.omega(0) -= T(pitch.rate);  // pitch turns about -b1
   return a;
 }
 
@@ -203,7 +216,7 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
   const elements::ChainRows<T> rows =
       elements::rigid_chain(turbine_.chain, chain_state<T>(t, z, z_dot, plain), hub);
   for (const PlacedBeam& placed : beams_) {
-    const elements::Attachment<T> a = attachment(placed, hub);
+    const elements::Attachment<T> a = attachment(placed, hub, t);
     for (int p = 0; p < placed.beam->point_count(); ++p) add_point(placed, p, a, z, z_dot, r);
     add_ends(placed, a, z, z_dot, r);
     add_changes(placed, z, r);
