@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <random>
 #include <sstream>
 
+#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
@@ -27,12 +29,15 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
   return weights;
 }
 
+using Coordinates = std::vector<system::NeutralCoordinate>;
+
 /// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i and has number
-/// i (2 H + 1) + c; the mean of a neutral coordinate gives its place to the load that holds it.
+/// i (2 H + 1) + c; the mean of a held coordinate gives its place to the load that holds it.
 class Balance {
  public:
-  Balance(const system::PeriodicSystem& system, int harmonics)
+  Balance(const system::PeriodicSystem& system, const Coordinates& held, int harmonics)
       : system_(system),
+        held_(held),
         harmonics_(harmonics),
         width_(2 * harmonics + 1),
         size_(static_cast<Eigen::Index>(system.size())),
@@ -46,15 +51,15 @@ class Balance {
 
   Eigen::MatrixXd unpack(const PetscScalar* h) const {
     Eigen::MatrixXd coefficients = Eigen::Map<const Eigen::MatrixXd>(h, width_, size_).transpose();
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      coefficients(neutral.unknown, 0) = 0.0;
+    for (const system::NeutralCoordinate& coordinate : held_)
+      coefficients(coordinate.unknown, 0) = 0.0;
     return coefficients;
   }
 
   std::vector<double> loads(const PetscScalar* h) const {
     std::vector<double> loads;
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      loads.push_back(h[neutral.unknown * width_]);
+    for (const system::NeutralCoordinate& coordinate : held_)
+      loads.push_back(h[coordinate.unknown * width_]);
     return loads;
   }
 
@@ -72,8 +77,7 @@ class Balance {
       const Eigen::Map<const Eigen::VectorXd> r(view.data(), size_);
       result += projection(t) * r.transpose();
     }
-    const auto& neutral = system_.neutral_coordinates();
-    for (std::size_t n = 0; n < neutral.size(); ++n) result(0, neutral[n].row) += held[n];
+    for (std::size_t n = 0; n < held_.size(); ++n) result(0, held_[n].row) += held[n];
   }
 
   /// Entry (i, j) becomes the block sum_k w(t_k) [K_ij(t_k) b(t_k) + M_ij(t_k) b_dot(t_k)]^T: for
@@ -125,9 +129,9 @@ class Balance {
           to_sparse(jacobian_.get()).cwiseAbs();
       pattern_ = Eigen::SparseMatrix<double, Eigen::RowMajor>(pattern_ + found);
     }
-    // The load that holds a neutral coordinate stands in the place of its mean.
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      pattern_.coeffRef(neutral.row, neutral.unknown) += 1.0;
+    // The load that holds a coordinate stands in the place of its mean.
+    for (const system::NeutralCoordinate& coordinate : held_)
+      pattern_.coeffRef(coordinate.row, coordinate.unknown) += 1.0;
     pattern_.makeCompressed();
     return make_block_matrix();
   }
@@ -138,10 +142,10 @@ class Balance {
 
   Eigen::VectorXd projection(double t) const { return fourier_weights(harmonics_, period(), t); }
 
-  bool is_neutral(PetscInt unknown) const {
-    return std::any_of(
-        system_.neutral_coordinates().begin(), system_.neutral_coordinates().end(),
-        [unknown](const system::NeutralCoordinate& n) { return n.unknown == unknown; });
+  bool is_held(PetscInt unknown) const {
+    return std::any_of(held_.begin(), held_.end(), [unknown](const system::NeutralCoordinate& n) {
+      return n.unknown == unknown;
+    });
   }
 
   petsc::Handle<Mat> make_block_matrix() const {
@@ -164,7 +168,7 @@ class Balance {
 
   /// Whether the load that holds `unknown` acts in `row`.
   bool holds(Eigen::Index row, PetscInt unknown) const {
-    return std::any_of(system_.neutral_coordinates().begin(), system_.neutral_coordinates().end(),
+    return std::any_of(held_.begin(), held_.end(),
                        [row, unknown](const system::NeutralCoordinate& n) {
                          return n.unknown == unknown && n.row == row;
                        });
@@ -213,7 +217,7 @@ class Balance {
         for (Eigen::Index e = first; e < last; ++e) {
           const auto unknown = static_cast<PetscInt>(pattern_.innerIndexPtr()[e]);
           next = std::copy_n(&blocks(row * width_, e), width_, next);
-          if (is_neutral(unknown)) *(next - width_) = holds(i, unknown) && row == 0 ? 1.0 : 0.0;
+          if (is_held(unknown)) *(next - width_) = holds(i, unknown) && row == 0 ? 1.0 : 0.0;
         }
     }
     petsc::check(MatSeqAIJRestoreArrayWrite(matrix, &values));
@@ -222,6 +226,7 @@ class Balance {
   }
 
   const system::PeriodicSystem& system_;
+  const Coordinates& held_;
   int harmonics_;
   int width_;
   Eigen::Index size_;
@@ -297,6 +302,11 @@ void fail(SNES solver, const SolverContext& context) {
   petsc::check(SNESGetIterationNumber(solver, &iterations));
   petsc::check(SNESGetFunctionNorm(solver, &norm));
   std::ostringstream text;
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
+    text << "trim: the matrix is singular after " << iterations
+         << " Newton steps; hint: something may move that nothing holds, or is held twice";
+    throw SingularError(text.str());
+  }
   text << "trim: " << SNESConvergedReasons[reason] << " after " << iterations
        << " Newton steps, scaled residual " << norm;
   if (context.error) {
@@ -369,44 +379,10 @@ Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics
   return Eigen::Map<const Eigen::VectorXd>(coefficients.data(), coefficients.size());
 }
 
-}  // namespace
-
-double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                        const std::vector<HeldCoordinate>& loads, double shift) {
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const petsc::Handle<Vec> r = system.make_state();
-  const int samples = std::max(sample_count(solution.harmonics()), 16);
-  double largest = 0.0;
-  for (int k = 0; k < samples; ++k) {
-    const double t = system.period() * (k + shift) / samples;
-    solution.evaluate(t, z.get(), z_dot.get());
-    system.residual(t, z.get(), z_dot.get(), r.get());
-    const petsc::WriteView view(r.get());
-    const auto& neutral = system.neutral_coordinates();
-    for (std::size_t n = 0; n < loads.size(); ++n) view[neutral[n].row] += loads[n].load;
-    for (std::size_t i = 0; i < system.rows().size(); ++i)
-      if (system.rows()[i] == system::RowRole::balance)
-        largest = std::max(largest, std::abs(view[static_cast<PetscInt>(i)]));
-  }
-  return largest;
-}
-
-void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
-  for (std::size_t i = 0; i < system.unknowns().size(); ++i)
-    if (system.unknowns()[i].role == system::UnknownRole::internal)
-      trim.load_level = std::max(
-          trim.load_level,
-          trim.solution.coefficients().row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
-  trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
-  trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
-}
-
-Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
-                            const PeriodicSolution* start) {
-  if (harmonics > 0 && system.period() == 0.0)
-    throw InternalError("harmonics of a system without a period");
-  Balance balance(system, harmonics);
+/// From `start`, or the undeformed system; without residuals and load level.
+Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int harmonics,
+           double tolerance, const PeriodicSolution* start) {
+  Balance balance(system, held, harmonics);
   const petsc::Handle<Mat> matrix = balance.make_matrix();
   const petsc::Handle<Vec> x =
       petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
@@ -462,10 +438,69 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
   petsc::check(SNESGetIterationNumber(solver.get(), &steps));
   trim.newton_steps = static_cast<int>(steps);
   const std::vector<double> loads = balance.loads(solution);
-  for (std::size_t n = 0; n < loads.size(); ++n) {
-    const system::NeutralCoordinate& neutral = system.neutral_coordinates()[n];
-    trim.held.push_back({neutral.name, neutral.unit, loads[n]});
+  for (std::size_t n = 0; n < loads.size(); ++n)
+    trim.held.push_back({held[n].name, held[n].unit, loads[n]});
+  return trim;
+}
+
+/// Where supports are free, with their means held at zero: what restores a hinge, the centrifugal
+/// force or the weight, acts through loads that the undeformed system does not carry yet, and
+/// Newton's method could go anywhere from there. None where nothing is free or a beam would be held
+/// twice.
+std::optional<Trim> hold_supports(const system::PeriodicSystem& system, int harmonics,
+                                  double tolerance) {
+  const Coordinates free = find_free_supports(system);
+  if (free.empty()) return std::nullopt;
+  Coordinates held = system.neutral_coordinates();
+  held.insert(held.end(), free.begin(), free.end());
+  try {
+    return solve(system, held, harmonics, tolerance, nullptr);
+  } catch (const ConvergenceError&) {
+    return std::nullopt;
   }
+}
+
+}  // namespace
+
+double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                        const std::vector<HeldCoordinate>& loads, double shift) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Vec> r = system.make_state();
+  const int samples = std::max(sample_count(solution.harmonics()), 16);
+  double largest = 0.0;
+  for (int k = 0; k < samples; ++k) {
+    const double t = system.period() * (k + shift) / samples;
+    solution.evaluate(t, z.get(), z_dot.get());
+    system.residual(t, z.get(), z_dot.get(), r.get());
+    const petsc::WriteView view(r.get());
+    const auto& neutral = system.neutral_coordinates();
+    for (std::size_t n = 0; n < loads.size(); ++n) view[neutral[n].row] += loads[n].load;
+    for (std::size_t i = 0; i < system.rows().size(); ++i)
+      if (system.rows()[i] == system::RowRole::balance)
+        largest = std::max(largest, std::abs(view[static_cast<PetscInt>(i)]));
+  }
+  return largest;
+}
+
+void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
+  for (std::size_t i = 0; i < system.unknowns().size(); ++i)
+    if (system.unknowns()[i].role == system::UnknownRole::internal)
+      trim.load_level = std::max(
+          trim.load_level,
+          trim.solution.coefficients().row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
+  trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
+  trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
+}
+
+Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
+                            const PeriodicSolution* start) {
+  if (harmonics > 0 && system.period() == 0.0)
+    throw InternalError("harmonics of a system without a period");
+  const Coordinates& neutral = system.neutral_coordinates();
+  const std::optional<Trim> held =
+      start == nullptr ? hold_supports(system, harmonics, tolerance) : std::nullopt;
+  Trim trim = solve(system, neutral, harmonics, tolerance, held ? &held->solution : start);
   finish_trim(system, trim);
   trim.history = {{harmonics, trim.residual_between}};
   return trim;

@@ -4,8 +4,11 @@
 #include <optional>
 #include <sstream>
 
+#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/harmonic_balance.hpp"
+#include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/shooting.hpp"
+#include "samara/analysis/static_path.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
@@ -47,6 +50,35 @@ bool feels_time(const system::PeriodicSystem& system) {
   return false;
 }
 
+/// True where the undeformed system carries nothing.
+bool is_balanced(const system::PeriodicSystem& system) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Vec> r = system.make_state();
+  system.reference_state(0.0, z.get());
+  system.residual(0.0, z.get(), z_dot.get(), r.get());
+  PetscReal size = 0.0;
+  petsc::check(VecNorm(r.get(), NORM_INFINITY, &size));
+  return size == 0.0;
+}
+
+/// At rest. A hinge that loads alone restore has a singular tangent in the undeformed state: the
+/// start is where they have brought it. Without loads the undeformed state is the solution.
+Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance) {
+  const auto solve = [&](const PeriodicSolution* start) {
+    try {
+      return solve_harmonic_balance(system, 0, tolerance, start);
+    } catch (const SingularError& error) {
+      throw InputError(error.what());
+    }
+  };
+  if (find_free_supports(system).empty() || is_balanced(system)) return solve(nullptr);
+  Observer silent;
+  const StaticPath path = find_static_path(system, {}, silent);
+  const PeriodicSolution start(path.states.back().z, 0.0);
+  return solve(&start);
+}
+
 /// A constant is only tried: an unbalanced rotor may have none.
 std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options) {
   try {
@@ -82,7 +114,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer) {
   const petsc::Stage stage("trim");
-  if (system.period() == 0.0) return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
+  if (system.period() == 0.0) return solve_at_rest(system, options.tolerance);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
   // Loads and motions that oscillate are no constant, and might vanish at all of its samples.
   const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)

@@ -266,6 +266,17 @@ class Static(ProgramTest):
         self.refuse("static", "case.yaml", "--set", "static.max_steps=3", code=3,
                     words=["static: stopped at load factor 0.", "static.max_steps", "hint: "])
 
+    def test_ends_with_2_where_nothing_restores_or_holds_twice(self):
+        hinge = "length: 10\n  support: {stiffness: {theta2: free}, mass: 1, inertia: [1, 1, 1]}"
+        free = self.AT_REST.replace("length: 10", hinge)
+        self.write("case.yaml", free + "gravity: 0\n")
+        self.refuse("static", "case.yaml", words=["nothing restores blade 1 support theta2", "hint: "])
+        clamp = "length: 10\n  end_support: {stiffness: {u1: rigid}}"
+        twice = self.AT_REST.replace("length: 10", clamp).replace("EA: 1e8", "EA: rigid")
+        self.write("case.yaml", twice + self.LOADS % 1)
+        for command in ("static", "modes"):
+            self.refuse(command, "case.yaml", words=["singular", "hint: ", "held twice"])
+
     def test_other_commands_want_loads_that_repeat(self):
         load = "loads: [{beam: blades, at: 1, force: [0, 0, 1], %s}]\n"
         for history in ("table: [[0, 0], [1, 1]]", "harmonic: {frequency: 3}"):
