@@ -16,6 +16,8 @@ namespace samara::analysis {
 namespace {
 
 constexpr double rounding = 1e-12;
+/// A scaled residual that is rounding.
+constexpr double vanished = 1e-13;
 /// Relative: what scaling there and back does to a vector.
 constexpr double same = 1e-14;
 
@@ -379,7 +381,16 @@ Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics
   return Eigen::Map<const Eigen::VectorXd>(coefficients.data(), coefficients.size());
 }
 
-/// From `start`, or the undeformed system; without residuals and load level.
+/// Norm of the scaled residual.
+double residual_at(const Eigen::VectorXd& h, SolverContext& context) {
+  Eigen::VectorXd f(h.size());
+  context.balance->residual(h.data(), f.data());
+  const petsc::ReadView rows(context.scaling->rows.get());
+  return (f.array() * Eigen::Map<const Eigen::ArrayXd>(rows.data(), f.size())).matrix().norm();
+}
+
+/// From `start`, or the undeformed system, to whose residual `tolerance` is relative; without
+/// residuals and load level.
 Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int harmonics,
            double tolerance, const PeriodicSolution* start) {
   Balance balance(system, held, harmonics);
@@ -407,7 +418,16 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
   petsc::check(SNESSetOptionsPrefix(solver.get(), "trim_"));
   petsc::check(SNESSetFunction(solver.get(), f.get(), form_function, &context));
   petsc::check(SNESSetJacobian(solver.get(), matrix.get(), matrix.get(), form_jacobian, &context));
-  petsc::check(SNESSetTolerances(solver.get(), 1e-13, tolerance, 0.0, 50, 10000));
+  double enough = vanished;
+  if (start != nullptr) {
+    // A good start leaves little that could fall by the tolerance; but it knows nothing yet of
+    // harmonics that are new, and one step gives them.
+    const Eigen::VectorXd undeformed = start_vector(system, harmonics, nullptr);
+    enough = std::max(enough, tolerance * residual_at(undeformed, context));
+    if (residual_at(h, context) > vanished)
+      petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
+  }
+  petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, 50, 10000));
   KSP linear = nullptr;
   PC preconditioner = nullptr;
   petsc::check(SNESGetKSP(solver.get(), &linear));
@@ -423,6 +443,9 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   petsc::check(SNESGetConvergedReason(solver.get(), &reason));
   if (reason < 0) fail(solver.get(), context);
+  PetscReal left = 0.0;
+  petsc::check(SNESGetFunctionNorm(solver.get(), &left));
+  if (reason == SNES_CONVERGED_FNORM_ABS && left > vanished) reason = SNES_CONVERGED_FNORM_RELATIVE;
 
   const PetscScalar* solution = context.unscale(x.get());
   Trim trim{PeriodicSolution(balance.unpack(solution), system.period()),

@@ -88,14 +88,38 @@ std::optional<Trim> try_constant(const system::PeriodicSystem& system, const Tri
   }
 }
 
+/// Each a third more than the one before, up to the next that is closed: the work grows with H^2 to
+/// H^3, so that all before a solution cost about as much as it.
+std::vector<int> harmonics_to_try(int least, int sectors) {
+  std::vector<int> numbers;
+  for (int next = std::max(1, least); next <= auto_harmonics;) {
+    while (!is_closed(next, sectors)) ++next;
+    if (next <= auto_harmonics) numbers.push_back(next);
+    const int more = next + (next + 2) / 3;
+    next = next < auto_harmonics ? std::min(more, auto_harmonics) : more;
+  }
+  return numbers;
+}
+
+/// From the solution with fewer harmonics, or anew where that leads nowhere.
+Trim solve_from(const system::PeriodicSystem& system, int harmonics, double tolerance,
+                const std::optional<Trim>& last) {
+  if (last) {
+    try {
+      return solve_harmonic_balance(system, harmonics, tolerance, &last->solution);
+    } catch (const ConvergenceError&) {
+    }
+  }
+  return solve_harmonic_balance(system, harmonics, tolerance, nullptr);
+}
+
 Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& options,
                      const std::optional<Trim>& constant, Observer& observer) {
   std::vector<std::pair<int, double>> history;
   if (constant) history = constant->history;
-  for (int harmonics = std::max(1, options.least_harmonics); harmonics <= auto_harmonics;
-       ++harmonics) {
-    if (!is_closed(harmonics, system.symmetry().sectors)) continue;
-    Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, nullptr);
+  std::optional<Trim> last;
+  for (const int harmonics : harmonics_to_try(options.least_harmonics, system.symmetry().sectors)) {
+    Trim trim = solve_from(system, harmonics, options.tolerance, last);
     history.emplace_back(harmonics, trim.residual_between);
     trim.history = history;
     std::ostringstream text;
@@ -103,6 +127,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
          << trim.residual_between;
     observer.note(text.str());
     if (trim.residual_between <= allowed_residual(trim, options.auto_tolerance)) return trim;
+    last = std::move(trim);
   }
   throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(auto_harmonics) +
                          " and the residual between the samples is still too large; hint: give "
