@@ -103,6 +103,8 @@ Outcome attempt(const std::string& case_path, const Work& work) {
 Job prepare(const CommandLine& line) {
   Job job;
   job.input = io::read_case(line.case_path, line.settings);
+  if (Session::launch_rank() == 0)
+    for (const std::string& note : job.input.notes) std::cerr << note << "\n";
   if (line.command->require != nullptr) line.command->require(job.input);
   job.command_line = line.text;
   job.result_path = line.result_path;

@@ -50,9 +50,11 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.hub = hub_of(hub);
   chain.teeter = hinge_of(hub.teeter);
   chain.torsion = hinge_of(shaft.torsion);
-  const elements::TorqueLine torque = shaft.generator.law.at(shaft.speed);
-  chain.generator = {shaft.generator.kind == JointKind::free, 0.0, torque.slope};
-  chain.generator_torque = torque.torque;
+  if (shaft.generator.kind == JointKind::free) {
+    const elements::TorqueLine torque = shaft.generator.law.at(shaft.speed);
+    chain.generator = {true, 0.0, torque.slope};
+    chain.generator_torque = torque.torque;
+  }
   chain.rotor_torque = shaft.rotor.at(shaft.speed);
   chain.generator_inertia = shaft.generator.inertia;
   chain.height = shaft.height;

@@ -161,6 +161,19 @@ class Tables(ProgramTest):
         self.assertIn("generator    480 N m against its turning hold the mean speed: 500 by its law "
                       "and -20 beside it", self.succeed("trim", "case.yaml").stdout)
 
+    def test_a_parked_rotor_needs_no_torque_at_rest(self):
+        table = "torque_table: [[4, 0], [8, 900]]"
+        laws = "{speed: 6, generator: {joint: free, inertia: 50, %s}, rotor: {%s}}" % (table, table)
+        self.write("case.yaml", MINIMAL.replace("{speed: 6}", laws))
+        self.assertEqual(self.succeed("check", "case.yaml").stderr, "")
+        for command in ("static", "modes"):
+            run = self.succeed(command, "case.yaml", "--set", "shaft.speed=0")
+            self.assertRegex(run.stderr, r"(?m)^case.yaml:2:\d+: shaft.rotor.torque_table: note: ")
+        run = self.succeed("check", "case.yaml", "--set", "shaft.generator.joint=locked")
+        self.assertIn("note: without effect, the generator is locked", run.stderr)
+        self.refuse("check", "case.yaml", "--set", "shaft.speed=9", lines=2,
+                    words=["the table reaches from 4 to 8 rad/s", "hint: "], place=r"case\.yaml:2:")
+
     def test_unresolved_modes_are_explained(self):
         self.write("case.yaml", MINIMAL)
         text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
