@@ -177,8 +177,19 @@ class Tables(ProgramTest):
     def test_unresolved_modes_are_explained(self):
         self.write("case.yaml", MINIMAL)
         text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
-        self.assertRegex(text, r"(?m)^\* \d+ unresolved, left out of the verdict: ")
-        self.assertIn("unresolved*", text)
+        hidden = int(re.search(r"(?m)^(\d+) unresolved, not listed \(--all lists them\) and left out "
+                               "of the verdict:$", text).group(1))
+        self.assertNotIn("unresolved*", text)
+        whole = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50", "--all").stdout
+        self.assertRegex(whole, rf"(?m)^\* {hidden} unresolved, left out of the verdict: ")
+        rows = [re.findall(r"(?m)^ *(\d+)  \w+ .*?(unresolved\*)?$", each) for each in (text, whole)]
+        self.assertEqual(rows[0], rows[1][:-hidden])  # the resolved ones stand first
+        self.assertEqual([remark for _, remark in rows[1][-hidden:]], ["unresolved*"] * hidden)
+        self.assertEqual(sorted(int(number) for number, _ in rows[1]), list(range(1, len(rows[1]) + 1)))
+
+    def test_all_modes_are_of_commands_that_list_some(self):
+        self.write("case.yaml", MINIMAL)
+        self.refuse("trim", "case.yaml", "--all", words=["--all: samara trim lists no modes"])
 
     def test_trim_shows_harmonics_of_deflections_and_loads(self):
         text = self.succeed("trim", BASELINE, *QUICK, "--set", "gravity=9.81").stdout
