@@ -96,6 +96,8 @@ class Parser {
       line_.tower_only = true;
     else if (word == "--report")
       line_.report = true;
+    else if (word == "--all")
+      line_.all_modes = true;
     else if (name == "--restart")
       set_once(line_.restart_path, name,
                value_of(name, "a result to go on from, e.g. --restart run.h5", value));
@@ -107,7 +109,7 @@ class Parser {
 
   static std::string unknown_option_words(const std::string& name) {
     const std::string suggestion =
-        suggest(name, {"--set", "--csv", "--restart", "--tower-only", "--report", "--help", "--version"});
+        suggest(name, {"--set", "--csv", "--all", "--restart", "--tower-only", "--report", "--help", "--version"});
     return suggestion.empty() ? "; hint: samara --help; options of PETSc have one dash"
                               : suggestion;
   }
@@ -191,6 +193,8 @@ class Parser {
                  line_.petsc_options[i - 1] + ", the case comes before the options of PETSc";
       throw InputError("missing case file: samara " + name + " CASE.yaml; hint: " + hint);
     }
+    if (line_.all_modes && !line_.command->lists_modes)
+      throw InputError("--all: samara " + name + " lists no modes; modes and floquet do");
     if (!line_.restart_path.empty() && name != "transient")
       throw InputError("--restart: samara " + name + " has no use for it, samara transient has");
     if (!line_.csv_path.empty() && !line_.command->has_csv)
@@ -235,6 +239,7 @@ constexpr char option_lines[] =
   -o RESULT.h5      the result; without it the case's name with .h5, in the current folder.
                     Only a file that samara wrote is ever overwritten
   --csv FILE.csv    the table as comma-separated values, too
+  --all             lists unresolved modes, too (modes, floquet)
   --restart FILE.h5 goes on from the last checkpoint of a result (transient)
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries

@@ -21,6 +21,7 @@ struct Command {
   bool has_csv;
   void (*require)(const io::Case&);  ///< refuses before anything is solved; may be null
   void (*run)(const Job&);
+  bool lists_modes = false;
   const char* formats = nullptr;  ///< of decks, with bars between: the word before the path
   void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`
 };
@@ -35,6 +36,7 @@ struct CommandLine {
   std::string case_path;             ///< or the deck
   bool tower_only = false;
   bool report = false;  ///< is wanted, if need be without a case
+  bool all_modes = false;
   std::vector<std::string> settings;
   std::string result_path;  ///< empty: not given
   std::string csv_path;     ///< empty: none wanted

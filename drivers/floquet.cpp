@@ -47,7 +47,9 @@ void run_floquet(const Job& job) {
   progress.finish();
   if (!is_first) return;
   deliver(
-      job, headline(job.input, floquet) + mode_table(floquet.set) + "\n" + verdict(floquet.set),
+      job,
+      headline(job.input, floquet) + mode_table(floquet.set, job.all_modes) + "\n" +
+          verdict(floquet.set, job.all_modes),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));

@@ -15,6 +15,7 @@ struct Job {
   std::string command_line;  ///< as typed
   std::string result_path;   ///< empty: no result is wanted
   std::string csv_path;      ///< empty: no table is wanted
+  bool all_modes = false;    ///< also those that are not resolved are listed
   std::string restart_path;  ///< empty: the run starts at its beginning
 };
 

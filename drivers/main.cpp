@@ -36,7 +36,7 @@ constexpr std::array<Command, 7> commands{{
     {"modes", "modes of a parked rotor, or of a balanced one in its own axes",
      "Finds all modes about the steady state where the coefficients do not depend on the azimuth:\n"
      "a parked rotor, or a balanced one in its own axes. Elsewhere use samara floquet.\n",
-     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, require_motion, run_modes},
+     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, require_motion, run_modes, true},
     {"trim", "the periodic steady state",
      "Finds the periodic steady state: deflections and loads as harmonics of the rotor speed.\n",
      "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true,
@@ -45,7 +45,7 @@ constexpr std::array<Command, 7> commands{{
      "Finds the periodic steady state, and all modes about it by Floquet's theory: multipliers,\n"
      "frequencies, damping, harmonics, and where the energy is.\n",
      "inputs/lee2002/baseline.yaml --set blades.elements=8 --csv modes.csv", true, true,
-     require_speed, run_floquet},
+     require_speed, run_floquet, true},
     {"transient", "the motion in time, with loads by OpenFAST's channel names",
      "Follows the turbine in time from its periodic steady state or from rest. Motions and loads go\n"
      "into the result while it runs, by the channel names of OpenFAST.\n",
@@ -55,7 +55,7 @@ constexpr std::array<Command, 7> commands{{
      "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it as a\n"
      "case file, and reports key by key what was taken, derived or ignored, and why. See\n"
      "docs/import.md.\n",
-     "openfast Main.fst -o turbine.yaml", true, false, nullptr, nullptr, "openfast|windio",
+     "openfast Main.fst -o turbine.yaml", true, false, nullptr, nullptr, false, "openfast|windio",
      run_import},
 }};
 
@@ -103,11 +103,14 @@ Outcome attempt(const std::string& case_path, const Work& work) {
 Job prepare(const CommandLine& line) {
   Job job;
   job.input = io::read_case(line.case_path, line.settings);
+  if (Session::launch_rank() == 0)
+    for (const std::string& note : job.input.notes) std::cerr << note << "\n";
   if (line.command->require != nullptr) line.command->require(job.input);
   job.command_line = line.text;
   job.result_path = line.result_path;
   job.csv_path = line.csv_path;
   job.restart_path = line.restart_path;
+  job.all_modes = line.all_modes;
   if (job.result_path.empty() && line.command->writes_result)
     job.result_path = std::filesystem::path(line.case_path).stem().string() + ".h5";
   if (Session::launch_rank() != 0) return job;

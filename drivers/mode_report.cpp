@@ -179,7 +179,7 @@ Motion motion_of(const Mode& mode, double rotor_speed) {
   return mode.exponent.real() > 0.0 ? Motion::growing : Motion::decaying;
 }
 
-std::string mode_table(const ModeSet& set) {
+std::string mode_table(const ModeSet& set, bool all) {
   Table table;
   table.add_column("#", "");
   table.add_column("mode", "", Align::left);
@@ -190,11 +190,13 @@ std::string mode_table(const ModeSet& set) {
   if (set.participation.size() > 0) table.add_column("k", "");
   table.add_column("energy in", "%", Align::left);
   table.add_column(set.participation.size() > 0 ? "other k, remark" : "", "", Align::left);
-  for (std::size_t m = 0; m < set.modes.size(); ++m) table.add_row(row_of(set, m));
+  for (const bool resolved : {true, false})
+    for (std::size_t m = 0; m < set.modes.size(); ++m)
+      if (set.modes[m].resolved == resolved && (resolved || all)) table.add_row(row_of(set, m));
   return table.text();
 }
 
-std::string verdict(const ModeSet& set) {
+std::string verdict(const ModeSet& set, bool all) {
   const Tally result = tally(set);
   const std::string rest = rest_words(result);
   std::string text;
@@ -221,7 +223,9 @@ std::string verdict(const ModeSet& set) {
         "(hint: a higher order of blades and tower, or more elements)\n";
   if (result.unresolved > 0)
     text +=
-        "* " + std::to_string(result.unresolved) + " unresolved, left out of the verdict: " +
+        (all ? "* " : "") + std::to_string(result.unresolved) + " unresolved, " +
+        (all ? "left out of the verdict: "
+             : "not listed (--all lists them) and left out of the verdict:\n") +
         (set.participation.size() > 0
              ? "too fast for the time step (hint: more floquet.steps), or a residual too large\n"
              : "a residual too large\n");

@@ -40,7 +40,9 @@ void run_modes(const Job& job) {
   progress.finish();
   if (!is_first) return;
   deliver(
-      job, headline(job.input, set) + mode_table(set) + "\n" + verdict(set),
+      job,
+      headline(job.input, set) + mode_table(set, job.all_modes) + "\n" +
+          verdict(set, job.all_modes),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <random>
 #include <sstream>
 
+#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
@@ -14,6 +16,8 @@ namespace samara::analysis {
 namespace {
 
 constexpr double rounding = 1e-12;
+/// A scaled residual that is rounding.
+constexpr double vanished = 1e-13;
 /// Relative: what scaling there and back does to a vector.
 constexpr double same = 1e-14;
 
@@ -27,12 +31,15 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
   return weights;
 }
 
+using Coordinates = std::vector<system::NeutralCoordinate>;
+
 /// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i and has number
-/// i (2 H + 1) + c; the mean of a neutral coordinate gives its place to the load that holds it.
+/// i (2 H + 1) + c; the mean of a held coordinate gives its place to the load that holds it.
 class Balance {
  public:
-  Balance(const system::PeriodicSystem& system, int harmonics)
+  Balance(const system::PeriodicSystem& system, const Coordinates& held, int harmonics)
       : system_(system),
+        held_(held),
         harmonics_(harmonics),
         width_(2 * harmonics + 1),
         size_(static_cast<Eigen::Index>(system.size())),
@@ -46,15 +53,15 @@ class Balance {
 
   Eigen::MatrixXd unpack(const PetscScalar* h) const {
     Eigen::MatrixXd coefficients = Eigen::Map<const Eigen::MatrixXd>(h, width_, size_).transpose();
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      coefficients(neutral.unknown, 0) = 0.0;
+    for (const system::NeutralCoordinate& coordinate : held_)
+      coefficients(coordinate.unknown, 0) = 0.0;
     return coefficients;
   }
 
   std::vector<double> loads(const PetscScalar* h) const {
     std::vector<double> loads;
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      loads.push_back(h[neutral.unknown * width_]);
+    for (const system::NeutralCoordinate& coordinate : held_)
+      loads.push_back(h[coordinate.unknown * width_]);
     return loads;
   }
 
@@ -72,8 +79,7 @@ class Balance {
       const Eigen::Map<const Eigen::VectorXd> r(view.data(), size_);
       result += projection(t) * r.transpose();
     }
-    const auto& neutral = system_.neutral_coordinates();
-    for (std::size_t n = 0; n < neutral.size(); ++n) result(0, neutral[n].row) += held[n];
+    for (std::size_t n = 0; n < held_.size(); ++n) result(0, held_[n].row) += held[n];
   }
 
   /// Entry (i, j) becomes the block sum_k w(t_k) [K_ij(t_k) b(t_k) + M_ij(t_k) b_dot(t_k)]^T: for
@@ -125,9 +131,9 @@ class Balance {
           to_sparse(jacobian_.get()).cwiseAbs();
       pattern_ = Eigen::SparseMatrix<double, Eigen::RowMajor>(pattern_ + found);
     }
-    // The load that holds a neutral coordinate stands in the place of its mean.
-    for (const system::NeutralCoordinate& neutral : system_.neutral_coordinates())
-      pattern_.coeffRef(neutral.row, neutral.unknown) += 1.0;
+    // The load that holds a coordinate stands in the place of its mean.
+    for (const system::NeutralCoordinate& coordinate : held_)
+      pattern_.coeffRef(coordinate.row, coordinate.unknown) += 1.0;
     pattern_.makeCompressed();
     return make_block_matrix();
   }
@@ -138,10 +144,10 @@ class Balance {
 
   Eigen::VectorXd projection(double t) const { return fourier_weights(harmonics_, period(), t); }
 
-  bool is_neutral(PetscInt unknown) const {
-    return std::any_of(
-        system_.neutral_coordinates().begin(), system_.neutral_coordinates().end(),
-        [unknown](const system::NeutralCoordinate& n) { return n.unknown == unknown; });
+  bool is_held(PetscInt unknown) const {
+    return std::any_of(held_.begin(), held_.end(), [unknown](const system::NeutralCoordinate& n) {
+      return n.unknown == unknown;
+    });
   }
 
   petsc::Handle<Mat> make_block_matrix() const {
@@ -164,7 +170,7 @@ class Balance {
 
   /// Whether the load that holds `unknown` acts in `row`.
   bool holds(Eigen::Index row, PetscInt unknown) const {
-    return std::any_of(system_.neutral_coordinates().begin(), system_.neutral_coordinates().end(),
+    return std::any_of(held_.begin(), held_.end(),
                        [row, unknown](const system::NeutralCoordinate& n) {
                          return n.unknown == unknown && n.row == row;
                        });
@@ -213,7 +219,7 @@ class Balance {
         for (Eigen::Index e = first; e < last; ++e) {
           const auto unknown = static_cast<PetscInt>(pattern_.innerIndexPtr()[e]);
           next = std::copy_n(&blocks(row * width_, e), width_, next);
-          if (is_neutral(unknown)) *(next - width_) = holds(i, unknown) && row == 0 ? 1.0 : 0.0;
+          if (is_held(unknown)) *(next - width_) = holds(i, unknown) && row == 0 ? 1.0 : 0.0;
         }
     }
     petsc::check(MatSeqAIJRestoreArrayWrite(matrix, &values));
@@ -222,6 +228,7 @@ class Balance {
   }
 
   const system::PeriodicSystem& system_;
+  const Coordinates& held_;
   int harmonics_;
   int width_;
   Eigen::Index size_;
@@ -297,6 +304,11 @@ void fail(SNES solver, const SolverContext& context) {
   petsc::check(SNESGetIterationNumber(solver, &iterations));
   petsc::check(SNESGetFunctionNorm(solver, &norm));
   std::ostringstream text;
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
+    text << "trim: the matrix is singular after " << iterations
+         << " Newton steps; hint: something may move that nothing holds, or is held twice";
+    throw SingularError(text.str());
+  }
   text << "trim: " << SNESConvergedReasons[reason] << " after " << iterations
        << " Newton steps, scaled residual " << norm;
   if (context.error) {
@@ -369,6 +381,108 @@ Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics
   return Eigen::Map<const Eigen::VectorXd>(coefficients.data(), coefficients.size());
 }
 
+/// Norm of the scaled residual.
+double residual_at(const Eigen::VectorXd& h, SolverContext& context) {
+  Eigen::VectorXd f(h.size());
+  context.balance->residual(h.data(), f.data());
+  const petsc::ReadView rows(context.scaling->rows.get());
+  return (f.array() * Eigen::Map<const Eigen::ArrayXd>(rows.data(), f.size())).matrix().norm();
+}
+
+/// From `start`, or the undeformed system, to whose residual `tolerance` is relative; without
+/// residuals and load level.
+Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int harmonics,
+           double tolerance, const PeriodicSolution* start) {
+  Balance balance(system, held, harmonics);
+  const petsc::Handle<Mat> matrix = balance.make_matrix();
+  const petsc::Handle<Vec> x =
+      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
+  const petsc::Handle<Vec> f =
+      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
+  Eigen::VectorXd h = start_vector(system, harmonics, start);
+  balance.tangent(h.data(), matrix.get());
+  const Equilibration scaling = equilibrate(matrix.get());
+  SolverContext context;
+  context.balance = &balance;
+  context.start = &h;
+  context.scaling = &scaling;
+  context.unscaled.resize(h.size());
+  {
+    const petsc::WriteView view(x.get());
+    Eigen::Map<Eigen::VectorXd>(view.data(), h.size()) = h;
+  }
+  petsc::check(VecPointwiseDivide(x.get(), x.get(), scaling.columns.get()));
+
+  petsc::Handle<SNES> solver;
+  petsc::check(SNESCreate(PETSC_COMM_SELF, solver.fill()));
+  petsc::check(SNESSetOptionsPrefix(solver.get(), "trim_"));
+  petsc::check(SNESSetFunction(solver.get(), f.get(), form_function, &context));
+  petsc::check(SNESSetJacobian(solver.get(), matrix.get(), matrix.get(), form_jacobian, &context));
+  double enough = vanished;
+  if (start != nullptr) {
+    // A good start leaves little that could fall by the tolerance; but it knows nothing yet of
+    // harmonics that are new, and one step gives them.
+    const Eigen::VectorXd undeformed = start_vector(system, harmonics, nullptr);
+    enough = std::max(enough, tolerance * residual_at(undeformed, context));
+    if (residual_at(h, context) > vanished)
+      petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
+  }
+  petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, 50, 10000));
+  KSP linear = nullptr;
+  PC preconditioner = nullptr;
+  petsc::check(SNESGetKSP(solver.get(), &linear));
+  petsc::check(KSPSetType(linear, KSPPREONLY));
+  petsc::check(KSPGetPC(linear, &preconditioner));
+  petsc::check(PCSetType(preconditioner, PCLU));
+  petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
+  petsc::check(SNESSetFromOptions(solver.get()));
+  const PreferredFactorization factorization;
+  const PetscErrorCode code = SNESSolve(solver.get(), nullptr, x.get());
+  if (code != 0 && context.error) std::rethrow_exception(context.error);
+  petsc::check(code);
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  petsc::check(SNESGetConvergedReason(solver.get(), &reason));
+  if (reason < 0) fail(solver.get(), context);
+  PetscReal left = 0.0;
+  petsc::check(SNESGetFunctionNorm(solver.get(), &left));
+  if (reason == SNES_CONVERGED_FNORM_ABS && left > vanished) reason = SNES_CONVERGED_FNORM_RELATIVE;
+
+  const PetscScalar* solution = context.unscale(x.get());
+  Trim trim{PeriodicSolution(balance.unpack(solution), system.period()),
+            TrimMethod::harmonic_balance,
+            0,
+            SNESConvergedReasons[reason],
+            0.0,
+            0.0,
+            0.0,
+            {},
+            {}};
+  PetscInt steps = 0;
+  petsc::check(SNESGetIterationNumber(solver.get(), &steps));
+  trim.newton_steps = static_cast<int>(steps);
+  const std::vector<double> loads = balance.loads(solution);
+  for (std::size_t n = 0; n < loads.size(); ++n)
+    trim.held.push_back({held[n].name, held[n].unit, loads[n]});
+  return trim;
+}
+
+/// Where supports are free, with their means held at zero: what restores a hinge, the centrifugal
+/// force or the weight, acts through loads that the undeformed system does not carry yet, and
+/// Newton's method could go anywhere from there. None where nothing is free or a beam would be held
+/// twice.
+std::optional<Trim> hold_supports(const system::PeriodicSystem& system, int harmonics,
+                                  double tolerance) {
+  const Coordinates free = find_free_supports(system);
+  if (free.empty()) return std::nullopt;
+  Coordinates held = system.neutral_coordinates();
+  held.insert(held.end(), free.begin(), free.end());
+  try {
+    return solve(system, held, harmonics, tolerance, nullptr);
+  } catch (const ConvergenceError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
@@ -406,66 +520,10 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
                             const PeriodicSolution* start) {
   if (harmonics > 0 && system.period() == 0.0)
     throw InternalError("harmonics of a system without a period");
-  Balance balance(system, harmonics);
-  const petsc::Handle<Mat> matrix = balance.make_matrix();
-  const petsc::Handle<Vec> x =
-      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
-  const petsc::Handle<Vec> f =
-      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
-  Eigen::VectorXd h = start_vector(system, harmonics, start);
-  balance.tangent(h.data(), matrix.get());
-  const Equilibration scaling = equilibrate(matrix.get());
-  SolverContext context;
-  context.balance = &balance;
-  context.start = &h;
-  context.scaling = &scaling;
-  context.unscaled.resize(h.size());
-  {
-    const petsc::WriteView view(x.get());
-    Eigen::Map<Eigen::VectorXd>(view.data(), h.size()) = h;
-  }
-  petsc::check(VecPointwiseDivide(x.get(), x.get(), scaling.columns.get()));
-
-  petsc::Handle<SNES> solver;
-  petsc::check(SNESCreate(PETSC_COMM_SELF, solver.fill()));
-  petsc::check(SNESSetOptionsPrefix(solver.get(), "trim_"));
-  petsc::check(SNESSetFunction(solver.get(), f.get(), form_function, &context));
-  petsc::check(SNESSetJacobian(solver.get(), matrix.get(), matrix.get(), form_jacobian, &context));
-  petsc::check(SNESSetTolerances(solver.get(), 1e-13, tolerance, 0.0, 50, 10000));
-  KSP linear = nullptr;
-  PC preconditioner = nullptr;
-  petsc::check(SNESGetKSP(solver.get(), &linear));
-  petsc::check(KSPSetType(linear, KSPPREONLY));
-  petsc::check(KSPGetPC(linear, &preconditioner));
-  petsc::check(PCSetType(preconditioner, PCLU));
-  petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
-  petsc::check(SNESSetFromOptions(solver.get()));
-  const PreferredFactorization factorization;
-  const PetscErrorCode code = SNESSolve(solver.get(), nullptr, x.get());
-  if (code != 0 && context.error) std::rethrow_exception(context.error);
-  petsc::check(code);
-  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
-  petsc::check(SNESGetConvergedReason(solver.get(), &reason));
-  if (reason < 0) fail(solver.get(), context);
-
-  const PetscScalar* solution = context.unscale(x.get());
-  Trim trim{PeriodicSolution(balance.unpack(solution), system.period()),
-            TrimMethod::harmonic_balance,
-            0,
-            SNESConvergedReasons[reason],
-            0.0,
-            0.0,
-            0.0,
-            {},
-            {}};
-  PetscInt steps = 0;
-  petsc::check(SNESGetIterationNumber(solver.get(), &steps));
-  trim.newton_steps = static_cast<int>(steps);
-  const std::vector<double> loads = balance.loads(solution);
-  for (std::size_t n = 0; n < loads.size(); ++n) {
-    const system::NeutralCoordinate& neutral = system.neutral_coordinates()[n];
-    trim.held.push_back({neutral.name, neutral.unit, loads[n]});
-  }
+  const Coordinates& neutral = system.neutral_coordinates();
+  const std::optional<Trim> held =
+      start == nullptr ? hold_supports(system, harmonics, tolerance) : std::nullopt;
+  Trim trim = solve(system, neutral, harmonics, tolerance, held ? &held->solution : start);
   finish_trim(system, trim);
   trim.history = {{harmonics, trim.residual_between}};
   return trim;

@@ -171,9 +171,13 @@ void DirectSolver::factor(Mat matrix) {
   petsc::check(KSPSetUp(solver_.get()));
   matrix_ = matrix;
   if (failure() != PC_NOERROR) take_pivoting_solver();
-  if (const PCFailedReason reason = failure(); reason != PC_NOERROR)
-    throw ConvergenceError("linear solve (" + prefix_ + "): the matrix is singular (" +
-                           PCFailedReasons[reason] + ")");
+  if (const PCFailedReason reason = failure(); reason != PC_NOERROR) {
+    PC factored = nullptr;
+    petsc::check(KSPGetPC(solver_.get(), &factored));
+    petsc::check(PCReset(factored));  // or the next matrix would be taken for factored
+    throw SingularError("linear solve (" + prefix_ + "): the matrix is singular (" +
+                        PCFailedReasons[reason] + ")");
+  }
 }
 
 PCFailedReason DirectSolver::failure() const {

@@ -8,6 +8,9 @@
 #include <optional>
 #include <sstream>
 
+#include <Eigen/SVD>
+
+#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
@@ -29,6 +32,20 @@ constexpr double rounding = 1e-12;
 /// Cosine between the tangents at both ends of an arc; below it the step may have changed branches.
 constexpr double least_cosine = 0.3;
 
+/// Of free supports, relative to the stiffness that takes their place at the start: what restores
+/// less leaves them to the loads, what still restores less under loads does not restore at all.
+constexpr double weak = 1e-6;
+constexpr double restored = 1e-8;
+
+/// Relative to the largest internal load: what supports feel of the loads, if anything.
+constexpr double unfelt = 1e-10;
+
+/// Parts in which supports are set free, the least of them, and how far one may move in one of
+/// them, beside its whole way [rad, m].
+constexpr double first_part = 0.125;
+constexpr double least_part = 1e-6;
+constexpr double longest_stride = 0.5;
+
 /// A point of the path: the state, in which a neutral coordinate gives its place to the load that
 /// holds it, and the load factor.
 struct Point {
@@ -36,11 +53,24 @@ struct Point {
   double factor = 0.0;
 };
 
-/// r(x, f) = (1 - f) r_unloaded + f r_loaded, and what belongs to it.
+/// What takes the place of supports that are free while they are being freed: in the row of each
+/// remaining (load - stiffness x), with the load that held it at x = 0.
+struct Easing {
+  std::vector<PetscInt> unknowns;  ///< and rows
+  Eigen::VectorXd loads;
+  double stiffness = 0.0;  ///< [N/m, N m/rad]
+  double remaining = 0.0;
+};
+
+/// r(x, f) = (1 - f) r_unloaded + f r_loaded, and what belongs to it. `held` coordinates, the
+/// neutral ones and others, stay at zero.
 class Equilibrium {
  public:
-  explicit Equilibrium(const system::PeriodicSystem& system)
+  Equilibrium(const system::PeriodicSystem& system,
+              std::vector<system::NeutralCoordinate> coordinates, const Easing& easing)
       : loaded_(system),
+        held_(std::move(coordinates)),
+        easing_(easing),
         unloaded_(system.unloaded()),
         size_(static_cast<Eigen::Index>(system.size())),
         z_(system.make_state()),
@@ -54,9 +84,9 @@ class Equilibrium {
       if (role == system::UnknownRole::position) positions_.push_back(i);
       if (role == system::UnknownRole::internal) loads_.push_back(i);
     }
-    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates()) {
-      std::erase(positions_, static_cast<Eigen::Index>(neutral.unknown));
-      loads_.push_back(neutral.unknown);
+    for (const system::NeutralCoordinate& held : held_) {
+      std::erase(positions_, static_cast<Eigen::Index>(held.unknown));
+      loads_.push_back(held.unknown);
     }
   }
 
@@ -65,8 +95,7 @@ class Equilibrium {
     const petsc::ReadView view(z_.get());
     Point point;
     point.x = Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
-    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
-      point.x(neutral.unknown) = 0.0;
+    for (const system::NeutralCoordinate& held : held_) point.x(held.unknown) = 0.0;
     return point;
   }
 
@@ -77,23 +106,41 @@ class Equilibrium {
     const Eigen::VectorXd with = residual_of(loaded_);
     by_factor = with - without;
     r = (1.0 - point.factor) * without + point.factor * with;
-    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
-      r(neutral.row) += point.x(neutral.unknown);
+    for (const system::NeutralCoordinate& held : held_) r(held.row) += point.x(held.unknown);
+    for (std::size_t n = 0; n < easing_.unknowns.size(); ++n) {
+      const PetscInt at = easing_.unknowns[n];
+      r(at) += easing_.remaining *
+               (easing_.loads(static_cast<Eigen::Index>(n)) - easing_.stiffness * point.x(at));
+    }
   }
 
   /// Solves K columns = columns at a point.
   void solve(const Point& point, Eigen::MatrixXd& columns) {
-    put(state_of(point.x));
-    loaded_.tangents(0.0, z_.get(), rest_.get(), 0.0, jacobian_.get(), nullptr);
-    if (point.factor != 1.0) {
-      unloaded_->tangents(0.0, z_.get(), rest_.get(), 0.0, unloaded_jacobian_.get(), nullptr);
-      petsc::check(MatScale(jacobian_.get(), point.factor));
-      petsc::check(MatAXPY(jacobian_.get(), 1.0 - point.factor, unloaded_jacobian_.get(),
-                           SAME_NONZERO_PATTERN));
-    }
-    replace_neutral_columns();
+    assemble(point);
+    replace_held_columns();
     solver_.factor(jacobian_.get());
     solver_.solve(columns);
+  }
+
+  /// What holds some of the held coordinates, by their positions: the stiffness of all the rest.
+  Eigen::MatrixXd stiffness_of(const Point& point, const std::vector<PetscInt>& coordinates) {
+    assemble(point);
+    const Eigen::SparseMatrix<double> K = to_sparse(jacobian_.get());
+    const auto n = static_cast<Eigen::Index>(coordinates.size());
+    Eigen::MatrixXd columns(size_, n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      columns.col(j) = -K.col(coordinates[static_cast<std::size_t>(j)]);
+    solve(point, columns);
+    return at(columns, coordinates);
+  }
+
+  /// Motions of coordinates under a unit load on each of them.
+  Eigen::MatrixXd compliance_of(const Point& point, const std::vector<PetscInt>& coordinates) {
+    const auto n = static_cast<Eigen::Index>(coordinates.size());
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size_, n);
+    for (Eigen::Index j = 0; j < n; ++j) columns(coordinates[static_cast<std::size_t>(j)], j) = 1.0;
+    solve(point, columns);
+    return at(columns, coordinates);
   }
 
   /// The system with large rotations counted anew, for which the point is rewritten; null where
@@ -103,26 +150,23 @@ class Equilibrium {
     std::unique_ptr<system::PeriodicSystem> system = loaded_.counted_from(z_.get());
     if (!system) return system;
     std::vector<double> loads;
-    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
-      loads.push_back(point.x(neutral.unknown));
+    for (const system::NeutralCoordinate& held : held_) loads.push_back(point.x(held.unknown));
     const petsc::ReadView view(z_.get());
     point.x = Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
-    for (std::size_t n = 0; n < loads.size(); ++n)
-      point.x(loaded_.neutral_coordinates()[n].unknown) = loads[n];
+    for (std::size_t n = 0; n < loads.size(); ++n) point.x(held_[n].unknown) = loads[n];
     return system;
   }
 
   /// What a neutral row lacks is what the holding load gives.
   std::vector<HeldCoordinate> held_loads(const Point& point) const {
     std::vector<HeldCoordinate> held;
-    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
+    for (const system::NeutralCoordinate& neutral : held_)
       held.push_back({neutral.name, neutral.unit, point.x(neutral.unknown)});
     return held;
   }
 
   Eigen::VectorXd state_of(Eigen::VectorXd x) const {
-    for (const system::NeutralCoordinate& neutral : loaded_.neutral_coordinates())
-      x(neutral.unknown) = 0.0;
+    for (const system::NeutralCoordinate& held : held_) x(held.unknown) = 0.0;
     return x;
   }
 
@@ -143,7 +187,8 @@ class Equilibrium {
     return state;
   }
 
-  /// Largest change relative to the largest value, of positions and of internal loads.
+  /// Largest change relative to the largest value, of positions and of internal loads. What is
+  /// rigid moves by rounding alone.
   double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x) const {
     double worst = 0.0;
     for (const std::vector<Eigen::Index>* unknowns : {&positions_, &loads_}) {
@@ -154,9 +199,17 @@ class Equilibrium {
         size = std::max(size, std::abs(x(i)));
       }
       if (!(moved <= std::numeric_limits<double>::max())) return moved;
-      if (moved > 0.0) worst = std::max(worst, moved / std::max(size, moved));
+      if (moved > (unknowns == &positions_ ? rounding : 0.0))
+        worst = std::max(worst, moved / std::max(size, moved));
     }
     return worst;
+  }
+
+  /// Largest internal load, in absolute value [N, N m].
+  double load_level(const Point& point) const {
+    double largest = 0.0;
+    for (const Eigen::Index i : loads_) largest = std::max(largest, std::abs(point.x(i)));
+    return largest;
   }
 
   /// Of the positions alone.
@@ -178,28 +231,54 @@ class Equilibrium {
     return Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
   }
 
-  void replace_neutral_columns() {
-    const auto& neutrals = loaded_.neutral_coordinates();
-    if (neutrals.empty()) return;
+  static Eigen::MatrixXd at(const Eigen::MatrixXd& columns, const std::vector<PetscInt>& rows) {
+    Eigen::MatrixXd picked(static_cast<Eigen::Index>(rows.size()), columns.cols());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      picked.row(static_cast<Eigen::Index>(i)) = columns.row(rows[i]);
+    return picked;
+  }
+
+  /// The tangent as it is, with what eases free supports.
+  void assemble(const Point& point) {
+    put(state_of(point.x));
+    loaded_.tangents(0.0, z_.get(), rest_.get(), 0.0, jacobian_.get(), nullptr);
+    if (point.factor != 1.0) {
+      unloaded_->tangents(0.0, z_.get(), rest_.get(), 0.0, unloaded_jacobian_.get(), nullptr);
+      petsc::check(MatScale(jacobian_.get(), point.factor));
+      petsc::check(MatAXPY(jacobian_.get(), 1.0 - point.factor, unloaded_jacobian_.get(),
+                           SAME_NONZERO_PATTERN));
+    }
+    if (easing_.remaining == 0.0) return;
+    for (const PetscInt at : easing_.unknowns)
+      petsc::check(
+          MatSetValue(jacobian_.get(), at, at, -easing_.remaining * easing_.stiffness, ADD_VALUES));
+    petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
+  }
+
+  void replace_held_columns() {
+    if (held_.empty()) return;
     std::vector<std::pair<PetscInt, PetscInt>> entries;
     for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i) {
       PetscInt count = 0;
       const PetscInt* columns = nullptr;
       petsc::check(MatGetRow(jacobian_.get(), i, &count, &columns, nullptr));
-      for (const system::NeutralCoordinate& neutral : neutrals)
-        if (std::find(columns, columns + count, neutral.unknown) != columns + count)
-          entries.emplace_back(i, neutral.unknown);
+      for (const system::NeutralCoordinate& held : held_)
+        if (std::find(columns, columns + count, held.unknown) != columns + count)
+          entries.emplace_back(i, held.unknown);
       petsc::check(MatRestoreRow(jacobian_.get(), i, &count, &columns, nullptr));
     }
     for (const auto& [row, column] : entries)
       petsc::check(MatSetValue(jacobian_.get(), row, column, 0.0, INSERT_VALUES));
-    for (const system::NeutralCoordinate& neutral : neutrals)
-      petsc::check(MatSetValue(jacobian_.get(), neutral.row, neutral.unknown, 1.0, INSERT_VALUES));
+    for (const system::NeutralCoordinate& held : held_)
+      petsc::check(MatSetValue(jacobian_.get(), held.row, held.unknown, 1.0, INSERT_VALUES));
     petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
     petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
   }
 
   const system::PeriodicSystem& loaded_;
+  std::vector<system::NeutralCoordinate> held_;
+  const Easing& easing_;
   std::unique_ptr<system::PeriodicSystem> unloaded_;
   Eigen::Index size_;
   petsc::Handle<Vec> z_;
@@ -209,7 +288,7 @@ class Equilibrium {
   petsc::Handle<Mat> unloaded_jacobian_;
   DirectSolver solver_;
   std::vector<Eigen::Index> positions_;
-  std::vector<Eigen::Index> loads_;  ///< internal, and those that hold neutral coordinates
+  std::vector<Eigen::Index> loads_;  ///< internal, and those that hold coordinates
 };
 
 /// Along the path by one unit of arc length: ds^2 = |positions|^2 / D^2 + df^2 / f0^2, with f0 the
@@ -226,14 +305,16 @@ class PathFollower {
       : system_(system),
         options_(options),
         observer_(observer),
-        equilibrium_(std::make_unique<Equilibrium>(system)) {
+        free_(find_free_supports(system)),
+        equilibrium_(make_equilibrium(system)) {
     path_.method = options.method;
     first_step_ = 1.0 / options.steps;
   }
 
   StaticPath run() {
     Point point = equilibrium_->start();
-    if (!attempt([&] { accept(point, correct(point, nullptr)); })) give_up();
+    if (!free_supports(point) && !attempt([&] { accept(point, correct(point, nullptr)); }))
+      give_up();
     if (options_.method == StaticMethod::load)
       follow_loads(point);
     else
@@ -318,20 +399,31 @@ class PathFollower {
     } catch (const DomainError& error) {
       text << error.what() << "; hint: smaller loads, or a stiffer beam";
       throw DomainError(text.str());
-    } catch (const ConvergenceError& error) {
+    } catch (const SingularError& error) {
       text << error.what() << "; hint: ";
-      if (path_.states.empty())
-        text
-            << "something may move that nothing holds (a hinge, a pinned beam about its own axis), "
-               "or is held twice";
-      else if (tried_ > options_.most_steps)
-        text << "more static.max_steps; the path may never reach the whole loads";
-      else if (options_.method == StaticMethod::load)
-        text << "more static.steps; static.method: arc_length where the load can rise no more";
-      else
-        text << "more static.steps, or a finer mesh";
+      if (path_.states.empty()) throw InputError(text.str() + unheld_words());
+      text << load_hint();
+      throw ConvergenceError(text.str());
+    } catch (const ConvergenceError& error) {
+      text << error.what() << "; hint: " << load_hint();
       throw ConvergenceError(text.str());
     }
+  }
+
+  std::string unheld_words() const {
+    std::string names;
+    for (const system::NeutralCoordinate& free : free_)
+      names += (names.empty() ? " (" : ", ") + free.name;
+    return "something may move that nothing holds" + (names.empty() ? "" : names + ")") +
+           ", or is held twice";
+  }
+
+  const char* load_hint() const {
+    if (tried_ > options_.most_steps)
+      return "more static.max_steps; the path may never reach the whole loads";
+    if (options_.method == StaticMethod::load)
+      return "more static.steps; static.method: arc_length where the load can rise no more";
+    return "more static.steps, or a finer mesh";
   }
 
   /// Counts large rotations from where they are now: the next step may turn as far again. The point
@@ -341,7 +433,7 @@ class PathFollower {
     Point anew = point;
     std::unique_ptr<system::PeriodicSystem> system = equilibrium_->counted_from(anew);
     if (!system) return false;
-    auto other = std::make_unique<Equilibrium>(*system);
+    auto other = make_equilibrium(*system);
     std::swap(equilibrium_, other);
     try {
       correct(anew, nullptr);
@@ -356,6 +448,134 @@ class PathFollower {
     recounted_ = std::move(system);
     point = anew;
     return true;
+  }
+
+  // ---- supports that are free -----------------------------------------------------------------
+
+  std::unique_ptr<Equilibrium> make_equilibrium(const system::PeriodicSystem& system) const {
+    return std::make_unique<Equilibrium>(system, system.neutral_coordinates(), easing_);
+  }
+
+  std::vector<PetscInt> free_unknowns() const {
+    std::vector<PetscInt> unknowns;
+    for (const system::NeutralCoordinate& free : free_) unknowns.push_back(free.unknown);
+    return unknowns;
+  }
+
+  /// Free supports held at zero: at rest without loads, and at the first step with them.
+  struct Held {
+    Point rest;
+    Point loaded;
+    Eigen::MatrixXd bare;       ///< stiffness that restores the free directions without loads
+    Eigen::MatrixXd stiffness;  ///< the same under loads
+    int newton_steps = 0;
+  };
+
+  /// None where it cannot be done, because the beam would be held twice.
+  std::optional<Held> hold_supports() {
+    std::vector<system::NeutralCoordinate> coordinates = system_.neutral_coordinates();
+    coordinates.insert(coordinates.end(), free_.begin(), free_.end());
+    Equilibrium& equilibrium =
+        *(equilibrium_ = std::make_unique<Equilibrium>(system_, coordinates, easing_));
+    Held held;
+    held.rest = equilibrium.start();
+    if (!attempt([&] { held.bare = equilibrium.stiffness_of(held.rest, free_unknowns()); }))
+      return {};
+    for (double factor = first_step_; factor > rounding; factor *= 0.5) {
+      held.loaded = held.rest;
+      held.loaded.factor = factor;
+      const bool found = attempt([&] {
+        held.newton_steps = correct(held.loaded, nullptr);
+        held.stiffness = equilibrium.stiffness_of(held.loaded, free_unknowns());
+      });
+      if (found) return held;
+    }
+    return {};
+  }
+
+  /// A hinge that loads alone restore turns as soon as there are any: at the factor 0 the tangent
+  /// is singular, and the path starts at the first step, with the supports held there and then set
+  /// free. False where that is not needed, or not possible.
+  bool free_supports(Point& point) {
+    if (free_.empty()) return false;
+    const std::optional<Held> held = hold_supports();
+    const double level = held ? equilibrium_->load_level(held->loaded) : 0.0;
+    equilibrium_ = make_equilibrium(system_);
+    if (!held) return false;
+    easing_.loads = held->loaded.x(free_unknowns());
+    easing_.stiffness =
+        easing_.loads.cwiseAbs().maxCoeff() + 2.0 * (held->stiffness - held->bare).norm();
+    const bool is_loaded = easing_.stiffness > unfelt * level;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> bare(held->bare, Eigen::ComputeFullV);
+    const double least = bare.singularValues().tail<1>()(0);
+    if (least > (is_loaded ? weak * easing_.stiffness : unfelt * level)) return false;
+    if (!is_loaded) refuse_unrestored(bare.matrixV().rightCols<1>());
+    accept(held->rest, 1);
+    easing_.unknowns = free_unknowns();
+    easing_.remaining = 1.0;
+    point = held->loaded;
+    point.x(easing_.unknowns).setZero();
+    const int newton_steps = held->newton_steps + set_free(point);
+    accept(point, newton_steps);
+    return true;
+  }
+
+  /// What holds the free supports, and a spring beside it, go to zero at a constant load factor:
+  /// the spring keeps the path away from other branches. Returns the number of Newton's steps.
+  int set_free(Point& point) {
+    int newton_steps = 0;
+    const bool at_once = easing_.loads.cwiseAbs().maxCoeff() <= rounding * easing_.stiffness;
+    const double most = at_once ? 1.0 : first_part;
+    double part = most;
+    while (easing_.remaining > 0.0) {
+      const double before = easing_.remaining;
+      easing_.remaining = before - part > rounding ? before - part : 0.0;
+      Point next = point;
+      if (attempt([&] {
+            newton_steps += correct(next, nullptr);
+            refuse_leap(point, next);
+          })) {
+        point = next;
+        recount(point);
+        part = std::min(2.0 * part, most);
+        continue;
+      }
+      easing_.remaining = before;
+      part *= 0.5;
+      ++path_.cuts;
+      if (part > least_part) continue;
+      require_restored(point);
+      give_up();
+    }
+    require_restored(point);
+    return newton_steps;
+  }
+
+  void refuse_leap(const Point& point, const Point& next) const {
+    for (const PetscInt at : easing_.unknowns)
+      if (std::abs(next.x(at) - point.x(at)) > longest_stride * (1.0 + std::abs(point.x(at))))
+        throw ConvergenceError("a support that was set free moves too far in one step");
+  }
+
+  /// Of the free directions, under almost no spring beside the turbine and its loads.
+  void require_restored(const Point& point) {
+    const double remaining = easing_.remaining;
+    easing_.remaining = restored;
+    const Eigen::MatrixXd motions = equilibrium_->compliance_of(point, easing_.unknowns);
+    easing_.remaining = remaining;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> values(motions, Eigen::ComputeThinU);
+    if (values.singularValues()(0) * restored * easing_.stiffness > 0.5)
+      refuse_unrestored(values.matrixU().leftCols<1>());
+  }
+
+  [[noreturn]] void refuse_unrestored(const Eigen::VectorXd& motion) const {
+    std::string names;
+    for (std::size_t n = 0; n < free_.size(); ++n)
+      if (std::abs(motion(static_cast<Eigen::Index>(n))) > 0.1 * motion.cwiseAbs().maxCoeff())
+        names += (names.empty() ? "" : ", ") + free_[n].name;
+    throw InputError("static: nothing restores " + names +
+                     ", which is free: no load, no spring, no other support; hint: a stiffness in "
+                     "its place");
   }
 
   // ---- prescribed factors --------------------------------------------------------------------
@@ -430,7 +650,7 @@ class PathFollower {
   void follow_arc(Point& point) {
     Direction tangent = slope_at(point);
     length_ = first_step_ * std::sqrt(equilibrium_->product(tangent.x, tangent.x));
-    if (length_ == 0.0) return follow_loads(point);  // nothing moves
+    if (length_ < rounding) return follow_loads(point);  // nothing moves
     tangent = tangent_at(point, tangent);
     const double largest = first_step_ / tangent.factor;
     double step = largest;
@@ -484,6 +704,8 @@ class PathFollower {
   const system::PeriodicSystem& system_;
   const StaticOptions& options_;
   Observer& observer_;
+  std::vector<system::NeutralCoordinate> free_;        ///< directions of supports
+  Easing easing_;                                      ///< while they are set free
   std::unique_ptr<system::PeriodicSystem> recounted_;  ///< rotations counted anew, if they grew
   std::unique_ptr<Equilibrium> equilibrium_;           ///< of that, or of the system itself
   StaticPath path_;

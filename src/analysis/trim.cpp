@@ -4,8 +4,11 @@
 #include <optional>
 #include <sstream>
 
+#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/harmonic_balance.hpp"
+#include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/shooting.hpp"
+#include "samara/analysis/static_path.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
@@ -47,6 +50,35 @@ bool feels_time(const system::PeriodicSystem& system) {
   return false;
 }
 
+/// True where the undeformed system carries nothing.
+bool is_balanced(const system::PeriodicSystem& system) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Vec> r = system.make_state();
+  system.reference_state(0.0, z.get());
+  system.residual(0.0, z.get(), z_dot.get(), r.get());
+  PetscReal size = 0.0;
+  petsc::check(VecNorm(r.get(), NORM_INFINITY, &size));
+  return size == 0.0;
+}
+
+/// At rest. A hinge that loads alone restore has a singular tangent in the undeformed state: the
+/// start is where they have brought it. Without loads the undeformed state is the solution.
+Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance) {
+  const auto solve = [&](const PeriodicSolution* start) {
+    try {
+      return solve_harmonic_balance(system, 0, tolerance, start);
+    } catch (const SingularError& error) {
+      throw InputError(error.what());
+    }
+  };
+  if (find_free_supports(system).empty() || is_balanced(system)) return solve(nullptr);
+  Observer silent;
+  const StaticPath path = find_static_path(system, {}, silent);
+  const PeriodicSolution start(path.states.back().z, 0.0);
+  return solve(&start);
+}
+
 /// A constant is only tried: an unbalanced rotor may have none.
 std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options) {
   try {
@@ -56,14 +88,38 @@ std::optional<Trim> try_constant(const system::PeriodicSystem& system, const Tri
   }
 }
 
+/// Each a third more than the one before, up to the next that is closed: the work grows with H^2 to
+/// H^3, so that all before a solution cost about as much as it.
+std::vector<int> harmonics_to_try(int least, int sectors) {
+  std::vector<int> numbers;
+  for (int next = std::max(1, least); next <= auto_harmonics;) {
+    while (!is_closed(next, sectors)) ++next;
+    if (next <= auto_harmonics) numbers.push_back(next);
+    const int more = next + (next + 2) / 3;
+    next = next < auto_harmonics ? std::min(more, auto_harmonics) : more;
+  }
+  return numbers;
+}
+
+/// From the solution with fewer harmonics, or anew where that leads nowhere.
+Trim solve_from(const system::PeriodicSystem& system, int harmonics, double tolerance,
+                const std::optional<Trim>& last) {
+  if (last) {
+    try {
+      return solve_harmonic_balance(system, harmonics, tolerance, &last->solution);
+    } catch (const ConvergenceError&) {
+    }
+  }
+  return solve_harmonic_balance(system, harmonics, tolerance, nullptr);
+}
+
 Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& options,
                      const std::optional<Trim>& constant, Observer& observer) {
   std::vector<std::pair<int, double>> history;
   if (constant) history = constant->history;
-  for (int harmonics = std::max(1, options.least_harmonics); harmonics <= auto_harmonics;
-       ++harmonics) {
-    if (!is_closed(harmonics, system.symmetry().sectors)) continue;
-    Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, nullptr);
+  std::optional<Trim> last;
+  for (const int harmonics : harmonics_to_try(options.least_harmonics, system.symmetry().sectors)) {
+    Trim trim = solve_from(system, harmonics, options.tolerance, last);
     history.emplace_back(harmonics, trim.residual_between);
     trim.history = history;
     std::ostringstream text;
@@ -71,6 +127,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
          << trim.residual_between;
     observer.note(text.str());
     if (trim.residual_between <= allowed_residual(trim, options.auto_tolerance)) return trim;
+    last = std::move(trim);
   }
   throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(auto_harmonics) +
                          " and the residual between the samples is still too large; hint: give "
@@ -82,7 +139,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer) {
   const petsc::Stage stage("trim");
-  if (system.period() == 0.0) return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
+  if (system.period() == 0.0) return solve_at_rest(system, options.tolerance);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
   // Loads and motions that oscillate are no constant, and might vanish at all of its samples.
   const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)

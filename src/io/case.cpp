@@ -132,11 +132,33 @@ void read_torsion(const YamlNode& node, const std::string& where, model::JointDe
   map.finish();
 }
 
-/// Reads the keys of a torque law of a rotor whose mean speed is known.
-void read_torque(MapReader& map, double speed, model::TorqueLaw& law) {
+/// Refuses a table that does not reach to the speed. At rest it gives no torque then, which is
+/// noted.
+void check_reach(MapReader& map, const YamlNode& table, double speed, model::TorqueLaw& law) {
+  if (law.covers(speed)) return;
+  std::ostringstream text;
+  text << "the table reaches from " << law.table.front().first << " to " << law.table.back().first
+       << " rad/s, ";
+  if (speed == 0.0) {
+    text << "the rotor is parked: no torque";
+    map.note(table, "torque_table", text.str());
+  } else {
+    text << "shaft.speed is " << speed << " rad/s; hint: entries up to there, or torque and "
+         << "torque_slope at this speed";
+    map.refuse(table, "torque_table", text.str());
+    law.table.clear();
+  }
+}
+
+/// Reads the keys of a torque law of a rotor whose mean speed is known. A law that does not act is
+/// read, and said to have no effect.
+void read_torque(MapReader& map, double speed, bool acts, model::TorqueLaw& law) {
   map.read("torque", law.torque, any_number);
   map.read("torque_slope", law.slope, any_number);
   const YamlNode* table = map.find("torque_table");
+  for (const char* key : {"torque", "torque_slope", "torque_table"})
+    if (const YamlNode* entry = map.node().find(key); entry != nullptr && !acts)
+      map.note(*entry, key, "without effect, the generator is locked");
   if (table == nullptr) return;
   for (const char* key : {"torque", "torque_slope"})
     if (const YamlNode* entry = map.node().find(key))
@@ -148,12 +170,8 @@ void read_torque(MapReader& map, double speed, model::TorqueLaw& law) {
   } else if (law.table.size() < 2) {
     map.refuse(*table, "torque_table", "expected at least 2 entries [speed, torque]");
     law.table.clear();
-  } else if (!law.covers(speed)) {
-    std::ostringstream text;
-    text << "the table reaches from " << law.table.front().first << " to " << law.table.back().first
-         << " rad/s, shaft.speed is " << speed << " rad/s";
-    map.refuse(*table, "torque_table", text.str());
-    law.table.clear();
+  } else if (acts) {
+    check_reach(map, *table, speed, law);
   }
 }
 
@@ -163,7 +181,7 @@ void read_generator(const YamlNode& node, const std::string& where, double speed
   map.require("joint", "free or locked");
   map.read("joint", generator.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
   map.read("inertia", generator.inertia, non_negative);
-  read_torque(map, speed, generator.law);
+  read_torque(map, speed, generator.kind == JointKind::free, generator.law);
   map.finish();
 }
 
@@ -194,7 +212,7 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
   }
   if (const YamlNode* entry = map.find("rotor")) {
     MapReader rotor(*entry, map.where("rotor"), errors);
-    read_torque(rotor, shaft.speed, shaft.rotor);
+    read_torque(rotor, shaft.speed, true, shaft.rotor);
     rotor.finish();
   }
   map.finish();
@@ -511,6 +529,7 @@ Case parse_case(const std::string& path, const std::string& text,
   if (check_version(root, errors)) read_turbine(root, result, errors);
   errors.throw_if_any();
   result.model_text = model_text_of(root);
+  result.notes = errors.notes();
   return result;
 }
 

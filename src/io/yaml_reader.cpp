@@ -96,7 +96,8 @@ std::string to_setting_path(const std::string& where) {
 
 }  // namespace
 
-void ErrorList::add(const Place& place, const std::string& where, const std::string& what) {
+std::string ErrorList::compose(const Place& place, const std::string& where,
+                               const std::string& what) const {
   std::string message;
   std::string subject = where;
   if (place.setting >= 0) {
@@ -111,7 +112,15 @@ void ErrorList::add(const Place& place, const std::string& where, const std::str
     message += " ";
   }
   if (!subject.empty()) message += subject + ": ";
-  errors_.push_back({place, message + what});
+  return message + what;
+}
+
+void ErrorList::add(const Place& place, const std::string& where, const std::string& what) {
+  errors_.push_back({place, compose(place, where, what)});
+}
+
+void ErrorList::note(const Place& place, const std::string& where, const std::string& what) {
+  notes_.push_back(compose(place, where, what));
 }
 
 void ErrorList::throw_if_any() const {
@@ -257,6 +266,10 @@ bool MapReader::read(std::string_view key, std::span<double> values, const Numbe
 
 void MapReader::refuse(const YamlNode& entry, std::string_view key, const std::string& what) const {
   errors_.add(entry.place, where(key), what);
+}
+
+void MapReader::note(const YamlNode& entry, std::string_view key, const std::string& what) const {
+  errors_.note(entry.place, where(key), "note: " + what);
 }
 
 void MapReader::refuse_word(const YamlNode& entry, std::string_view key,

@@ -23,6 +23,9 @@ class ErrorList {
 
   /// `where` is the path of the key (`shaft.speed`); empty where `what` says it all.
   void add(const Place& place, const std::string& where, const std::string& what);
+  /// What is no error, but has not the effect that it seems to have.
+  void note(const Place& place, const std::string& where, const std::string& what);
+  const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return errors_.size(); }
 
   /// @throws InputError with one error a line, if there are any.
@@ -33,9 +36,12 @@ class ErrorList {
     Place place;
     std::string message;
   };
+  std::string compose(const Place& place, const std::string& where, const std::string& what) const;
+
   std::string path_;
   std::vector<std::string> settings_;
   std::vector<Error> errors_;
+  std::vector<std::string> notes_;
 };
 
 /// Which numbers are accepted, and how to say so.
@@ -109,6 +115,8 @@ class MapReader {
 
   /// Adds an error about the value of an entry.
   void refuse(const YamlNode& entry, std::string_view key, const std::string& what) const;
+  /// Adds a note about it.
+  void note(const YamlNode& entry, std::string_view key, const std::string& what) const;
 
   /// Reports unknown and missing keys. Call it last.
   void finish();

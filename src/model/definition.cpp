@@ -140,7 +140,10 @@ std::string find_mass_fault(const SectionDefinition& section) {
 
 elements::TorqueLine TorqueLaw::at(double speed) const {
   if (table.empty()) return {torque, slope, speed, {}};
-  if (!covers(speed)) throw InternalError("a torque table does not reach to the speed");
+  if (!covers(speed)) {
+    if (speed == 0.0) return {};
+    throw InternalError("a torque table does not reach to the speed");
+  }
   const auto slope_before = [this](std::size_t i) {
     return (table[i].second - table[i - 1].second) / (table[i].first - table[i - 1].first);
   };

@@ -140,6 +140,36 @@ BOOST_AUTO_TEST_CASE(automatic_harmonics_reach_the_tolerance_and_tell_the_way) {
     BOOST_TEST(trim.history[i].second > 1e-6);
 }
 
+BOOST_AUTO_TEST_CASE(automatic_harmonics_rise_by_a_third_and_lose_nothing_on_the_way) {
+  const Duffing system(0.7);
+  analysis::TrimOptions options;
+  options.automatic = true;
+  options.auto_tolerance = 1e-9;
+  analysis::Observer observer;
+  const analysis::Trim trim = find_trim(system, options, observer);
+  int before = 0;
+  for (const auto& [harmonics, residual] : trim.history) {
+    if (before > 0) BOOST_TEST(harmonics == before + (before + 2) / 3);
+    before = harmonics;
+  }
+  const analysis::Trim anew = solve_harmonic_balance(system, before, options.tolerance, nullptr);
+  const Eigen::MatrixXd change = trim.solution.coefficients() - anew.solution.coefficients();
+  BOOST_TEST(change.cwiseAbs().maxCoeff() < options.tolerance);
+}
+
+BOOST_AUTO_TEST_CASE(automatic_harmonics_end_at_the_most_that_are_tried) {
+  const Duffing system(0.7);
+  analysis::TrimOptions options;
+  options.automatic = true;
+  options.auto_tolerance = 1e-300;
+  struct LastNote : analysis::Observer {
+    void note(const std::string& text) override { last = text; }
+    std::string last;
+  } observer;
+  BOOST_CHECK_THROW(find_trim(system, options, observer), ConvergenceError);
+  BOOST_TEST(observer.last.find("60 harmonics") != std::string::npos, observer.last);
+}
+
 BOOST_AUTO_TEST_CASE(rest_is_found_as_a_constant) {
   analysis::TrimOptions options;
   options.harmonics = 6;

@@ -161,11 +161,35 @@ class Tables(ProgramTest):
         self.assertIn("generator    480 N m against its turning hold the mean speed: 500 by its law "
                       "and -20 beside it", self.succeed("trim", "case.yaml").stdout)
 
+    def test_a_parked_rotor_needs_no_torque_at_rest(self):
+        table = "torque_table: [[4, 0], [8, 900]]"
+        laws = "{speed: 6, generator: {joint: free, inertia: 50, %s}, rotor: {%s}}" % (table, table)
+        self.write("case.yaml", MINIMAL.replace("{speed: 6}", laws))
+        self.assertEqual(self.succeed("check", "case.yaml").stderr, "")
+        for command in ("static", "modes"):
+            run = self.succeed(command, "case.yaml", "--set", "shaft.speed=0")
+            self.assertRegex(run.stderr, r"(?m)^case.yaml:2:\d+: shaft.rotor.torque_table: note: ")
+        run = self.succeed("check", "case.yaml", "--set", "shaft.generator.joint=locked")
+        self.assertIn("note: without effect, the generator is locked", run.stderr)
+        self.refuse("check", "case.yaml", "--set", "shaft.speed=9", lines=2,
+                    words=["the table reaches from 4 to 8 rad/s", "hint: "], place=r"case\.yaml:2:")
+
     def test_unresolved_modes_are_explained(self):
         self.write("case.yaml", MINIMAL)
         text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
-        self.assertRegex(text, r"(?m)^\* \d+ unresolved, left out of the verdict: ")
-        self.assertIn("unresolved*", text)
+        hidden = int(re.search(r"(?m)^(\d+) unresolved, not listed \(--all lists them\) and left out "
+                               "of the verdict:$", text).group(1))
+        self.assertNotIn("unresolved*", text)
+        whole = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50", "--all").stdout
+        self.assertRegex(whole, rf"(?m)^\* {hidden} unresolved, left out of the verdict: ")
+        rows = [re.findall(r"(?m)^ *(\d+)  \w+ .*?(unresolved\*)?$", each) for each in (text, whole)]
+        self.assertEqual(rows[0], rows[1][:-hidden])  # the resolved ones stand first
+        self.assertEqual([remark for _, remark in rows[1][-hidden:]], ["unresolved*"] * hidden)
+        self.assertEqual(sorted(int(number) for number, _ in rows[1]), list(range(1, len(rows[1]) + 1)))
+
+    def test_all_modes_are_of_commands_that_list_some(self):
+        self.write("case.yaml", MINIMAL)
+        self.refuse("trim", "case.yaml", "--all", words=["--all: samara trim lists no modes"])
 
     def test_trim_shows_harmonics_of_deflections_and_loads(self):
         text = self.succeed("trim", BASELINE, *QUICK, "--set", "gravity=9.81").stdout
@@ -265,6 +289,17 @@ class Static(ProgramTest):
         self.write("case.yaml", self.AT_REST + self.LOADS % 1000)
         self.refuse("static", "case.yaml", "--set", "static.max_steps=3", code=3,
                     words=["static: stopped at load factor 0.", "static.max_steps", "hint: "])
+
+    def test_ends_with_2_where_nothing_restores_or_holds_twice(self):
+        hinge = "length: 10\n  support: {stiffness: {theta2: free}, mass: 1, inertia: [1, 1, 1]}"
+        free = self.AT_REST.replace("length: 10", hinge)
+        self.write("case.yaml", free + "gravity: 0\n")
+        self.refuse("static", "case.yaml", words=["nothing restores blade 1 support theta2", "hint: "])
+        clamp = "length: 10\n  end_support: {stiffness: {u1: rigid}}"
+        twice = self.AT_REST.replace("length: 10", clamp).replace("EA: 1e8", "EA: rigid")
+        self.write("case.yaml", twice + self.LOADS % 1)
+        for command in ("static", "modes"):
+            self.refuse(command, "case.yaml", words=["singular", "hint: ", "held twice"])
 
     def test_other_commands_want_loads_that_repeat(self):
         load = "loads: [{beam: blades, at: 1, force: [0, 0, 1], %s}]\n"

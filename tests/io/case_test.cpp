@@ -320,12 +320,37 @@ BOOST_AUTO_TEST_CASE(a_torque_table_must_rise_and_reach_to_the_speed) {
   check("[[2, 3]]", "5: shaft.rotor.torque_table: expected at least 2 entries [speed, torque]");
   check("5", "5: shaft.rotor.torque_table: expected a list of [speed, torque], got 5");
   check("[[3, 1], [4, 1]]",
-        "5: shaft.rotor.torque_table: the table reaches from 3 to 4 rad/s, shaft.speed is 2 rad/s");
+        "5: shaft.rotor.torque_table: the table reaches from 3 to 4 rad/s, shaft.speed is 2 rad/s; "
+        "hint: entries up to there, or torque and torque_slope at this speed");
   check_error(minimal +
                   "shaft:\n  generator:\n    joint: free\n    torque: 3\n"
                   "    torque_table: [[0, 1], [4, 1]]\n",
               "case.yaml:12:5: shaft.generator.torque: given together with torque_table; leave one "
               "of them out");
+}
+
+BOOST_AUTO_TEST_CASE(a_torque_law_without_effect_is_noted) {
+  const std::string law = "torque_table: [[1, 10], [4, 50]]";
+  const auto text_of = [&](const std::string& joint, const std::string& speed) {
+    return minimal + "shaft:\n  speed: " + speed + "\n  generator:\n    joint: " + joint +
+           "\n    " + law + "\n  rotor:\n    " + law + "\n";
+  };
+  const auto read = [](const std::string& text) { return parse_case("case.yaml", text, {}); };
+  using Notes = std::vector<std::string>;
+  const std::string generator = "case.yaml:13:5: shaft.generator.torque_table: note: ";
+  const std::string rotor = "case.yaml:15:5: shaft.rotor.torque_table: note: ";
+  const std::string parked = "the table reaches from 1 to 4 rad/s, the rotor is parked: no torque";
+  BOOST_TEST(read(text_of("free", "2")).notes.empty());
+  BOOST_TEST((read(text_of("locked", "2")).notes ==
+              Notes{generator + "without effect, the generator is locked"}));
+  const io::Case at_rest = read(text_of("free", "0"));
+  BOOST_TEST((at_rest.notes == Notes{generator + parked, rotor + parked}));
+  const elements::TorqueLine line = at_rest.turbine.shaft.rotor.at(0.0);
+  BOOST_TEST(line.torque == 0.0);
+  BOOST_TEST(line.slope == 0.0);
+  // What a locked generator's table reaches to does not matter.
+  BOOST_TEST(read(replace(text_of("locked", "9"), "rotor:\n    " + law, "rotor: {torque: 1}"))
+                 .notes.size() == 1u);
 }
 
 BOOST_AUTO_TEST_CASE(point_masses_are_sorted_by_their_place) {

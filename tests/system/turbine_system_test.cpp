@@ -587,6 +587,20 @@ BOOST_AUTO_TEST_CASE(masses_on_the_hub_keep_the_symmetry_where_they_balance) {
   check(2, {Vector3(0.7, 0.1, 0.0), Vector3(-0.7, -0.1, 0.0)}, false);  // h2 no principal axis
   check(2, {Vector3(0.0, 0.1, 0.0)}, true);
   check(2, {Vector3(0.0, 0.1, 1e-6)}, false);
+
+  // Ten digits of a typed figure are enough, six are an unbalance.
+  const auto typed = [&](double digit) {
+    model::TurbineDefinition definition =
+        sample::turbine_definition({3, 1, true, true, false, true, false});
+    for (const Vector3& place : ring(3, 0.1))
+      definition.hub.point_masses.push_back(
+          {0.37, (place.array() / digit).round().matrix() * digit, Vector3::Zero()});
+    return system::TurbineSystem(model::build_turbine(definition), PETSC_COMM_SELF)
+        .symmetry()
+        .sectors;
+  };
+  BOOST_TEST(typed(1e-10) == 3);
+  BOOST_TEST(typed(1e-6) == 1);
 }
 
 BOOST_AUTO_TEST_CASE(prescribed_angles_keep_the_symmetry_where_they_repeat) {

@@ -14,6 +14,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
+#include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/linear_algebra.hpp"
 
@@ -198,6 +199,28 @@ inline std::vector<MultibladeMode> slow_modes(const MultibladeSystem& system, do
     return a.exponent.imag() < b.exponent.imag();
   });
   return modes;
+}
+
+/// Frequencies [Hz] in fixed axes, ascending, of the mean over the azimuth. `sideways`: of each,
+/// the motion of the tower top along n1 relative to that along n1 and n2.
+inline std::vector<double> mean_frequencies(const io::Case& input,
+                                            std::vector<double>* sideways = nullptr) {
+  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  analysis::Observer observer;
+  const analysis::Trim trim = analysis::find_trim(system, input.trim, observer);
+  const Multiblade multiblade(system);
+  const MultibladeSystem mean = system.period() > 0.0 ? multiblade.mean(12, trim.solution)
+                                                      : multiblade.at(0.0, trim.solution);
+  std::vector<double> found;
+  for (const MultibladeMode& mode : slow_modes(mean, 2.0, 15.0)) {
+    BOOST_TEST(mode.residual < 1e-8);
+    if (mode.exponent.imag() < 0.1) continue;
+    found.push_back(mode.exponent.imag() / (2.0 * pi));
+    const int top = multiblade.place_of(system.layout().tower_tip());  // u_hat along n3, n1, n2
+    if (sideways != nullptr)
+      sideways->push_back(std::abs(mode.shape(top + 1)) / mode.shape.segment<2>(top + 1).norm());
+  }
+  return found;
 }
 
 }  // namespace samara::test

@@ -4,6 +4,7 @@
 
 #include "samara/math/quadrature.hpp"
 
+#include "mesh_study.hpp"
 #include "multiblade.hpp"
 #include "record.hpp"
 
@@ -24,28 +25,6 @@ std::vector<std::string> coarse() {
 
 /// Converged to 0.1 % in the first modes of the blades.
 std::vector<std::string> fine() { return {"blades.elements=12", "blades.order=3"}; }
-
-/// Frequencies [Hz] in fixed axes, ascending, of the mean over the azimuth. `sideways`: of each,
-/// the motion of the tower top along n1 relative to that along n1 and n2.
-std::vector<double> mean_frequencies(const io::Case& input,
-                                     std::vector<double>* sideways = nullptr) {
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
-  analysis::Observer observer;
-  const analysis::Trim trim = analysis::find_trim(system, input.trim, observer);
-  const Multiblade multiblade(system);
-  const MultibladeSystem mean = system.period() > 0.0 ? multiblade.mean(12, trim.solution)
-                                                      : multiblade.at(0.0, trim.solution);
-  std::vector<double> found;
-  for (const MultibladeMode& mode : slow_modes(mean, 2.0, 15.0)) {
-    BOOST_TEST(mode.residual < 1e-8);
-    if (mode.exponent.imag() < 0.1) continue;
-    found.push_back(mode.exponent.imag() / (2.0 * pi));
-    const int top = multiblade.place_of(system.layout().tower_tip());  // u_hat along n3, n1, n2
-    if (sideways != nullptr)
-      sideways->push_back(std::abs(mode.shape(top + 1)) / mode.shape.segment<2>(top + 1).norm());
-  }
-  return found;
-}
 
 /// Places and weights of Gauss rules between the stations of a beam.
 struct Span {
@@ -335,6 +314,12 @@ BOOST_AUTO_TEST_CASE(nrel5mw_at_12_rpm_has_the_frequencies_of_openfast) {
   const std::vector<double> still =
       mean_frequencies(beam_blades(with(fine(), {"shaft.speed_rpm=0"})));
   for (const std::size_t i : {0u, 1u}) BOOST_TEST(found[i] == still[i], tolerance(0.02));
+}
+
+BOOST_AUTO_TEST_CASE(frequencies_of_nrel5mw_at_12_rpm_converge_with_slope_two_s) {
+  check_mesh_study("N2", [](const std::vector<std::string>& mesh) {
+    return mean_frequencies(beam_blades(mesh));
+  });
 }
 
 BOOST_AUTO_TEST_CASE(floquet_of_nrel5mw_under_gravity_is_near_the_mean_over_the_azimuth) {

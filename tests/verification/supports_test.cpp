@@ -3,6 +3,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/static_path.hpp"
+#include "samara/base/error.hpp"
 
 #include "cases.hpp"
 
@@ -82,9 +83,170 @@ Eigen::Vector2d rod_frequencies(const Rod& rod, double own) {
   return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(K, M).eigenvalues().cwiseSqrt();
 }
 
+/// A beam of weight W on a hinge about b2, with a dead force F across its end: a pendulum that
+/// turns by atan(2 F/W) from its hanging position. `azimuth` 180: hangs; 0: stands upright.
+struct Pendulum {
+  double force = 5.0;
+  double azimuth = pi;
+  double bending = 0.0;  ///< EI; 0: rigid
+  double gravity = 9.81;
+  static constexpr double mass = 3.0;
+  static constexpr double length = 2.0;
+
+  double weight() const { return mass * gravity; }
+  double angle() const { return std::atan2(2.0 * force, weight()); }
+};
+
+model::TurbineDefinition definition_of(const Pendulum& pendulum) {
+  BeamCase beam;
+  beam.mass = Pendulum::mass / Pendulum::length;
+  beam.length = Pendulum::length;
+  beam.stiffness << 0.0, 0.0, 0.0, 0.0, pendulum.bending, pendulum.bending;
+  beam.elements = 4;
+  model::TurbineDefinition definition = definition_of(beam);
+  definition.gravity = pendulum.gravity;
+  definition.shaft.azimuth = pendulum.azimuth;
+  definition.blades.beam.support = support("rrrrfr");
+  definition.blades.beam.support.mass = 1e-6;  // too small to tell
+  definition.blades.beam.support.inertia.setConstant(1e-9);
+  model::LoadDefinition load;
+  load.from = load.to = 1.0;
+  load.force = Vector3(0.0, 0.0, pendulum.force);
+  if (pendulum.force != 0.0) definition.loads = {load};
+  return definition;
+}
+
+analysis::StaticPath static_path_of(const model::TurbineDefinition& definition,
+                                    analysis::StaticMethod method = analysis::StaticMethod::load) {
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  analysis::Observer observer;
+  return find_static_path(system, {method, 5, 1e-10, 1000}, observer);
+}
+
+/// Displacement of the blade's end.
+Vector3 end_of(const model::TurbineDefinition& definition, const Eigen::VectorXd& z) {
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  return z.segment<3>(system.layout().blade_tip(0));
+}
+
+std::string refusal_of(const model::TurbineDefinition& definition) {
+  try {
+    static_path_of(definition);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(supports)
+
+BOOST_AUTO_TEST_CASE(a_beam_on_a_free_hinge_hangs_as_its_loads_bring_it) {
+  // Weight and force grow together: the angle is that of any load factor but 0.
+  for (const double force : {0.0, 0.3, 5.0, 200.0})
+    for (const analysis::StaticMethod method :
+         {analysis::StaticMethod::load, analysis::StaticMethod::arc_length}) {
+      const Pendulum pendulum{force};
+      const model::TurbineDefinition definition = definition_of(pendulum);
+      const analysis::StaticPath path = static_path_of(definition, method);
+      BOOST_TEST(path.states.front().factor == 0.0);
+      BOOST_TEST(path.states.back().factor == 1.0);
+      BOOST_TEST(path.states.front().z.cwiseAbs().maxCoeff() < 1e-12);
+      for (std::size_t i = 1; i < path.states.size(); ++i) {
+        const Vector3 end = end_of(definition, path.states[i].z);
+        const double angle = pendulum.angle();
+        BOOST_TEST(std::abs(end.x() - 2.0 * (std::cos(angle) - 1.0)) < 1e-8);
+        BOOST_TEST(std::abs(end.z() - 2.0 * std::sin(angle)) < 1e-8);
+        BOOST_TEST(path.states[i].residual < 1e-8);
+      }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_beam_that_stands_on_its_hinge_is_pushed_over) {
+  const Pendulum pendulum{5.0, 0.0};
+  const model::TurbineDefinition definition = definition_of(pendulum);
+  const Vector3 end = end_of(definition, static_path_of(definition).states.back().z);
+  BOOST_TEST(end.x() == -2.0 * (1.0 + std::cos(pendulum.angle())), tolerance(1e-8));
+  BOOST_TEST(end.z() == 2.0 * std::sin(pendulum.angle()), tolerance(1e-8));
+}
+
+BOOST_AUTO_TEST_CASE(without_weight_the_beam_turns_into_the_force) {
+  const model::TurbineDefinition definition = definition_of(Pendulum{5.0, pi, 0.0, 0.0});
+  const Vector3 end = end_of(definition, static_path_of(definition).states.back().z);
+  BOOST_TEST((end - Vector3(-2.0, 0.0, 2.0)).norm() < 1e-8);
+}
+
+BOOST_AUTO_TEST_CASE(a_beam_that_bends_keeps_the_balance_of_moments_about_its_hinge) {
+  // Weight and force have no moment about the hinge, whatever the shape of the beam.
+  const Pendulum pendulum{5.0, pi, 20.0};
+  const model::TurbineDefinition definition = definition_of(pendulum);
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const Eigen::VectorXd z = static_path_of(definition).states.back().z;
+  const model::Beam& blade = system.turbine().blades[0];
+  double moment = -pendulum.force * (Pendulum::length + z(system.layout().blade_tip(0)));
+  for (int p = 0; p < blade.point_count(); ++p)
+    moment += pendulum.weight() / Pendulum::length * blade.point_length(p) *
+              z(system.layout().blade_point(0, p) + 2);
+  BOOST_TEST(std::abs(moment) < 1e-8);
+  BOOST_TEST(z.segment<6>(system.layout().blade_root(0))(4) < 1e-8);
+  const double turned = std::abs(z(system.layout().blade_tip(0) + 4));
+  BOOST_TEST(turned > 2.0 * std::tan(0.5 * pendulum.angle()) + 0.05);  // bent beyond the chord
+}
+
+BOOST_AUTO_TEST_CASE(a_pendulum_swings_about_the_direction_of_its_loads) {
+  // (m l^2/3) theta'' = -l hypot(W/2, F) theta.
+  for (const double force : {0.0, 5.0, 60.0}) {
+    const Pendulum pendulum{force};
+    const double stiffness = std::hypot(0.5 * pendulum.weight(), force);
+    const double omega = std::sqrt(stiffness / (Pendulum::mass * Pendulum::length / 3.0));
+    const std::vector<double> found = frequencies(constant_modes_of(definition_of(pendulum)));
+    BOOST_TEST_REQUIRE(found.size() == 1u);
+    BOOST_TEST(found[0] == omega, tolerance(1e-6));
+  }
+  // Nothing restores it, nothing moves it: a rigid-body motion.
+  for (const double omega :
+       frequencies(constant_modes_of(definition_of(Pendulum{0.0, pi, 0.0, 0.0}))))
+    BOOST_TEST(omega == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(what_nothing_restores_is_named) {
+  const auto names = [](const model::TurbineDefinition& definition, const std::string& what) {
+    const std::string words = refusal_of(definition);
+    BOOST_TEST(words.find("nothing restores blade 1 support " + what + ",") != std::string::npos,
+               words);
+    BOOST_TEST(words.find("hint: ") != std::string::npos);
+  };
+  names(definition_of(Pendulum{0.0, pi, 0.0, 0.0}), "theta2");   // no loads at all
+  names(definition_of(Pendulum{0.0, 0.5 * pi, 0.0}), "theta2");  // the hinge's axis is vertical
+  model::TurbineDefinition slides = definition_of(Pendulum{});
+  slides.blades.beam.support = support("rrfrrr");
+  names(slides, "u3");
+  model::TurbineDefinition spins = definition_of(Pendulum{0.0});
+  spins.blades.beam.support = support("rrrfff");
+  names(spins, "theta1");
+  BOOST_CHECK_THROW(constant_modes_of(slides), InputError);
+}
+
+BOOST_AUTO_TEST_CASE(a_blade_on_a_flap_hinge_turns_into_the_plane_of_its_rotation) {
+  // A rigid blade, hinged at e from the axis and coned: the centrifugal force has no moment where
+  // sin(beta) (cos(beta) l/3 + e/2) = 0 for the angle beta to the plane, and swings it with
+  // omega^2 = Omega^2 (1 + 3 e/(2 l)). The hinge moves out with the cone, not with the blade.
+  Pendulum none{0.0, 0.0, 0.0, 0.0};
+  model::TurbineDefinition definition = definition_of(none);
+  definition.shaft.speed = 3.0;
+  definition.hub.radius = 0.4;
+  definition.blades.precone = 0.05;
+  const double offset = 0.4 * std::cos(0.05);
+  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  analysis::Observer observer;
+  const analysis::Trim trim = analysis::find_trim(system, {}, observer);
+  const Eigen::VectorXd z = trim.solution.coefficients().col(0);
+  BOOST_TEST(z(system.layout().blade_tip(0) + 2) == -2.0 * std::sin(0.05), tolerance(1e-8));
+  const std::vector<double> found =
+      frequencies(analysis::find_constant_modes(system, trim.solution));
+  BOOST_TEST(found[0] == 3.0 * std::sqrt(1.0 + 1.5 * offset / Pendulum::length), tolerance(1e-6));
+}
 
 BOOST_AUTO_TEST_CASE(beams_between_two_supports_vibrate_as_in_the_books) {
   // (beta L)^2 of cos cosh = 1, tan = tanh, sin = 0 (Blevins, Formulas for Natural Frequency and

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
 
@@ -35,6 +36,11 @@ void round_to_powers_of_two(Equilibration& scaling);
 /// have the blocks that the elimination divides by.
 Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, double rate);
 
+/// A matrix without an inverse.
+class SingularError : public ConvergenceError {
+  using ConvergenceError::ConvergenceError;
+};
+
 /// LU with fixed scaling. The scaling of the first matrix serves all later ones of its pattern.
 class DirectSolver {
  public:
@@ -42,7 +48,7 @@ class DirectSolver {
   DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale);
 
   /// Factors `matrix`, which is scaled in place.
-  /// @throws ConvergenceError where it is singular.
+  /// @throws SingularError
   void factor(Mat matrix);
 
   /// Solves for all columns of `right`, which is overwritten by the solution.

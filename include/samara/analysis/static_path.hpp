@@ -30,7 +30,10 @@ struct StaticPath {
 
 /// Follows r(0, z, 0) = 0 from the reference state, which carries nothing, to the whole loads.
 /// Serial: every rank computes the same. Options prefix `static_`.
+/// Supports that are free and that loads alone restore are held up to the first step and set free
+/// there: between the states at 0 and there the path may jump.
 /// @throws ConvergenceError or DomainError with the factor reached, the reason and a hint.
+/// @throws InputError where something may move that nothing restores, or is held twice.
 StaticPath find_static_path(const system::PeriodicSystem& system, const StaticOptions& options,
                             Observer& observer);
 

@@ -40,6 +40,7 @@ int shooting_harmonics(int steps);
 /// Solves for the periodic steady state from the undeformed system in its prescribed motion.
 /// Serial: every rank computes the same.
 /// @throws ConvergenceError with PETSc's reason and a hint.
+/// @throws InputError at rest where something may move that nothing restores, or is held twice.
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer);
 

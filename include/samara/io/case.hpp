@@ -45,6 +45,7 @@ struct Case {
   analysis::StaticOptions statics;
   TransientCase transient;
   std::string model_text;  ///< what makes the model, in one spelling: equal for equal models
+  std::vector<std::string> notes;  ///< keys without the effect that they seem to have, by place
 };
 
 /// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys before

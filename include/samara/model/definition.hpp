@@ -109,7 +109,7 @@ struct TorqueLaw {
     return table.empty() || (speed >= table.front().first && speed <= table.back().first);
   }
   /// Torque and slope at a speed; of a table linear between its entries, the slope at an entry the
-  /// mean of both sides.
+  /// mean of both sides. At rest a table that does not reach to 0 gives nothing.
   elements::TorqueLine at(double speed) const;
   /// The whole law of a rotor with this mean speed; nothing where the table does not reach to it.
   elements::TorqueLine line_at(double mean_speed) const {

@@ -32,7 +32,8 @@ struct Unknown {
   std::string name;  ///< "blade 1 point 3 theta2"
   std::string unit;
   UnknownRole role = UnknownRole::position;
-  /// A position that constraints tie others to, free itself: that of a hinge.
+  /// A position that constraints tie others to, free itself: that of a hinge. Its row, in the same
+  /// place, is the load on a support that is not there.
   bool is_free = false;
 };
 

@@ -1,0 +1,16 @@
+#include "samara/analysis/free_supports.hpp"
+
+namespace samara::analysis {
+
+std::vector<system::NeutralCoordinate> find_free_supports(const system::PeriodicSystem& system) {
+  std::vector<system::NeutralCoordinate> found;
+  for (std::size_t i = 0; i < system.unknowns().size(); ++i) {
+    const system::Unknown& unknown = system.unknowns()[i];
+    const auto at = static_cast<PetscInt>(i);
+    if (unknown.is_free)
+      found.push_back({unknown.name, at, at, unknown.unit == "rad" ? "N m" : "N"});
+  }
+  return found;
+}
+
+}  // namespace samara::analysis
