@@ -85,11 +85,21 @@ blades:
 /// Force and moment about the origin that hold what moves: -d/dt of momentum less gravity, of the
 /// pieces that `choose` takes. Momenta by plain geometry, differenced along the path (order 4).
 template <class Choose>
-Vector6 load_of(const model::TurbineDefinition& definition, const system::TurbineSystem& system,
+Vector6 load_of(const model::TurbineDefinition& constant, const system::TurbineSystem& system,
                 const Instant& instant, const Choose& choose) {
+  // The definition with the pitch, speed and azimuth of an instant.
+  const auto at_instant = [&](double t) {
+    model::TurbineDefinition definition = constant;
+    const math::TimeCurve::Value turning = system.turbine().turning_at(t);
+    definition.blades.pitch = system.turbine().pitch_at(0, t).value;
+    definition.shaft.speed = turning.rate;
+    definition.shaft.azimuth = turning.value - turning.rate * t;
+    return definition;
+  };
+  const model::TurbineDefinition definition = at_instant(instant.t);
   const auto momentum = [&](double offset) {
     const sample::Bodies bodies =
-        sample::bodies_at(definition, system, instant.t + offset,
+        sample::bodies_at(at_instant(instant.t + offset), system, instant.t + offset,
                           Eigen::VectorXd(instant.z + offset * instant.z_dot));
     Vector6 sum = Vector6::Zero();
     for (const sample::Piece& piece : bodies.pieces) {
@@ -119,42 +129,72 @@ Vector3 three(const Values& values, const std::string& start, const std::string&
 
 }  // namespace
 
+namespace {
+
+/// Tower-base and root loads are those that momenta and weights ask for, to `small` of all forces.
+void check_reactions(const model::TurbineDefinition& definition,
+                     const system::TurbineSystem& system, double small) {
+  const Instant instant = moving(system);
+  const auto all = [](const sample::Piece&) { return true; };
+  Vector6 whole = load_of(definition, system, instant, all);
+  model::TurbineDefinition now = definition;
+  const math::TimeCurve::Value turning = system.turbine().turning_at(instant.t);
+  now.blades.pitch = system.turbine().pitch_at(0, instant.t).value;
+  now.shaft.speed = turning.rate;
+  now.shaft.azimuth = turning.value - turning.rate * instant.t;
+  const sample::Bodies bodies = sample::bodies_at(now, system, instant.t, instant.z);
+  whole.tail<3>() += definition.shaft.rotor.torque * bodies.R_H.col(1);
+  const double force_level = whole.head<3>().norm();
+  const double moment_level = force_level * definition.tower.length;
+  if (definition.has_tower) {
+    const Vector3 force = three(instant.values, "TwrBsF", "t");
+    const Vector3 moment = three(instant.values, "TwrBsM", "t");
+    BOOST_TEST((force - Vector3(whole(1), -whole(0), whole(2))).norm() < small * force_level);
+    BOOST_TEST((moment - Vector3(whole(4), -whole(3), whole(5))).norm() < small * moment_level);
+  }
+  for (int k = 0; k < definition.blades.count; ++k) {
+    const auto own = [k](const sample::Piece& piece) { return piece.blade == k; };
+    const Vector6 load = load_of(definition, system, instant, own);
+    const Matrix3& axes = bodies.axes[static_cast<std::size_t>(k)];
+    const Vector3 arm = bodies.roots[static_cast<std::size_t>(k)];
+    const Vector3 force = axes.transpose() * load.head<3>();
+    const Vector3 moment = axes.transpose() * (load.tail<3>() - arm.cross(load.head<3>()));
+    const std::string n = std::to_string(k + 1);
+    const Values& v = instant.values;
+    const Vector3 root_force(v.at("RootFxb" + n), v.at("RootFyb" + n), v.at("RootFzc" + n));
+    const Vector3 root_moment(v.at("RootMxb" + n), v.at("RootMyb" + n), v.at("RootMzc" + n));
+    BOOST_TEST((1e3 * root_force - Vector3(force(2), -force(1), force(0))).norm() <
+               small * force_level);
+    BOOST_TEST((1e3 * root_moment - Vector3(moment(2), -moment(1), moment(0))).norm() <
+               small * moment_level);
+  }
+}
+
+}  // namespace
+
 BOOST_AUTO_TEST_CASE(reactions_are_what_all_applied_and_inertial_forces_ask_for) {
   for (const sample::Choice& choice : sample::choices()) {
     model::TurbineDefinition definition = sample::turbine_definition(choice);
     definition.shaft.rotor.slope = 0.0;
     const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
-    const Instant instant = moving(system);
-    const auto all = [](const sample::Piece&) { return true; };
-    Vector6 whole = load_of(definition, system, instant, all);
-    const sample::Bodies bodies = sample::bodies_at(definition, system, instant.t, instant.z);
-    whole.tail<3>() += definition.shaft.rotor.torque * bodies.R_H.col(1);
     // Rates of prescribed joints are exact in the equations, and BDF2's in the path.
-    const double small = choice.prescribed ? 1e-4 : 1e-9;
-    const double force_level = whole.head<3>().norm();
-    const double moment_level = force_level * definition.tower.length;
-    if (definition.has_tower) {
-      const Vector3 force = three(instant.values, "TwrBsF", "t");
-      const Vector3 moment = three(instant.values, "TwrBsM", "t");
-      BOOST_TEST((force - Vector3(whole(1), -whole(0), whole(2))).norm() < small * force_level);
-      BOOST_TEST((moment - Vector3(whole(4), -whole(3), whole(5))).norm() < small * moment_level);
-    }
-    for (int k = 0; k < definition.blades.count; ++k) {
-      const auto own = [k](const sample::Piece& piece) { return piece.blade == k; };
-      const Vector6 load = load_of(definition, system, instant, own);
-      const Matrix3& axes = bodies.axes[static_cast<std::size_t>(k)];
-      const Vector3 arm = bodies.roots[static_cast<std::size_t>(k)];
-      const Vector3 force = axes.transpose() * load.head<3>();
-      const Vector3 moment = axes.transpose() * (load.tail<3>() - arm.cross(load.head<3>()));
-      const std::string n = std::to_string(k + 1);
-      const Values& v = instant.values;
-      const Vector3 root_force(v.at("RootFxb" + n), v.at("RootFyb" + n), v.at("RootFzc" + n));
-      const Vector3 root_moment(v.at("RootMxb" + n), v.at("RootMyb" + n), v.at("RootMzc" + n));
-      BOOST_TEST((1e3 * root_force - Vector3(force(2), -force(1), force(0))).norm() <
-                 small * force_level);
-      BOOST_TEST((1e3 * root_moment - Vector3(moment(2), -moment(1), moment(0))).norm() <
-                 small * moment_level);
-    }
+    check_reactions(definition, system, choice.prescribed ? 1e-4 : 1e-9);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(reactions_follow_blades_that_pitch_and_a_rotor_that_speeds_up) {
+  for (const sample::Choice& choice : sample::choices()) {
+    if (choice.prescribed) continue;
+    model::TurbineDefinition definition = sample::turbine_definition(choice);
+    definition.shaft.rotor.slope = 0.0;
+    if (definition.shaft.generator.kind == model::JointKind::free) continue;
+    model::Turbine turbine = model::build_turbine(definition);
+    turbine.operation.pitch.assign(turbine.blades.size(),
+                                   math::TimeCurve::formula("0.2 + 0.3*sin(4*t)"));
+    turbine.operation.turning.emplace(math::TimeCurve::formula("3 + 2*t - cos(3*t)"), 1.0);
+    const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+    check_reactions(definition, system, 1e-8);
+    BOOST_TEST(sample::tangent_error(system, 0.4, sample::random_state(system, 8)) < 1e-10);
   }
 }
 
