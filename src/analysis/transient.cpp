@@ -19,6 +19,11 @@ constexpr std::array<const char*, 5> sound_types{TSBDF, TSTHETA, TSCN, TSALPHA, 
 constexpr double slow_contraction = 0.1;
 /// The first steps after a start differ in what multiplies M.
 constexpr int starting_steps = 3;
+/// Of a step against the one before: BDF2 is stable up to 2.4.
+constexpr double largest_growth = 2.0;
+constexpr double least_growth = 0.1;
+/// A tolerance that no error reaches.
+constexpr double left_out = 1e30;
 /// Of the state: corrections this small that no longer shrink are rounding.
 constexpr double stagnation = 1e-8;
 constexpr double rounding = 1e-9;
@@ -195,6 +200,7 @@ class Integration {
     TSAdapt adapt = nullptr;
     petsc::check(TSGetAdapt(ts, &adapt));
     petsc::check(TSAdaptSetType(adapt, TSADAPTNONE));
+    if (options_.step_tolerance > 0.0) make_adaptive(adapt);
     petsc::check(TSSetTime(ts, time));
     petsc::check(TSSetTimeStep(ts, options_.step));
     petsc::check(TSSetMaxTime(ts, 0.5 * PETSC_MAX_REAL));
@@ -221,6 +227,29 @@ class Integration {
     petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
     petsc::check(TSSetFromOptions(ts));
     require_sound_type();
+  }
+
+  /// Steps by the error of the positions: internal loads and, beside rigid strains, velocities are
+  /// rough where the step changes, and would cut it for nothing.
+  void make_adaptive(TSAdapt adapt) {
+    petsc::check(TSAdaptSetType(adapt, TSADAPTBASIC));
+    petsc::check(TSAdaptSetClip(adapt, least_growth, largest_growth));
+    const std::vector<system::Unknown>& unknowns = system_.unknowns();
+    const auto count = std::count_if(unknowns.begin(), unknowns.end(), [](const auto& unknown) {
+      return unknown.role == system::UnknownRole::position;
+    });
+    // TS takes the mean square over all unknowns, most of which are left out here.
+    const double tolerance =
+        options_.step_tolerance *
+        std::sqrt(static_cast<double>(count) / static_cast<double>(unknowns.size()));
+    petsc::check(VecDuplicate(x_.get(), tolerances_.fill()));
+    {
+      const petsc::WriteView view(tolerances_.get());
+      for (std::size_t i = 0; i < unknowns.size(); ++i)
+        view[static_cast<PetscInt>(i)] =
+            unknowns[i].role == system::UnknownRole::position ? tolerance : left_out;
+    }
+    petsc::check(TSSetTolerances(ts_.get(), tolerance, tolerances_.get(), tolerance, nullptr));
   }
 
   /// TS has types that cannot solve for z where M is singular, or change r; they would fail later.
@@ -306,7 +335,8 @@ class Integration {
     const double taken = t - before;
     const bool was_cut = taken < asked_ * (1.0 - rounding);
     if (was_cut) ++cuts_;
-    limit_ = was_cut ? taken : std::min(2.0 * limit_, options_.step);
+    limit_ = was_cut ? taken : std::min(largest_growth * limit_, options_.step);
+    if (options_.step_tolerance > 0.0) limit_ = std::min(limit_, next);
     ++steps_;
     ++steps_since_start_;
     const double close = rounding * options_.step;
@@ -451,6 +481,7 @@ class Integration {
   petsc::Handle<Mat> jacobian_;
   Equilibration scaling_;
   petsc::Handle<Vec> x_;  ///< z, scaled
+  petsc::Handle<Vec> tolerances_;
   petsc::Handle<TS> ts_;
   SNES snes_ = nullptr;
   double t_ = 0.0;  ///< of the last residual

@@ -221,6 +221,7 @@ void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& e
            {{"bdf2", analysis::TransientMethod::bdf2},
             {"midpoint", analysis::TransientMethod::midpoint}});
   map.read("tolerance", options.tolerance, positive);
+  map.read("step_tolerance", options.step_tolerance, positive);
   options.checkpoint_steps = std::max(1L, std::lround(default_checkpoint / options.step));
   const YamlNode* checkpoint = node.find("checkpoint");
   if (checkpoint != nullptr && checkpoint->text == "none") {

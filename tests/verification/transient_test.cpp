@@ -90,6 +90,32 @@ BOOST_AUTO_TEST_CASE(two_integrators_agree_on_the_spun_beam) {
                                  ends[TransientMethod::midpoint]) < 1e-5);
 }
 
+BOOST_AUTO_TEST_CASE(steps_adapt_to_the_tolerance) {
+  // A tenth of the tolerance: errors fall with it to the power 2/3 of a method of second order.
+  const auto system = system_of(spun_up_beam(2, 4));
+  const TransientStart start = analysis::start_undeformed(*system, 0.0);
+  const Eigen::VectorXd exact =
+      state_after(*system, start, steps_of(0.0005, 2.0, TransientMethod::bdf2));
+  std::vector<double> errors;
+  std::vector<long> steps;
+  for (const double accuracy : {1e-4, 1e-5, 1e-6}) {
+    analysis::TransientOptions options = steps_of(0.1, 2.0, TransientMethod::bdf2);
+    options.step_tolerance = accuracy;
+    Keeper<double> ignore([](const TransientSample&) { return 0.0; });
+    const analysis::TransientRun run = analysis::run_transient(*system, start, options, ignore);
+    errors.push_back(position_difference(*system, run.end.z, exact));
+    steps.push_back(run.steps);
+    BOOST_TEST_MESSAGE(accuracy << ": error " << errors.back() << " in " << steps.back()
+                                << " steps");
+  }
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    BOOST_TEST(errors[i] < 0.5 * errors[i - 1]);
+    BOOST_TEST(steps[i] > steps[i - 1]);
+  }
+  BOOST_TEST(errors.back() < 1e-2);
+  BOOST_TEST(steps.front() < 400);
+}
+
 BOOST_AUTO_TEST_CASE(both_integrators_are_of_second_order_on_the_turbine_with_gravity) {
   const io::Case input = lee("baseline", with(mesh(true, 3, 2), {"gravity=9.80665"}));
   const auto system = system_of(input.turbine);
