@@ -147,12 +147,19 @@ class Parser {
       line_.format = word;
     } else if (line_.case_path.empty() && !word.empty()) {
       line_.case_path = word;
+    } else if (static_cast<int>(line_.more_results.size()) + 1 < line_.command->most_results &&
+               !word.empty()) {
+      line_.more_results.push_back(word);
     } else {
-      throw InputError("unexpected argument \"" + word + "\": the " +
-                       (line_.command->formats == nullptr ? "case" : "deck") + " is " +
+      throw InputError("unexpected argument \"" + word + "\": the " + operand_word() + " is " +
                        line_.case_path + ", one a run; hint: samara " +
                        std::string(line_.command->name) + " --help");
     }
+  }
+
+  const char* operand_word() const {
+    if (line_.command->most_results > 0) return "result";
+    return line_.command->formats == nullptr ? "case" : "deck";
   }
 
   void require_format(const std::string& word) const {
@@ -185,7 +192,9 @@ class Parser {
     if (line_.tower_only || line_.report)
       throw InputError(std::string(line_.tower_only ? "--tower-only" : "--report") + ": samara " +
                        name + " has no use for it, samara import has");
-    if (line_.case_path.empty()) {
+    if (line_.command->most_results > 0)
+      require_result(name);
+    else if (line_.case_path.empty()) {
       std::string hint = "samara " + name + " --help shows an example";
       for (std::size_t i = 1; i < line_.petsc_options.size(); ++i)
         if (line_.petsc_options[i].find(".y") != std::string::npos)
@@ -201,6 +210,20 @@ class Parser {
       throw InputError("--csv: samara " + name + " has no table to write");
     if (!line_.csv_path.empty() && line_.csv_path == line_.result_path)
       throw InputError("-o and --csv name the same file; give each its own");
+  }
+
+  void require_result(const std::string& name) const {
+    if (line_.case_path.empty())
+      throw InputError("missing result: samara " + name + " RESULT.h5; hint: samara " + name +
+                       " --help shows an example");
+    if (line_.command->run != nullptr) return;
+    if (!line_.settings.empty())
+      throw InputError("--set: samara " + name +
+                       " has no use for it; hint: it serves the commands that read the case");
+    if (!line_.petsc_options.empty())
+      throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
+    if (line_.result_path.empty())
+      throw InputError("missing -o FILE; hint: -o history.h5, .csv, .out or .outb");
   }
 
   void require_deck(const std::string& name) const {
@@ -230,6 +253,21 @@ constexpr char import_lines[] =
   -o CASE.yaml      the case file; only a case of samara is ever overwritten
   --report          makes -o optional: the report alone, nothing is written
   --tower-only      leaves out what carries the tower, which is clamped at its foot
+  --help            this text
+)";
+
+constexpr char export_lines[] =
+    R"(options
+  -o FILE           the history, as its ending says; only a file that samara wrote is overwritten
+  --help            this text
+)";
+
+constexpr char load_lines[] =
+    R"(options
+  --set key=value   channels, from, until, exponents, equivalent_frequency, harmonics, bins,
+                    goodman, azimuths, hours, equivalent_cycles; may be repeated
+  -o LOADS.h5       all that was evaluated; without it nothing is written
+  --csv FILE.csv    statistics and equivalent loads as comma-separated values, too
   --help            this text
 )";
 
@@ -265,6 +303,11 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
       return std::string("samara ") + command.name + " " + command.formats +
              " DECK -o CASE.yaml [options]\n\n" + command.description + "\nexample\n  samara " +
              command.name + " " + command.example + "\n\n" + import_lines;
+    if (command.most_results > 0)
+      return std::string("samara ") + command.name + " RESULT.h5" +
+             (command.run == nullptr ? " -o FILE" : " [RESULT.h5 ...] [options]") + "\n\n" +
+             command.description + "\nexample\n  samara " + command.name + " " + command.example +
+             "\n\n" + (command.run == nullptr ? export_lines : load_lines);
     return std::string("samara ") + command.name + options + "\n\n" + command.description +
            "\nexample\n  samara " + command.name + " " + command.example + "\n\n" + option_lines;
   }
@@ -272,7 +315,8 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
       "samara " + std::string(version) +
       ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" + "  samara <command>" +
       options +
-      "\n  samara import openfast|windio DECK -o CASE.yaml\n  mpirun -n 4 samara <command>" +
+      "\n  samara import openfast|windio DECK -o CASE.yaml\n  samara export RESULT.h5 -o FILE\n  "
+      "samara loads RESULT.h5 [options]\n  mpirun -n 4 samara <command>" +
       options + "\n\ncommands\n";
   for (const Command& command : commands)
     text += "  " + padded(command.name, 10) + command.summary + "\n";

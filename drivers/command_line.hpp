@@ -11,7 +11,8 @@ namespace samara::drivers {
 
 struct CommandLine;
 
-/// A sub-command. One with `formats` reads the deck of another program, not a case.
+/// A sub-command. One with `formats` reads the deck of another program, not a case; one with
+/// `most_results` reads results.
 struct Command {
   const char* name;
   const char* summary;
@@ -24,6 +25,7 @@ struct Command {
   bool lists_modes = false;
   const char* formats = nullptr;  ///< of decks, with bars between: the word before the path
   void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`
+  int most_results = 0;  ///< that it reads at once
 };
 
 enum class Request { run, help, version };
@@ -33,12 +35,13 @@ struct CommandLine {
   const Command* command = nullptr;  ///< null only for --help and --version of the program
   std::string text;                  ///< as typed, quoted for a shell
   std::string format;                ///< of a deck
-  std::string case_path;             ///< or the deck
+  std::string case_path;             ///< or the deck, or the first result
+  std::vector<std::string> more_results;
   bool tower_only = false;
   bool report = false;  ///< is wanted, if need be without a case
   bool all_modes = false;
   std::vector<std::string> settings;
-  std::string result_path;  ///< empty: not given
+  std::string result_path;  ///< of what is written; empty: not given
   std::string csv_path;     ///< empty: none wanted
   std::string restart_path;  ///< of a result to go on from; empty: not given
   std::vector<std::string> petsc_options;

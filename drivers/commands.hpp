@@ -12,8 +12,10 @@ void run_modes(const Job& job);
 void run_trim(const Job& job);
 void run_floquet(const Job& job);
 void run_transient(const Job& job);
+void run_loads(const Job& job);
 
 void run_import(const CommandLine& line);
+void run_export(const CommandLine& line);
 
 /// Floquet's theory needs a period.
 void require_speed(const io::Case& input);

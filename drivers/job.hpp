@@ -17,6 +17,9 @@ struct Job {
   std::string csv_path;      ///< empty: no table is wanted
   bool all_modes = false;    ///< also those that are not resolved are listed
   std::string restart_path;  ///< empty: the run starts at its beginning
+  /// Of a command that reads results: these; `input` is the case of the first.
+  std::vector<std::string> sources;
+  std::vector<std::string> settings;  ///< its own --set arguments, which are no keys of the case
 };
 
 /// How the result came about, for its attributes.

@@ -12,6 +12,7 @@
 #include "samara/base/version.hpp"
 #include "samara/io/case.hpp"
 #include "samara/io/result_file.hpp"
+#include "samara/io/result_reader.hpp"
 #include "samara/petsc/session.hpp"
 
 #include "command_line.hpp"
@@ -22,7 +23,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 7> commands{{
+constexpr std::array<Command, 9> commands{{
     {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
      "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
      "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
@@ -57,6 +58,18 @@ constexpr std::array<Command, 7> commands{{
      "docs/import.md.\n",
      "openfast Main.fst -o turbine.yaml", true, false, nullptr, nullptr, false, "openfast|windio",
      run_import},
+    {"export", "a time history in one file: .h5, .csv, or .out and .outb of OpenFAST",
+     "Writes the history of a result of samara transient as one file, by its ending: .h5, the\n"
+     "whole result without its folder of parts; .csv; .out or .outb, OpenFAST's text and binary\n"
+     "output, for the programs that read those. All digits are kept.\n",
+     "RESULT.h5 -o history.csv", true, false, nullptr, nullptr, false, nullptr, run_export, 1},
+    {"loads", "statistics, extremes, harmonics, cycles, equivalent loads of a result",
+     "Evaluates the loads in a result of samara transient, or over one revolution of the steady\n"
+     "state in a result of samara trim or floquet: statistics, extreme events, harmonics of the\n"
+     "rotor speed, rainflow cycles and damage-equivalent loads; of several results also those of\n"
+     "a lifetime. --set takes the keys of docs/case_file.md, \"Loads of a result\".\n",
+     "RESULT.h5 --set \"channels=[RootMyb1, TwrBsMyt]\" --set \"exponents=[4, 10]\"", false, true,
+     nullptr, run_loads, false, nullptr, nullptr, 1000},
 }};
 
 /// How a piece of work ended.
@@ -99,12 +112,29 @@ Outcome attempt(const std::string& case_path, const Work& work) {
   }
 }
 
+/// What a command reads it does not write over.
+void require_other_path(const std::string& path, const std::vector<std::string>& sources) {
+  for (const std::string& source : sources) {
+    std::error_code error;
+    if (std::filesystem::equivalent(path, source, error))
+      throw InputError(path + ": is read by this run; hint: -o gives what it writes another name");
+  }
+}
+
 /// Everything that can be found wrong before anything is computed.
 Job prepare(const CommandLine& line) {
   Job job;
-  job.input = io::read_case(line.case_path, line.settings);
-  if (Session::launch_rank() == 0)
-    for (const std::string& note : job.input.notes) std::cerr << note << "\n";
+  if (line.command->most_results > 0) {
+    job.input = io::read_result_case(line.case_path);
+    job.sources = {line.case_path};
+    job.sources.insert(job.sources.end(), line.more_results.begin(), line.more_results.end());
+    job.settings = line.settings;
+    require_other_path(line.result_path, job.sources);
+  } else {
+    job.input = io::read_case(line.case_path, line.settings);
+    if (Session::launch_rank() == 0)
+      for (const std::string& note : job.input.notes) std::cerr << note << "\n";
+  }
   if (line.command->require != nullptr) line.command->require(job.input);
   job.command_line = line.text;
   job.result_path = line.result_path;

@@ -27,15 +27,34 @@ hid_t check(hid_t id) {
   return id;
 }
 
+/// Access to a file in memory: nothing goes to the disk.
+Hdf5Id memory_access() {
+  Hdf5Id access(check(H5Pcreate(H5P_FILE_ACCESS)), H5Pclose);
+  check(H5Pset_fapl_core(access.get(), memory_increment, 0));
+  return access;
+}
+
 }  // namespace
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 Hdf5File::Hdf5File() {
   silence_hdf5();
-  const Hdf5Id access(check(H5Pcreate(H5P_FILE_ACCESS)), H5Pclose);
-  check(H5Pset_fapl_core(access.get(), memory_increment, 0));  // nothing goes to the disk
-  file_ = {check(H5Fcreate("samara", H5F_ACC_TRUNC, H5P_DEFAULT, access.get())), H5Fclose};
+  file_ = {check(H5Fcreate("samara", H5F_ACC_TRUNC, H5P_DEFAULT, memory_access().get())), H5Fclose};
+  make_types();
+}
+
+Hdf5File::Hdf5File(const std::vector<char>& image) {
+  silence_hdf5();
+  const Hdf5Id access = memory_access();
+  std::vector<char> copy = image;  // HDF5 asks for what it may write to, and copies it
+  check(H5Pset_file_image(access.get(), copy.data(), copy.size()));
+  // With an image HDF5 refuses a name that is there; none is below a device.
+  file_ = {check(H5Fopen("/dev/null/samara", H5F_ACC_RDWR, access.get())), H5Fclose};
+  make_types();
+}
+
+void Hdf5File::make_types() {
   text_type_ = {check(H5Tcopy(H5T_C_S1)), H5Tclose};
   check(H5Tset_size(text_type_.get(), H5T_VARIABLE));
   check(H5Tset_cset(text_type_.get(), H5T_CSET_UTF8));
@@ -104,19 +123,36 @@ Hdf5Id Hdf5File::make_slices(const std::string& name, const Shape& shape, const 
   return make_dataset(name, H5T_IEEE_F32LE, shape, meaning, creation.get());
 }
 
-void Hdf5File::write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values) {
+void Hdf5File::write_part(const Hdf5Id& dataset, hsize_t first, hsize_t count, hid_t type,
+                          const void* values) {
   const Hdf5Id space(check(H5Dget_space(dataset.get())), H5Sclose);
-  Shape count(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()))));
-  check(H5Sget_simple_extent_dims(space.get(), count.data(), nullptr));
-  Shape start(count.size(), 0);
-  start.front() = slice;
-  count.front() = 1;
-  check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+  Shape extents(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()))));
+  check(H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr));
+  Shape start(extents.size(), 0);
+  start.front() = first;
+  extents.front() = count;
+  check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extents.data(),
                             nullptr));
-  const hsize_t size = values.size();
-  const Hdf5Id memory(check(H5Screate_simple(1, &size, nullptr)), H5Sclose);
-  check(H5Dwrite(dataset.get(), H5T_NATIVE_FLOAT, memory.get(), space.get(), H5P_DEFAULT,
-                 values.data()));
+  const Hdf5Id memory(
+      check(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr)), H5Sclose);
+  check(H5Dwrite(dataset.get(), type, memory.get(), space.get(), H5P_DEFAULT, values));
+}
+
+void Hdf5File::write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values) {
+  write_part(dataset, slice, 1, H5T_NATIVE_FLOAT, values.data());
+}
+
+Hdf5Id Hdf5File::make_rows(const std::string& name, const Shape& shape, const Meaning& meaning) {
+  return make_dataset(name, H5T_IEEE_F64LE, shape, meaning);
+}
+
+void Hdf5File::write_rows(const Hdf5Id& dataset, hsize_t first, hsize_t count,
+                          std::span<const double> values) {
+  write_part(dataset, first, count, H5T_NATIVE_DOUBLE, values.data());
+}
+
+void Hdf5File::remove(const std::string& name) {
+  check(H5Ldelete(file_.get(), name.c_str(), H5P_DEFAULT));
 }
 
 void Hdf5File::write_joined(const std::string& name, const std::vector<std::string>& files,

@@ -53,6 +53,8 @@ class Hdf5File {
 
   /// @throws InternalError as all members do
   Hdf5File();
+  /// Goes on with the content of a file that is there; the file itself does not change.
+  explicit Hdf5File(const std::vector<char>& image);
 
   void write(const std::string& name, std::span<const double> values, const Shape& shape,
              const Meaning& meaning);
@@ -65,6 +67,14 @@ class Hdf5File {
   /// is never written takes no room and reads as not-a-number.
   Hdf5Id make_slices(const std::string& name, const Shape& shape, const Meaning& meaning);
   void write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values);
+
+  /// Makes a dataset to be filled some entries of its first axis at a time.
+  Hdf5Id make_rows(const std::string& name, const Shape& shape, const Meaning& meaning);
+  void write_rows(const Hdf5Id& dataset, hsize_t first, hsize_t count,
+                  std::span<const double> values);
+
+  /// Takes a group or dataset out.
+  void remove(const std::string& name);
 
   /// Makes a dataset that shows the datasets `name` of other files one after the other along the
   /// first axis: `shape` of the whole, `rows` of each file, paths relative to this file's folder.
@@ -83,9 +93,13 @@ class Hdf5File {
  private:
   Hdf5Id make_dataset(const std::string& name, hid_t type, const Shape& shape,
                       const Meaning& meaning, hid_t creation = H5P_DEFAULT);
+  void write_part(const Hdf5Id& dataset, hsize_t first, hsize_t count, hid_t type,
+                  const void* values);
   void set_text(hid_t object, const std::string& name, const std::string& text);
   void set_number(const std::string& object, const std::string& name, hid_t type,
                   const void* value);
+
+  void make_types();
 
   Hdf5Id file_;
   Hdf5Id text_type_;  ///< of any length

@@ -98,6 +98,10 @@ std::string Hdf5Reader::text(const std::string& name) const {
   return words;
 }
 
+bool Hdf5Reader::has_attribute(const std::string& object, const std::string& name) const {
+  return H5Aexists_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
 double Hdf5Reader::number_attribute(const std::string& object, const std::string& name) const {
   const std::string place = object + ":" + name;
   const Hdf5Id attribute(

@@ -26,6 +26,7 @@ class Hdf5Reader {
   /// Entries first to first + count along the first axis.
   std::vector<double> slice(const std::string& name, std::size_t first, std::size_t count) const;
 
+  bool has_attribute(const std::string& object, const std::string& name) const;
   double number_attribute(const std::string& object, const std::string& name) const;
   std::string text_attribute(const std::string& object, const std::string& name) const;
 

@@ -12,6 +12,7 @@
 #include "samara/io/whole_file.hpp"
 
 #include "hdf5_reader.hpp"
+#include "history_datasets.hpp"
 
 namespace samara::io {
 namespace {
@@ -22,9 +23,6 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds segment_time{2};
 /// Values that are gathered at the most (64 MB).
 constexpr std::size_t segment_values = std::size_t{8} << 20;
-
-constexpr char time_name[] = "/transient/time";
-constexpr char values_name[] = "/transient/values";
 
 std::string new_run_name() {
   std::random_device random;
@@ -117,8 +115,8 @@ void HistoryFile::close_segment() {
   const std::string name = folder_name() + "/" + run_ + number.data();
   Hdf5File file;
   const hsize_t rows = content_.time.size();
-  file.write(time_name, content_.time, {rows}, {"s", "none", "of each row"});
-  file.write(values_name, content_.values, {rows, content_.channels.size()},
+  file.write(history_time, content_.time, {rows}, {"s", "none", "of each row"});
+  file.write(history_values, content_.values, {rows, content_.channels.size()},
              {"see the result", "see the result", "[row, channel]"});
   write_whole_file((fs::path(path_).parent_path() / name).string(), file.image());
   content_.segments.push_back({name, content_.time.size()});
@@ -157,7 +155,7 @@ HistoryReader::HistoryReader(const std::string& path) {
   if (!is_result(path)) throw InputError(path + ": is no result of samara");
   storage_ = std::make_unique<Storage>(path);
   const Hdf5Reader& file = storage_->file;
-  if (!file.has(time_name)) throw InputError(path + ": has no time history");
+  if (!file.has(history_time)) throw InputError(path + ": has no time history");
   const std::vector<std::string> names = file.texts("/transient/channel_name");
   const std::vector<std::string> units = file.texts("/transient/channel_unit");
   const std::vector<std::string> frames = file.texts("/transient/channel_frame");
@@ -172,12 +170,12 @@ HistoryReader::HistoryReader(const std::string& path) {
     content_.segments.push_back({segments[i], static_cast<std::size_t>(counts.at(i))});
     const fs::path place = fs::path(path).parent_path() / segments[i];
     const bool is_whole =
-        fs::exists(place) && Hdf5Reader(place.string()).has(values_name) &&
-        Hdf5Reader(place.string()).shape(values_name).at(0) == content_.segments.back().rows;
+        fs::exists(place) && Hdf5Reader(place.string()).has(history_values) &&
+        Hdf5Reader(place.string()).shape(history_values).at(0) == content_.segments.back().rows;
     if (!is_whole)
       throw InputError(path + ": its segment " + place.string() + " is missing or damaged");
   }
-  rows_ = file.shape(time_name).at(0);
+  rows_ = file.shape(history_time).at(0);
   if (!file.has("/transient/checkpoint/state")) return;
   analysis::TransientStart point;
   point.time = file.number_attribute("/transient/checkpoint", "time");
@@ -198,11 +196,11 @@ HistoryReader::HistoryReader(const std::string& path) {
 HistoryReader::~HistoryReader() = default;
 
 std::vector<double> HistoryReader::read_time(std::size_t first, std::size_t count) const {
-  return storage_->file.slice(time_name, first, count);
+  return storage_->file.slice(history_time, first, count);
 }
 
 std::vector<double> HistoryReader::read_values(std::size_t first, std::size_t count) const {
-  return storage_->file.slice(values_name, first, count);
+  return storage_->file.slice(history_values, first, count);
 }
 
 }  // namespace samara::io

@@ -16,10 +16,13 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
+#include "samara/io/history_export.hpp"
+#include "samara/io/history_file.hpp"
+#include "samara/io/load_result.hpp"
+#include "samara/io/whole_file.hpp"
 
 #include "hdf5_file.hpp"
-#include "samara/io/history_file.hpp"
-#include "samara/io/whole_file.hpp"
+#include "history_datasets.hpp"
 
 namespace samara::io {
 namespace {
@@ -32,6 +35,8 @@ constexpr char schema_attribute[] = "samara_schema";
 constexpr std::string_view mode_table_start = "number,label,";
 constexpr std::string_view trim_table_start = "name,unit,mean";
 constexpr std::string_view static_table_start = "factor,newton_steps,";
+constexpr std::array<std::string_view, 5> table_starts{
+    mode_table_start, trim_table_start, static_table_start, history_table_start, load_table_start};
 
 /// Harmonics of the participation are kept as far as one mode has this share there.
 constexpr double smallest_share = 1e-9;
@@ -252,6 +257,7 @@ ResultFile::ResultFile(const std::string& path, const Case& input, const RunReco
   file.set_attribute("/", "time", now_in_utc());
   file.write("/case", input.text,
              {"", no_frame, "the case as run; what --set changed in comments on top"});
+  file.set_attribute("/case", "settings", static_cast<int>(input.settings.size()));
 }
 
 ResultFile::~ResultFile() = default;
@@ -263,6 +269,25 @@ void ResultFile::write_value(const std::string& name, double value, const Meanin
 void ResultFile::write_values(const std::string& name, const std::vector<double>& values,
                               const Meaning& meaning) {
   storage_->file.write(name, values, {values.size()}, meaning);
+}
+
+void ResultFile::write_array(const std::string& name, const std::vector<double>& values,
+                             const std::vector<std::size_t>& shape, const Meaning& meaning) {
+  storage_->file.write(name, values, Hdf5File::Shape(shape.begin(), shape.end()), meaning);
+}
+
+void ResultFile::write_texts(const std::string& name, const std::vector<std::string>& texts,
+                             const Meaning& meaning) {
+  storage_->file.write(name, texts, meaning);
+}
+
+void ResultFile::set_attribute(const std::string& object, const std::string& name,
+                               const std::string& text) {
+  storage_->file.set_attribute(object, name, text);
+}
+
+void ResultFile::set_attribute(const std::string& object, const std::string& name, double value) {
+  storage_->file.set_attribute(object, name, value);
 }
 
 void ResultFile::write_model(const system::TurbineSystem& system) {
@@ -384,18 +409,16 @@ void ResultFile::write_history(const HistoryContent& history) {
     counts.push_back(static_cast<int>(segment.rows));
     all += segment.rows;
   }
-  const Meaning of_time{"s", no_frame, "of each row"};
-  const Meaning of_values{"of channel_unit", "of channel_frame", "[row, channel]"};
+  const hsize_t width = history.channels.size();
   if (files.empty()) {
-    write_values("/transient/time", history.time, of_time);
-    file.write("/transient/values", history.values, {all, history.channels.size()}, of_values);
+    write_values(history_time, history.time, meaning_of_history_time());
+    file.write(history_values, history.values, {all, width}, meaning_of_history_values());
   } else {
-    file.write_joined("/transient/time", files, rows, {all}, of_time);
-    file.write_joined("/transient/values", files, rows, {all, history.channels.size()}, of_values);
+    file.write_joined(history_time, files, rows, {all}, meaning_of_history_time());
+    file.write_joined(history_values, files, rows, {all, width}, meaning_of_history_values());
   }
-  file.write("/transient/segment_file", files,
-             {"", no_frame, "files that hold the rows, in the folder of this one; none: all here"});
-  file.write("/transient/segment_rows", counts, {"1", no_frame, "rows of each segment"});
+  file.write(history_segment_file, files, meaning_of_segment_file());
+  file.write(history_segment_rows, counts, meaning_of_segment_rows());
   file.write("/transient/model", history.model,
              {"", no_frame, "the keys of the case that make the model"});
   file.set_attribute("/transient", "status", history.status);
@@ -472,13 +495,16 @@ void require_result_path(const std::string& path) {
                      ")" + hint);
 }
 
-void require_table_path(const std::string& path) {
-  if (!require_writable(path)) return;
+bool is_table(const std::string& path) {
   std::string line;
   std::ifstream stream(path, std::ios::binary);
   std::getline(stream, line);
-  if (!line.starts_with(mode_table_start) && !line.starts_with(trim_table_start) &&
-      !line.starts_with(static_table_start))
+  return std::ranges::any_of(
+      table_starts, [&line](std::string_view start) { return line.starts_with(start); });
+}
+
+void require_table_path(const std::string& path) {
+  if (require_writable(path) && !is_table(path))
     throw InputError(path +
                      ": exists and is no table of samara, it would be lost; hint: --csv "
                      "gives the table another name");

@@ -2,9 +2,6 @@
 
 #include <array>
 #include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
 
 #include <unistd.h>
 
@@ -24,23 +21,44 @@ fs::path folder_of(const std::string& path) {
 
 }  // namespace
 
-void write_whole_file(const std::string& path, std::span<const char> content) {
+WholeFile::WholeFile(const std::string& path) : path_(path) {
   const fs::path target(path);
   const std::string name = "." + target.filename().string() + "." + std::to_string(::getpid());
-  const fs::path temporary = target.parent_path() / (name + ".tmp");
+  temporary_ = target.parent_path() / (name + ".tmp");
   errno = 0;
-  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  std::error_code error;
-  if (stream)
-    fs::rename(temporary, target, error);
-  else
-    error = std::error_code(errno, std::generic_category());
-  if (stream && !error) return;
+  stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+  if (!stream_) fail(std::error_code(errno, std::generic_category()));
+}
+
+WholeFile::~WholeFile() {
+  stream_.close();
   std::error_code ignored;
-  fs::remove(temporary, ignored);
-  throw InternalError(path + ": cannot be written: " + error.message());
+  fs::remove(temporary_, ignored);
+}
+
+void WholeFile::write(std::span<const char> piece) {
+  errno = 0;
+  stream_.write(piece.data(), static_cast<std::streamsize>(piece.size()));
+  if (!stream_) fail(std::error_code(errno, std::generic_category()));
+}
+
+void WholeFile::publish() {
+  errno = 0;
+  stream_.close();
+  if (!stream_) fail(std::error_code(errno, std::generic_category()));
+  std::error_code error;
+  fs::rename(temporary_, path_, error);
+  if (error) fail(error);
+}
+
+void WholeFile::fail(const std::error_code& error) const {
+  throw InternalError(path_ + ": cannot be written: " + error.message());
+}
+
+void write_whole_file(const std::string& path, std::span<const char> content) {
+  WholeFile file(path);
+  file.write(content);
+  file.publish();
 }
 
 bool require_writable(const std::string& path) {

@@ -63,6 +63,14 @@ class ResultFile {
   void write_value(const std::string& name, double value, const Meaning& meaning);
   void write_values(const std::string& name, const std::vector<double>& values,
                     const Meaning& meaning);
+  /// Numbers of several axes, the last one running fastest; its groups are made.
+  void write_array(const std::string& name, const std::vector<double>& values,
+                   const std::vector<std::size_t>& shape, const Meaning& meaning);
+  void write_texts(const std::string& name, const std::vector<std::string>& texts,
+                   const Meaning& meaning);
+  /// Attributes of a group or dataset that exists.
+  void set_attribute(const std::string& object, const std::string& name, const std::string& text);
+  void set_attribute(const std::string& object, const std::string& name, double value);
 
   /// Writes the file. Call it last.
   /// @throws InternalError where the environment fails, e.g. the disk is full
@@ -79,6 +87,9 @@ void require_result_path(const std::string& path);
 
 /// The same for a table.
 void require_table_path(const std::string& path);
+
+/// True for a file that begins like a table of this program.
+bool is_table(const std::string& path);
 
 /// True for an HDF5 file that has the schema attribute of a result.
 bool is_result(const std::string& path);

@@ -2,13 +2,37 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <span>
 #include <string>
+#include <system_error>
 
 namespace samara::io {
 
-/// Writes a temporary file in the same folder and gives it the name `path`. Where that fails the
-/// temporary file is removed, and what was at `path` stays.
+/// A file that is written piece by piece: a temporary file in the folder of `path`, which takes
+/// that name in the end. Where anything fails it is removed, and what was at `path` stays.
+class WholeFile {
+ public:
+  /// @throws InternalError as all members do
+  explicit WholeFile(const std::string& path);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  void write(std::span<const char> piece);
+  /// Gives the file its name. Call it last.
+  void publish();
+
+ private:
+  void fail(const std::error_code& error) const;
+
+  std::string path_;
+  std::filesystem::path temporary_;
+  std::ofstream stream_;
+};
+
+/// The same at once.
 /// @throws InternalError
 void write_whole_file(const std::string& path, std::span<const char> content);
 

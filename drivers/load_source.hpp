@@ -1,0 +1,19 @@
+// Histories of loads out of results: rows of a transient, or one revolution of a steady state.
+#pragma once
+
+#include <string>
+
+#include "samara/io/load_result.hpp"
+
+namespace samara::drivers {
+
+struct LoadSource {
+  io::LoadReport report;    ///< without its evaluation
+  Eigen::VectorXd azimuth;  ///< [deg] of each row; empty: the history has none
+};
+
+/// Of a steady state needs a PETSc session.
+/// @throws InputError where the result has neither, or not what the options ask for
+LoadSource read_load_source(const std::string& path, const io::LoadOptions& options);
+
+}  // namespace samara::drivers

@@ -1,0 +1,90 @@
+// samara loads: statistics, extreme events, harmonics, cycles and equivalent loads of results.
+#include <algorithm>
+
+#include "samara/base/error.hpp"
+#include "samara/base/words.hpp"
+#include "samara/io/load_result.hpp"
+#include "samara/petsc/session.hpp"
+
+#include "commands.hpp"
+#include "load_source.hpp"
+#include "load_tables.hpp"
+
+namespace samara::drivers {
+namespace {
+
+void check_hours(const std::vector<std::string>& sources, const io::LoadOptions& options) {
+  if (options.hours.empty() ? sources.size() == 1 : options.hours.size() == sources.size()) return;
+  throw InputError("--set hours: " + std::to_string(sources.size()) + " results and " +
+                   std::to_string(options.hours.size()) +
+                   " numbers; hint: hours=[...] says how long of the lifetime each result stands "
+                   "for");
+}
+
+/// The options of the evaluation, with Goodman's corrections by channel.
+analysis::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
+                                                   const std::vector<std::string>& names) {
+  analysis::LoadEvaluationOptions evaluation = options.evaluation;
+  evaluation.goodman.resize(names.size());
+  for (const auto& [name, correction] : options.goodman) {
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) {
+      const std::string similar = find_similar(name, names);
+      throw InputError("--set goodman: \"" + name +
+                       "\" is none of the channels that are evaluated" +
+                       (similar.empty() ? "" : "; did you mean \"" + similar + "\"?"));
+    }
+    evaluation.goodman[static_cast<std::size_t>(found - names.begin())] = correction;
+  }
+  return evaluation;
+}
+
+io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options) {
+  LoadSource source = read_load_source(path, options);
+  io::LoadReport& report = source.report;
+  try {
+    report.evaluation = analysis::evaluate_loads(report.history, source.azimuth,
+                                                 evaluation_options(options, report.history.names));
+  } catch (const InputError& error) {
+    const std::string words = error.what();
+    throw InputError(words.starts_with("--set ") ? words : path + ": " + words);
+  }
+  return report;
+}
+
+io::LifetimeReport evaluate_lifetime(const std::vector<io::LoadReport>& reports,
+                                     const io::LoadOptions& options) {
+  if (options.hours.empty()) return {};
+  const std::vector<std::string>& names = reports.front().history.names;
+  std::vector<analysis::LoadEvaluation> evaluations;
+  std::vector<double> durations;
+  for (const io::LoadReport& report : reports) {
+    if (report.history.names != names)
+      throw InputError(report.source + ": has other channels than " + reports.front().source +
+                       "; hint: --set channels=[...] names those that all have");
+    evaluations.push_back(report.evaluation);
+    durations.push_back(analysis::duration(report.history));
+  }
+  return {options.hours, analysis::evaluate_lifetime(evaluations, durations, options.hours, names,
+                                                     evaluation_options(options, names),
+                                                     options.equivalent_cycles)};
+}
+
+}  // namespace
+
+void run_loads(const Job& job) {
+  if (petsc::Session::rank() != 0) return;
+  const io::LoadOptions options = io::read_load_options(job.settings);
+  check_hours(job.sources, options);
+  std::vector<io::LoadReport> reports;
+  for (const std::string& path : job.sources) reports.push_back(evaluate(path, options));
+  const io::LifetimeReport lifetime = evaluate_lifetime(reports, options);
+  std::string tables;
+  for (const io::LoadReport& report : reports) tables += load_tables(report, options);
+  tables += lifetime_table(reports, lifetime, options);
+  deliver(
+      job, tables, [&](io::ResultFile& file) { io::write_loads(file, reports, lifetime, options); },
+      [&](const std::string& path) { io::write_load_table(path, reports, lifetime, options); });
+}
+
+}  // namespace samara::drivers

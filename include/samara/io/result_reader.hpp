@@ -1,0 +1,28 @@
+// Reads of a result what other commands go on with: its case, its steady state.
+#pragma once
+
+#include <string>
+
+#include "samara/analysis/periodic_solution.hpp"
+#include "samara/io/case.hpp"
+
+namespace samara::io {
+
+/// What a result holds that loads can be taken from.
+enum class ResultKind {
+  history,       ///< rows of `samara transient`
+  steady_state,  ///< harmonics of `samara trim` or `samara floquet`
+  other,
+};
+
+/// @throws InputError where there is no result of this program, or none that can be opened
+ResultKind find_result_kind(const std::string& path);
+
+/// The case as it was run, with its settings.
+/// @throws InputError as `find_result_kind`, and where this program does not accept the case
+Case read_result_case(const std::string& path);
+
+/// /trim. @throws InputError where there is none
+analysis::PeriodicSolution read_result_trim(const std::string& path);
+
+}  // namespace samara::io

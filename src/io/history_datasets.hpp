@@ -1,0 +1,22 @@
+// Names and meanings of the datasets of a history that change when its segments are joined.
+#pragma once
+
+#include "samara/io/result_file.hpp"
+
+namespace samara::io {
+
+inline constexpr char history_time[] = "/transient/time";
+inline constexpr char history_values[] = "/transient/values";
+inline constexpr char history_segment_file[] = "/transient/segment_file";
+inline constexpr char history_segment_rows[] = "/transient/segment_rows";
+
+inline Meaning meaning_of_history_time() { return {"s", "none", "of each row"}; }
+inline Meaning meaning_of_history_values() {
+  return {"of channel_unit", "of channel_frame", "[row, channel]"};
+}
+inline Meaning meaning_of_segment_file() {
+  return {"", "none", "files that hold the rows, in the folder of this one; none: all here"};
+}
+inline Meaning meaning_of_segment_rows() { return {"1", "none", "rows of each segment"}; }
+
+}  // namespace samara::io

@@ -1,0 +1,71 @@
+#include "samara/io/result_reader.hpp"
+
+#include <filesystem>
+#include <string_view>
+
+#include "samara/base/error.hpp"
+#include "samara/io/result_file.hpp"
+
+#include "hdf5_reader.hpp"
+
+namespace samara::io {
+namespace {
+
+constexpr std::string_view setting_start = "# --set ";
+
+Hdf5Reader open_result(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError(path + ": no such file");
+  if (std::filesystem::is_directory(status))
+    throw InputError(path + ": a directory, expected a result of samara");
+  if (!is_result(path))
+    throw InputError(path + ": is no result of samara; hint: expected what -o wrote, RESULT.h5");
+  return Hdf5Reader(path);
+}
+
+/// Takes the settings off the top of a case's text, `count` of them or, if it is negative, all.
+std::vector<std::string> take_settings(std::string& text, long count) {
+  std::vector<std::string> settings;
+  while (text.starts_with(setting_start) && static_cast<long>(settings.size()) != count) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1);
+    settings.push_back(text.substr(setting_start.size(), end - setting_start.size()));
+    text.erase(0, end + 1);
+  }
+  return settings;
+}
+
+}  // namespace
+
+ResultKind find_result_kind(const std::string& path) {
+  const Hdf5Reader file = open_result(path);
+  if (file.has("/transient/time")) return ResultKind::history;
+  return file.has("/trim/harmonics") ? ResultKind::steady_state : ResultKind::other;
+}
+
+Case read_result_case(const std::string& path) {
+  const Hdf5Reader file = open_result(path);
+  std::string text = file.text("/case");
+  // A case may begin with such a comment of its own: the number of settings stands beside it.
+  long count = -1;
+  if (file.has_attribute("/case", "settings"))
+    count = static_cast<long>(file.number_attribute("/case", "settings"));
+  const std::vector<std::string> settings = take_settings(text, count);
+  Case result = parse_case(path + ":/case", text, settings);
+  result.path = file.text_attribute("/", "case_path");
+  return result;
+}
+
+analysis::PeriodicSolution read_result_trim(const std::string& path) {
+  const Hdf5Reader file = open_result(path);
+  const std::vector<hsize_t> shape = file.shape("/trim/harmonics");
+  const std::vector<double> numbers = file.numbers("/trim/harmonics");
+  if (shape.size() != 2 || shape[1] % 2 == 0)
+    throw InputError(path + ": /trim/harmonics is not [unknown, mean, cos 1, sin 1, ...]");
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> coefficients(numbers.data(), static_cast<Eigen::Index>(shape[0]),
+                                                static_cast<Eigen::Index>(shape[1]));
+  return {coefficients, file.numbers("/model/period").at(0)};
+}
+
+}  // namespace samara::io
