@@ -24,21 +24,21 @@ void add(StateSpace& sum, double factor, const StateSpace& form) {
   }
 }
 
-/// Entries this small beside the largest of their matrix are rounding.
-constexpr double rounding = 1e-9;
-
-/// Of the rows of two forms, relative to the rows of the second.
+/// The difference of two forms relative to the second: each entry to the geometric mean of the
+/// largest ones of its row and of its column, whatever the units are.
 double compare(const StateSpace& found, const StateSpace& wanted) {
   double worst = 0.0;
   for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
     const Eigen::MatrixXd& reference = wanted.*matrix;
     if (reference.size() == 0) continue;
-    const double floor = rounding * reference.cwiseAbs().maxCoeff();
-    for (Eigen::Index i = 0; i < reference.rows(); ++i) {
-      const double size = std::max(reference.row(i).cwiseAbs().maxCoeff(), floor);
-      const double difference = ((found.*matrix).row(i) - reference.row(i)).cwiseAbs().maxCoeff();
-      if (size > 0.0) worst = std::max(worst, difference / size);
-    }
+    const Eigen::VectorXd rows = reference.cwiseAbs().rowwise().maxCoeff();
+    const Eigen::RowVectorXd columns = reference.cwiseAbs().colwise().maxCoeff();
+    for (Eigen::Index i = 0; i < reference.rows(); ++i)
+      for (Eigen::Index j = 0; j < reference.cols(); ++j) {
+        const double size = std::sqrt(rows(i) * columns(j));
+        const double difference = std::abs((found.*matrix)(i, j) - reference(i, j));
+        if (size > 0.0) worst = std::max(worst, difference / size);
+      }
   }
   return worst;
 }

@@ -1,4 +1,4 @@
-// State-space forms over the azimuth in closed form (docs/theory.md, section 9.3).
+// State-space forms over the azimuth in closed form (docs/theory.md, section 10.3).
 #pragma once
 
 #include <functional>
@@ -31,8 +31,8 @@ class AzimuthSeries {
 
   StateSpace at(double psi) const;
 
-  /// Largest difference of the series from the form midway between the samples, in any row of A, B,
-  /// C, D, relative to the largest entry of this row.
+  /// Largest difference of an entry of A, B, C, D of the series from the form midway between the
+  /// samples, relative to the geometric mean of the largest entries of its row and its column.
   double residual() const { return residual_; }
   /// Largest part that changes with the azimuth, measured the same way.
   double variation() const;

@@ -1,4 +1,4 @@
-// A periodic state-space form as a constant one by harmonic lifting (docs/theory.md, section 9.5;
+// A periodic state-space form as a constant one by harmonic lifting (docs/theory.md, section 10.5;
 // G. W. Hill 1886; N. M. Wereley, "Analysis and control of linear periodically time varying
 // systems", thesis, MIT, 1991).
 #pragma once

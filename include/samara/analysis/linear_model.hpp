@@ -1,4 +1,4 @@
-// The linear model about a steady state, one instant at a time (docs/theory.md, section 9; Lee,
+// The linear model about a steady state, one instant at a time (docs/theory.md, section 10; Lee,
 // Hodges & Patil (2002), eq. (16), (17)).
 //
 // Descriptor form: all unknowns, M dz_dot + K dz + R du + R' du_dot = 0. State-space form: the

@@ -1,5 +1,5 @@
 // What acts on a periodic system from outside and what is asked of it, as an analysis sees it
-// (docs/theory.md, section 9): r(t, z, z_dot, u, u_dot) = 0, y = y(t, z, z_dot, u).
+// (docs/theory.md, section 10): r(t, z, z_dot, u, u_dot) = 0, y = y(t, z, z_dot, u).
 #pragma once
 
 #include <string>

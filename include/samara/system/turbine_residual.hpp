@@ -59,7 +59,7 @@ struct PlacedBeam {
   int mass_at(int e) const;
 };
 
-/// What acts on a turbine from outside beside its loads (docs/theory.md, section 9).
+/// What acts on a turbine from outside beside its loads (docs/theory.md, section 10).
 template <class T>
 struct TurbineInputs {
   std::vector<T> pitch;       ///< of each blade beside its own, toward feather [rad]; empty: none
