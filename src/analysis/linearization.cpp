@@ -41,6 +41,25 @@ NamedForm average_of(const NamedForm& form) {
   return average;
 }
 
+/// Its states are combinations of all.
+NamedForm reduced_of(const NamedForm& form, const LinearizeOptions& options) {
+  const ReducedForm reduced = reduce(form.series.mean(), options.order, options.reduction);
+  NamedForm small = form;
+  small.name = form.name + "_reduced";
+  small.description = form.name +
+                      (options.reduction == ReductionMethod::modal ? ", the slowest modes"
+                                                                   : ", balanced and truncated") +
+                      "; the first " + std::to_string(reduced.kept) +
+                      " states are neutral or unstable";
+  small.states.clear();
+  for (Eigen::Index i = 0; i < reduced.form.A.rows(); ++i)
+    small.states.push_back({"reduced " + std::to_string(i + 1), "1", 1.0});
+  small.series = AzimuthSeries({reduced.form});
+  small.hankel = reduced.hankel;
+  small.error_bound = reduced.error_bound;
+  return small;
+}
+
 }  // namespace
 
 Linearization linearize(const system::PeriodicSystem& system,
@@ -95,6 +114,22 @@ Linearization linearize(const system::PeriodicSystem& system,
                             repeated(periodic.states, h), repeated(periodic.inputs, h),
                             repeated(periodic.outputs, h),
                             AzimuthSeries({hill_form(periodic.series, result.rotor_speed, h)})});
+  }
+  if (options.order > 0) {
+    std::vector<NamedForm> reduced;
+    if (result.is_constant) {
+      NamedForm constant = average_of(periodic);
+      constant.name = periodic.name;
+      reduced.push_back(reduced_of(constant, options));
+    } else {
+      for (const NamedForm& form : result.forms)
+        if (form.series.coefficients().size() == 1) reduced.push_back(reduced_of(form, options));
+    }
+    if (reduced.empty())
+      throw InputError(
+          "linearize.reduce: there is no constant form; hint: linearize.forms with average or "
+          "hill");
+    result.forms.insert(result.forms.end(), reduced.begin(), reduced.end());
   }
   if (options.state_space) result.forms.insert(result.forms.begin(), std::move(periodic));
   return result;

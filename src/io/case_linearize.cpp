@@ -9,6 +9,7 @@ namespace {
 
 constexpr int most_azimuths = 3600;
 constexpr int most_harmonics = 200;
+constexpr int most_order = 100000;
 
 void read_forms(MapReader& map, analysis::LinearizeOptions& options) {
   std::vector<std::string> forms;
@@ -52,6 +53,15 @@ void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& e
   read_stations(map, "tower_stations", linearize.stations.tower);
   read_forms(map, options);
   map.read("hill_harmonics", options.hill_harmonics, 1, most_harmonics);
+  if (const YamlNode* reduce = map.find("reduce")) {
+    MapReader entry(*reduce, map.where("reduce"), errors);
+    entry.require("order", "the number of states");
+    entry.read("order", options.order, 1, most_order);
+    entry.read("method", options.reduction,
+               {{"balanced", analysis::ReductionMethod::balanced},
+                {"modal", analysis::ReductionMethod::modal}});
+    entry.finish();
+  }
   if (const YamlNode* mat = map.find("mat")) {
     if (mat->kind != YamlNode::Kind::scalar || mat->text.empty())
       map.refuse(*mat, "mat", "expected the name of a file, " + describe(*mat));

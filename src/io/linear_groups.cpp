@@ -91,6 +91,14 @@ void write_form(Hdf5File& file, const NamedForm& form) {
   write_signals(file, group + "/inputs", "inputs", form.inputs);
   write_signals(file, group + "/outputs", "outputs", form.outputs);
   file.set_attribute(group, "description", form.description);
+  if (form.hankel.size() > 0) {
+    file.write(
+        group + "/hankel_singular_values",
+        std::span<const double>(form.hankel.data(), static_cast<std::size_t>(form.hankel.size())),
+        {static_cast<hsize_t>(form.hankel.size())},
+        {"outputs over inputs", "none", "of the stable part, falling"});
+    file.set_attribute(group, "error_bound", form.error_bound);
+  }
   file.set_attribute(group, "harmonics", form.series.harmonics());
   file.set_attribute(group, "residual", form.series.residual());
 }

@@ -78,6 +78,46 @@ class Linearize(ProgramTest):
             compared += 1
         self.assertGreaterEqual(compared, 6)
 
+    def test_a_closed_loop_is_the_turbine_with_that_spring_and_damper(self):
+        stiffness, damping = 5e5, 2e5
+        self.succeed("linearize", BASELINE, *SMALL, "--set",
+                     "linearize={azimuths: 25, harmonics: 12, inputs: [yaw_torque], "
+                     "outputs: [NacYaw, NacYawV]}", "-o", "linear.h5")
+        with h5py.File(self.folder / "linear.h5") as file:
+            speed = file["/linearize"].attrs["rotor_speed"]
+            A, B, C = (file["/linearize/state_space"][name][:] for name in "ABC")
+        gains = -numpy.array([stiffness, damping]) * numpy.pi / 180  # of degrees
+        closed = hill_eigenvalues(A + B * (gains @ C[0]), speed, 8)
+        joint = f"nacelle.yaw={{joint: free, stiffness: {stiffness}, damping: {damping}}}"
+        coarse, fine = (self.exponents(steps, ["--set", joint]) for steps in (1000, 2000))
+        for exponent in fine[abs(fine) < 30.0]:
+            limit = (4 * exponent - nearest(coarse, exponent, speed)) / 3
+            self.assertLess(abs(closed - limit).min(), 1e-5 * max(1, abs(limit)))
+
+    def test_reduced_forms_answer_as_the_whole_within_their_bound(self):
+        settings = ["--set", "shaft.speed=0", "--set", "blades.damping=0.01", "--set",
+                    "tower.damping=0.01", "--set",
+                    "nacelle.yaw={joint: free, stiffness: 1e6, damping: 2e5}", "--set",
+                    "hub.teeter={joint: free, stiffness: 1e5, damping: 1e3}"]
+        self.succeed("linearize", BASELINE, *SMALL, *settings, "--set",
+                     "linearize={inputs: [top_force_n2], outputs: [TTDspFA], "
+                     "reduce: {order: 6}}", "-o", "linear.h5")
+
+        def response(group, omega):
+            A, B, C, D = (group[name][:].reshape(group[name].shape[-2:]) for name in "ABCD")
+            return (C @ numpy.linalg.solve(1j * omega * numpy.eye(len(A)) - A, B) + D)[0, 0]
+
+        with h5py.File(self.folder / "linear.h5") as file:
+            reduced = file["/linearize/state_space_reduced"]
+            bound = reduced.attrs["error_bound"]
+            self.assertEqual(reduced["A"].shape, (6, 6))
+            largest = 0
+            for omega in numpy.geomspace(0.1, 300, 60):
+                whole = response(file["/linearize/state_space"], omega)
+                largest = max(largest, abs(whole))
+                self.assertLessEqual(abs(response(reduced, omega) - whole), bound)
+            self.assertLess(bound, 0.05 * largest)
+
     def test_the_response_is_that_of_the_nonlinear_transient(self):
         """Three blades without gravity: constant in multiblade coordinates."""
         turbine = [*SMALL, "--set", "blades.count=3", "--set", "hub.teeter={joint: locked}",

@@ -6,6 +6,7 @@
 
 #include "samara/analysis/azimuth_series.hpp"
 #include "samara/analysis/linear_model.hpp"
+#include "samara/analysis/model_reduction.hpp"
 #include "samara/analysis/observer.hpp"
 
 namespace samara::analysis {
@@ -20,6 +21,8 @@ struct LinearizeOptions {
       false;  ///< mean over the azimuth, of multiblade coordinates where they are asked for
   bool hill = false;
   int hill_harmonics = 4;
+  int order = 0;  ///< of constant forms, reduced; 0: none
+  ReductionMethod reduction = ReductionMethod::balanced;
 };
 
 /// A form with the names of what it maps. One coefficient: it does not change with the azimuth.
@@ -29,6 +32,8 @@ struct NamedForm {
   std::vector<ModelState> states;
   std::vector<system::Signal> inputs, outputs;
   AzimuthSeries series;
+  Eigen::VectorXd hankel = {};  ///< of a reduced form, see ReducedForm
+  double error_bound = 0.0;
 };
 
 struct Linearization {
