@@ -14,7 +14,7 @@ using ComplexVector = Eigen::VectorXcd;
 /// Of a complex step: no difference is taken, so nothing is lost.
 constexpr double tiny = 1e-30;
 
-constexpr char pitch_stem[] = "pitch_";
+constexpr char pitch_name[] = "pitch";
 constexpr char force_stem[] = "top_force_n";
 constexpr char base_stem[] = "base_n";
 
@@ -64,10 +64,10 @@ std::vector<Signal> TurbineInputOutput::available_inputs(const TurbineSystem& sy
       signals.push_back({force_stem + std::to_string(i + 1), "N", "ground",
                          "force on the tower top, " + ground_ways()[static_cast<std::size_t>(i)],
                          "", 0, false});
-  signals.push_back({"pitch", "rad", "blades", "of all blades, toward feather", "", 0, true});
+  signals.push_back({pitch_name, "rad", "blades", "of all blades, toward feather", "", 0, true});
   for (std::size_t k = 1; k <= turbine.blades.size(); ++k)
-    signals.push_back({pitch_stem + std::to_string(k), "rad", "blade " + std::to_string(k),
-                       "toward feather", pitch_stem, static_cast<int>(k), true});
+    signals.push_back({pitch_name + ("_" + std::to_string(k)), "rad", "blade " + std::to_string(k),
+                       "toward feather", pitch_name, static_cast<int>(k), true});
   if (turbine.has_tower)
     for (int i = 0; i < 3; ++i)
       signals.push_back(
@@ -117,8 +117,8 @@ TurbineInputs<T> TurbineInputOutput::collect(
     const T& value = values(static_cast<Eigen::Index>(i));
     const T& rate = rates(static_cast<Eigen::Index>(i));
     for (std::size_t k = 0; k < all.pitch.size(); ++k) {
-      if (input.name != "pitch" &&
-          (input.family != pitch_stem || input.blade != static_cast<int>(k) + 1))
+      if (input.name != pitch_name &&
+          (input.family != pitch_name || input.blade != static_cast<int>(k) + 1))
         continue;
       all.pitch[k] += value;
       all.pitch_rate[k] += rate;

@@ -151,6 +151,33 @@ class Linearize(ProgramTest):
                 largest[unit] = max(largest.get(unit, 0), abs(response[i, 0]))
                 self.assertLess(abs(found - response[i, 0]), 0.01 * largest[unit], (name, omega))
 
+    def test_multiblade_coordinates_make_a_balanced_rotor_constant(self):
+        turbine = [*SMALL, "--set", "blades.count=3", "--set", "hub.teeter={joint: locked}",
+                   "--set", "nacelle.yaw={joint: free, stiffness: 1e6}", "--set",
+                   "blades.damping=1e-4", "--set", "blades.precone_deg=4"]
+        self.succeed("linearize", BASELINE, *turbine, "--set",
+                     "linearize={azimuths: 9, harmonics: 4, inputs: [pitch_1, pitch_2, pitch_3, "
+                     "top_force_n1, base_n2], outputs: [RootMyb1, RootMyb2, RootMyb3, TipALxb1, "
+                     "TipALxb2, TipALxb3, TTDspFA], forms: [state_space, multiblade]}",
+                     "-o", "linear.h5")
+        with h5py.File(self.folder / "linear.h5") as file:
+            speed = file["/linearize"].attrs["rotor_speed"]
+            group = file["/linearize/multiblade"]
+            found = scipy.linalg.eigvals(group["A"][0])
+            self.assertIn("pitch_rate cos 1", list(group["inputs/name"].asstr()[:]))
+            for name in "ABCD":  # rates and accelerations of a pitch bring its lower ones along
+                matrix = group[name][:]
+                size = numpy.sqrt(numpy.outer(abs(matrix[0]).max(axis=1),
+                                              abs(matrix[0]).max(axis=0)))
+                size[size == 0] = 1  # eta's own rate has no input
+                self.assertLess((abs(matrix[1:]) / size).max(), 1e-5, name)
+                turning = file["/linearize/state_space"][name][:]
+                self.assertGreater((abs(turning[1:]) / size).max(), 0.1, name)
+        coarse, fine = (self.exponents(steps, turbine) for steps in (1000, 2000))
+        for exponent in fine[abs(fine) < 30.0]:
+            limit = (4 * exponent - nearest(coarse, exponent, speed)) / 3
+            self.assertLess(abs(nearest(found, limit, speed) - limit), 1e-6 * max(1, abs(limit)))
+
     def test_mat_files_have_the_same_matrices(self):
         self.succeed("linearize", BASELINE, *SMALL, "--set",
                      "linearize={azimuths: 9, inputs: [yaw_torque, pitch], outputs: [NacYaw, "
