@@ -13,6 +13,7 @@ void run_trim(const Job& job);
 void run_floquet(const Job& job);
 void run_transient(const Job& job);
 void run_loads(const Job& job);
+void run_linearize(const Job& job);
 
 void run_import(const CommandLine& line);
 void run_export(const CommandLine& line);

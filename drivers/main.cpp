@@ -23,7 +23,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 9> commands{{
+constexpr std::array<Command, 10> commands{{
     {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
      "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
      "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
@@ -52,6 +52,11 @@ constexpr std::array<Command, 9> commands{{
      "into the result while it runs, by the channel names of OpenFAST.\n",
      "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"", true, true,
      require_transient, run_transient},
+    {"linearize", "the linear model about the periodic steady state, for control design",
+     "Writes the linear model about the periodic steady state over the azimuth: state-space and\n"
+     "descriptor form, in multiblade coordinates, averaged, lifted to a constant one.\n",
+     "inputs/lee2002/baseline.yaml --set \"linearize={inputs: [yaw_torque], outputs: [NacYaw]}\"",
+     true, false, require_motion, run_linearize},
     {"import", "a case file from a turbine of OpenFAST or windIO",
      "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it as a\n"
      "case file, and reports key by key what was taken, derived or ignored, and why. See\n"

@@ -14,6 +14,7 @@
 #include "samara/io/yaml_tree.hpp"
 
 #include "case_beam.hpp"
+#include "case_linearize.hpp"
 #include "case_transient.hpp"
 #include "yaml_reader.hpp"
 #include "yaml_settings.hpp"
@@ -455,6 +456,7 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
   if (const YamlNode* node = map.find("transient")) read_transient(*node, result.transient, errors);
+  if (const YamlNode* node = map.find("linearize")) read_linearize(*node, result.linearize, errors);
   map.finish();
   check_teeter(root, turbine, errors);
   if (turbine.shaft.speed == 0.0) return;

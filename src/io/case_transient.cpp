@@ -9,6 +9,8 @@
 
 #include "samara/base/error.hpp"
 
+#include "yaml_lists.hpp"
+
 namespace samara::io {
 namespace {
 
@@ -19,34 +21,6 @@ constexpr double most_steps = 1e9;
 /// Keys of a case that change no model.
 constexpr std::array<const char*, 7> other_keys{"samara", "title",     "trim",     "floquet",
                                                 "static", "transient", "linearize"};
-
-void read_words(MapReader& map, std::string_view key, std::vector<std::string>& words) {
-  const YamlNode* list = map.find(key);
-  if (list == nullptr) return;
-  if (list->kind != YamlNode::Kind::list || list->children.empty()) {
-    map.refuse(*list, key, "expected a list of names, " + describe(*list));
-    return;
-  }
-  for (const YamlNode& entry : list->children) {
-    if (entry.kind != YamlNode::Kind::scalar)
-      map.refuse(entry, key, "expected a name, " + describe(entry));
-    words.push_back(entry.text);
-  }
-}
-
-/// Reads fractions of a length.
-void read_stations(MapReader& map, std::string_view key, std::vector<double>& places) {
-  const YamlNode* list = map.find(key);
-  if (list == nullptr) return;
-  if (list->kind != YamlNode::Kind::list || list->children.empty()) {
-    map.refuse(*list, key, "expected a list of fractions of the length, " + describe(*list));
-    return;
-  }
-  places.resize(list->children.size());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    read_number(list->children[i], join_path(map.where(key), i), fraction_of_one, places[i],
-                map.errors());
-}
 
 /// Reads a time that is some steps long.
 void read_steps(MapReader& map, std::string_view key, double step, long& steps) {

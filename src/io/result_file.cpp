@@ -23,6 +23,7 @@
 
 #include "hdf5_file.hpp"
 #include "history_datasets.hpp"
+#include "linear_groups.hpp"
 
 namespace samara::io {
 namespace {
@@ -470,6 +471,10 @@ void ResultFile::write_floquet(const analysis::Floquet& floquet) {
 void ResultFile::write_modes(const ModeSet& set) {
   write_mode_set(storage_->file, "/modes", set);
   write_shapes(storage_->file, "/modes", set);
+}
+
+void ResultFile::write_linearization(const analysis::Linearization& linearization) {
+  write_linear_groups(storage_->file, linearization);
 }
 
 void ResultFile::publish() { write_whole_file(storage_->path, storage_->file.image()); }

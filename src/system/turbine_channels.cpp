@@ -143,8 +143,9 @@ namespace {
 template <class T>
 class Quantities {
  public:
-  Quantities(const TurbineSystem& system, int size)
-      : equations_(system.equations()),
+  Quantities(const TurbineSystem& system, const TurbineInputs<T>& inputs, int size)
+      : inputs_(inputs),
+        equations_(system.equations()),
         turbine_(system.turbine()),
         layout_(system.layout()),
         values_(static_cast<std::size_t>(size), T(0)) {}
@@ -155,7 +156,7 @@ class Quantities {
     const auto plain = [](const T& value, int) { return value; };
     elements::HubMotion<T> hub;
     elements::ChainReport<T> chain;
-    elements::rigid_chain(turbine_.chain, equations_.chain_state<T>(t, z, z_dot, plain), hub,
+    elements::rigid_chain(turbine_.chain, equations_.chain_state<T>(t, z, z_dot, plain, inputs_), hub,
                           &chain);
     constexpr double turn = 2.0 * std::numbers::pi;
     put(azimuth_slot, chain.azimuth - T(turn * std::floor(real_of(chain.azimuth) / turn)));
@@ -175,12 +176,14 @@ class Quantities {
 
   void add_blade(double t, int k, const std::vector<T>& z, const std::vector<T>& z_dot) {
     const int first = ChannelCatalogue::blade_slot(k);
-    const double pitch = turbine_.pitch_at(static_cast<std::size_t>(k), t).value;
-    const Mat3<T> to_cone = math::turn_about<double>(-Vector3::UnitX(), pitch).cast<T>();
+    const auto number = static_cast<std::size_t>(k);
+    T pitch(turbine_.pitch_at(number, t).value);
+    if (!inputs_.pitch.empty()) pitch += inputs_.pitch[number];
+    const Mat3<T> to_cone = math::turn_about<T>(-Vector3::UnitX(), pitch);
     const Vec6<T> root = Eigen::Map<const Vec6<T>>(z.data() + layout_.blade_root(k));
     const Vec3<T> force = root.template head<3>();
     const Vec3<T> moment = root.template tail<3>();
-    put(first + blade_pitch, T(pitch));
+    put(first + blade_pitch, pitch);
     put(first + root_force, along_beam<T>(force));
     put(first + root_moment, along_beam<T>(moment));
     put(first + coned_force, along_beam<T>(to_cone * force));
@@ -267,6 +270,7 @@ class Quantities {
     put(top_speed_up, of_body<T>(chain.top_acceleration));
   }
 
+  const TurbineInputs<T>& inputs_;
   const TurbineResidual& equations_;
   const model::Turbine& turbine_;
   const model::Layout& layout_;
@@ -277,10 +281,10 @@ class Quantities {
 
 template <class T>
 void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                               std::span<T> values) const {
+                               std::span<T> values, const TurbineInputs<T>& inputs) const {
   const model::Turbine& turbine = system_.turbine();
   const int blades = static_cast<int>(turbine.blades.size());
-  Quantities<T> quantities(system_, size_);
+  Quantities<T> quantities(system_, inputs, size_);
   quantities.add_chain(t, z, z_dot);
   for (int k = 0; k < blades; ++k) quantities.add_blade(t, k, z, z_dot);
   for (const Section& section : sections_) {
@@ -292,10 +296,12 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
 }
 
 template void TurbineChannels::evaluate(double, const std::vector<double>&,
-                                        const std::vector<double>&, std::span<double>) const;
+                                        const std::vector<double>&, std::span<double>,
+                                        const TurbineInputs<double>&) const;
 template void TurbineChannels::evaluate(double, const std::vector<std::complex<double>>&,
                                         const std::vector<std::complex<double>>&,
-                                        std::span<std::complex<double>>) const;
+                                        std::span<std::complex<double>>,
+                                        const TurbineInputs<std::complex<double>>&) const;
 
 void TurbineChannels::evaluate(double t, Vec z, Vec z_dot, std::span<double> values) const {
   const auto plain = [this](Vec vector) {

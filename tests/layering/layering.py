@@ -21,7 +21,7 @@ ROOMS = {  # room: the rooms it may include, itself always
 DRIVERS = "drivers"  # may include every room
 
 # An analysis knows the periodic system, and nothing of turbines.
-HEADERS = {"analysis": ["samara/system/periodic_system.hpp"]}
+HEADERS = {"analysis": ["samara/system/periodic_system.hpp", "samara/system/input_output.hpp"]}
 
 LIBRARIES = [  # pattern of its headers, the rooms that may include them
     (re.compile(r"yaml-cpp/"), ["io"]),

@@ -29,6 +29,13 @@ class ConsistentSubspace {
   /// Entry i of eta is unknown coordinates()[i] divided by scale()[i].
   const std::vector<double>& scale() const { return scale_; }
 
+  /// What constraint rows determine from eta: positions, and internal loads of beams held twice.
+  const std::vector<PetscInt>& tied() const { return tied_; }
+  const std::vector<PetscInt>& constraint_rows() const { return constraints_; }
+  const std::vector<PetscInt>& kinematic_rows() const { return kinematic_; }
+  /// What kinematic rows determine.
+  const std::vector<PetscInt>& velocities() const { return velocities_; }
+
   /// eta of the columns of z, scaled: d x columns.
   Eigen::MatrixXd coordinates_of(const Eigen::MatrixXd& z) const;
 

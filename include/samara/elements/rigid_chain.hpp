@@ -86,6 +86,8 @@ struct ChainState {
   double azimuth = 0.0;     ///< psi [rad]
   double speed = 0.0;       ///< psi_dot [rad/s]
   double speed_dot = 0.0;   ///< of a generator that is not free [rad/s^2]
+  T generator_torque = T(0);  ///< beside the chain's, against the turning [N m]
+  T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
 };
 
 /// The hub as the blades see it, components in H.
@@ -352,6 +354,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   pass_to(detail::active_and_inertia<T>(turning, generator.outer(), g_D), C_SD, same_point);
   rows.generator = generator.take(w.moment, true);
   if (chain.generator.free) {
+    rows.generator.balance -= state.generator_torque;
     const T turning_rate = generator.relative_rate();
     if (!chain.generator_torque.is_zero())
       rows.generator.balance -= chain.generator_torque.at(turning_rate);
@@ -361,6 +364,10 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   }
   pass_to(detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y), C_DY, bearing);
   rows.yaw = yaw.take(w.moment);
+  if (chain.yaw.free) {
+    rows.yaw.balance += state.yaw_torque;
+    w.moment(2) -= state.yaw_torque;
+  }
   pass_to(detail::active_and_inertia<T>(chain.tower_top, top, g_T), C_YT, same_point);
   if (report != nullptr) {
     report->top_load << w.force, w.moment;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "samara/analysis/linearization.hpp"
 #include "samara/analysis/options.hpp"
 #include "samara/model/definition.hpp"
 #include "samara/system/turbine_channels.hpp"
@@ -35,6 +36,14 @@ struct TransientCase {
   std::vector<system::TurbineEvent> events;
 };
 
+struct LinearizeCase {
+  analysis::LinearizeOptions options;
+  std::vector<std::string> inputs;   ///< empty: all
+  std::vector<std::string> outputs;  ///< channels; empty: all but those of stations
+  system::ChannelStations stations;
+  std::string mat_path;  ///< empty: no MAT-file is wanted
+};
+
 struct Case {
   std::string path;
   std::string text;  ///< the file as read, with what --set changed stated in comment lines on top
@@ -44,6 +53,7 @@ struct Case {
   analysis::FloquetOptions floquet;
   analysis::StaticOptions statics;
   TransientCase transient;
+  LinearizeCase linearize;
   std::string model_text;  ///< what makes the model, in one spelling: equal for equal models
   std::vector<std::string> notes;  ///< keys without the effect that they seem to have, by place
 };

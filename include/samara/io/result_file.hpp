@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "samara/analysis/floquet.hpp"
+#include "samara/analysis/linearization.hpp"
 #include "samara/analysis/mode.hpp"
 #include "samara/analysis/static_path.hpp"
 #include "samara/analysis/trim.hpp"
@@ -58,6 +59,9 @@ class ResultFile {
   void write_floquet(const analysis::Floquet& floquet);
   /// /modes: what /floquet has, without what belongs to a period.
   void write_modes(const analysis::ModeSet& set);
+
+  /// /linearize
+  void write_linearization(const analysis::Linearization& linearization);
 
   /// One number or a list of them; the groups of `name` are made.
   void write_value(const std::string& name, double value, const Meaning& meaning);

@@ -51,10 +51,10 @@ class TurbineChannels {
   /// Values in the units of the channels, at a state where the equations hold.
   void evaluate(double t, Vec z, Vec z_dot, std::span<double> values) const;
 
-  /// The same of plain arrays; T: double, or std::complex<double> to differentiate.
+  /// The same of plain arrays, under inputs; T: double, or std::complex<double> to differentiate.
   template <class T>
   void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                std::span<T> values) const;
+                std::span<T> values, const TurbineInputs<T>& inputs = {}) const;
 
  private:
   /// A station that is asked for.

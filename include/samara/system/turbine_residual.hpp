@@ -59,6 +59,17 @@ struct PlacedBeam {
   int mass_at(int e) const;
 };
 
+/// What acts on a turbine from outside beside its loads (docs/theory.md, section 10).
+template <class T>
+struct TurbineInputs {
+  std::vector<T> pitch;       ///< of each blade beside its own, toward feather [rad]; empty: none
+  std::vector<T> pitch_rate;  ///< [rad/s], as many
+  T generator_torque = T(0);  ///< against the turning, on a free generator [N m]
+  T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
+  Vec3<T> top_force = Vec3<T>::Zero();      ///< on the tower top along n1 n2 n3 [N]
+  Vec3<T> base_velocity = Vec3<T>::Zero();  ///< of the tower's foot along n1 n2 n3 [m/s]
+};
+
 // Inputs of the rigid chain, in this order.
 inline constexpr int at_theta = 0;
 inline constexpr int at_top_velocity = 3;
@@ -89,7 +100,14 @@ class TurbineResidual {
   /// by a complex step. @throws DomainError where a rotation is out of range.
   template <class T>
   void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                std::vector<T>& r) const;
+                std::vector<T>& r) const {
+    evaluate(t, z, z_dot, TurbineInputs<T>(), r);
+  }
+
+  /// r(t, z, z_dot, u, u_dot)
+  template <class T>
+  void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+                const TurbineInputs<T>& inputs, std::vector<T>& r) const;
 
   template <class T>
   static State<T> at(const std::vector<T>& z, int first) {
@@ -99,7 +117,8 @@ class TurbineResidual {
   /// The chain's state with each input passed through `make(value, index)`.
   template <class T, class Value, class Make>
   elements::ChainState<T> chain_state(double t, const std::vector<Value>& z,
-                                      const std::vector<Value>& z_dot, Make make) const;
+                                      const std::vector<Value>& z_dot, Make make,
+                                      const TurbineInputs<Value>& inputs = {}) const;
 
   /// The motion of a beam's root and the gravity there.
   template <class T>
@@ -133,6 +152,10 @@ class TurbineResidual {
   void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
                  std::vector<T>& r) const;
   template <class T>
+  void add_motion(std::size_t b, const TurbineInputs<T>& inputs, elements::Attachment<T>& a) const;
+  template <class T>
+  static void add_top_force(const PlacedBeam& tower, const Vec3<T>& force, std::vector<T>& r);
+  template <class T>
   static void put_joint(int first, bool free, const elements::JointRows<T>& rows,
                         std::vector<T>& r);
 
@@ -146,8 +169,8 @@ class TurbineResidual {
 
 template <class T, class Value, class Make>
 elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector<Value>& z,
-                                                     const std::vector<Value>& z_dot,
-                                                     Make make) const {
+                                                     const std::vector<Value>& z_dot, Make make,
+                                                     const TurbineInputs<Value>& inputs) const {
   State<Value> top = State<Value>::Zero();
   State<Value> top_dot = State<Value>::Zero();
   if (turbine_.has_tower) {
@@ -156,10 +179,16 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
     check_rotation(Vector3(top.template segment<3>(3).real()), "tower top");
   }
   Vec6<Value> load = Vec6<Value>::Zero();
-  for (const PlacedBeam& placed : beams_)
-    if (placed.on_hub)
-      load += placed.hub_from_root(pitch_of(placed, t)).template cast<Value>() *
-              Eigen::Map<const Vec6<Value>>(z.data() + placed.root);
+  for (std::size_t b = 0; b < beams_.size(); ++b) {
+    const PlacedBeam& placed = beams_[b];
+    if (!placed.on_hub) continue;
+    Vec6<Value> root = Eigen::Map<const Vec6<Value>>(z.data() + placed.root);
+    if (!inputs.pitch.empty()) {
+      const Mat3<Value> feather = math::turn_about<Value>(-Vector3::UnitX(), inputs.pitch[b]);
+      root << feather * root.template head<3>().eval(), feather * root.template tail<3>().eval();
+    }
+    load += placed.hub_from_root(pitch_of(placed, t)).template cast<Value>() * root;
+  }
   elements::ChainState<T> state;
   for (int i = 0; i < 3; ++i) state.theta(i) = make(top(3 + i), at_theta + i);
   for (int i = 0; i < 6; ++i) {
@@ -184,6 +213,8 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
   state.azimuth = turning.value;
   state.speed = turning.rate;
   state.speed_dot = turning.acceleration;
+  state.generator_torque = T(inputs.generator_torque);
+  state.yaw_torque = T(inputs.yaw_torque);
   return state;
 }
 
@@ -207,20 +238,39 @@ elements::Attachment<T> TurbineResidual::attachment(const PlacedBeam& placed,
   return a;
 }
 
+/// The axes of blade b turn by its pitch; the foot of the tower moves.
+template <class T>
+void TurbineResidual::add_motion(std::size_t b, const TurbineInputs<T>& inputs,
+                                 elements::Attachment<T>& a) const {
+  if (!beams_[b].on_hub) {
+    const Vec3<T>& v = inputs.base_velocity;
+    a.v += Vec3<T>(v(2), v(0), v(1));  // the tower's axes are (n3, n1, n2)
+    return;
+  }
+  if (inputs.pitch.empty()) return;
+  const Mat3<T> feather = math::turn_about<T>(-Vector3::UnitX(), inputs.pitch[b]);
+  for (Vec3<T>* vector : {&a.v, &a.omega, &a.gravity})
+    *vector = (feather.transpose() * *vector).eval();
+  a.omega(0) -= inputs.pitch_rate[b];
+}
+
 template <class T>
 void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                               std::vector<T>& r) const {
+                               const TurbineInputs<T>& inputs, std::vector<T>& r) const {
   std::fill(r.begin(), r.end(), T(0));
   const auto plain = [](const T& value, int) { return value; };
   elements::HubMotion<T> hub;
   const elements::ChainRows<T> rows =
-      elements::rigid_chain(turbine_.chain, chain_state<T>(t, z, z_dot, plain), hub);
-  for (const PlacedBeam& placed : beams_) {
-    const elements::Attachment<T> a = attachment(placed, hub, t);
+      elements::rigid_chain(turbine_.chain, chain_state<T>(t, z, z_dot, plain, inputs), hub);
+  for (std::size_t b = 0; b < beams_.size(); ++b) {
+    const PlacedBeam& placed = beams_[b];
+    elements::Attachment<T> a = attachment(placed, hub, t);
+    add_motion(b, inputs, a);
     for (int p = 0; p < placed.beam->point_count(); ++p) add_point(placed, p, a, z, z_dot, r);
     add_ends(placed, a, z, z_dot, r);
     add_changes(placed, z, r);
     add_loads(placed, t, z, r);
+    if (!placed.on_hub) add_top_force(placed, inputs.top_force, r);
   }
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
   if (turbine_.has_tower)
@@ -231,6 +281,15 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
   put_joint(layout_.shaft_torsion(), chain.torsion.free, rows.torsion, r);
   put_joint(layout_.generator(), chain.generator.free, rows.generator, r);
   for (const int i : layout_.padding()) r[index(i)] = z[index(i)];
+}
+
+/// As a dead load at the tower's end.
+template <class T>
+void TurbineResidual::add_top_force(const PlacedBeam& tower, const Vec3<T>& force,
+                                    std::vector<T>& r) {
+  Eigen::Map<Vec3<T>>(r.data() +
+                      tower.force_rows(tower.beam->point_count() - 1, tower.beam->order)) -=
+      Vec3<T>(force(2), force(0), force(1));
 }
 
 template <class T>

@@ -1,0 +1,68 @@
+// samara linearize: the linear model about the periodic steady state.
+#include "samara/analysis/linearization.hpp"
+#include "samara/io/mat_file.hpp"
+#include "samara/petsc/session.hpp"
+#include "samara/system/turbine_input_output.hpp"
+
+#include "commands.hpp"
+#include "masses.hpp"
+#include "progress.hpp"
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+std::string summary(const io::Case& input, const analysis::Linearization& linear) {
+  std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
+  text += linear.rotor_speed > 0.0 ? "rotor speed " + general(linear.rotor_speed, 6) + " rad/s, " +
+                                         count(static_cast<int>(linear.azimuths.size()), "azimuth")
+                                   : std::string("parked rotor");
+  if (linear.is_constant) text += "; nothing changes with the azimuth";
+  return text + "\n\n";
+}
+
+std::string form_table(const analysis::Linearization& linear) {
+  Table table;
+  table.add_column("form", "", Align::left);
+  for (const char* name : {"states", "inputs", "outputs", "harmonics", "residual"})
+    table.add_column(name, "");
+  for (const analysis::NamedForm& form : linear.forms)
+    table.add_row({form.name, std::to_string(form.states.size()),
+                   std::to_string(form.inputs.size()), std::to_string(form.outputs.size()),
+                   std::to_string(form.series.harmonics()),
+                   form.series.samples().empty() ? "" : scientific(form.series.residual(), 1)});
+  return table.text() +
+         "residual: of the series in the azimuth midway between the azimuths, relative; where it "
+         "is\nnot small more linearize.azimuths and harmonics are needed\n";
+}
+
+}  // namespace
+
+void run_linearize(const Job& job) {
+  const io::LinearizeCase& asked = job.input.linearize;
+  if (!asked.mat_path.empty()) io::require_mat_path(asked.mat_path);
+  const model::Turbine turbine = model::build_turbine(job.input.turbine);
+  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const system::TurbineInputOutput input_output(system, asked.inputs, asked.stations,
+                                                asked.outputs);
+  const bool is_first = petsc::Session::rank() == 0;
+  Progress progress(is_first);
+  analysis::TrimOptions options = job.input.trim;
+  if (turbine.speed == 0.0) options.harmonics = 0;
+  const analysis::Trim trim = analysis::find_trim(system, options, progress);
+  const analysis::Linearization linear = analysis::linearize(
+      system, input_output, trim.solution, turbine.azimuth, asked.options, progress);
+  progress.finish();
+  if (!is_first) return;
+  if (!asked.mat_path.empty()) io::write_mat_file(asked.mat_path, linear);
+  deliver(job, summary(job.input, linear) + form_table(linear),
+          [&](io::ResultFile& file) {
+            file.write_model(system);
+            write_masses(file, model::compute_masses(job.input.turbine, turbine));
+            file.write_trim(trim);
+            file.write_linearization(linear);
+          },
+          {});
+}
+
+}  // namespace samara::drivers

@@ -1,0 +1,89 @@
+#include "samara/analysis/azimuth_series.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "samara/base/error.hpp"
+
+namespace samara::analysis {
+namespace {
+
+/// Where the series is compared, as fractions of the azimuths: midway between two of them.
+constexpr std::array<double, 4> places{0.05, 0.33, 0.58, 0.81};
+
+constexpr std::array<Eigen::MatrixXd StateSpace::*, 4> matrices{&StateSpace::A, &StateSpace::B,
+                                                                &StateSpace::C, &StateSpace::D};
+
+void add(StateSpace& sum, double factor, const StateSpace& form) {
+  for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
+    Eigen::MatrixXd& target = sum.*matrix;
+    if (target.size() == 0) target.setZero((form.*matrix).rows(), (form.*matrix).cols());
+    target += factor * (form.*matrix);
+  }
+}
+
+/// The difference of two forms relative to the second: each entry to the geometric mean of the
+/// largest ones of its row and of its column, whatever the units are.
+double compare(const StateSpace& found, const StateSpace& wanted) {
+  double worst = 0.0;
+  for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
+    const Eigen::MatrixXd& reference = wanted.*matrix;
+    if (reference.size() == 0) continue;
+    const Eigen::VectorXd rows = reference.cwiseAbs().rowwise().maxCoeff();
+    const Eigen::RowVectorXd columns = reference.cwiseAbs().colwise().maxCoeff();
+    for (Eigen::Index i = 0; i < reference.rows(); ++i)
+      for (Eigen::Index j = 0; j < reference.cols(); ++j) {
+        const double size = std::sqrt(rows(i) * columns(j));
+        const double difference = std::abs((found.*matrix)(i, j) - reference(i, j));
+        if (size > 0.0) worst = std::max(worst, difference / size);
+      }
+  }
+  return worst;
+}
+
+}  // namespace
+
+AzimuthSeries::AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths,
+                             int harmonics) {
+  if (harmonics < 0 || azimuths < 2 * harmonics + 1)
+    throw InternalError("a series of more harmonics than its azimuths tell apart");
+  constexpr double turn = 2.0 * std::numbers::pi;
+  for (int i = 0; i < azimuths; ++i) {
+    azimuths_.push_back(turn * i / azimuths);
+    samples_.push_back(form(azimuths_.back()));
+  }
+  coefficients_.resize(static_cast<std::size_t>(2 * harmonics + 1));
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    add(coefficients_[0], 1.0 / azimuths, samples_[i]);
+    for (int k = 1; k <= harmonics; ++k) {
+      const auto at = static_cast<std::size_t>(2 * k - 1);
+      add(coefficients_[at], 2.0 / azimuths * std::cos(k * azimuths_[i]), samples_[i]);
+      add(coefficients_[at + 1], 2.0 / azimuths * std::sin(k * azimuths_[i]), samples_[i]);
+    }
+  }
+  for (const double place : places) {
+    if (azimuths == 1 && harmonics == 0 && place != places.front()) break;
+    const double psi = turn * (std::floor(place * azimuths) + 0.5) / azimuths;
+    residual_ = std::max(residual_, compare(at(psi), form(psi)));
+  }
+}
+
+StateSpace AzimuthSeries::at(double psi) const {
+  StateSpace sum = coefficients_.front();
+  for (int k = 1; k <= harmonics(); ++k) {
+    const auto i = static_cast<std::size_t>(2 * k - 1);
+    add(sum, std::cos(k * psi), coefficients_[i]);
+    add(sum, std::sin(k * psi), coefficients_[i + 1]);
+  }
+  return sum;
+}
+
+double AzimuthSeries::variation() const {
+  double worst = 0.0;
+  for (const StateSpace& sample : samples_) worst = std::max(worst, compare(mean(), sample));
+  return worst;
+}
+
+}  // namespace samara::analysis

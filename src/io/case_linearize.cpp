@@ -1,0 +1,73 @@
+#include "case_linearize.hpp"
+
+#include <algorithm>
+
+#include "yaml_lists.hpp"
+
+namespace samara::io {
+namespace {
+
+constexpr int most_azimuths = 3600;
+constexpr int most_harmonics = 200;
+constexpr int most_order = 100000;
+
+void read_forms(MapReader& map, analysis::LinearizeOptions& options) {
+  std::vector<std::string> forms;
+  read_words(map, "forms", forms);
+  const std::vector<std::pair<std::string, bool*>> known{{"descriptor", &options.descriptor},
+                                                         {"state_space", &options.state_space},
+                                                         {"multiblade", &options.multiblade},
+                                                         {"average", &options.average},
+                                                         {"hill", &options.hill}};
+  if (!forms.empty()) options.state_space = false;
+  for (const std::string& form : forms) {
+    const auto found = std::find_if(known.begin(), known.end(),
+                                    [&form](const auto& one) { return one.first == form; });
+    if (found != known.end())
+      *found->second = true;
+    else
+      map.refuse(
+          *map.node().find("forms"), "forms",
+          "expected descriptor, state_space, multiblade, average or hill, got \"" + form + "\"");
+  }
+}
+
+}  // namespace
+
+void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& errors) {
+  analysis::LinearizeOptions& options = linearize.options;
+  MapReader map(node, "linearize", errors);
+  map.read("azimuths", options.azimuths, 1, most_azimuths);
+  map.read("harmonics", options.harmonics, 0, most_harmonics);
+  if (2 * options.harmonics + 1 > options.azimuths) {
+    const YamlNode* given = node.find("harmonics");
+    if (given != nullptr)
+      map.refuse(*given, "harmonics",
+                 "need at least " + std::to_string(2 * options.harmonics + 1) +
+                     " linearize.azimuths, there are " + std::to_string(options.azimuths));
+    options.harmonics = (options.azimuths - 1) / 2;
+  }
+  read_words(map, "inputs", linearize.inputs);
+  read_words(map, "outputs", linearize.outputs);
+  read_stations(map, "blade_stations", linearize.stations.blade);
+  read_stations(map, "tower_stations", linearize.stations.tower);
+  read_forms(map, options);
+  map.read("hill_harmonics", options.hill_harmonics, 1, most_harmonics);
+  if (const YamlNode* reduce = map.find("reduce")) {
+    MapReader entry(*reduce, map.where("reduce"), errors);
+    entry.require("order", "the number of states");
+    entry.read("order", options.order, 1, most_order);
+    entry.read("method", options.reduction,
+               {{"balanced", analysis::ReductionMethod::balanced},
+                {"modal", analysis::ReductionMethod::modal}});
+    entry.finish();
+  }
+  if (const YamlNode* mat = map.find("mat")) {
+    if (mat->kind != YamlNode::Kind::scalar || mat->text.empty())
+      map.refuse(*mat, "mat", "expected the name of a file, " + describe(*mat));
+    linearize.mat_path = mat->text;
+  }
+  map.finish();
+}
+
+}  // namespace samara::io

@@ -1,0 +1,147 @@
+#include "linear_groups.hpp"
+
+#include <array>
+#include <functional>
+
+namespace samara::io {
+namespace {
+
+using analysis::NamedForm;
+using analysis::StateSpace;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct Part {
+  const char* name;
+  Eigen::MatrixXd StateSpace::*matrix;
+  const char* meaning;
+};
+
+constexpr std::array<Part, 4> parts{{{"A", &StateSpace::A, "state by state"},
+                                     {"B", &StateSpace::B, "state by input"},
+                                     {"C", &StateSpace::C, "output by state"},
+                                     {"D", &StateSpace::D, "output by input"}}};
+constexpr char signal_frame[] = "of the states, inputs and outputs";
+
+std::vector<double> row_major(const Eigen::MatrixXd& matrix) {
+  const Matrix rows = matrix;
+  return {rows.data(), rows.data() + rows.size()};
+}
+
+/// Matrices of one size behind each other: [item, row, column]; of a single one [row, column].
+void write_stack(Hdf5File& file, const std::string& name, std::size_t count,
+                 const std::function<Eigen::MatrixXd(std::size_t)>& item, bool is_single,
+                 const Meaning& meaning) {
+  std::vector<double> values;
+  Hdf5File::Shape shape;
+  if (!is_single) shape.push_back(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::MatrixXd matrix = item(i);
+    const std::vector<double> rows = row_major(matrix);
+    values.insert(values.end(), rows.begin(), rows.end());
+    if (i > 0) continue;
+    shape.push_back(static_cast<hsize_t>(matrix.rows()));
+    shape.push_back(static_cast<hsize_t>(matrix.cols()));
+  }
+  file.write(name, values, shape, meaning);
+}
+
+void write_signals(Hdf5File& file, const std::string& group, const std::string& what,
+                   const std::vector<system::Signal>& signals) {
+  std::vector<std::string> names, units, frames, descriptions;
+  for (const system::Signal& signal : signals) {
+    names.push_back(signal.name);
+    units.push_back(signal.unit);
+    frames.push_back(signal.frame);
+    descriptions.push_back(signal.description);
+  }
+  file.write(group + "/name", names, {"", "none", "names of the " + what});
+  file.write(group + "/unit", units, {"", "none", "units of the " + what});
+  file.write(group + "/frame", frames, {"", "none", "frames of the " + what});
+  file.write(group + "/description", descriptions, {"", "none", what + " in words"});
+}
+
+void write_form(Hdf5File& file, const NamedForm& form) {
+  const std::string group = "/linearize/" + form.name;
+  const auto& coefficients = form.series.coefficients();
+  const bool is_single = coefficients.size() == 1;
+  for (const Part& part : parts)
+    write_stack(file, group + "/" + part.name, coefficients.size(),
+                [&](std::size_t i) { return coefficients[i].*(part.matrix); }, is_single,
+                {"SI, outputs in their units", signal_frame,
+                 std::string(part.meaning) +
+                     (is_single ? "" : ", [mean, cos 1, sin 1, cos 2, ... of the azimuth]")});
+  if (!form.series.samples().empty())
+    for (const Part& part : parts)
+      write_stack(file, group + "/at_azimuths/" + part.name, form.series.samples().size(),
+                  [&](std::size_t i) { return form.series.samples()[i].*(part.matrix); }, false,
+                  {"SI, outputs in their units", signal_frame,
+                   std::string(part.meaning) + " at /linearize/azimuth"});
+  std::vector<std::string> names, units;
+  std::vector<double> scales;
+  for (const analysis::ModelState& state : form.states) {
+    names.push_back(state.name);
+    units.push_back(state.unit);
+    scales.push_back(state.scale);
+  }
+  file.write(group + "/states/name", names,
+             {"", "none", "unknowns whose small changes are the states, over their scale"});
+  file.write(group + "/states/unit", units, {"", "none", "units of these unknowns"});
+  file.write(group + "/states/scale", scales, {scales.size()},
+             {"1", "none", "unknown = scale times state"});
+  write_signals(file, group + "/inputs", "inputs", form.inputs);
+  write_signals(file, group + "/outputs", "outputs", form.outputs);
+  file.set_attribute(group, "description", form.description);
+  if (form.hankel.size() > 0) {
+    file.write(
+        group + "/hankel_singular_values",
+        std::span<const double>(form.hankel.data(), static_cast<std::size_t>(form.hankel.size())),
+        {static_cast<hsize_t>(form.hankel.size())},
+        {"outputs over inputs", "none", "of the stable part, falling"});
+    file.set_attribute(group, "error_bound", form.error_bound);
+  }
+  file.set_attribute(group, "harmonics", form.series.harmonics());
+  file.set_attribute(group, "residual", form.series.residual());
+}
+
+void write_descriptors(Hdf5File& file, const analysis::Linearization& linear) {
+  using analysis::DescriptorForm;
+  const std::string group = "/linearize/descriptor/";
+  const auto write = [&](const std::string& name, const auto& item, const std::string& meaning) {
+    write_stack(
+        file, group + name, linear.descriptors.size(),
+        [&](std::size_t i) { return Eigen::MatrixXd(item(linear.descriptors[i])); }, false,
+        {"SI, outputs in their units", "of the unknowns (/model/unknowns), inputs and outputs",
+         meaning + " at /linearize/azimuth"});
+  };
+  write(
+      "M", [](const DescriptorForm& f) { return f.M; }, "M z_dot + K z + R u + R_rate u_dot = 0:");
+  write(
+      "K", [](const DescriptorForm& f) { return f.K; }, "row by unknown");
+  write(
+      "R", [](const DescriptorForm& f) { return f.R; }, "row by input");
+  write(
+      "R_rate", [](const DescriptorForm& f) { return f.R_rate; }, "row by input");
+  write(
+      "C", [](const DescriptorForm& f) { return f.C; }, "y = C z + C_rate z_dot + D u:");
+  write(
+      "C_rate", [](const DescriptorForm& f) { return f.C_rate; }, "output by unknown");
+  write(
+      "D", [](const DescriptorForm& f) { return f.D; }, "output by input");
+}
+
+}  // namespace
+
+void write_linear_groups(Hdf5File& file, const analysis::Linearization& linear) {
+  file.write("/linearize/azimuth", linear.azimuths, {linear.azimuths.size()},
+             {"rad", "shaft", "of blade 1, at which the matrices were computed"});
+  file.write(
+      "/linearize/operating_outputs", row_major(linear.outputs),
+      {static_cast<hsize_t>(linear.outputs.rows()), static_cast<hsize_t>(linear.outputs.cols())},
+      {"units of the outputs", "of the outputs", "outputs on the steady state, [azimuth, output]"});
+  file.set_attribute("/linearize", "rotor_speed", linear.rotor_speed);
+  file.set_attribute("/linearize", "is_constant", linear.is_constant ? 1 : 0);
+  for (const NamedForm& form : linear.forms) write_form(file, form);
+  if (!linear.descriptors.empty()) write_descriptors(file, linear);
+}
+
+}  // namespace samara::io

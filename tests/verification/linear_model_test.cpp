@@ -1,0 +1,304 @@
+// The linear model in state-space form: its exponents are those of the other analyses, and small
+// inputs do to the nonlinear equations what it says.
+#include "samara/analysis/linear_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <boost/test/unit_test.hpp>
+
+#include "samara/analysis/azimuth_series.hpp"
+#include "samara/analysis/hill.hpp"
+#include "samara/system/turbine_input_output.hpp"
+
+#include "history.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using analysis::TransientSample;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// A turbine, its steady state and its linear model.
+struct Linearized {
+  explicit Linearized(const model::TurbineDefinition& definition,
+                      const std::vector<std::string>& inputs = {},
+                      const std::vector<std::string>& channels = {}, int harmonics = 4)
+      : system(model::build_turbine(definition), PETSC_COMM_SELF),
+        ports(system, inputs, {}, channels),
+        trim(find(system, harmonics)),
+        model(system, ports, trim.solution) {}
+
+  static analysis::Trim find(const system::PeriodicSystem& system, int harmonics) {
+    analysis::Observer observer;
+    analysis::TrimOptions options;
+    options.harmonics = harmonics;
+    return analysis::find_trim(system, options, observer);
+  }
+
+  system::TurbineSystem system;
+  system::TurbineInputOutput ports;
+  analysis::Trim trim;
+  analysis::LinearModel model;
+};
+
+/// Distance of each of `wanted` to the nearest of `found`, relative to the larger of its size and
+/// `floor`.
+double worst_distance(const std::vector<Complex>& wanted, const std::vector<Complex>& found,
+                      double floor) {
+  double worst = 0.0;
+  for (const Complex& one : wanted) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Complex& other : found) nearest = std::min(nearest, std::abs(one - other));
+    worst = std::max(worst, nearest / std::max(std::abs(one), floor));
+  }
+  return worst;
+}
+
+std::vector<Complex> eigenvalues_of(const MatrixXd& matrix) {
+  const Eigen::EigenSolver<MatrixXd> solver(matrix, false);
+  std::vector<Complex> values(static_cast<std::size_t>(matrix.rows()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = solver.eigenvalues()(static_cast<Eigen::Index>(i));
+  return values;
+}
+
+Complex nearest_exponent(const analysis::ModeSet& set, Complex exponent) {
+  Complex best = set.modes.front().exponent;
+  for (const analysis::Mode& mode : set.modes)
+    if (std::abs(mode.exponent - exponent) < std::abs(best - exponent)) best = mode.exponent;
+  return best;
+}
+
+/// Exponents up to here [rad/s] are compared where the reference has a step of its own.
+constexpr double fastest = 60.0;
+
+struct History {
+  std::vector<double> times;
+  std::vector<VectorXd> values;
+};
+
+/// A turbine under u(t) = size (1 - cos(omega t))^2 in one input: at rest at the start.
+class Driven final : public system::PeriodicSystem {
+ public:
+  Driven(const system::TurbineSystem& turbine, const system::TurbineInputOutput& ports, int input,
+         double size, double omega)
+      : turbine_(turbine), ports_(ports), input_(input), size_(size), omega_(omega) {}
+
+  double value(double t, int derivative) const {
+    const double c = std::cos(omega_ * t);
+    const double s = std::sin(omega_ * t);
+    if (derivative == 0) return size_ * (1.0 - c) * (1.0 - c);
+    if (derivative == 1) return size_ * 2.0 * omega_ * (1.0 - c) * s;
+    return size_ * 2.0 * omega_ * omega_ * (s * s + c - c * c);
+  }
+
+  system::TurbineInputs<double> inputs_at(double t) const {
+    const auto count = static_cast<Eigen::Index>(ports_.inputs().size());
+    VectorXd values = VectorXd::Zero(count);
+    VectorXd rates = VectorXd::Zero(count);
+    values(input_) = value(t, 0);
+    rates(input_) = value(t, 1);
+    return ports_.collect<double>(values, rates);
+  }
+
+  MPI_Comm comm() const override { return turbine_.comm(); }
+  PetscInt size() const override { return turbine_.size(); }
+  double period() const override { return turbine_.period(); }
+  const std::vector<system::Unknown>& unknowns() const override { return turbine_.unknowns(); }
+  const std::vector<system::RowRole>& rows() const override { return turbine_.rows(); }
+  const std::vector<bool>& differential() const override { return turbine_.differential(); }
+  bool constraints_are_autonomous() const override { return true; }
+  const system::RotorSymmetry& symmetry() const override { return turbine_.symmetry(); }
+  const std::vector<system::EnergyGroup>& energy_groups() const override {
+    return turbine_.energy_groups();
+  }
+  const std::vector<system::NeutralCoordinate>& neutral_coordinates() const override {
+    return turbine_.neutral_coordinates();
+  }
+  void reference_state(double t, Vec z) const override { turbine_.reference_state(t, z); }
+  petsc::Handle<Vec> make_state() const override { return turbine_.make_state(); }
+  petsc::Handle<Mat> make_jacobian() const override { return turbine_.make_jacobian(); }
+  petsc::Handle<Mat> make_mass() const override { return turbine_.make_mass(); }
+  void residual(double t, Vec z, Vec z_dot, Vec r) const override {
+    const auto plain = [this](Vec vector) {
+      const petsc::ReadView view(vector);
+      return std::vector<double>(view.data(), view.data() + size());
+    };
+    std::vector<double> result(static_cast<std::size_t>(size()));
+    turbine_.equations().evaluate(t, plain(z), plain(z_dot), inputs_at(t), result);
+    const petsc::WriteView view(r);
+    std::copy(result.begin(), result.end(), view.data());
+  }
+  /// Those without inputs are near enough for Newton's method.
+  void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian, Mat mass) const override {
+    turbine_.tangents(t, z, z_dot, shift, jacobian, mass);
+  }
+
+ private:
+  const system::TurbineSystem& turbine_;
+  const system::TurbineInputOutput& ports_;
+  int input_;
+  double size_;
+  double omega_;
+};
+
+model::TurbineDefinition small_baseline(double gravity) {
+  return lee("baseline",
+             {"blades.elements=2", "tower.elements=2", "gravity=" + std::to_string(gravity)})
+      .turbine;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(eigenvalues_of_constant_state_spaces_are_those_of_modes) {
+  const std::vector<model::TurbineDefinition> cases{
+      lee("rigid_tower", {"nacelle.yaw={joint: locked}"}).turbine,
+      lee("baseline", {"shaft.speed=0", "blades.damping=1e-4", "tower.damping=2e-4"}).turbine,
+      lee("baseline", {"shaft.speed=0", "gravity=9.81", "blades.pitch_deg=10"}).turbine,
+  };
+  for (const model::TurbineDefinition& definition : cases) {
+    const Linearized linear(definition);
+    const analysis::ModeSet set =
+        analysis::find_constant_modes(linear.system, linear.trim.solution);
+    std::vector<Complex> wanted;
+    for (const analysis::Mode& mode : set.modes)
+      if (mode.exponent != 0.0 && std::abs(mode.exponent) < 1e3) wanted.push_back(mode.exponent);
+    const std::vector<Complex> found = eigenvalues_of(linear.model.state_space(0.1).A);
+    BOOST_TEST(found.size() == 2u * static_cast<std::size_t>(set.degrees_of_freedom));
+    BOOST_TEST(worst_distance(wanted, found, 1.0) < 1e-9);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(exponents_of_periodic_state_spaces_are_those_of_floquet) {
+  for (const double gravity : {0.0, 9.81}) {
+    const model::TurbineDefinition definition = small_baseline(gravity);
+    const Linearized linear(definition);
+    // The step's error is one of even powers: two extrapolations.
+    std::vector<analysis::ModeSet> sets;
+    for (const int steps : {500, 1000, 2000}) sets.push_back(floquet_of(definition, steps).set);
+    std::vector<Complex> wanted;
+    for (const analysis::Mode& mode : sets[2].modes) {
+      // Rounding splits a double zero by its root.
+      if (std::abs(mode.exponent) < 1e-4 || std::abs(mode.exponent) > fastest) continue;
+      const Complex middle = nearest_exponent(sets[1], mode.exponent);
+      const Complex coarse = nearest_exponent(sets[0], middle);
+      const Complex once = (4.0 * middle - coarse) / 3.0;
+      const Complex twice = (4.0 * mode.exponent - middle) / 3.0;
+      wanted.push_back((16.0 * twice - once) / 15.0);
+    }
+    BOOST_TEST(wanted.size() >= 7u);
+    const analysis::AzimuthSeries series(
+        [&linear](double psi) {
+          return linear.model.state_space(psi / linear.system.turbine().speed);
+        },
+        31, 15);
+    BOOST_TEST(series.residual() < 1e-5);
+    const MatrixXd hill = analysis::hill_matrix(series, linear.system.turbine().speed, 8);
+    BOOST_TEST(worst_distance(wanted, eigenvalues_of(hill), 1.0) < 1e-6);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model_says) {
+  // Gravity, tilt, pitch, cone: nothing is constant and nothing symmetric. The steady state needs
+  // many harmonics, as the rotor speed swings.
+  constexpr double step = 0.0005;
+  constexpr int steps = 700;
+  constexpr double omega = 9.0;
+  constexpr double largest_difference = 0.01;
+  const model::TurbineDefinition definition =
+      lee("baseline",
+          {"blades.elements=2", "tower.elements=2", "gravity=9.81", "blades.pitch_deg=8",
+           "blades.precone_deg=3", "shaft.tilt_deg=4", "nacelle.yaw.stiffness=1e6",
+           "nacelle.yaw.damping=1e4", "blades.damping=2e-3", "tower.damping=2e-3",
+           "shaft.generator={joint: free, inertia: 2000, torque: 1e4, torque_slope: 3e3}",
+           "shaft.rotor={torque: 1e4, torque_slope: -1e3}"})
+          .turbine;
+  const std::vector<std::string> inputs{
+      "generator_torque", "yaw_torque", "top_force_n1", "top_force_n2", "top_force_n3", "pitch",
+      "pitch_1",          "base_n1",    "base_n2",      "base_n3"};
+  const std::vector<std::string> channels{
+      "RootMxb1", "RootMyb2",  "RootMzb1",  "RootMyc1", "TipDxb1",  "TTDspFA",
+      "TTDspSS",  "TwrBsMyt",  "TwrBsMxt",  "NacYaw",   "RotSpeed", "TeetDefl",
+      "RotTorq",  "LSSTipMys", "YawBrTAxp", "TipALxb1", "YawBrMzp"};
+  const Linearized linear(definition, inputs, channels, 14);
+  const auto outputs = static_cast<Eigen::Index>(channels.size());
+  const auto n = static_cast<Eigen::Index>(linear.model.states().size());
+  std::vector<analysis::StateSpace> forms;
+  for (int k = 0; k <= steps; ++k) forms.push_back(linear.model.state_space(step * k));
+  const system::TurbineChannels measured(linear.system, {}, channels);
+  const auto history_of = [&](const Driven& system) {
+    Keeper<VectorXd> keeper([&](const TransientSample& sample) {
+      VectorXd y(outputs);
+      const VectorXd z = values_of(sample.z);
+      const VectorXd z_dot = values_of(sample.z_dot);
+      measured.evaluate<double>(sample.t, {z.begin(), z.end()}, {z_dot.begin(), z_dot.end()},
+                                std::span<double>(y.data(), channels.size()),
+                                system.inputs_at(sample.t));
+      return y;
+    });
+    analysis::run_transient(system, analysis::start_on(linear.system, linear.trim, 0.0),
+                            steps_of(step, step * steps, analysis::TransientMethod::bdf2), keeper);
+    return History{keeper.times, keeper.values};
+  };
+  for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
+    const bool is_motion = linear.ports.inputs()[static_cast<std::size_t>(i)].is_motion;
+    const double size = is_motion ? 1e-3 : 300.0;
+    const Driven up(linear.system, linear.ports, i, size, omega);
+    const Driven down(linear.system, linear.ports, i, -size, omega);
+    const History above = history_of(up);
+    const History below = history_of(down);
+    const auto input_at = [&](int k) {
+      VectorXd u = VectorXd::Zero(forms[0].B.cols());
+      for (std::size_t c = 0; c < linear.model.input_columns().size(); ++c) {
+        const analysis::InputColumn& column = linear.model.input_columns()[c];
+        if (static_cast<int>(column.input) == i)
+          u(static_cast<Eigen::Index>(c)) = up.value(step * k, column.derivative);
+      }
+      return u;
+    };
+    VectorXd x = VectorXd::Zero(n);
+    VectorXd before = x;
+    std::vector<VectorXd> y{forms[0].D * input_at(0)};
+    for (int k = 1; k <= steps; ++k) {
+      const analysis::StateSpace& form = forms[static_cast<std::size_t>(k)];
+      const MatrixXd left = 1.5 * MatrixXd::Identity(n, n) - step * form.A;
+      const VectorXd right = 2.0 * x - 0.5 * before + step * (form.B * input_at(k));
+      before = x;
+      x = left.partialPivLu().solve(right);
+      y.push_back(form.C * x + form.D * input_at(k));
+    }
+    VectorXd largest = VectorXd::Zero(outputs);
+    VectorXd difference = VectorXd::Zero(outputs);
+    for (std::size_t s = 0; s < above.times.size(); ++s) {
+      const double at = above.times[s] / step;
+      const auto k = static_cast<std::size_t>(std::lround(at));
+      if (std::abs(at - std::round(at)) > 1e-6) continue;
+      std::size_t other = 0;
+      while (std::abs(below.times[other] - above.times[s]) > 1e-9) ++other;
+      const VectorXd found = 0.5 * (above.values[s] - below.values[other]);
+      largest = largest.cwiseMax(y[k].cwiseAbs());
+      difference = difference.cwiseMax((found - y[k]).cwiseAbs());
+    }
+    // Of the largest response in the same unit: some of the others nearly vanish.
+    std::map<std::string, double> sizes;
+    for (Eigen::Index o = 0; o < outputs; ++o) {
+      double& unit_size = sizes[linear.ports.outputs()[static_cast<std::size_t>(o)].unit];
+      unit_size = std::max(unit_size, largest(o));
+    }
+    for (Eigen::Index o = 0; o < outputs; ++o) {
+      const auto at = static_cast<std::size_t>(o);
+      const double scale = sizes[linear.ports.outputs()[at].unit];
+      BOOST_TEST(difference(o) <= largest_difference * scale,
+                 inputs[static_cast<std::size_t>(i)] << " to " << channels[at] << ": "
+                                                     << difference(o) << " of " << scale);
+    }
+  }
+}
