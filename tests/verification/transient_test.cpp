@@ -93,7 +93,10 @@ BOOST_AUTO_TEST_CASE(two_integrators_agree_on_the_spun_beam) {
   std::map<TransientMethod, Eigen::VectorXd> ends;
   for (const TransientMethod method : methods) {
     std::vector<std::pair<double, double>> errors;
-    for (const double rate : {250.0, 500.0, 1000.0, 2000.0, 4000.0}) {
+    // The reference is 16 times better than the finest of the midpoint rule; BDF2 is coarser.
+    std::vector<double> rates{250.0, 500.0, 1000.0, 2000.0};
+    if (method == TransientMethod::bdf2) rates.push_back(4000.0);
+    for (const double rate : rates) {
       ends[method] = state_after(*system, start, steps_of(1.0 / rate, 2.0, method));
       errors.emplace_back(rate, position_difference(*system, ends[method], exact));
     }
