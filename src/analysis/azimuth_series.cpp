@@ -24,18 +24,32 @@ void add(StateSpace& sum, double factor, const StateSpace& form) {
   }
 }
 
-/// The difference of two forms relative to the second: each entry to the geometric mean of the
-/// largest ones of its row and of its column, whatever the units are.
-double compare(const StateSpace& found, const StateSpace& wanted) {
+/// Of the largest entry of a column: a row that is smaller everywhere is rounding.
+constexpr double least_row = 1e-6;
+
+/// The largest size of every entry at any azimuth.
+StateSpace largest_of(const std::vector<StateSpace>& samples) {
+  StateSpace largest = samples.front();
+  for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
+    Eigen::MatrixXd& target = largest.*matrix;
+    for (const StateSpace& sample : samples)
+      target = target.cwiseAbs().cwiseMax((sample.*matrix).cwiseAbs());
+  }
+  return largest;
+}
+
+/// The difference of two forms: each entry relative to the geometric mean of the largest ones of
+/// its row and of its column at any azimuth, whatever the units are.
+double compare(const StateSpace& found, const StateSpace& wanted, const StateSpace& largest) {
   double worst = 0.0;
   for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
     const Eigen::MatrixXd& reference = wanted.*matrix;
     if (reference.size() == 0) continue;
-    const Eigen::VectorXd rows = reference.cwiseAbs().rowwise().maxCoeff();
-    const Eigen::RowVectorXd columns = reference.cwiseAbs().colwise().maxCoeff();
+    const Eigen::VectorXd rows = (largest.*matrix).rowwise().maxCoeff();
+    const Eigen::RowVectorXd columns = (largest.*matrix).colwise().maxCoeff();
     for (Eigen::Index i = 0; i < reference.rows(); ++i)
       for (Eigen::Index j = 0; j < reference.cols(); ++j) {
-        const double size = std::sqrt(rows(i) * columns(j));
+        const double size = std::max(std::sqrt(rows(i) * columns(j)), least_row * columns(j));
         const double difference = std::abs((found.*matrix)(i, j) - reference(i, j));
         if (size > 0.0) worst = std::max(worst, difference / size);
       }
@@ -63,10 +77,11 @@ AzimuthSeries::AzimuthSeries(const std::function<StateSpace(double)>& form, int 
       add(coefficients_[at + 1], 2.0 / azimuths * std::sin(k * azimuths_[i]), samples_[i]);
     }
   }
+  const StateSpace largest = largest_of(samples_);
   for (const double place : places) {
     if (azimuths == 1 && harmonics == 0 && place != places.front()) break;
     const double psi = turn * (std::floor(place * azimuths) + 0.5) / azimuths;
-    residual_ = std::max(residual_, compare(at(psi), form(psi)));
+    residual_ = std::max(residual_, compare(at(psi), form(psi), largest));
   }
 }
 
@@ -82,7 +97,10 @@ StateSpace AzimuthSeries::at(double psi) const {
 
 double AzimuthSeries::variation() const {
   double worst = 0.0;
-  for (const StateSpace& sample : samples_) worst = std::max(worst, compare(mean(), sample));
+  if (samples_.empty()) return worst;
+  const StateSpace largest = largest_of(samples_);
+  for (const StateSpace& sample : samples_)
+    worst = std::max(worst, compare(mean(), sample, largest));
   return worst;
 }
 
