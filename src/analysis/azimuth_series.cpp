@@ -26,6 +26,8 @@ void add(StateSpace& sum, double factor, const StateSpace& form) {
 
 /// Of the largest entry of a column: a row that is smaller everywhere is rounding.
 constexpr double least_row = 1e-6;
+/// Of the largest entry of a matrix: what is smaller everywhere in row and column is rounding.
+constexpr double rounding = 1e-12;
 
 /// The largest size of every entry at any azimuth.
 StateSpace largest_of(const std::vector<StateSpace>& samples) {
@@ -51,7 +53,7 @@ double compare(const StateSpace& found, const StateSpace& wanted, const StateSpa
       for (Eigen::Index j = 0; j < reference.cols(); ++j) {
         const double size = std::max(std::sqrt(rows(i) * columns(j)), least_row * columns(j));
         const double difference = std::abs((found.*matrix)(i, j) - reference(i, j));
-        if (size > 0.0) worst = std::max(worst, difference / size);
+        if (size > rounding * rows.maxCoeff()) worst = std::max(worst, difference / size);
       }
   }
   return worst;
