@@ -4,59 +4,17 @@
 #include <string>
 
 #include <Eigen/QR>
-#include <Eigen/SparseLU>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
+#include "sparse_parts.hpp"
+
 namespace samara::analysis {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
-
 /// Below it a strain does not let a held end give way.
 constexpr double least_pivot = 1e-9;
-
-struct Tangents {
-  Sparse K, M;
-};
-
-Tangents tangents_at(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                     double t) {
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const petsc::Handle<Mat> jacobian = system.make_jacobian();
-  const petsc::Handle<Mat> mass = system.make_mass();
-  solution.evaluate(t, z.get(), z_dot.get());
-  system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-  return {to_sparse(jacobian.get()), to_sparse(mass.get())};
-}
-
-/// Picks rows and columns of a sparse matrix.
-Sparse part(const Sparse& whole, const std::vector<PetscInt>& rows,
-            const std::vector<PetscInt>& columns) {
-  std::vector<int> place(static_cast<std::size_t>(whole.rows()), -1);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t j = 0; j < columns.size(); ++j)
-    for (Sparse::InnerIterator it(whole, columns[j]); it; ++it)
-      if (place[static_cast<std::size_t>(it.row())] >= 0)
-        entries.emplace_back(place[static_cast<std::size_t>(it.row())], static_cast<int>(j),
-                             it.value());
-  Sparse picked(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
-  picked.setFromTriplets(entries.begin(), entries.end());
-  return picked;
-}
-
-Eigen::MatrixXd solve(const Sparse& matrix, const Eigen::MatrixXd& right, const char* what) {
-  if (matrix.rows() == 0) return right;
-  Eigen::SparseLU<Sparse> lu;
-  lu.compute(matrix);
-  if (lu.info() != Eigen::Success)
-    throw InternalError(std::string("the ") + what + " do not determine the state");
-  return lu.solve(right);
-}
 
 }  // namespace
 
@@ -64,7 +22,7 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution)
     : system_(system), solution_(solution) {
   const auto n = static_cast<std::size_t>(system.size());
-  const Tangents at_start = tangents_at(system, solution, 0.0);
+  const SparseTangents at_start = tangents_on(system, solution, 0.0);
   for (std::size_t i = 0; i < n; ++i)
     if (system.rows()[i] == system::RowRole::constraint)
       constraints_.push_back(static_cast<PetscInt>(i));
@@ -192,7 +150,7 @@ Eigen::MatrixXd ConsistentSubspace::coordinates_of(const Eigen::MatrixXd& z) con
 }
 
 Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
-  const Tangents tangents = tangents_at(system_, solution_, t);
+  const SparseTangents tangents = tangents_on(system_, solution_, t);
   const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
   Eigen::MatrixXd z = Eigen::MatrixXd::Zero(system_.size(), d);
   for (Eigen::Index i = 0; i < d; ++i)
@@ -200,7 +158,7 @@ Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
   const Eigen::MatrixXd strained = part(tangents.K, constraints_, coordinates_) *
                                    Eigen::Map<const Eigen::VectorXd>(scale_.data(), d).asDiagonal();
   const Eigen::MatrixXd tied =
-      solve(part(tangents.K, constraints_, tied_), -strained, "constraints");
+      SparseSolver(part(tangents.K, constraints_, tied_), "constraints").solve(-strained);
   for (std::size_t i = 0; i < tied_.size(); ++i)
     z.row(tied_[i]) = tied.row(static_cast<Eigen::Index>(i));
   return z;
@@ -221,7 +179,7 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i)
     if (system_.unknowns()[i].role == system::UnknownRole::position)
       position_unknowns.push_back(static_cast<PetscInt>(i));
-  const Tangents tangents = tangents_at(system_, solution_, t);
+  const SparseTangents tangents = tangents_on(system_, solution_, t);
   Eigen::MatrixXd p(static_cast<Eigen::Index>(position_unknowns.size()), 2 * d);
   Eigen::MatrixXd p_dot(p.rows(), 2 * d);
   for (std::size_t i = 0; i < position_unknowns.size(); ++i) {
@@ -231,7 +189,7 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
   const Eigen::MatrixXd right = part(tangents.K, kinematic_, position_unknowns) * p +
                                 part(tangents.M, kinematic_, position_unknowns) * p_dot;
   const Eigen::MatrixXd v =
-      solve(part(tangents.K, kinematic_, velocities_), -right, "kinematic rows");
+      SparseSolver(part(tangents.K, kinematic_, velocities_), "kinematic rows").solve(-right);
   for (std::size_t i = 0; i < velocities_.size(); ++i)
     z.row(velocities_[i]) = v.row(static_cast<Eigen::Index>(i));
   return z;
@@ -263,7 +221,7 @@ void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
     system_.tangents(t, z, z_dot.get(), 0.0, jacobian.get(), nullptr);
     K = to_sparse(jacobian.get());
     const Eigen::VectorXd change =
-        solve(part(K, constraints_, tied_), -rows_of(constraints_), "constraints");
+        SparseSolver(part(K, constraints_, tied_), "constraints").solve(-rows_of(constraints_));
     const petsc::WriteView view(z);
     for (std::size_t i = 0; i < tied_.size(); ++i)
       view[tied_[i]] += change(static_cast<Eigen::Index>(i));
@@ -280,7 +238,8 @@ void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
   const Eigen::MatrixXd strained =
       part(K, constraints_, coordinates_) *
       (Eigen::Map<const Eigen::VectorXd>(scale_.data(), eta_dot.size()).cwiseProduct(eta_dot));
-  const Eigen::MatrixXd tied = solve(part(K, constraints_, tied_), -strained, "constraints");
+  const Eigen::MatrixXd tied =
+      SparseSolver(part(K, constraints_, tied_), "constraints").solve(-strained);
   for (std::size_t i = 0; i < tied_.size(); ++i)
     rates(tied_[i], 0) = tied(static_cast<Eigen::Index>(i), 0);
   {
@@ -289,7 +248,7 @@ void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
   }
   system_.residual(t, z, z_dot.get(), r.get());
   const Eigen::VectorXd change =
-      solve(part(K, kinematic_, velocities_), -rows_of(kinematic_), "kinematic rows");
+      SparseSolver(part(K, kinematic_, velocities_), "kinematic rows").solve(-rows_of(kinematic_));
   const petsc::WriteView view(z);
   for (std::size_t i = 0; i < velocities_.size(); ++i)
     view[velocities_[i]] += change(static_cast<Eigen::Index>(i));

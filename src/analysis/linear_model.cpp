@@ -6,15 +6,15 @@
 #include <string>
 
 #include <Eigen/LU>
-#include <Eigen/SparseLU>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
+#include "sparse_parts.hpp"
+
 namespace samara::analysis {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
 using Dense = Eigen::MatrixXd;
 
 /// Central differences of order 8 over four steps on each side.
@@ -30,44 +30,6 @@ constexpr int steps_a_harmonic = 32;
 template <class Matrix>
 struct Jet {
   Matrix value, first, second;
-};
-
-Sparse part(const Sparse& whole, const std::vector<PetscInt>& rows,
-            const std::vector<PetscInt>& columns) {
-  std::vector<int> place(static_cast<std::size_t>(whole.rows()), -1);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t j = 0; j < columns.size(); ++j)
-    for (Sparse::InnerIterator it(whole, columns[j]); it; ++it)
-      if (place[static_cast<std::size_t>(it.row())] >= 0)
-        entries.emplace_back(place[static_cast<std::size_t>(it.row())], static_cast<int>(j),
-                             it.value());
-  Sparse picked(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
-  picked.setFromTriplets(entries.begin(), entries.end());
-  return picked;
-}
-
-Sparse rows_of(const Sparse& whole, const std::vector<PetscInt>& rows) {
-  std::vector<PetscInt> all(static_cast<std::size_t>(whole.cols()));
-  for (std::size_t j = 0; j < all.size(); ++j) all[j] = static_cast<PetscInt>(j);
-  return part(whole, rows, all);
-}
-
-/// Factors of a square sparse part, for several right-hand sides.
-class Solver {
- public:
-  Solver(const Sparse& matrix, const char* what) : empty_(matrix.rows() == 0) {
-    if (empty_) return;
-    lu_.compute(matrix);
-    if (lu_.info() != Eigen::Success)
-      throw InternalError(std::string("the ") + what + " do not determine the state");
-  }
-  Dense solve(const Dense& right) const { return empty_ ? right : Dense(lu_.solve(right)); }
-
- private:
-  Eigen::SparseLU<Sparse> lu_;
-  bool empty_;
 };
 
 /// Dense solve with rows and columns of size one, refined once.
@@ -132,7 +94,6 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
     }
   for (std::size_t i = 0; i < input_output.inputs().size(); ++i) {
     const bool is_motion = input_output.inputs()[i].is_motion;
-    has_motions_ = has_motions_ || is_motion;
     for (int derivative = 0; derivative < (is_motion ? 3 : 1); ++derivative)
       columns_.push_back({i, derivative});
   }
@@ -141,12 +102,10 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
 LinearModel::Tangents LinearModel::tangents_at(double t) const {
   const petsc::Handle<Vec> z = system_.make_state();
   const petsc::Handle<Vec> z_dot = system_.make_state();
-  const petsc::Handle<Mat> jacobian = system_.make_jacobian();
-  const petsc::Handle<Mat> mass = system_.make_mass();
   solution_.evaluate(t, z.get(), z_dot.get());
-  system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
   const system::InputTangents inputs = input_output_.input_tangents(t, z.get(), z_dot.get());
-  return {to_sparse(jacobian.get()), to_sparse(mass.get()), inputs.by_value, inputs.by_rate};
+  const SparseTangents tangents = tangents_on(system_, solution_, t);
+  return {tangents.K, tangents.M, inputs.by_value, inputs.by_rate};
 }
 
 DescriptorForm LinearModel::descriptor(double t) const {
@@ -206,7 +165,7 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
         subspace_.scale()[static_cast<std::size_t>(i)];
   const Jet<Sparse> D{rows_of(K.value, constraints), rows_of(K.first, constraints),
                       rows_of(K.second, constraints)};
-  const Solver positions(part(K.value, constraints, tied), "constraints");
+  const SparseSolver positions(part(K.value, constraints, tied), "constraints");
   Z.value(tied, Eigen::all) = positions.solve(-(D.value * Z.value));
   Z.first(tied, Eigen::all) = positions.solve(-(D.first * Z.value));
   Z.second(tied, Eigen::all) = positions.solve(-(2.0 * (D.first * Z.first) + D.second * Z.value));
@@ -224,7 +183,7 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
   z_ddot.middleCols(2 * d, d) = Z.value;
 
   // K z + M z_dot + R u + R' u_dot = 0 in the kinematic rows, and its rate.
-  const Solver speeds(part(K.value, kinematic, velocities), "kinematic rows");
+  const SparseSolver speeds(part(K.value, kinematic, velocities), "kinematic rows");
   const Sparse K_rows = rows_of(K.value, kinematic);
   const Sparse M_rows = rows_of(now.M, kinematic);
   const auto input = [&](const Dense& matrix) { return Dense(matrix(kinematic, Eigen::all)); };

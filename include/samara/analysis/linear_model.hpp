@@ -79,7 +79,6 @@ class LinearModel {
   std::vector<PetscInt> reactions_;  ///< internal loads that constraints do not determine
   std::vector<ModelState> states_;
   std::vector<InputColumn> columns_;
-  bool has_motions_ = false;
 };
 
 }  // namespace samara::analysis
