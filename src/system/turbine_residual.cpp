@@ -2,13 +2,8 @@
 
 namespace samara::system {
 
-Matrix3 PlacedBeam::axes(const math::TimeCurve::Value& pitch) const {
-  if (pitch.value == 0.0) return C_Ha;
-  return C_Ha * math::turn_about<double>(-Vector3::UnitX(), pitch.value);
-}
-
-Eigen::Matrix<double, 9, 9> PlacedBeam::root_from_hub(const math::TimeCurve::Value& pitch) const {
-  const Matrix3 C_aH = axes(pitch).transpose();
+Eigen::Matrix<double, 9, 9> PlacedBeam::root_from_hub() const {
+  const Matrix3 C_aH = C_Ha.transpose();
   Eigen::Matrix<double, 9, 9> map = Eigen::Matrix<double, 9, 9>::Zero();
   map.block<3, 3>(0, 0) = C_aH;
   map.block<3, 3>(0, 3) = -C_aH * math::skew<double>(position);
@@ -17,12 +12,11 @@ Eigen::Matrix<double, 9, 9> PlacedBeam::root_from_hub(const math::TimeCurve::Val
   return map;
 }
 
-Matrix6 PlacedBeam::hub_from_root(const math::TimeCurve::Value& pitch) const {
-  const Matrix3 C = axes(pitch);
+Matrix6 PlacedBeam::hub_from_root() const {
   Matrix6 map = Matrix6::Zero();
-  map.topLeftCorner<3, 3>() = C;
-  map.bottomLeftCorner<3, 3>() = math::skew<double>(position) * C;
-  map.bottomRightCorner<3, 3>() = C;
+  map.topLeftCorner<3, 3>() = C_Ha;
+  map.bottomLeftCorner<3, 3>() = math::skew<double>(position) * C_Ha;
+  map.bottomRightCorner<3, 3>() = C_Ha;
   return map;
 }
 
@@ -65,14 +59,6 @@ TurbineResidual::TurbineResidual(const model::Turbine& turbine)
   place_beams();
 }
 
-math::TimeCurve::Value TurbineResidual::pitch_of(const PlacedBeam& placed, double t) const {
-  if (placed.blade < 0 || turbine_.operation.pitch.empty()) return {};
-  const auto k = static_cast<std::size_t>(placed.blade);
-  math::TimeCurve::Value pitch = turbine_.pitch_at(k, t);
-  pitch.value -= turbine_.roots[k].pitch;
-  return pitch;
-}
-
 void TurbineResidual::check_rotation(const Vector3& theta, const std::string& place) {
   if (!(theta.norm() < math::largest_rodrigues_length))
     throw DomainError(place + ": rotation beyond 170 degrees");
@@ -105,7 +91,6 @@ void TurbineResidual::place_beams() {
       placed.masses.push_back(layout_.blade_mass(number, static_cast<int>(m)));
     placed.tip = layout_.blade_tip(number);
     placed.root = layout_.blade_root(number);
-    placed.on_hub = true;
     placed.blade = number;
     placed.position = turbine_.roots[k].position;
     placed.C_Ha = turbine_.roots[k].C_Ha;

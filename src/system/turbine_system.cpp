@@ -236,7 +236,7 @@ bool TurbineSystem::is_conservative() const {
   if (chain.brake_torque != 0.0) return false;
   for (const PlacedBeam& placed : assembly_->equations.beams())
     for (const model::BeamLoad& load : placed.beam->loads)
-      if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub && hub_moves))
+      if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub() && hub_moves))
         return false;
   return true;
 }

@@ -53,18 +53,18 @@ class Pattern {
         for (int node = 0; node <= beam.order; ++node) {
           for (const int row : {placed.strain_rows(p, node), placed.force_rows(p, node)}) {
             couple(row, first);
-            if (placed.on_hub) couple_to_motion(couple, row);
+            if (placed.on_hub()) couple_to_motion(couple, row);
           }
         }
       }
       couple(placed.root, placed.root);
       couple(placed.points.back(), placed.tip);
-      if (placed.on_hub) couple_to_motion(couple, placed.tip);
+      if (placed.on_hub()) couple_to_motion(couple, placed.tip);
       for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
         const auto next = static_cast<std::size_t>(beam.mass_nodes[m].end * beam.order);
         couple(next == 0 ? placed.root : placed.points[next - 1], placed.masses[m]);
         couple(placed.points[next], placed.masses[m]);
-        if (placed.on_hub) couple_to_motion(couple, placed.masses[m]);
+        if (placed.on_hub()) couple_to_motion(couple, placed.masses[m]);
       }
     }
     if (turbine_.has_tower) {
@@ -128,7 +128,7 @@ class TurbineTangents::Scatter {
     for (const PlacedBeam& placed : equations_.beams()) {
       const Attachment<double> a = equations_.attachment(placed, motion, t);
       MotionJacobian root = MotionJacobian::Zero();
-      if (placed.on_hub) root = placed.root_from_hub(equations_.pitch_of(placed, t)) * motion_jacobian;
+      if (placed.on_hub()) root = root_jacobian(placed, motion_jacobian);
       const auto first = point;
       for (int p = 0; p < placed.beam->point_count(); ++p)
         add_point_tangent(placed, p, root, at_point(placed, p, a, z, z_dot, *point++));
@@ -239,8 +239,8 @@ class TurbineTangents::Scatter {
     TermJacobian theta = TermJacobian::Zero();
     u.block<3, 3>(0, 0).setIdentity();
     theta.block<3, 3>(0, 3).setIdentity();
-    add_term(first + 6, first, terms.velocity, root, placed.on_hub);
-    add_term(first + 9, first, terms.spin, root, placed.on_hub);
+    add_term(first + 6, first, terms.velocity, root, placed.on_hub());
+    add_term(first + 9, first, terms.spin, root, placed.on_hub());
     for (int node = 0; node <= beam.order; ++node) {
       const auto [slope, value] = placed.node_weights(node, p);
       const int strain = placed.strain_rows(p, node);
@@ -251,8 +251,8 @@ class TurbineTangents::Scatter {
       const TermJacobian moment_rows_j = slope * terms.moment_flux + value * terms.moment_load;
       add_term(strain, first, strain_rows_j, root, false);
       add_term(strain + 3, first, curvature_rows_j, root, false);
-      add_term(force, first, force_rows_j, root, placed.on_hub);
-      add_term(force + 3, first, moment_rows_j, root, placed.on_hub);
+      add_term(force, first, force_rows_j, root, placed.on_hub());
+      add_term(force + 3, first, moment_rows_j, root, placed.on_hub());
     }
   }
 
@@ -275,19 +275,19 @@ class TurbineTangents::Scatter {
                   dual, dual_dot, dual_a);
       const elements::TipTerms<PointDual> terms =
           elements::beam_tip_terms<PointDual>(x, reference, mass, dual, dual_dot, dual_a);
-      add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub);
-      add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub);
+      add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub());
+      add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub());
       if (!balance) return;
-      add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub);
-      add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub);
+      add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub());
+      add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub());
       for (int i = 0; i < 3 && first == placed.tip; ++i) {
         tip_balance(i) = terms.force(i).value();
         tip_balance(3 + i) = terms.moment(i).value();
       }
     };
     add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.reference(beam.elements - 1),
-            beam.tip_mass, placed.on_hub);
-    if (placed.on_hub) add_end_support_tangent(placed, z, tip_balance);
+            beam.tip_mass, placed.on_hub());
+    if (placed.on_hub()) add_end_support_tangent(placed, z, tip_balance);
     for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
       const model::MassNode& node = beam.mass_nodes[m];
       const int next = node.end * beam.order;
@@ -324,10 +324,10 @@ class TurbineTangents::Scatter {
         Vector3::Zero(), Matrix3::Identity(), beam.mass_nodes.front().mass, node, node_dot, dual_a);
     add_terms(first, first, held.law, root, false);
     add_terms(placed.root, first, -held.root, root, false);
-    add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub);
-    add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub);
-    add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub);
-    add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub);
+    add_term(first + 6, first, jacobian_of(terms.velocity), root, placed.on_hub());
+    add_term(first + 9, first, jacobian_of(terms.spin), root, placed.on_hub());
+    add_term(first + 12, first, jacobian_of(terms.force), root, placed.on_hub());
+    add_term(first + 15, first, jacobian_of(terms.moment), root, placed.on_hub());
   }
 
   /// The rows of the end, whose balance has been added before.
@@ -434,10 +434,25 @@ class TurbineTangents::Scatter {
     const Vector6 by_hub_load = value.derivatives().segment<6>(at_hub_load);
     if (by_hub_load.isZero(0.0)) return;
     for (const PlacedBeam& placed : equations_.beams()) {
-      if (!placed.on_hub) continue;
-      const Vector6 by_root = placed.hub_from_root(equations_.pitch_of(placed, t_)).transpose() * by_hub_load;
+      if (!placed.on_hub()) continue;
+      Vector6 by_root = placed.hub_from_root().transpose() * by_hub_load;
+      if (const BladePitch<double> pitch = equations_.pitch_of<double>(placed, t_); pitch.moves) {
+        const Matrix3 feather = pitch.feather();
+        by_root << feather.transpose() * by_root.head<3>(), feather.transpose() * by_root.tail<3>();
+      }
       for (int i = 0; i < 6; ++i) add(K_, row, placed.root + i, by_root(i));
     }
+  }
+
+  /// Of v_a, omega_a and gravity at a blade's root.
+  MotionJacobian root_jacobian(const PlacedBeam& placed, const MotionJacobian& of_hub) const {
+    MotionJacobian root = placed.root_from_hub() * of_hub;
+    const BladePitch<double> pitch = equations_.pitch_of<double>(placed, t_);
+    if (!pitch.moves) return root;
+    const Matrix3 feather = pitch.feather();
+    for (int vector = 0; vector < 9; vector += 3)
+      root.middleRows<3>(vector) = (feather.transpose() * root.middleRows<3>(vector)).eval();
+    return root;
   }
 
   void add_chain_tangents(const elements::ChainRows<ChainDual>& rows) {

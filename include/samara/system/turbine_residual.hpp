@@ -33,20 +33,18 @@ struct PlacedBeam {
   int root = 0;  ///< first of F_hat_0, M_hat_0
   std::vector<ReferenceChange> changes;
   Vector3 end_reference = Vector3::Zero();  ///< parameters of that of the tip
-  bool on_hub = false;
-  Vector3 position = Vector3::Zero();  ///< root from the apex, in H
+  int blade = -1;                           ///< from 0; -1: the tower
+  Vector3 position = Vector3::Zero();       ///< root from the apex, in H
   Matrix3 C_Ha = Matrix3::Identity();
 
-  int blade = -1;  ///< from 0; -1: the tower
+  bool on_hub() const { return blade >= 0; }
 
-  /// Blade axes a to hub axes at a pitch beyond that of C_Ha.
-  Matrix3 axes(const math::TimeCurve::Value& pitch) const;
+  /// v_a, omega_a, gravity of a blade root from the hub's motion, at the pitch of C_Ha: constant
+  /// and linear.
+  Eigen::Matrix<double, 9, 9> root_from_hub() const;
 
-  /// v_a, omega_a, gravity of a blade root from the hub's motion: linear.
-  Eigen::Matrix<double, 9, 9> root_from_hub(const math::TimeCurve::Value& pitch) const;
-
-  /// Force and moment about the apex in H of a blade's root load.
-  Matrix6 hub_from_root(const math::TimeCurve::Value& pitch) const;
+  /// Force and moment about the apex in H of a blade's root load, at that pitch.
+  Matrix6 hub_from_root() const;
 
   /// First row of the strain and curvature balance of local node a of the element of point p. A
   /// mass node has a balance of its own for the element before it.
@@ -57,6 +55,17 @@ struct PlacedBeam {
   std::array<double, 2> node_weights(int a, int p) const;
   /// The mass node at end e of the elements, -1 where there is none.
   int mass_at(int e) const;
+};
+
+/// How a blade's axes a have turned about -b1 from those that C_Ha states.
+template <class T>
+struct BladePitch {
+  bool moves = false;  ///< false: they have not, and do not
+  T angle = T(0);      ///< [rad]
+  T rate = T(0);       ///< [rad/s]
+
+  /// Components in the axes that C_Ha states from those in the turned ones.
+  Mat3<T> feather() const { return math::turn_about<T>(-Vector3::UnitX(), angle); }
 };
 
 /// What acts on a turbine from outside beside its loads (docs/theory.md, section 10).
@@ -123,10 +132,12 @@ class TurbineResidual {
   /// The motion of a beam's root and the gravity there.
   template <class T>
   elements::Attachment<T> attachment(const PlacedBeam& placed, const elements::HubMotion<T>& hub,
-                                     double t) const;
+                                     double t, const TurbineInputs<T>& inputs = {}) const;
 
-  /// Pitch of a blade beyond that of its root's axes, and its rates; of the tower nothing.
-  math::TimeCurve::Value pitch_of(const PlacedBeam& placed, double t) const;
+  /// By the turbine's operation and by inputs together.
+  template <class T>
+  BladePitch<T> pitch_of(const PlacedBeam& placed, double t,
+                         const TurbineInputs<T>& inputs = {}) const;
 
   /// The rotation before a change of reference, counted as there.
   template <class T>
@@ -151,8 +162,6 @@ class TurbineResidual {
   template <class T>
   void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
                  std::vector<T>& r) const;
-  template <class T>
-  void add_motion(std::size_t b, const TurbineInputs<T>& inputs, elements::Attachment<T>& a) const;
   template <class T>
   static void add_top_force(const PlacedBeam& tower, const Vec3<T>& force, std::vector<T>& r);
   template <class T>
@@ -179,15 +188,14 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
     check_rotation(Vector3(top.template segment<3>(3).real()), "tower top");
   }
   Vec6<Value> load = Vec6<Value>::Zero();
-  for (std::size_t b = 0; b < beams_.size(); ++b) {
-    const PlacedBeam& placed = beams_[b];
-    if (!placed.on_hub) continue;
+  for (const PlacedBeam& placed : beams_) {
+    if (!placed.on_hub()) continue;
     Vec6<Value> root = Eigen::Map<const Vec6<Value>>(z.data() + placed.root);
-    if (!inputs.pitch.empty()) {
-      const Mat3<Value> feather = math::turn_about<Value>(-Vector3::UnitX(), inputs.pitch[b]);
+    if (const BladePitch<Value> pitch = pitch_of(placed, t, inputs); pitch.moves) {
+      const Mat3<Value> feather = pitch.feather();
       root << feather * root.template head<3>().eval(), feather * root.template tail<3>().eval();
     }
-    load += placed.hub_from_root(pitch_of(placed, t)).template cast<Value>() * root;
+    load += placed.hub_from_root().template cast<Value>() * root;
   }
   elements::ChainState<T> state;
   for (int i = 0; i < 3; ++i) state.theta(i) = make(top(3 + i), at_theta + i);
@@ -220,38 +228,44 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
 
 template <class T>
 elements::Attachment<T> TurbineResidual::attachment(const PlacedBeam& placed,
-                                                    const elements::HubMotion<T>& hub,
-                                                    double t) const {
+                                                    const elements::HubMotion<T>& hub, double t,
+                                                    const TurbineInputs<T>& inputs) const {
   elements::Attachment<T> a;
-  if (!placed.on_hub) {
-    a.gravity(0) = T(-turbine_.chain.gravity);  // the tower's b1 is n3
+  if (!placed.on_hub()) {  // the tower's axes are (n3, n1, n2)
+    a.gravity(0) = T(-turbine_.chain.gravity);
+    const Vec3<T>& v = inputs.base_velocity;
+    a.v = Vec3<T>(v(2), v(0), v(1));
     return a;
   }
-  const math::TimeCurve::Value pitch = pitch_of(placed, t);
   Eigen::Matrix<T, 9, 1> motion;
   motion << hub.velocity, hub.omega, hub.gravity;
-  const Eigen::Matrix<T, 9, 1> seen = placed.root_from_hub(pitch).template cast<T>() * motion;
+  const Eigen::Matrix<T, 9, 1> seen = placed.root_from_hub().template cast<T>() * motion;
   a.v = seen.template segment<3>(0);
   a.omega = seen.template segment<3>(3);
   a.gravity = seen.template segment<3>(6);
-  a.omega(0) -= T(pitch.rate);  // pitch turns about -b1
+  if (const BladePitch<T> pitch = pitch_of(placed, t, inputs); pitch.moves) {
+    const Mat3<T> feather = pitch.feather();
+    for (Vec3<T>* vector : {&a.v, &a.omega, &a.gravity})
+      *vector = (feather.transpose() * *vector).eval();
+    a.omega(0) -= pitch.rate;
+  }
   return a;
 }
 
-/// The axes of blade b turn by its pitch; the foot of the tower moves.
 template <class T>
-void TurbineResidual::add_motion(std::size_t b, const TurbineInputs<T>& inputs,
-                                 elements::Attachment<T>& a) const {
-  if (!beams_[b].on_hub) {
-    const Vec3<T>& v = inputs.base_velocity;
-    a.v += Vec3<T>(v(2), v(0), v(1));  // the tower's axes are (n3, n1, n2)
-    return;
-  }
-  if (inputs.pitch.empty()) return;
-  const Mat3<T> feather = math::turn_about<T>(-Vector3::UnitX(), inputs.pitch[b]);
-  for (Vec3<T>* vector : {&a.v, &a.omega, &a.gravity})
-    *vector = (feather.transpose() * *vector).eval();
-  a.omega(0) -= inputs.pitch_rate[b];
+BladePitch<T> TurbineResidual::pitch_of(const PlacedBeam& placed, double t,
+                                        const TurbineInputs<T>& inputs) const {
+  BladePitch<T> pitch;
+  pitch.moves = !turbine_.operation.pitch.empty() || !inputs.pitch.empty();
+  if (!pitch.moves) return pitch;
+  const auto k = static_cast<std::size_t>(placed.blade);
+  const math::TimeCurve::Value now = turbine_.pitch_at(k, t);
+  pitch.angle = T(now.value - turbine_.roots[k].pitch);
+  pitch.rate = T(now.rate);
+  if (inputs.pitch.empty()) return pitch;
+  pitch.angle += inputs.pitch[k];
+  pitch.rate += inputs.pitch_rate[k];
+  return pitch;
 }
 
 template <class T>
@@ -262,15 +276,13 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
   elements::HubMotion<T> hub;
   const elements::ChainRows<T> rows =
       elements::rigid_chain(turbine_.chain, chain_state<T>(t, z, z_dot, plain, inputs), hub);
-  for (std::size_t b = 0; b < beams_.size(); ++b) {
-    const PlacedBeam& placed = beams_[b];
-    elements::Attachment<T> a = attachment(placed, hub, t);
-    add_motion(b, inputs, a);
+  for (const PlacedBeam& placed : beams_) {
+    const elements::Attachment<T> a = attachment(placed, hub, t, inputs);
     for (int p = 0; p < placed.beam->point_count(); ++p) add_point(placed, p, a, z, z_dot, r);
     add_ends(placed, a, z, z_dot, r);
     add_changes(placed, z, r);
     add_loads(placed, t, z, r);
-    if (!placed.on_hub) add_top_force(placed, inputs.top_force, r);
+    if (!placed.on_hub()) add_top_force(placed, inputs.top_force, r);
   }
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
   if (turbine_.has_tower)
@@ -354,8 +366,8 @@ void TurbineResidual::add_ends(const PlacedBeam& placed, const elements::Attachm
   const model::Beam& beam = *placed.beam;
   // The tower top's loads are Kane's rows.
   add_end(placed.tip, beam.point_count() - 1, beam.tip, beam.tip_mass,
-          beam.reference(beam.elements - 1), " tip", placed.on_hub);
-  if (placed.on_hub && !beam.end_support.is_none()) {
+          beam.reference(beam.elements - 1), " tip", placed.on_hub());
+  if (placed.on_hub() && !beam.end_support.is_none()) {
     LongRows rows(r.data() + placed.tip + 12);
     const Vec6<T> end = Eigen::Map<const Vec6<T>>(z.data() + placed.tip);
     rows =
