@@ -13,12 +13,6 @@
 namespace samara::drivers {
 namespace {
 
-/// `; did you mean "..."?`, or nothing where no word resembles the given one.
-std::string suggest(const std::string& word, const std::vector<std::string>& words) {
-  const std::string similar = find_similar(word, words);
-  return similar.empty() ? "" : "; did you mean \"" + similar + "\"?";
-}
-
 std::vector<std::string> names_of(std::span<const Command> commands) {
   std::vector<std::string> names;
   for (const Command& command : commands) names.emplace_back(command.name);

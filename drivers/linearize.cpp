@@ -1,5 +1,6 @@
 // samara linearize: the linear model about the periodic steady state.
 #include "samara/analysis/linearization.hpp"
+#include "samara/base/error.hpp"
 #include "samara/io/mat_file.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/system/turbine_input_output.hpp"
@@ -43,13 +44,12 @@ void run_linearize(const Job& job) {
   if (!asked.mat_path.empty()) io::require_mat_path(asked.mat_path);
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
-  const system::TurbineInputOutput input_output(system, asked.inputs, asked.stations,
-                                                asked.outputs);
+  const system::TurbineInputOutput input_output = at_place(job.input.path + ": linearize", [&] {
+    return system::TurbineInputOutput(system, asked.inputs, asked.stations, asked.outputs);
+  });
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  analysis::TrimOptions options = job.input.trim;
-  if (turbine.speed == 0.0) options.harmonics = 0;
-  const analysis::Trim trim = analysis::find_trim(system, options, progress);
+  const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
   const analysis::Linearization linear = analysis::linearize(
       system, input_output, trim.solution, turbine.azimuth, asked.options, progress);
   progress.finish();

@@ -44,10 +44,9 @@ std::size_t find_channel(const std::string& path, const std::vector<Channel>& al
   if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
   std::vector<std::string> names;
   for (const Channel& channel : all) names.push_back(channel.name);
-  const std::string similar = find_similar(name, names);
-  throw InputError("--set channels: " + path + " has no channel \"" + name + "\"" +
-                   (similar.empty() ? "; hint: transient.output.channels chooses those of a history"
-                                    : "; did you mean \"" + similar + "\"?"));
+  throw InputError(
+      "--set channels: " + path + " has no channel \"" + name + "\"" +
+      suggest(name, names, "; hint: transient.output.channels chooses those of a history"));
 }
 
 Columns choose_columns(const std::string& path, const std::vector<Channel>& all,
@@ -145,15 +144,9 @@ std::vector<std::string> channel_names(const io::LoadOptions& options) {
 system::TurbineChannels make_channels(const system::TurbineSystem& system,
                                       const io::TransientCase& transient,
                                       const io::LoadOptions& options) {
-  try {
-    return {system, transient.stations, channel_names(options)};
-  } catch (const InputError& error) {
-    // It names the key of the case, where these names do not come from.
-    const std::string words = error.what();
-    const std::size_t place = words.find("unknown channel");
-    if (place == std::string::npos) throw;
-    throw InputError("--set channels: " + words.substr(place));
-  }
+  return at_place("--set channels", [&] {
+    return system::TurbineChannels(system, transient.stations, channel_names(options));
+  });
 }
 
 LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& options) {

@@ -28,12 +28,9 @@ analysis::LoadEvaluationOptions evaluation_options(const io::LoadOptions& option
   evaluation.goodman.resize(names.size());
   for (const auto& [name, correction] : options.goodman) {
     const auto found = std::ranges::find(names, name);
-    if (found == names.end()) {
-      const std::string similar = find_similar(name, names);
+    if (found == names.end())
       throw InputError("--set goodman: \"" + name +
-                       "\" is none of the channels that are evaluated" +
-                       (similar.empty() ? "" : "; did you mean \"" + similar + "\"?"));
-    }
+                       "\" is none of the channels that are evaluated" + suggest(name, names));
     evaluation.goodman[static_cast<std::size_t>(found - names.begin())] = correction;
   }
   return evaluation;

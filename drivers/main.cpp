@@ -50,7 +50,7 @@ constexpr std::array<Command, 10> commands{{
     {"transient", "the motion in time, with loads by OpenFAST's channel names",
      "Follows the turbine in time from its periodic steady state or from rest. Motions and loads go\n"
      "into the result while it runs, by the channel names of OpenFAST.\n",
-     "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"", true, true,
+     "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"", true, false,
      require_transient, run_transient},
     {"linearize", "the linear model about the periodic steady state, for control design",
      "Writes the linear model about the periodic steady state over the azimuth: state-space and\n"

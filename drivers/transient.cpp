@@ -422,10 +422,15 @@ void run_transient(const Job& job) {
   const io::TransientCase& transient = job.input.transient;
   const model::Turbine turbine = operated(job.input);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
-  const system::TurbineChannels channels(system, transient.stations, transient.channels);
-  for (const system::TurbineEvent& event : transient.events)
-    if (!event.trigger.time)
-      const system::TurbineChannels known(system, transient.stations, {event.trigger.channel});
+  const system::TurbineChannels channels =
+      at_place(job.input.path + ": transient.output.channels", [&] {
+        return system::TurbineChannels(system, transient.stations, transient.channels);
+      });
+  for (std::size_t i = 0; i < transient.events.size(); ++i)
+    if (const system::EventTrigger& trigger = transient.events[i].trigger; !trigger.time)
+      at_place(job.input.path + ": transient.events[" + std::to_string(i) + "].when.channel", [&] {
+        return system::TurbineChannels(system, transient.stations, {trigger.channel});
+      });
   Progress progress(true);
   std::vector<double> fired;
   const TransientStart start = make_start(job, system, fired, progress);

@@ -5,16 +5,6 @@
 namespace samara::analysis {
 namespace {
 
-/// Does `work` and names the channel in what it refuses.
-template <class Work>
-auto of_channel(const std::string& name, const Work& work) {
-  try {
-    return work();
-  } catch (const InputError& error) {
-    throw InputError(name + ": " + error.what());
-  }
-}
-
 void add_harmonics(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
                    const LoadEvaluationOptions& options, LoadEvaluation& result) {
   try {
@@ -44,7 +34,7 @@ LoadEvaluation evaluate_loads(const LoadHistory& history, const Eigen::VectorXd&
   result.events = find_extreme_events(history);
   add_harmonics(history, azimuth_deg, options, result);
   for (Eigen::Index c = 0; c < history.values.cols(); ++c)
-    of_channel(history.names[static_cast<std::size_t>(c)], [&] {
+    at_place(history.names[static_cast<std::size_t>(c)], [&] {
       result.cycles.push_back(count_cycles(history, c));
       result.tables.push_back(
           tabulate_cycles(result.cycles.back(), options.range_bins, options.mean_bins));
@@ -65,7 +55,7 @@ std::vector<std::vector<double>> evaluate_lifetime(const std::vector<LoadEvaluat
     std::vector<LoadCase> cases;
     for (std::size_t i = 0; i < evaluations.size(); ++i)
       cases.push_back({evaluations[i].cycles.at(c), durations.at(i), hours.at(i)});
-    loads.push_back(of_channel(names[c], [&] {
+    loads.push_back(at_place(names[c], [&] {
       return compute_lifetime_loads(cases, options.damage_of(static_cast<Eigen::Index>(c)),
                                     equivalent_cycles);
     }));

@@ -51,4 +51,10 @@ std::string find_similar(std::string_view word, const std::vector<std::string>& 
   return {};
 }
 
+std::string suggest(std::string_view word, const std::vector<std::string>& candidates,
+                    const std::string& otherwise) {
+  const std::string similar = find_similar(word, candidates);
+  return similar.empty() ? otherwise : "; did you mean \"" + similar + "\"?";
+}
+
 }  // namespace samara

@@ -274,10 +274,9 @@ void MapReader::note(const YamlNode& entry, std::string_view key, const std::str
 
 void MapReader::refuse_word(const YamlNode& entry, std::string_view key,
                             const std::vector<std::string>& words) const {
-  std::string what = "expected " + list_words(words, " or ") + ", " + describe(entry);
-  const std::string similar = find_similar(entry.text, words);
-  if (!similar.empty()) what += "; did you mean \"" + similar + "\"?";
-  refuse(entry, key, what);
+  refuse(entry, key,
+         "expected " + list_words(words, " or ") + ", " + describe(entry) +
+             suggest(entry.text, words));
 }
 
 std::string MapReader::report_unknown(const YamlNode& entry) const {

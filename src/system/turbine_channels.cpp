@@ -108,10 +108,8 @@ TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStati
     if (found == known.end()) {
       std::vector<std::string> words;
       for (const auto& one : known) words.push_back(one.first);
-      const std::string similar = find_similar(name, words);
-      throw InputError("transient.output.channels: unknown channel \"" + name + "\"" +
-                       (similar.empty() ? "; samara check lists those of the turbine"
-                                        : "; did you mean \"" + similar + "\"?"));
+      throw InputError("unknown channel \"" + name + "\"" +
+                       suggest(name, words, "; hint: docs/channels.md has those of a turbine"));
     }
     take(found->second, name);
   }
@@ -124,7 +122,7 @@ void TurbineChannels::place_sections(const ChannelCatalogue& catalogue) {
   for (std::size_t b = 0; b < beams.size(); ++b) {
     const model::Beam& beam = *beams[b].beam;
     const std::vector<double>& places =
-        ChannelCatalogue::stations_of(beam, beams[b].on_hub ? stations_.blade : stations_.tower);
+        ChannelCatalogue::stations_of(beam, beams[b].on_hub() ? stations_.blade : stations_.tower);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const int slot = catalogue.section_slot(static_cast<int>(b), i);
       size_ = slot + section_slots;

@@ -97,10 +97,8 @@ TurbineInputOutput::TurbineInputOutput(const TurbineSystem& system,
       words.push_back(one.name);
       all += (all.empty() ? "" : ", ") + one.name;
     }
-    const std::string similar = find_similar(name, words);
-    throw InputError(
-        "unknown input \"" + name + "\"" +
-        (similar.empty() ? "; this turbine has " + all : "; did you mean \"" + similar + "\"?"));
+    throw InputError("unknown input \"" + name + "\"" +
+                     suggest(name, words, "; hint: this turbine has " + all));
   }
   for (const Channel& channel : channels_.channels()) outputs_.push_back(signal_of(channel));
 }

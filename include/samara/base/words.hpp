@@ -13,4 +13,8 @@ inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c
 /// Returns the word that `word` is probably meant to be, or an empty string.
 std::string find_similar(std::string_view word, const std::vector<std::string>& candidates);
 
+/// `; did you mean "..."?`, or `otherwise` where no word resembles the given one.
+std::string suggest(std::string_view word, const std::vector<std::string>& candidates,
+                    const std::string& otherwise = {});
+
 }  // namespace samara
