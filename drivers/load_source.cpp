@@ -154,7 +154,7 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
     throw InputError(path +
                      ": a steady state is one revolution; hint: leave `from` and `until` out");
   const io::Case input = io::read_result_case(path);
-  const analysis::PeriodicSolution solution = io::read_result_trim(path);
+  const analysis::PeriodicSolution solution = io::read_result_trim(path).solution;
   if (!(solution.period() > 0.0))
     throw InputError(path +
                      ": its rotor stands still and its loads are constant; hint: samara "

@@ -496,9 +496,8 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
     const double t = system.period() * (k + shift) / samples;
     solution.evaluate(t, z.get(), z_dot.get());
     system.residual(t, z.get(), z_dot.get(), r.get());
-    const petsc::WriteView view(r.get());
-    const auto& neutral = system.neutral_coordinates();
-    for (std::size_t n = 0; n < loads.size(); ++n) view[neutral[n].row] += loads[n].load;
+    add_held_loads(system, loads, r.get());
+    const petsc::ReadView view(r.get());
     for (std::size_t i = 0; i < system.rows().size(); ++i)
       if (system.rows()[i] == system::RowRole::balance)
         largest = std::max(largest, std::abs(view[static_cast<PetscInt>(i)]));

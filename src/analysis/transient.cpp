@@ -56,6 +56,7 @@ class Integration {
         jacobian_(system.make_jacobian()) {
     scale_system();
     petsc::check(VecDuplicate(z_.get(), x_.fill()));
+    petsc::check(VecDuplicate(z_.get(), before_.fill()));
     write_state(start.z);
     make_integrator(start.time);
     limit_ = start_limit();
@@ -72,7 +73,9 @@ class Integration {
     if (reason < 0) fail(TSConvergedReasons[reason]);
     TransientRun run;
     run.end = state();
-    run.before = before_;
+    run.before = point_of(before_.get());
+    run.before.time = time_before_;
+    run.before.step = step_before_;
     run.reason = reason_;
     TSType type = nullptr;
     petsc::check(TSGetType(ts_.get(), &type));
@@ -105,11 +108,17 @@ class Integration {
   }
 
   TransientStart state() {
-    TransientStart point;
+    TransientStart point = point_of(x_.get());
     petsc::check(TSGetTime(ts_.get(), &point.time));
     point.step = step_;
+    return point;
+  }
+
+  /// With the scaled state `x`, at no time yet.
+  TransientStart point_of(Vec x) {
+    TransientStart point;
     point.origin = origin_;
-    petsc::check(VecPointwiseMult(r_.get(), x_.get(), scaling_.columns.get()));
+    petsc::check(VecPointwiseMult(r_.get(), x, scaling_.columns.get()));
     const petsc::ReadView view(r_.get());
     point.z = Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
     point.held = held_;
@@ -125,11 +134,7 @@ class Integration {
     unscale(x, x_dot);
     t_ = t;
     system_.residual(t, z_.get(), z_dot_.get(), f);
-    if (!held_.empty()) {
-      const petsc::WriteView view(f);
-      for (std::size_t i = 0; i < held_.size(); ++i)
-        view[system_.neutral_coordinates()[i].row] += held_[i].load;
-    }
+    add_held_loads(system_, held_, f);
     petsc::check(VecPointwiseMult(f, f, scaling_.rows.get()));
   }
 
@@ -161,10 +166,7 @@ class Integration {
         copy(z, z_.get());
         copy(z_dot, z_dot_.get());
         system_.residual(start.time + dt, z_.get(), z_dot_.get(), r_.get());
-        for (std::size_t k = 0; k < held_.size(); ++k) {
-          const petsc::WriteView view(r_.get());
-          view[system_.neutral_coordinates()[k].row] += held_[k].load;
-        }
+        add_held_loads(system_, held_, r_.get());
         system_.tangents(start.time + dt, z_.get(), z_dot_.get(), 1.0 / dt, jacobian_.get(),
                          nullptr);
         solver.factor(jacobian_.get());
@@ -289,7 +291,9 @@ class Integration {
     return self.guarded([&] {
       double t = 0.0;
       petsc::check(TSGetTime(ts, &t));
-      self.before_ = self.state();
+      petsc::check(VecCopy(self.x_.get(), self.before_.get()));
+      self.time_before_ = t;
+      self.step_before_ = self.step_;
       const double rest = self.target() - t;
       const double parts = std::ceil(rest / self.limit_ * (1.0 - rounding));
       self.asked_ = rest / std::max(parts, 1.0);
@@ -368,35 +372,29 @@ class Integration {
     observer_.checkpoint(state());
   }
 
-  static PetscErrorCode form_function(TS ts, PetscReal t, Vec x, Vec x_dot, Vec f,
+  static PetscErrorCode form_function(TS, PetscReal t, Vec x, Vec x_dot, Vec f,
                                       void* pointer) noexcept {
     Integration& self = *static_cast<Integration*>(pointer);
-    try {
-      self.residual(t, x, x_dot, f);
-    } catch (const DomainError&) {
-      self.error_ = std::current_exception();
-      SNES snes = nullptr;
-      TSGetSNES(ts, &snes);
-      return SNESSetFunctionDomainError(snes);
-    } catch (...) {
-      self.error_ = std::current_exception();
-      return PETSC_ERR_USER;
-    }
-    return 0;
+    return self.in_domain(SNESSetFunctionDomainError, [&] { self.residual(t, x, x_dot, f); });
   }
 
-  static PetscErrorCode form_jacobian(TS ts, PetscReal t, Vec x, Vec x_dot, PetscReal shift, Mat,
+  static PetscErrorCode form_jacobian(TS, PetscReal t, Vec x, Vec x_dot, PetscReal shift, Mat,
                                       Mat matrix, void* pointer) noexcept {
     Integration& self = *static_cast<Integration*>(pointer);
+    return self.in_domain(SNESSetJacobianDomainError,
+                          [&] { self.tangent(t, x, x_dot, shift, matrix); });
+  }
+
+  /// Rotations out of range make the step shorter, other errors end the run.
+  template <class Work>
+  PetscErrorCode in_domain(PetscErrorCode (*refuse)(SNES), const Work& work) noexcept {
     try {
-      self.tangent(t, x, x_dot, shift, matrix);
+      work();
     } catch (const DomainError&) {
-      self.error_ = std::current_exception();
-      SNES snes = nullptr;
-      TSGetSNES(ts, &snes);
-      return SNESSetJacobianDomainError(snes);
+      error_ = std::current_exception();
+      return refuse(snes_);
     } catch (...) {
-      self.error_ = std::current_exception();
+      error_ = std::current_exception();
       return PETSC_ERR_USER;
     }
     return 0;
@@ -489,7 +487,9 @@ class Integration {
   int steps_since_start_ = 0;
   bool is_new_tangent_ = false;  ///< since the last correction
   TransientEnd reason_ = TransientEnd::complete;
-  TransientStart before_;
+  petsc::Handle<Vec> before_;  ///< x before the last step
+  double time_before_ = 0.0;
+  long step_before_ = 0;
   long steps_ = 0;
   long newton_steps_ = 0;
   long factorizations_ = 0;

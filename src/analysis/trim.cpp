@@ -136,6 +136,15 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
 
 }  // namespace
 
+void add_held_loads(const system::PeriodicSystem& system, const std::vector<HeldCoordinate>& held,
+                    Vec r) {
+  if (held.empty()) return;
+  const petsc::WriteView view(r);
+  for (const HeldCoordinate& coordinate : held)
+    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates())
+      if (neutral.name == coordinate.name) view[neutral.row] += coordinate.load;
+}
+
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer) {
   const petsc::Stage stage("trim");

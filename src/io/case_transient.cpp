@@ -170,6 +170,19 @@ void add_lines(const YamlNode& node, const std::string& where,
   if (node.children.empty()) lines[where] = canonical(node);
 }
 
+/// A word, or the name of a result.
+void read_start(MapReader& map, TransientCase& transient) {
+  const YamlNode* start = map.node().find("start");
+  if (start != nullptr && start->kind == YamlNode::Kind::scalar && start->text.ends_with(".h5")) {
+    map.find("start");
+    transient.start = TransientOrigin::result;
+    transient.start_path = start->text;
+    return;
+  }
+  map.read("start", transient.start,
+           {{"trim", TransientOrigin::trim}, {"undeformed", TransientOrigin::undeformed}});
+}
+
 }  // namespace
 
 void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& errors) {
@@ -189,8 +202,7 @@ void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& e
            << " of it";
     if (!text.str().empty()) map.refuse(*node.find("step"), "step", text.str());
   }
-  map.read("start", transient.start,
-           {{"trim", TransientOrigin::trim}, {"undeformed", TransientOrigin::undeformed}});
+  read_start(map, transient);
   map.read("method", options.method,
            {{"bdf2", analysis::TransientMethod::bdf2},
             {"midpoint", analysis::TransientMethod::midpoint}});

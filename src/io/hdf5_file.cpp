@@ -70,9 +70,9 @@ Hdf5Id Hdf5File::make_dataset(const std::string& name, hid_t type, const Shape& 
     own_space = {check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)),
                  H5Sclose};
   const hid_t space = shape.empty() ? scalar_space_.get() : own_space.get();
-  Hdf5Id dataset(check(H5Dcreate2(file_.get(), name.c_str(), type, space, link_.get(), creation,
-                                  H5P_DEFAULT)),
-                 H5Dclose);
+  Hdf5Id dataset(
+      check(H5Dcreate2(file_.get(), name.c_str(), type, space, link_.get(), creation, H5P_DEFAULT)),
+      H5Dclose);
   set_text(dataset.get(), "unit", meaning.unit);
   set_text(dataset.get(), "frame", meaning.frame);
   set_text(dataset.get(), "description", meaning.description);

@@ -12,6 +12,7 @@
 #include "samara/io/whole_file.hpp"
 
 #include "hdf5_reader.hpp"
+#include "held_loads.hpp"
 #include "history_datasets.hpp"
 
 namespace samara::io {
@@ -34,7 +35,7 @@ std::string new_run_name() {
 }  // namespace
 
 HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
-                         std::vector<system::Channel> channels,
+                         std::vector<system::Channel> channels, double azimuth,
                          std::function<void(ResultFile&)> write_rest)
     : path_(std::move(path)),
       input_(input),
@@ -44,6 +45,7 @@ HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
       due_(std::chrono::steady_clock::now() + segment_time) {
   content_.channels = std::move(channels);
   content_.model = input.model_text;
+  content_.azimuth = azimuth;
   content_.status = "running";
 }
 
@@ -115,7 +117,7 @@ void HistoryFile::close_segment() {
   const std::string name = folder_name() + "/" + run_ + number.data();
   Hdf5File file;
   const hsize_t rows = content_.time.size();
-  file.write(history_time, content_.time, {rows}, {"s", "none", "of each row"});
+  file.write(history_time, content_.time, {rows}, meaning_of_history_time());
   file.write(history_values, content_.values, {rows, content_.channels.size()},
              {"see the result", "see the result", "[row, channel]"});
   write_whole_file((fs::path(path_).parent_path() / name).string(), file.image());
@@ -164,6 +166,8 @@ HistoryReader::HistoryReader(const std::string& path) {
     content_.channels.push_back({names[i], units.at(i), frames.at(i), words.at(i)});
   content_.status = file.text_attribute("/transient", "status");
   content_.model = file.text("/transient/model");
+  if (file.has_attribute("/transient", "azimuth"))
+    content_.azimuth = file.number_attribute("/transient", "azimuth");
   const std::vector<std::string> segments = file.texts("/transient/segment_file");
   const std::vector<double> counts = file.numbers("/transient/segment_rows");
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -184,9 +188,7 @@ HistoryReader::HistoryReader(const std::string& path) {
   const std::vector<double> state = file.numbers("/transient/checkpoint/state");
   point.z =
       Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
-  const std::vector<std::string> held = file.texts("/transient/checkpoint/held_name");
-  const std::vector<double> loads = file.numbers("/transient/checkpoint/held_load");
-  for (std::size_t i = 0; i < held.size(); ++i) point.held.push_back({held[i], "", loads.at(i)});
+  point.held = read_held_loads(file, "/transient/checkpoint");
   content_.checkpoint = point;
   content_.checkpoint_events = file.numbers("/transient/checkpoint/event_time");
   content_.checkpoint_rows =

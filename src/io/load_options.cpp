@@ -2,7 +2,7 @@
 
 #include "samara/io/load_result.hpp"
 
-#include "yaml_reader.hpp"
+#include "yaml_lists.hpp"
 #include "yaml_settings.hpp"
 
 namespace samara::io {
@@ -12,36 +12,6 @@ constexpr int most_harmonics = 200;
 constexpr int most_bins = 10000;
 constexpr int most_azimuths = 100000;
 constexpr NumberRule woehler{"a number >= 1", 1.0};
-
-/// A list, and what its items are; null where the key is left out or something else.
-const YamlNode* find_list(MapReader& map, std::string_view key, const std::string& items) {
-  const YamlNode* list = map.find(key);
-  if (list == nullptr) return nullptr;
-  if (list->kind == YamlNode::Kind::list && !list->children.empty()) return list;
-  map.refuse(*list, key, "expected a list of " + items + ", " + describe(*list));
-  return nullptr;
-}
-
-void read_names(MapReader& map, std::string_view key, std::vector<std::string>& names) {
-  const YamlNode* list = find_list(map, key, "names, e.g. [RootMyb1, TwrBsMyt]");
-  if (list == nullptr) return;
-  for (const YamlNode& entry : list->children) {
-    if (entry.kind != YamlNode::Kind::scalar)
-      map.refuse(entry, key, "expected a name, " + describe(entry));
-    else if (std::ranges::find(names, entry.text) != names.end())
-      map.refuse(entry, key, "\"" + entry.text + "\" stands there twice");
-    names.push_back(entry.text);
-  }
-}
-
-void read_list(MapReader& map, std::string_view key, const NumberRule& rule,
-               std::vector<double>& values) {
-  const YamlNode* list = find_list(map, key, "numbers");
-  if (list == nullptr) return;
-  values.resize(list->children.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    read_number(list->children[i], join_path(map.where(key), i), rule, values[i], map.errors());
-}
 
 /// Reads `bins: 20`, or `bins: [20, 5]` of ranges and means.
 void read_bins(MapReader& map, analysis::LoadEvaluationOptions& options) {
@@ -99,20 +69,20 @@ LoadOptions read_load_options(const std::vector<std::string>& settings) {
   root.kind = YamlNode::Kind::map;
   apply_settings(settings, root, errors);
   MapReader map(root, "", errors);
-  read_names(map, "channels", options.channels);
+  read_words(map, "channels", options.channels);
   read_optional(map, "from", any_number, options.from);
   read_optional(map, "until", any_number, options.until);
   if (options.from && options.until && !(*options.from < *options.until))
     map.refuse(*root.find("until"), "until",
                "expected more than from, " + describe(*root.find("until")));
   map.read("azimuths", options.azimuths, 2, most_azimuths);
-  read_list(map, "exponents", woehler, options.evaluation.exponents);
+  read_numbers(map, "exponents", woehler, options.evaluation.exponents);
   map.read("equivalent_frequency", options.evaluation.frequency, positive);
   options.evaluation.harmonics_are_asked_for =
       map.read("harmonics", options.evaluation.harmonics, 0, most_harmonics);
   read_bins(map, options.evaluation);
   if (const YamlNode* entry = map.find("goodman")) read_goodman(*entry, "goodman", options, errors);
-  read_list(map, "hours", non_negative, options.hours);
+  read_numbers(map, "hours", non_negative, options.hours);
   read_optional(map, "equivalent_cycles", positive, options.equivalent_cycles);
   if (options.equivalent_cycles && options.hours.empty())
     map.refuse(*root.find("equivalent_cycles"), "equivalent_cycles",

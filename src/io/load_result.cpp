@@ -33,20 +33,6 @@ std::vector<double> collect(const LoadReport& report, const Member& member) {
   return values;
 }
 
-void write_channels(ResultFile& file, const std::string& group,
-                    const std::vector<system::Channel>& channels) {
-  const auto write = [&](const std::string& name, const auto& member,
-                         const std::string& description) {
-    std::vector<std::string> texts;
-    for (const system::Channel& channel : channels) texts.push_back(channel.*member);
-    file.write_texts(group + "/channel_" + name, texts, {"", no_frame, description});
-  };
-  write("name", &system::Channel::name, "the channels, by OpenFAST's names");
-  write("unit", &system::Channel::unit, "unit of each channel");
-  write("frame", &system::Channel::frame, "axes of each channel");
-  write("description", &system::Channel::description, "each channel in words");
-}
-
 void write_statistics(ResultFile& file, const std::string& group, const LoadReport& report) {
   const auto write = [&](const std::string& name, const auto& member,
                          const std::string& description) {
@@ -137,7 +123,7 @@ void write_damage(ResultFile& file, const std::string& group,
 
 void write_report(ResultFile& file, const std::string& group, const LoadReport& report,
                   const LoadOptions& options) {
-  write_channels(file, group, report.channels);
+  file.write_channels(group, report.channels);
   write_statistics(file, group, report);
   write_events(file, group, report);
   write_harmonics(file, group, report);
@@ -171,7 +157,7 @@ void write_loads(ResultFile& file, const std::vector<LoadReport>& reports,
   if (lifetime.damage.empty()) return;
   const std::string group = top + "/lifetime";
   const std::vector<system::Channel>& channels = reports.front().channels;
-  write_channels(file, group, channels);
+  file.write_channels(group, channels);
   file.write_values(group + "/hours", lifetime.hours,
                     {"h", no_frame, "that each result stands for; [result]"});
   write_damage(file, group, lifetime.damage, channels.size(), options,

@@ -22,6 +22,7 @@
 #include "samara/io/whole_file.hpp"
 
 #include "hdf5_file.hpp"
+#include "held_loads.hpp"
 #include "history_datasets.hpp"
 #include "linear_groups.hpp"
 
@@ -335,16 +336,8 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
                 "between them]"});
   write_value("/trim/load_level", trim.load_level,
               {"N, N m", no_frame, "largest internal load, to compare the residual with"});
-  std::vector<std::string> held;
-  std::vector<double> loads;
-  for (const analysis::HeldCoordinate& coordinate : trim.held) {
-    held.push_back(coordinate.name);
-    loads.push_back(coordinate.load);
-  }
-  file.write("/trim/held_name", held,
-             {"", no_frame, "coordinates that nothing restores: their mean is set to zero"});
-  write_values("/trim/held_load", loads,
-               {"N m", "about the joint", "constant load that holds each of held_name"});
+  write_held_loads(file, "/trim", trim.held,
+                   "coordinates that nothing restores: their mean is set to zero");
   file.set_attribute(
       "/trim", "method",
       std::string(trim.method == analysis::TrimMethod::shooting ? "shooting" : "harmonic_balance"));
@@ -388,18 +381,23 @@ void ResultFile::write_static(const analysis::StaticPath& path) {
                                  "tolerance"));
 }
 
+void ResultFile::write_channels(const std::string& group,
+                                const std::vector<system::Channel>& channels) {
+  const auto write = [&](const std::string& name, const auto& member,
+                         const std::string& description) {
+    std::vector<std::string> texts;
+    for (const system::Channel& channel : channels) texts.push_back(channel.*member);
+    write_texts(group + "/channel_" + name, texts, {"", no_frame, description});
+  };
+  write("name", &system::Channel::name, "the channels, by OpenFAST's names");
+  write("unit", &system::Channel::unit, "unit of each channel");
+  write("frame", &system::Channel::frame, "axes of each channel");
+  write("description", &system::Channel::description, "each channel in words");
+}
+
 void ResultFile::write_history(const HistoryContent& history) {
   Hdf5File& file = storage_->file;
-  const auto write_texts = [&](const std::string& name, const auto& member,
-                               const std::string& description) {
-    std::vector<std::string> texts;
-    for (const system::Channel& channel : history.channels) texts.push_back(channel.*member);
-    file.write("/transient/channel_" + name, texts, {"", no_frame, description});
-  };
-  write_texts("name", &system::Channel::name, "the columns of values, by OpenFAST's names");
-  write_texts("unit", &system::Channel::unit, "unit of each channel");
-  write_texts("frame", &system::Channel::frame, "axes of each channel");
-  write_texts("description", &system::Channel::description, "each channel in words");
+  write_channels("/transient", history.channels);
   std::vector<std::string> files;
   std::vector<std::size_t> rows;
   std::vector<int> counts;
@@ -423,6 +421,7 @@ void ResultFile::write_history(const HistoryContent& history) {
   file.write("/transient/model", history.model,
              {"", no_frame, "the keys of the case that make the model"});
   file.set_attribute("/transient", "status", history.status);
+  if (history.azimuth) file.set_attribute("/transient", "azimuth", *history.azimuth);
   if (!history.checkpoint) return;
   const analysis::TransientStart& point = *history.checkpoint;
   const std::vector<double> state(point.z.data(), point.z.data() + point.z.size());
@@ -430,15 +429,8 @@ void ResultFile::write_history(const HistoryContent& history) {
                {"of /model/unknowns/unit", unknown_frame, "from which the run can go on"});
   write_values("/transient/checkpoint/event_time", history.checkpoint_events,
                {"s", no_frame, "when each of transient.events came; not-a-number: not yet"});
-  std::vector<std::string> held;
-  std::vector<double> loads;
-  for (const analysis::HeldCoordinate& coordinate : point.held) {
-    held.push_back(coordinate.name);
-    loads.push_back(coordinate.load);
-  }
-  file.write("/transient/checkpoint/held_name", held,
-             {"", no_frame, "coordinates on which a constant load acts"});
-  write_values("/transient/checkpoint/held_load", loads, {"N m", "about the joint", "that load"});
+  write_held_loads(file, "/transient/checkpoint", point.held,
+                   "coordinates on which a constant load acts");
   file.set_attribute("/transient/checkpoint", "time", point.time);
   file.set_attribute("/transient/checkpoint", "origin", point.origin);
   file.set_attribute("/transient/checkpoint", "step", static_cast<double>(point.step));
@@ -504,8 +496,8 @@ bool is_table(const std::string& path) {
   std::string line;
   std::ifstream stream(path, std::ios::binary);
   std::getline(stream, line);
-  return std::ranges::any_of(
-      table_starts, [&line](std::string_view start) { return line.starts_with(start); });
+  return std::ranges::any_of(table_starts,
+                             [&line](std::string_view start) { return line.starts_with(start); });
 }
 
 void require_table_path(const std::string& path) {

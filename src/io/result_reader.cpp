@@ -7,6 +7,7 @@
 #include "samara/io/result_file.hpp"
 
 #include "hdf5_reader.hpp"
+#include "held_loads.hpp"
 
 namespace samara::io {
 namespace {
@@ -56,7 +57,7 @@ Case read_result_case(const std::string& path) {
   return result;
 }
 
-analysis::PeriodicSolution read_result_trim(const std::string& path) {
+analysis::Trim read_result_trim(const std::string& path) {
   const Hdf5Reader file = open_result(path);
   const std::vector<hsize_t> shape = file.shape("/trim/harmonics");
   const std::vector<double> numbers = file.numbers("/trim/harmonics");
@@ -65,7 +66,9 @@ analysis::PeriodicSolution read_result_trim(const std::string& path) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const RowMajor> coefficients(numbers.data(), static_cast<Eigen::Index>(shape[0]),
                                                 static_cast<Eigen::Index>(shape[1]));
-  return {coefficients, file.numbers("/model/period").at(0)};
+  analysis::Trim trim{{coefficients, file.numbers("/model/period").at(0)}};
+  trim.held = read_held_loads(file, "/trim");
+  return trim;
 }
 
 }  // namespace samara::io

@@ -86,10 +86,8 @@ std::string read_whole_file(const std::string& path, std::size_t megabytes,
                             const std::string& kind) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found)
-    throw InputError(path + ": no such file");
-  if (fs::is_directory(status))
-    throw InputError(path + ": a directory, expected a " + kind);
+  if (status.type() == fs::file_type::not_found) throw InputError(path + ": no such file");
+  if (fs::is_directory(status)) throw InputError(path + ": a directory, expected a " + kind);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path + ": cannot be opened for reading");
   std::string text;

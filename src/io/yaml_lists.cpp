@@ -1,32 +1,40 @@
 #include "yaml_lists.hpp"
 
+#include <algorithm>
+
 namespace samara::io {
 
-void read_words(MapReader& map, std::string_view key, std::vector<std::string>& words) {
+const YamlNode* find_list(MapReader& map, std::string_view key, const std::string& items) {
   const YamlNode* list = map.find(key);
+  if (list == nullptr) return nullptr;
+  if (list->kind == YamlNode::Kind::list && !list->children.empty()) return list;
+  map.refuse(*list, key, "expected a list of " + items + ", " + describe(*list));
+  return nullptr;
+}
+
+void read_words(MapReader& map, std::string_view key, std::vector<std::string>& words) {
+  const YamlNode* list = find_list(map, key, "names");
   if (list == nullptr) return;
-  if (list->kind != YamlNode::Kind::list || list->children.empty()) {
-    map.refuse(*list, key, "expected a list of names, " + describe(*list));
-    return;
-  }
   for (const YamlNode& entry : list->children) {
     if (entry.kind != YamlNode::Kind::scalar)
       map.refuse(entry, key, "expected a name, " + describe(entry));
+    else if (std::ranges::find(words, entry.text) != words.end())
+      map.refuse(entry, key, "\"" + entry.text + "\" stands there twice");
     words.push_back(entry.text);
   }
 }
 
-void read_stations(MapReader& map, std::string_view key, std::vector<double>& places) {
-  const YamlNode* list = map.find(key);
+void read_numbers(MapReader& map, std::string_view key, const NumberRule& rule,
+                  std::vector<double>& values, const std::string& items) {
+  const YamlNode* list = find_list(map, key, items);
   if (list == nullptr) return;
-  if (list->kind != YamlNode::Kind::list || list->children.empty()) {
-    map.refuse(*list, key, "expected a list of fractions of the length, " + describe(*list));
-    return;
-  }
-  places.resize(list->children.size());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    read_number(list->children[i], join_path(map.where(key), i), fraction_of_one, places[i],
-                map.errors());
+  values.resize(list->children.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    read_number(list->children[i], join_path(map.where(key), i), rule, values[i], map.errors());
+}
+
+void read_stations(MapReader& map, std::string_view key, std::vector<double>& places) {
+  read_numbers(map, key, fraction_of_one, places, "fractions of the length");
 }
 
 }  // namespace samara::io

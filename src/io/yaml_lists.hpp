@@ -1,4 +1,4 @@
-// Lists of names and of places in a case file.
+// Lists of words and of numbers in a case.
 #pragma once
 
 #include <string>
@@ -9,9 +9,16 @@
 
 namespace samara::io {
 
+/// A list, and what its items are in words; null where the key is left out or something else.
+const YamlNode* find_list(MapReader& map, std::string_view key, const std::string& items);
+
+/// Reads names, none of them twice.
 void read_words(MapReader& map, std::string_view key, std::vector<std::string>& words);
 
-/// Reads fractions of a length.
+void read_numbers(MapReader& map, std::string_view key, const NumberRule& rule,
+                  std::vector<double>& values, const std::string& items = "numbers");
+
+/// Reads places along a beam.
 void read_stations(MapReader& map, std::string_view key, std::vector<double>& places);
 
 }  // namespace samara::io

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "yaml_reader.hpp"
 #include "samara/io/yaml_tree.hpp"
+
+#include "yaml_reader.hpp"
 
 namespace samara::io {
 

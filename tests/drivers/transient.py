@@ -168,6 +168,60 @@ class Restarts(ProgramTest):
         self.assertIn("missing", run.stderr)
 
 
+class Starts(ProgramTest):
+    """From where another run ended."""
+
+    GRAVITY = ["--set", "gravity=9.81", "--set", "trim.harmonics=4"]
+
+    def test_a_history_goes_on_from_the_end_of_another_on_a_new_clock(self):
+        # 2.03 s are no whole number of turns: gravity would pull from elsewhere at another azimuth.
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "whole.h5",
+                     *block(duration=4.06, step=0.01, checkpoint=2.03, start="undeformed"))
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "first.h5",
+                     *block(duration=2.03, step=0.01, start="undeformed"))
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "then.h5",
+                     *block(duration=2.03, step=0.01, start="first.h5"))
+        whole = history(self.folder / "whole.h5")
+        then = history(self.folder / "then.h5")
+        numpy.testing.assert_allclose(then[0], whole[0][203:] - 2.03, atol=1e-12)
+        size = numpy.abs(whole[1]).max(axis=0)
+        numpy.testing.assert_allclose(then[1][1:] / size, whole[1][204:] / size, atol=1e-8)
+        # A third one and a restart keep the azimuth, too.
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "then.h5", "--restart",
+                     "then.h5", *block(duration=2.5, step=0.01, start="first.h5"))
+        last = history(self.folder / "then.h5")
+        speed = 6.02 * 180 / numpy.pi
+        numpy.testing.assert_allclose(last[1][:, 4], (speed * (last[0] + 2.03)) % 360, atol=1e-6)
+
+    def test_a_history_starts_on_the_steady_state_of_a_result(self):
+        self.succeed("trim", BASELINE, *COARSE, *self.GRAVITY, "-o", "trim.h5")
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "own.h5",
+                     *block(duration=0.5, step=0.01))
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "read.h5",
+                     *block(duration=0.5, step=0.01, start="trim.h5"))
+        numpy.testing.assert_allclose(history(self.folder / "read.h5")[1],
+                                      history(self.folder / "own.h5")[1], rtol=1e-9, atol=1e-9)
+
+    def test_loads_may_change_and_what_moves_may_not(self):
+        self.succeed("trim", BASELINE, *COARSE, "-o", "trim.h5")
+        keys = block(duration=0.1, step=0.01, start="trim.h5")
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY[:2], "-o", "a.h5", *keys)
+        for setting, words in (
+                ("shaft.speed=6.5", "a speed of 6.02 rad/s, this history begins with 6.5"),
+                ("blades.pitch_deg=3", "the pitch of blade 1 0 deg"),
+                ("blades.elements=3", "is of another model (blades.elements: 2 there")):
+            run = self.samara("transient", BASELINE, *COARSE, "--set", setting, "-o", "b.h5", *keys)
+            self.assertEqual(run.returncode, 2, setting)
+            self.assertIn(words, run.stderr)
+            self.assertIn("transient.start: trim.h5: ", run.stderr)
+        self.succeed("check", BASELINE, *COARSE, "-o", "check.h5")
+        for name, words in (("check.h5", "no state"), ("none.h5", "no such file")):
+            run = self.samara("transient", BASELINE, *COARSE, "-o", "b.h5",
+                              *block(duration=0.1, step=0.01, start=name))
+            self.assertEqual(run.returncode, 2)
+            self.assertIn(words, run.stderr)
+
+
 # A stiff rotor that a constant torque holds against a constant torque of the generator.
 ROTOR = """samara: 1
 gravity: 0

@@ -18,17 +18,21 @@ struct HeldCoordinate {
   double load = 0.0;  ///< constant load that holds the mean; not small: no equilibrium there
 };
 
+/// Adds these loads to a residual.
+void add_held_loads(const system::PeriodicSystem& system, const std::vector<HeldCoordinate>& held,
+                    Vec r);
+
 struct Trim {
   PeriodicSolution solution;
   TrimMethod method = TrimMethod::harmonic_balance;
   int newton_steps = 0;
-  std::string convergence;        ///< PETSc's reason in words
+  std::string convergence = {};   ///< PETSc's reason in words
   double residual = 0.0;          ///< largest balance row at the samples [N, N m]
   double residual_between = 0.0;  ///< largest balance row between the samples [N, N m]
   double load_level = 0.0;        ///< largest internal load of the solution [N, N m]
-  std::vector<HeldCoordinate> held;
+  std::vector<HeldCoordinate> held = {};
   /// Harmonics tried and the residual between the samples that each left (more than one: auto).
-  std::vector<std::pair<int, double>> history;
+  std::vector<std::pair<int, double>> history = {};
 };
 
 /// Harmonics that `harmonics: auto` tries, at the most.

@@ -17,6 +17,7 @@ namespace samara::io {
 enum class TransientOrigin {
   trim,        ///< on the periodic steady state
   undeformed,  ///< without strains, in its prescribed motion
+  result,      ///< where another run ended, or on its steady state
 };
 
 /// Between restart points [s].
@@ -26,8 +27,9 @@ struct TransientCase {
   bool is_given = false;
   analysis::TransientOptions options;
   TransientOrigin start = TransientOrigin::trim;
-  long output_steps = 1;                  ///< between rows of the history
-  std::vector<std::string> channels;      ///< empty: all but those of stations
+  std::string start_path;             ///< of that result
+  long output_steps = 1;              ///< between rows of the history
+  std::vector<std::string> channels;  ///< empty: all but those of stations
   system::ChannelStations stations;
   std::optional<math::TimeCurve> speed;   ///< of the generator [rad/s]
   std::optional<math::TimeCurve> pitch;   ///< of all blades [rad]
@@ -58,8 +60,8 @@ struct Case {
   std::vector<std::string> notes;  ///< keys without the effect that they seem to have, by place
 };
 
-/// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys before
-/// validation (`blades.elements=8`, `blades.sections.0.mass=10`).
+/// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys
+/// before validation (`blades.elements=8`, `blades.sections.0.mass=10`).
 /// @throws InputError with every error found, one a line, `path:line:column: where: what`.
 Case read_case(const std::string& path, const std::vector<std::string>& settings);
 

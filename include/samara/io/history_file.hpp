@@ -35,6 +35,7 @@ struct HistoryContent {
   std::vector<double> time;    ///< of rows that are in no segment; empty where there are segments
   std::vector<double> values;  ///< row by row
   std::string model;           ///< Case::model_text
+  std::optional<double> azimuth;  ///< of blade 1 at t = 0 [rad]; none: that of the case
   std::optional<analysis::TransientStart> checkpoint;
   std::size_t checkpoint_rows = 0;        ///< rows up to the checkpoint
   std::vector<double> checkpoint_events;  ///< when each event came [s]; not-a-number: not yet
@@ -43,9 +44,11 @@ struct HistoryContent {
 
 class HistoryFile {
  public:
-  /// `write_rest` adds to each version of the result what else belongs in it.
+  /// `azimuth`: of blade 1 at t = 0 [rad]; `write_rest` adds to each version of the result what
+  /// else belongs in it.
   HistoryFile(std::string path, const Case& input, RunRecord record,
-              std::vector<system::Channel> channels, std::function<void(ResultFile&)> write_rest);
+              std::vector<system::Channel> channels, double azimuth,
+              std::function<void(ResultFile&)> write_rest);
 
   /// Goes on with the history that is in the result already, up to its checkpoint.
   void resume();

@@ -70,6 +70,8 @@ class ResultFile {
   /// Numbers of several axes, the last one running fastest; its groups are made.
   void write_array(const std::string& name, const std::vector<double>& values,
                    const std::vector<std::size_t>& shape, const Meaning& meaning);
+  /// `group`/channel_name, channel_unit, channel_frame, channel_description.
+  void write_channels(const std::string& group, const std::vector<system::Channel>& channels);
   void write_texts(const std::string& name, const std::vector<std::string>& texts,
                    const Meaning& meaning);
   /// Attributes of a group or dataset that exists.

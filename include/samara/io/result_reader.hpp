@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "samara/analysis/periodic_solution.hpp"
+#include "samara/analysis/trim.hpp"
 #include "samara/io/case.hpp"
 
 namespace samara::io {
@@ -22,7 +22,8 @@ ResultKind find_result_kind(const std::string& path);
 /// @throws InputError as `find_result_kind`, and where this program does not accept the case
 Case read_result_case(const std::string& path);
 
-/// /trim. @throws InputError where there is none
-analysis::PeriodicSolution read_result_trim(const std::string& path);
+/// Of /trim the solution and the loads that hold coordinates. @throws InputError where there is
+/// none
+analysis::Trim read_result_trim(const std::string& path);
 
 }  // namespace samara::io

@@ -1,0 +1,175 @@
+#include "history_start.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "samara/base/error.hpp"
+#include "samara/io/history_file.hpp"
+#include "samara/io/result_reader.hpp"
+#include "samara/system/turbine_system.hpp"
+
+#include "history_legs.hpp"
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+using analysis::TransientStart;
+
+/// Keys in which a history may differ from the result that it starts from: what acts on the
+/// turbine, and motions, which are compared as they are at that instant.
+constexpr std::array<std::string_view, 7> free_keys{
+    "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator.torque",
+    "shaft.rotor", "shaft.speed", "blades.pitch_deg"};
+/// Of motions at the start: rates relative to the largest, angles [rad].
+constexpr double motion_tolerance = 1e-6;
+
+bool is_free_key(const std::string& line) {
+  return std::ranges::any_of(free_keys, [&line](std::string_view key) {
+    return line.starts_with(key) &&
+           std::string_view(":._[").find(line[key.size()]) != std::string_view::npos;
+  });
+}
+
+std::vector<std::string> lines_of(const std::string& text, bool leave_out_free) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    if (!leave_out_free || !is_free_key(line)) lines.push_back(line);
+  return lines;
+}
+
+/// Where the two first differ: `key: value there, key: value here`; empty: nowhere.
+std::string find_difference(const std::vector<std::string>& there,
+                            const std::vector<std::string>& here) {
+  const auto [a, b] = std::ranges::mismatch(there, here);
+  if (a == there.end() && b == here.end()) return "";
+  return (a == there.end() ? std::string("nothing") : *a) + " there, " +
+         (b == here.end() ? std::string("nothing") : *b) + " here";
+}
+
+void require_same_model(const std::string& path, const std::string& there, const std::string& here,
+                        bool leave_out_free) {
+  const std::string difference =
+      find_difference(lines_of(there, leave_out_free), lines_of(here, leave_out_free));
+  if (!difference.empty()) throw InputError(path + ": is of another model (" + difference + ")");
+}
+
+TransientStart checkpoint_of(const std::string& path, const io::HistoryContent& content,
+                             const system::TurbineSystem& system) {
+  if (!content.checkpoint)
+    throw InputError(path + ": has no checkpoint; hint: transient.checkpoint sets their distance");
+  if (content.checkpoint->z.size() != system.size())
+    throw InputError(path + ": its state has " + std::to_string(content.checkpoint->z.size()) +
+                     " unknowns, the model " + std::to_string(system.size()));
+  return *content.checkpoint;
+}
+
+HistoryStart restart(const Job& job, const model::Turbine& turbine,
+                     const system::TurbineSystem& system) {
+  const io::HistoryReader history(job.restart_path);
+  const io::HistoryContent& content = history.content();
+  require_same_model(job.restart_path, content.model, job.input.model_text, false);
+  const TransientStart point = checkpoint_of(job.restart_path, content, system);
+  const analysis::TransientOptions& options = job.input.transient.options;
+  const double grid = point.origin + static_cast<double>(point.step) * options.step;
+  if (std::abs(grid - point.time) > 1e-9 * options.step)
+    throw InputError(job.restart_path + ": was run with another transient.step");
+  if (point.time >= point.origin + options.duration * (1.0 - 1e-12))
+    throw InputError(job.restart_path + ": reaches to t = " + general(point.time, 6) +
+                     " s already; hint: a longer transient.duration");
+  if (content.checkpoint_events.size() != job.input.transient.events.size())
+    throw InputError(job.restart_path + ": was run with other transient.events");
+  return {point, content.checkpoint_events, content.azimuth.value_or(turbine.azimuth)};
+}
+
+/// What is prescribed goes on where it was.
+void require_same_motion(const std::string& path, const model::Turbine& there, double t,
+                         const model::Turbine& here) {
+  const auto compare = [&path](const std::string& what, double before, double now, double size,
+                               double unit, const std::string& unit_name) {
+    if (std::abs(before - now) <= motion_tolerance * size) return;
+    throw InputError(path + ": ends with " + what + " " + general(before / unit, 6) + " " +
+                     unit_name + ", this history begins with " + general(now / unit, 6));
+  };
+  constexpr double degree = std::numbers::pi / 180.0;
+  const double speed = there.turning_at(t).rate;
+  compare("a speed of", speed, here.turning_at(0.0).rate, std::max(1.0, std::abs(speed)), 1.0,
+          "rad/s");
+  for (std::size_t k = 0; k < here.blades.size(); ++k) {
+    const math::TimeCurve::Value before = there.pitch_at(k, t);
+    const math::TimeCurve::Value now = here.pitch_at(k, 0.0);
+    const std::string of_blade = " of blade " + std::to_string(k + 1);
+    compare("the pitch" + of_blade, before.value, now.value, 1.0, degree, "deg");
+    compare("the pitch rate" + of_blade, before.rate, now.rate, 1.0, degree, "deg/s");
+  }
+  const auto compare_joint = [&](const std::string& name, const elements::JointMotion& before,
+                                 const elements::JointMotion& now) {
+    compare("the angle of the " + name, before.angle, now.angle, 1.0, degree, "deg");
+    compare("the rate of the " + name, before.rate, now.rate, 1.0, degree, "deg/s");
+  };
+  compare_joint("yaw", there.yaw_at(t), here.yaw_at(0.0));
+  compare_joint("teeter", there.teeter_at(t), here.teeter_at(0.0));
+}
+
+/// The end of a history, or the steady state, of a result: with it t = 0 comes.
+HistoryStart start_from(const std::string& path, const Job& job, const model::Turbine& turbine,
+                        const system::TurbineSystem& system) {
+  const io::Case before = io::read_result_case(path);
+  require_same_model(path, before.model_text, job.input.model_text, true);
+  const model::Turbine there = operated_turbine(before);
+  switch (io::find_result_kind(path)) {
+    case io::ResultKind::history: {
+      const io::HistoryReader history(path);
+      const io::HistoryContent& content = history.content();
+      TransientStart point = checkpoint_of(path, content, system);
+      model::Turbine last = turbine_after(before.transient, there, content.checkpoint_events);
+      last.azimuth = content.azimuth.value_or(last.azimuth);
+      require_same_motion(path, last, point.time, turbine);
+      const double azimuth = last.turning_at(point.time).value;
+      point.time = 0.0;
+      point.origin = 0.0;
+      point.step = 0;
+      return {point, {}, azimuth};
+    }
+    case io::ResultKind::steady_state: {
+      const model::Turbine steady = model::build_turbine(before.turbine);
+      require_same_motion(path, steady, 0.0, turbine);
+      const analysis::Trim trim = io::read_result_trim(path);
+      if (trim.solution.coefficients().rows() != system.size())
+        throw InputError(path + ": its steady state has " +
+                         std::to_string(trim.solution.coefficients().rows()) +
+                         " unknowns, the model " + std::to_string(system.size()));
+      return {analysis::start_on(system, trim, 0.0), {}, steady.azimuth};
+    }
+    case io::ResultKind::other:
+      break;
+  }
+  throw InputError(
+      path + ": has no state to start from; hint: results of transient, trim and floquet have");
+}
+
+}  // namespace
+
+HistoryStart find_history_start(const Job& job, const model::Turbine& turbine, Progress& progress) {
+  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const io::TransientCase& transient = job.input.transient;
+  if (!job.restart_path.empty()) return restart(job, turbine, system);
+  switch (transient.start) {
+    case io::TransientOrigin::undeformed:
+      return {analysis::start_undeformed(system, 0.0), {}, turbine.azimuth};
+    case io::TransientOrigin::result:
+      return at_place(job.input.path + ": transient.start",
+                      [&] { return start_from(transient.start_path, job, turbine, system); });
+    case io::TransientOrigin::trim:
+      break;
+  }
+  return {analysis::start_on(system, analysis::find_trim(system, job.input.trim, progress), 0.0),
+          {},
+          turbine.azimuth};
+}
+
+}  // namespace samara::drivers

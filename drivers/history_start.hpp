@@ -1,0 +1,25 @@
+// Where a time history begins.
+#pragma once
+
+#include <vector>
+
+#include "samara/analysis/transient.hpp"
+#include "samara/model/turbine.hpp"
+
+#include "job.hpp"
+#include "progress.hpp"
+
+namespace samara::drivers {
+
+struct HistoryStart {
+  analysis::TransientStart point;
+  std::vector<double> fired;  ///< when the events came that have come already
+  double azimuth = 0.0;       ///< of blade 1 at t = 0 [rad]
+};
+
+/// From the checkpoint of --restart, on the trim, undeformed, or from the end of another result, as
+/// the case says. `turbine`: with what the case prescribes in time.
+/// @throws InputError where a result does not fit to the case
+HistoryStart find_history_start(const Job& job, const model::Turbine& turbine, Progress& progress);
+
+}  // namespace samara::drivers

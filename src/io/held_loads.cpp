@@ -1,0 +1,35 @@
+#include "held_loads.hpp"
+
+namespace samara::io {
+namespace {
+
+constexpr char names[] = "/held_name";
+constexpr char loads[] = "/held_load";
+constexpr char unit[] = "N m";
+
+}  // namespace
+
+void write_held_loads(Hdf5File& file, const std::string& group,
+                      const std::vector<analysis::HeldCoordinate>& held,
+                      const std::string& description) {
+  std::vector<std::string> words;
+  std::vector<double> values;
+  for (const analysis::HeldCoordinate& coordinate : held) {
+    words.push_back(coordinate.name);
+    values.push_back(coordinate.load);
+  }
+  file.write(group + names, words, {"", "none", description});
+  file.write(group + loads, values, {values.size()},
+             {unit, "about the joint", "constant load on each of held_name"});
+}
+
+std::vector<analysis::HeldCoordinate> read_held_loads(const Hdf5Reader& file,
+                                                      const std::string& group) {
+  std::vector<analysis::HeldCoordinate> held;
+  const std::vector<double> values = file.numbers(group + loads);
+  for (const std::string& name : file.texts(group + names))
+    held.push_back({name, unit, values.at(held.size())});
+  return held;
+}
+
+}  // namespace samara::io

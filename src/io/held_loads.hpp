@@ -1,0 +1,23 @@
+// Constant loads that hold coordinates which nothing restores, in a result.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/analysis/trim.hpp"
+
+#include "hdf5_file.hpp"
+#include "hdf5_reader.hpp"
+
+namespace samara::io {
+
+/// Writes `group`/held_name, described so, and `group`/held_load.
+void write_held_loads(Hdf5File& file, const std::string& group,
+                      const std::vector<analysis::HeldCoordinate>& held,
+                      const std::string& description);
+
+/// @throws InputError where `group` has none
+std::vector<analysis::HeldCoordinate> read_held_loads(const Hdf5Reader& file,
+                                                      const std::string& group);
+
+}  // namespace samara::io
