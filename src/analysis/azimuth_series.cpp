@@ -13,11 +13,8 @@ namespace {
 /// Where the series is compared, as fractions of the azimuths: midway between two of them.
 constexpr std::array<double, 4> places{0.05, 0.33, 0.58, 0.81};
 
-constexpr std::array<Eigen::MatrixXd StateSpace::*, 4> matrices{&StateSpace::A, &StateSpace::B,
-                                                                &StateSpace::C, &StateSpace::D};
-
 void add(StateSpace& sum, double factor, const StateSpace& form) {
-  for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
+  for (const auto& [name, matrix, meaning] : state_space_parts) {
     Eigen::MatrixXd& target = sum.*matrix;
     if (target.size() == 0) target.setZero((form.*matrix).rows(), (form.*matrix).cols());
     target += factor * (form.*matrix);
@@ -32,7 +29,7 @@ constexpr double rounding = 1e-12;
 /// The largest size of every entry at any azimuth.
 StateSpace largest_of(const std::vector<StateSpace>& samples) {
   StateSpace largest = samples.front();
-  for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
+  for (const auto& [name, matrix, meaning] : state_space_parts) {
     Eigen::MatrixXd& target = largest.*matrix;
     for (const StateSpace& sample : samples)
       target = target.cwiseAbs().cwiseMax((sample.*matrix).cwiseAbs());
@@ -41,19 +38,26 @@ StateSpace largest_of(const std::vector<StateSpace>& samples) {
 }
 
 /// The difference of two forms: each entry relative to the geometric mean of the largest ones of
-/// its row and of its column at any azimuth, whatever the units are.
+/// its row and of its column at any azimuth, whatever the units are. What inputs do at once (D) is
+/// counted from the rounding of what they do by way of the states.
 double compare(const StateSpace& found, const StateSpace& wanted, const StateSpace& largest) {
   double worst = 0.0;
-  for (Eigen::MatrixXd StateSpace::*matrix : matrices) {
+  const double rate = std::sqrt(std::max(1.0, largest.A.size() > 0 ? largest.A.maxCoeff() : 0.0));
+  for (const auto& [name, matrix, meaning] : state_space_parts) {
     const Eigen::MatrixXd& reference = wanted.*matrix;
     if (reference.size() == 0) continue;
     const Eigen::VectorXd rows = (largest.*matrix).rowwise().maxCoeff();
     const Eigen::RowVectorXd columns = (largest.*matrix).colwise().maxCoeff();
+    const bool is_direct = matrix == &StateSpace::D && largest.A.size() > 0;
     for (Eigen::Index i = 0; i < reference.rows(); ++i)
       for (Eigen::Index j = 0; j < reference.cols(); ++j) {
         const double size = std::max(std::sqrt(rows(i) * columns(j)), least_row * columns(j));
+        double least = rounding * rows.maxCoeff();
+        if (is_direct)
+          least = std::max(
+              least, rounding * largest.C.row(i).maxCoeff() * largest.B.col(j).maxCoeff() / rate);
         const double difference = std::abs((found.*matrix)(i, j) - reference(i, j));
-        if (size > rounding * rows.maxCoeff()) worst = std::max(worst, difference / size);
+        if (size > least) worst = std::max(worst, difference / size);
       }
   }
   return worst;
@@ -93,6 +97,15 @@ StateSpace AzimuthSeries::at(double psi) const {
     const auto i = static_cast<std::size_t>(2 * k - 1);
     add(sum, std::cos(k * psi), coefficients_[i]);
     add(sum, std::sin(k * psi), coefficients_[i + 1]);
+  }
+  return sum;
+}
+
+Eigen::MatrixXd AzimuthSeries::state_matrix(double psi) const {
+  Eigen::MatrixXd sum = mean().A;
+  for (int k = 1; k <= harmonics(); ++k) {
+    const auto i = static_cast<std::size_t>(2 * k - 1);
+    sum += std::cos(k * psi) * coefficients_[i].A + std::sin(k * psi) * coefficients_[i + 1].A;
   }
   return sum;
 }

@@ -284,6 +284,21 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return c;
 }
 
+Eigen::MatrixXd exponential(const Eigen::MatrixXd& matrix) {
+  const auto n = static_cast<PetscInt>(matrix.rows());
+  Eigen::MatrixXd copy = matrix;
+  Eigen::MatrixXd result(n, n);
+  petsc::Handle<Mat> from;
+  petsc::Handle<Mat> to;
+  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, copy.data(), from.fill()));
+  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, result.data(), to.fill()));
+  petsc::Handle<FN> function;
+  petsc::check(FNCreate(PETSC_COMM_SELF, function.fill()));
+  petsc::check(FNSetType(function.get(), FNEXP));
+  petsc::check(FNEvaluateFunctionMat(function.get(), from.get(), to.get()));
+  return result;
+}
+
 Eigen::SparseMatrix<double> to_sparse(Mat matrix) {
   PetscInt rows = 0;
   PetscInt columns = 0;

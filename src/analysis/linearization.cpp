@@ -1,9 +1,11 @@
 #include "samara/analysis/linearization.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 
 #include "samara/analysis/hill.hpp"
+#include "samara/analysis/lyapunov_floquet.hpp"
 #include "samara/analysis/multiblade.hpp"
 #include "samara/base/error.hpp"
 
@@ -33,11 +35,25 @@ std::vector<Named> repeated(const std::vector<Named>& all, int harmonics) {
   return result;
 }
 
+std::vector<system::Signal> signals_of(const std::vector<ModelState>& states) {
+  std::vector<system::Signal> signals;
+  for (const ModelState& state : states) {
+    system::Signal signal;
+    signal.name = state.name;
+    signal.unit = "1";
+    signal.frame = "of the states";
+    signal.description = "state";
+    signals.push_back(signal);
+  }
+  return signals;
+}
+
 NamedForm average_of(const NamedForm& form) {
   NamedForm average = form;
   average.name = form.name + "_average";
   average.description = "mean over the azimuth of " + form.name;
   average.series = AzimuthSeries({form.series.mean()});
+  average.at_azimuths.clear();
   return average;
 }
 
@@ -76,33 +92,42 @@ Linearization linearize(const system::PeriodicSystem& system,
   const auto time_of = [&](double psi) {
     return has_period ? (psi - start_azimuth) / result.rotor_speed : 0.0;
   };
-  long count = 0;
-  const auto form_at = [&](double psi) {
-    observer.progress("linearize", std::min<long>(++count, azimuths), azimuths);
-    return model.state_space(time_of(psi));
+  std::map<double, StateSpace> known;
+  const auto form_at = [&](double psi) -> const StateSpace& {
+    const auto found = known.find(psi);
+    if (found != known.end()) return found->second;
+    const auto all = static_cast<long>(azimuths) + static_cast<long>(options.at.size());
+    observer.progress("linearize", std::min(static_cast<long>(known.size()) + 1, all), all);
+    return known.emplace(psi, model.state_space(time_of(psi))).first->second;
   };
   NamedForm periodic{"state_space",          "x_dot = A x + B u, y = C x + D u over the azimuth",
                      model.states(),         column_signals(model),
                      input_output.outputs(), AzimuthSeries(form_at, azimuths, harmonics)};
-  result.azimuths = periodic.series.azimuths();
+  if (!has_period)
+    result.azimuths = {start_azimuth};
+  else
+    result.azimuths = options.at.empty() ? periodic.series.azimuths() : options.at;
   result.is_constant = periodic.series.variation() < constant_tolerance;
-  result.outputs.resize(azimuths, static_cast<Eigen::Index>(input_output.outputs().size()));
-  for (int i = 0; i < azimuths; ++i) {
-    const double t = time_of(result.azimuths[static_cast<std::size_t>(i)]);
-    result.outputs.row(i) = model.operating_outputs(t).transpose();
+  result.outputs.resize(static_cast<Eigen::Index>(result.azimuths.size()),
+                        static_cast<Eigen::Index>(input_output.outputs().size()));
+  for (std::size_t i = 0; i < result.azimuths.size(); ++i) {
+    const double t = time_of(result.azimuths[i]);
+    result.outputs.row(static_cast<Eigen::Index>(i)) = model.operating_outputs(t).transpose();
     if (options.descriptor) result.descriptors.push_back(model.descriptor(t));
   }
+  const auto give_at_azimuths = [&](NamedForm& form, const auto& item) {
+    for (const double psi : result.azimuths) form.at_azimuths.push_back(item(psi));
+  };
+  give_at_azimuths(periodic, form_at);
   if (options.multiblade) {
     const Multiblade multiblade(model);
-    NamedForm turned{
-        "multiblade",
-        "in multiblade coordinates over the azimuth",
-        multiblade.states(),
-        multiblade.inputs(),
-        multiblade.outputs(),
-        AzimuthSeries(
-            [&](double psi) { return multiblade.transform(psi, model.state_space(time_of(psi))); },
-            azimuths, harmonics)};
+    const auto turned_at = [&](double psi) {
+      return multiblade.transform(has_period ? psi : start_azimuth, form_at(psi));
+    };
+    NamedForm turned{"multiblade",         "in multiblade coordinates over the azimuth",
+                     multiblade.states(),  multiblade.inputs(),
+                     multiblade.outputs(), AzimuthSeries(turned_at, azimuths, harmonics)};
+    give_at_azimuths(turned, turned_at);
     if (options.average) result.forms.push_back(average_of(turned));
     result.forms.push_back(std::move(turned));
   } else if (options.average) {
@@ -115,6 +140,22 @@ Linearization linearize(const system::PeriodicSystem& system,
                             repeated(periodic.outputs, h),
                             AzimuthSeries({hill_form(periodic.series, result.rotor_speed, h)})});
   }
+  if (options.lyapunov_floquet && has_period) {
+    const LyapunovFloquet floquet(periodic.series, result.rotor_speed, azimuths,
+                                  options.lyapunov_floquet_states);
+    const auto constant_at = [&](double psi) { return floquet.form(psi); };
+    result.forms.push_back({"lyapunov_floquet",
+                            "Lyapunov-Floquet coordinates q: A is constant, B and C periodic",
+                            floquet.states(), periodic.inputs, periodic.outputs,
+                            AzimuthSeries(constant_at, azimuths, harmonics)});
+    give_at_azimuths(result.forms.back(), constant_at);
+    const std::vector<system::Signal> states = signals_of(periodic.states);
+    const auto map_at = [&](double psi) { return floquet.transformation(psi); };
+    result.forms.push_back({"lyapunov_floquet_map",
+                            "q = B x and x = C q, x the states of state_space", floquet.states(),
+                            states, states, AzimuthSeries(map_at, azimuths, harmonics)});
+    give_at_azimuths(result.forms.back(), map_at);
+  }
   if (options.order > 0) {
     std::vector<NamedForm> reduced;
     if (result.is_constant) {
@@ -123,7 +164,8 @@ Linearization linearize(const system::PeriodicSystem& system,
       reduced.push_back(reduced_of(constant, options));
     } else {
       for (const NamedForm& form : result.forms)
-        if (form.series.coefficients().size() == 1) reduced.push_back(reduced_of(form, options));
+        if (form.series.harmonics() == 0 && form.series.samples().empty())
+          reduced.push_back(reduced_of(form, options));
     }
     if (reduced.empty())
       throw InputError(

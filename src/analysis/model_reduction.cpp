@@ -12,6 +12,8 @@
 
 #include "samara/base/error.hpp"
 
+#include "ordered_schur.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -27,64 +29,11 @@ bool is_stable(Complex exponent) {
   return exponent.real() < -neutral_decay * std::max(1.0, std::abs(exponent));
 }
 
-/// A = U T U^H with T upper triangular.
-struct Schur {
-  MatrixXcd T, U;
-};
-
-/// Exchanges the eigenvalues k and k + 1 of the diagonal.
-void exchange(Schur& schur, Index k) {
-  const Complex first = schur.T(k, k);
-  const Complex second = schur.T(k + 1, k + 1);
-  Eigen::JacobiRotation<Complex> turn;
-  turn.makeGivens(schur.T(k, k + 1), second - first);
-  schur.T.applyOnTheLeft(k, k + 1, turn.adjoint());
-  schur.T.applyOnTheRight(k, k + 1, turn);
-  schur.U.applyOnTheRight(k, k + 1, turn);
-  schur.T(k + 1, k) = 0.0;
-}
-
-/// Brings the eigenvalues that are to stay to the front, in their order.
-template <class Stays>
-Index bring_forward(Schur& schur, Stays stays) {
-  Index count = 0;
-  for (Index i = 0; i < schur.T.rows(); ++i) {
-    if (!stays(schur.T(i, i))) continue;
-    for (Index k = i; k > count; --k) exchange(schur, k - 1);
-    ++count;
-  }
-  return count;
-}
-
-/// A real basis of the space of complex columns that is its own conjugate.
-MatrixXd real_basis(const MatrixXcd& columns) {
-  MatrixXd both(columns.rows(), 2 * columns.cols());
-  both << columns.real(), columns.imag();
-  if (columns.cols() == 0) return MatrixXd(columns.rows(), 0);
-  const Eigen::BDCSVD<MatrixXd> svd(both, Eigen::ComputeThinU);
-  return svd.matrixU().leftCols(columns.cols());
-}
-
-/// X of T11 X - X T22 = -T12, both upper triangular: (1 X; 0 1) parts the two.
-MatrixXcd parting(const MatrixXcd& T, Index first) {
-  const Index rest = T.rows() - first;
-  const MatrixXcd T11 = T.topLeftCorner(first, first);
-  MatrixXcd X(first, rest);
-  for (Index j = 0; j < rest; ++j) {
-    Eigen::VectorXcd right = -T.col(first + j).head(first);
-    for (Index k = 0; k < j; ++k) right += X.col(k) * T(first + k, first + j);
-    MatrixXcd shifted = T11;
-    shifted.diagonal().array() -= T(first + j, first + j);
-    X.col(j) = shifted.triangularView<Eigen::Upper>().solve(right);
-  }
-  return X;
-}
-
 /// X of A X + X A^T + F F^T = 0 for a stable A (Bartels and Stewart 1972).
 MatrixXd gramian(const MatrixXd& A, const MatrixXd& F) {
-  const Eigen::ComplexSchur<MatrixXcd> schur(A.cast<Complex>());
-  const MatrixXcd& T = schur.matrixT();
-  const MatrixXcd G = schur.matrixU().adjoint() * F.cast<Complex>();
+  const Schur schur = schur_of(A);
+  const MatrixXcd& T = schur.T;
+  const MatrixXcd G = schur.U.adjoint() * F.cast<Complex>();
   const MatrixXcd right = G * G.adjoint();
   MatrixXcd X = MatrixXcd::Zero(A.rows(), A.rows());
   for (Index j = A.rows() - 1; j >= 0; --j) {
@@ -94,7 +43,7 @@ MatrixXd gramian(const MatrixXd& A, const MatrixXd& F) {
     shifted.diagonal().array() += std::conj(T(j, j));
     X.col(j) = shifted.triangularView<Eigen::Upper>().solve(column);
   }
-  const MatrixXd found = (schur.matrixU() * X * schur.matrixU().adjoint()).real();
+  const MatrixXd found = (schur.U * X * schur.U.adjoint()).real();
   return 0.5 * (found + found.transpose());
 }
 
@@ -112,10 +61,7 @@ struct Parted {
 
 template <class Stays>
 Parted part(const StateSpace& form, Stays stays) {
-  const Eigen::ComplexSchur<MatrixXcd> solver(form.A.cast<Complex>());
-  if (solver.info() != Eigen::Success)
-    throw ConvergenceError("reduction: the eigenvalues of A do not converge");
-  Schur schur{solver.matrixT(), solver.matrixU()};
+  Schur schur = schur_of(form.A);
   Parted parted;
   parted.first = bring_forward(schur, stays);
   const Index rest = schur.T.rows() - parted.first;

@@ -13,13 +13,13 @@
 namespace samara::analysis {
 namespace {
 
-/// "blade 1 point 3 M2" -> "cos 1 point 3 M2"
-std::string renamed(const std::string& name, const std::string& word) {
+/// "blade 1 point 3 M2" -> 1 and " point 3 M2"; 0 of what belongs to no blade.
+std::pair<int, std::string> blade_of(const std::string& name) {
   const std::string stem = "blade ";
-  if (!name.starts_with(stem)) return name + " " + word;
-  std::size_t end = stem.size();
-  while (end < name.size() && name[end] >= '0' && name[end] <= '9') ++end;
-  return word + name.substr(end);
+  if (!name.starts_with(stem)) return {0, name};
+  std::size_t end = 0;
+  const int blade = std::stoi(name.substr(stem.size()), &end);
+  return {blade, name.substr(stem.size() + end)};
 }
 
 int binomial(int p, int q) { return p == 2 && q == 1 ? 2 : 1; }
@@ -51,13 +51,14 @@ std::vector<std::string> Multiblade::words(int blades) {
 }
 
 Multiblade::Multiblade(const LinearModel& model) : model_(model) {
-  const system::RotorSymmetry& symmetry = model.system().symmetry();
-  blades_ = symmetry.sectors;
+  for (const system::Unknown& unknown : model.system().unknowns())
+    blades_ = std::max(blades_, blade_of(unknown.name).first);
   if (blades_ < 3)
-    throw InputError("multiblade coordinates are for three and more blades that are alike" +
-                     (symmetry.broken_by.empty() ? "" : " (" + symmetry.broken_by + ")") +
-                     "; hint: linearize.forms: [state_space, hill]");
-  speed_ = 2.0 * std::numbers::pi / model.system().period();
+    throw InputError(
+        "linearize.forms: multiblade coordinates are for three and more blades; hint: "
+        "lyapunov_floquet, hill");
+  const double period = model.system().period();
+  speed_ = period > 0.0 ? 2.0 * std::numbers::pi / period : 0.0;
   states_ = model.states();
   inputs_ = column_signals(model);
   outputs_ = model.input_output().outputs();
@@ -69,23 +70,27 @@ Multiblade::Multiblade(const LinearModel& model) : model_(model) {
 void Multiblade::find_state_families() {
   const ConsistentSubspace& subspace = model_.subspace();
   const std::vector<PetscInt>& coordinates = subspace.coordinates();
-  const std::vector<PetscInt>& source = model_.system().symmetry().source;
   const int d = subspace.degrees_of_freedom();
-  std::vector<bool> done(coordinates.size(), false);
+  std::vector<std::string> stems;                     // in the order of the coordinates
+  std::map<std::string, std::map<int, int>> members;  // by stem and blade
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (done[i] || source[static_cast<std::size_t>(coordinates[i])] == coordinates[i]) continue;
+    const auto at = static_cast<std::size_t>(coordinates[i]);
+    const auto [blade, stem] = blade_of(model_.system().unknowns()[at].name);
+    if (blade == 0) continue;
+    if (!members.contains(stem)) stems.push_back(stem);
+    members[stem][blade] = static_cast<int>(i);
+  }
+  for (const std::string& stem : stems) {
     Family family;
-    std::size_t member = i;
-    for (int k = 0; k < blades_; ++k) {  // blade k is the source of blade k + 1
-      done[member] = true;
-      family.members.push_back(static_cast<int>(member));
-      family.scales.push_back(subspace.scale()[member]);
-      const auto next = std::find_if(coordinates.begin(), coordinates.end(), [&](PetscInt other) {
-        return source[static_cast<std::size_t>(other)] == coordinates[member];
-      });
-      if (next == coordinates.end()) throw InternalError("a coordinate without its image");
-      member = static_cast<std::size_t>(next - coordinates.begin());
+    for (const auto& [blade, place] : members[stem]) {
+      family.members.push_back(place);
+      family.scales.push_back(subspace.scale()[static_cast<std::size_t>(place)]);
     }
+    if (static_cast<int>(family.members.size()) != blades_)
+      throw InputError(
+          "linearize.forms: multiblade coordinates are for blades with the same "
+          "states, \"" +
+          stem + "\" is not one of all");
     for (int derivative = 0; derivative < 2; ++derivative) {
       family.derivative = derivative;
       family.first = static_cast<int>(state_families_.size()) - derivative;
@@ -94,7 +99,7 @@ void Multiblade::find_state_families() {
       for (std::size_t j = 0; j < names.size(); ++j) {
         ModelState& state = states_[static_cast<std::size_t>(family.members[j])];
         state = first;
-        state.name = renamed(first.name, names[j]);
+        state.name = names[j] + blade_of(first.name).second;
       }
       state_families_.push_back(family);
       for (int& place : family.members) place += d;

@@ -1,6 +1,7 @@
 #include "case_linearize.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "yaml_lists.hpp"
 
@@ -14,11 +15,13 @@ constexpr int most_order = 100000;
 void read_forms(MapReader& map, analysis::LinearizeOptions& options) {
   std::vector<std::string> forms;
   read_words(map, "forms", forms);
-  const std::vector<std::pair<std::string, bool*>> known{{"descriptor", &options.descriptor},
-                                                         {"state_space", &options.state_space},
-                                                         {"multiblade", &options.multiblade},
-                                                         {"average", &options.average},
-                                                         {"hill", &options.hill}};
+  const std::vector<std::pair<std::string, bool*>> known{
+      {"descriptor", &options.descriptor},
+      {"state_space", &options.state_space},
+      {"multiblade", &options.multiblade},
+      {"average", &options.average},
+      {"hill", &options.hill},
+      {"lyapunov_floquet", &options.lyapunov_floquet}};
   if (!forms.empty()) options.state_space = false;
   for (const std::string& form : forms) {
     const auto found = std::find_if(known.begin(), known.end(),
@@ -26,9 +29,10 @@ void read_forms(MapReader& map, analysis::LinearizeOptions& options) {
     if (found != known.end())
       *found->second = true;
     else
-      map.refuse(
-          *map.node().find("forms"), "forms",
-          "expected descriptor, state_space, multiblade, average or hill, got \"" + form + "\"");
+      map.refuse(*map.node().find("forms"), "forms",
+                 "expected descriptor, state_space, multiblade, average, hill or lyapunov_floquet, "
+                 "got \"" +
+                     form + "\"");
   }
 }
 
@@ -53,6 +57,9 @@ void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& e
   read_stations(map, "tower_stations", linearize.stations.tower);
   read_forms(map, options);
   map.read("hill_harmonics", options.hill_harmonics, 1, most_harmonics);
+  map.read("lyapunov_floquet_states", options.lyapunov_floquet_states, 1, most_order);
+  read_numbers(map, "at_deg", any_number, options.at);
+  for (double& azimuth : options.at) azimuth *= std::numbers::pi / 180.0;
   if (const YamlNode* reduce = map.find("reduce")) {
     MapReader entry(*reduce, map.where("reduce"), errors);
     entry.require("order", "the number of states");

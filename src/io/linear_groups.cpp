@@ -1,25 +1,13 @@
 #include "linear_groups.hpp"
 
-#include <array>
 #include <functional>
 
 namespace samara::io {
 namespace {
 
 using analysis::NamedForm;
-using analysis::StateSpace;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-struct Part {
-  const char* name;
-  Eigen::MatrixXd StateSpace::*matrix;
-  const char* meaning;
-};
-
-constexpr std::array<Part, 4> parts{{{"A", &StateSpace::A, "state by state"},
-                                     {"B", &StateSpace::B, "state by input"},
-                                     {"C", &StateSpace::C, "output by state"},
-                                     {"D", &StateSpace::D, "output by input"}}};
 constexpr char signal_frame[] = "of the states, inputs and outputs";
 
 std::vector<double> row_major(const Eigen::MatrixXd& matrix) {
@@ -64,16 +52,16 @@ void write_form(Hdf5File& file, const NamedForm& form) {
   const std::string group = "/linearize/" + form.name;
   const auto& coefficients = form.series.coefficients();
   const bool is_single = coefficients.size() == 1;
-  for (const Part& part : parts)
+  for (const analysis::StateSpacePart& part : analysis::state_space_parts)
     write_stack(file, group + "/" + part.name, coefficients.size(),
                 [&](std::size_t i) { return coefficients[i].*(part.matrix); }, is_single,
                 {"SI, outputs in their units", signal_frame,
                  std::string(part.meaning) +
                      (is_single ? "" : ", [mean, cos 1, sin 1, cos 2, ... of the azimuth]")});
-  if (!form.series.samples().empty())
-    for (const Part& part : parts)
-      write_stack(file, group + "/at_azimuths/" + part.name, form.series.samples().size(),
-                  [&](std::size_t i) { return form.series.samples()[i].*(part.matrix); }, false,
+  if (!form.at_azimuths.empty())
+    for (const analysis::StateSpacePart& part : analysis::state_space_parts)
+      write_stack(file, group + "/at_azimuths/" + part.name, form.at_azimuths.size(),
+                  [&](std::size_t i) { return form.at_azimuths[i].*(part.matrix); }, false,
                   {"SI, outputs in their units", signal_frame,
                    std::string(part.meaning) + " at /linearize/azimuth"});
   std::vector<std::string> names, units;
@@ -132,8 +120,9 @@ void write_descriptors(Hdf5File& file, const analysis::Linearization& linear) {
 }  // namespace
 
 void write_linear_groups(Hdf5File& file, const analysis::Linearization& linear) {
-  file.write("/linearize/azimuth", linear.azimuths, {linear.azimuths.size()},
-             {"rad", "shaft", "of blade 1, at which the matrices were computed"});
+  file.write(
+      "/linearize/azimuth", linear.azimuths, {linear.azimuths.size()},
+      {"rad", "shaft", "of blade 1, of the groups at_azimuths, descriptor and operating_outputs"});
   file.write(
       "/linearize/operating_outputs", row_major(linear.outputs),
       {static_cast<hsize_t>(linear.outputs.rows()), static_cast<hsize_t>(linear.outputs.cols())},

@@ -102,15 +102,9 @@ std::vector<std::string> names_of(const std::vector<system::Signal>& signals) {
 }
 
 void add_form(Writer& writer, const analysis::NamedForm& form) {
-  using analysis::StateSpace;
-  const std::vector<std::pair<const char*, Eigen::MatrixXd StateSpace::*>> parts{
-      {"_A", &StateSpace::A},
-      {"_B", &StateSpace::B},
-      {"_C", &StateSpace::C},
-      {"_D", &StateSpace::D}};
-  for (const auto& [letter, matrix] : parts) {
+  for (const auto& [letter, matrix, meaning] : analysis::state_space_parts) {
     std::vector<double> values;
-    for (const StateSpace& coefficient : form.series.coefficients()) {
+    for (const analysis::StateSpace& coefficient : form.series.coefficients()) {
       const Eigen::MatrixXd& part = coefficient.*matrix;
       values.insert(values.end(), part.data(), part.data() + part.size());
     }
@@ -119,7 +113,7 @@ void add_form(Writer& writer, const analysis::NamedForm& form) {
                                     static_cast<std::int32_t>(first.cols())};
     if (form.series.harmonics() > 0)
       sizes.push_back(static_cast<std::int32_t>(form.series.coefficients().size()));
-    writer.add(form.name + letter, sizes, values);
+    writer.add(form.name + "_" + letter, sizes, values);
   }
   std::vector<std::string> states;
   std::vector<double> scales;

@@ -30,10 +30,12 @@ class AzimuthSeries {
   const std::vector<double>& azimuths() const { return azimuths_; }
 
   StateSpace at(double psi) const;
+  /// A alone.
+  Eigen::MatrixXd state_matrix(double psi) const;
 
   /// Largest difference of an entry of A, B, C, D of the series from the form midway between the
-  /// samples, relative to the geometric mean of the largest entries of its row and its column at any
-  /// azimuth.
+  /// samples, relative to the geometric mean of the largest entries of its row and its column at
+  /// any azimuth.
   double residual() const { return residual_; }
   /// Largest part that changes with the azimuth, measured the same way.
   double variation() const;

@@ -78,6 +78,9 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c);
 
+/// exp(A) by SLEPc.
+Eigen::MatrixXd exponential(const Eigen::MatrixXd& matrix);
+
 /// The rows of a PETSc matrix on one rank as an Eigen sparse matrix.
 Eigen::SparseMatrix<double> to_sparse(Mat matrix);
 

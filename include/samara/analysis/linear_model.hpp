@@ -6,6 +6,7 @@
 // freedom, constraints and reactions eliminated without a step in time.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,19 @@ struct DescriptorForm {
 struct StateSpace {
   Eigen::MatrixXd A, B, C, D;
 };
+
+/// The matrices of a state-space form by name, with their rows and columns.
+struct StateSpacePart {
+  const char* name;
+  Eigen::MatrixXd StateSpace::*matrix;
+  const char* meaning;
+};
+
+inline constexpr std::array<StateSpacePart, 4> state_space_parts{
+    {{"A", &StateSpace::A, "state by state"},
+     {"B", &StateSpace::B, "state by input"},
+     {"C", &StateSpace::C, "output by state"},
+     {"D", &StateSpace::D, "output by input"}}};
 
 /// What a column of B and D stands for: an input, its rate or its acceleration.
 struct InputColumn {

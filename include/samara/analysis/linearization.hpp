@@ -12,7 +12,7 @@
 namespace samara::analysis {
 
 struct LinearizeOptions {
-  int azimuths = 24;  ///< equally spaced, at which the matrices are computed
+  int azimuths = 24;  ///< equally spaced, from which the series are made
   int harmonics = 8;  ///< of the series, at most (azimuths - 1)/2
   bool descriptor = false;
   bool state_space = true;
@@ -21,7 +21,10 @@ struct LinearizeOptions {
       false;  ///< mean over the azimuth, of multiblade coordinates where they are asked for
   bool hill = false;
   int hill_harmonics = 4;
-  int order = 0;  ///< of constant forms, reduced; 0: none
+  bool lyapunov_floquet = false;
+  int lyapunov_floquet_states = 0;  ///< of the slowest modes; 0: all that are resolved
+  std::vector<double> at;  ///< at which the matrices themselves are given [rad]; none: all of them
+  int order = 0;           ///< of constant forms, reduced; 0: none
   ReductionMethod reduction = ReductionMethod::balanced;
 };
 
@@ -32,13 +35,14 @@ struct NamedForm {
   std::vector<ModelState> states;
   std::vector<system::Signal> inputs, outputs;
   AzimuthSeries series;
-  Eigen::VectorXd hankel = {};  ///< of a reduced form, see ReducedForm
+  std::vector<StateSpace> at_azimuths = {};  ///< the matrices themselves, where they change
+  Eigen::VectorXd hankel = {};               ///< of a reduced form, see ReducedForm
   double error_bound = 0.0;
 };
 
 struct Linearization {
   std::vector<NamedForm> forms;
-  std::vector<double> azimuths;             ///< [rad]
+  std::vector<double> azimuths;             ///< at which matrices are given [rad]
   std::vector<DescriptorForm> descriptors;  ///< at the azimuths, where they are asked for
   Eigen::MatrixXd outputs;                  ///< on the steady state, azimuths x outputs
   double rotor_speed = 0.0;                 ///< [rad/s]

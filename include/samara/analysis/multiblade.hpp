@@ -1,5 +1,5 @@
 // Multiblade coordinates (R. P. Coleman and A. M. Feingold, NACA report 1351, 1958) of a
-// state-space form with three or more equal blades (docs/theory.md, section 10.4):
+// state-space form with three or more blades (docs/theory.md, section 10.4):
 //     x_k = a0 + sum_n ac_n cos(n psi_k) + as_n sin(n psi_k) [+ ad (-1)^k],
 //     psi_k = psi + 2 pi (k - 1)/Q.
 #pragma once
@@ -16,7 +16,7 @@ namespace samara::analysis {
 class Multiblade {
  public:
   /// `model` must live on.
-  /// @throws InputError for fewer than three blades, or a rotor that does not repeat
+  /// @throws InputError for fewer than three blades, or blades that have not the same states
   explicit Multiblade(const LinearModel& model);
 
   /// `form` at the azimuth psi of the first blade, in multiblade coordinates.

@@ -1,4 +1,5 @@
-// What the user asks of the analyses (the keys `trim`, `floquet`, `static` and `transient` of a case file).
+// What the user asks of the analyses (the keys `trim`, `floquet`, `static` and `transient` of a
+// case file).
 #pragma once
 
 #include <optional>
@@ -37,9 +38,9 @@ enum class TransientMethod { bdf2, midpoint };
 
 struct TransientOptions {
   TransientMethod method = TransientMethod::bdf2;
-  double duration = 0.0;    ///< [s], > 0
-  double step = 0.0;        ///< [s], > 0; with a step_tolerance the longest
-  double tolerance = 1e-9;  ///< of the last Newton correction's error, relative to the state
+  double duration = 0.0;      ///< [s], > 0
+  double step = 0.0;          ///< [s], > 0; with a step_tolerance the longest
+  double tolerance = 1e-9;    ///< of the last Newton correction's error, relative to the state
   long checkpoint_steps = 0;  ///< between checkpoints; 0: none
   /// Of the error of a step in every position, absolute [m, rad] and relative; 0: all steps alike.
   double step_tolerance = 0.0;

@@ -18,7 +18,7 @@ namespace samara::petsc {
 void check(PetscErrorCode code,
            const std::source_location& where = std::source_location::current());
 
-/// Sole owner of a PETSc object (Vec, Mat, KSP, SNES, TS, EPS, IS); moves, never copies.
+/// Sole owner of a PETSc object (Vec, Mat, KSP, SNES, TS, EPS, FN, IS); moves, never copies.
 template <class Object>
 class Handle {
  public:
@@ -51,6 +51,7 @@ class Handle {
     if constexpr (std::is_same_v<Object, SNES>) SNESDestroy(&object_);
     if constexpr (std::is_same_v<Object, TS>) TSDestroy(&object_);
     if constexpr (std::is_same_v<Object, EPS>) EPSDestroy(&object_);
+    if constexpr (std::is_same_v<Object, FN>) FNDestroy(&object_);
     if constexpr (std::is_same_v<Object, IS>) ISDestroy(&object_);
     if constexpr (std::is_same_v<Object, VecScatter>) VecScatterDestroy(&object_);
     object_ = nullptr;
