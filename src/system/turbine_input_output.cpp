@@ -17,6 +17,7 @@ constexpr double tiny = 1e-30;
 constexpr char pitch_name[] = "pitch";
 constexpr char force_stem[] = "top_force_n";
 constexpr char base_stem[] = "base_n";
+constexpr char turn_stem[] = "base_rot_n";
 
 const std::vector<std::string>& ground_ways() {
   static const std::vector<std::string> ways{"lateral", "downwind", "up"};
@@ -74,6 +75,12 @@ std::vector<Signal> TurbineInputOutput::available_inputs(const TurbineSystem& sy
           {base_stem + std::to_string(i + 1), "m", "ground",
            "displacement of the tower's foot, " + ground_ways()[static_cast<std::size_t>(i)], "", 0,
            true});
+  if (turbine.has_tower)
+    for (int i = 0; i < 3; ++i)
+      signals.push_back({turn_stem + std::to_string(i + 1), "rad", "ground",
+                         "rotation of the tower's foot, about the axis that points " +
+                             ground_ways()[static_cast<std::size_t>(i)],
+                         "", 0, true});
   return signals;
 }
 
@@ -125,6 +132,10 @@ TurbineInputs<T> TurbineInputOutput::collect(
     if (input.name == "yaw_torque") all.yaw_torque += value;
     if (const int n = number_of(input.name, force_stem)) all.top_force(n - 1) += value;
     if (const int n = number_of(input.name, base_stem)) all.base_velocity(n - 1) += rate;
+    if (const int n = number_of(input.name, turn_stem)) {
+      all.base_turn(n - 1) += value;
+      all.base_rate(n - 1) += rate;
+    }
   }
   return all;
 }

@@ -57,13 +57,16 @@ class Linearize(ProgramTest):
         settings = ["--set", "gravity=9.81", "--set", "blades.damping=1e-4"]
         self.succeed("linearize", BASELINE, *SMALL, *settings, "--set",
                      "linearize={azimuths: 31, harmonics: 15, inputs: [yaw_torque], "
-                     "outputs: [NacYaw], forms: [state_space, hill], hill_harmonics: 8}",
-                     "-o", "linear.h5")
+                     "outputs: [NacYaw], forms: [state_space, hill, lyapunov_floquet], "
+                     "hill_harmonics: 8}", "-o", "linear.h5")
         with h5py.File(self.folder / "linear.h5") as file:
             speed = file["/linearize"].attrs["rotor_speed"]
             self.assertLess(file["/linearize/state_space"].attrs["residual"], 1e-5)
             found = [hill_eigenvalues(file["/linearize/state_space/A"][:], speed, 8),
                      scipy.linalg.eigvals(file["/linearize/hill/A"][:])]
+            floquet = file["/linearize/lyapunov_floquet/A"][:]
+            self.assertLess(abs(floquet[1:]).max(), 1e-12 * abs(floquet[0]).max())
+            constant = scipy.linalg.eigvals(floquet[0])
         coarse, middle, fine = (self.exponents(steps, settings) for steps in (500, 1000, 2000))
         compared = 0
         for exponent in fine:
@@ -75,6 +78,7 @@ class Linearize(ProgramTest):
             limit = (16 * once[0] - once[1]) / 15
             for values in found:
                 self.assertLess(abs(values - limit).min(), 1e-6 * max(1, abs(limit)))
+            self.assertLess(abs(nearest(constant, limit, speed) - limit), 1e-6 * max(1, abs(limit)))
             compared += 1
         self.assertGreaterEqual(compared, 6)
 
@@ -178,6 +182,90 @@ class Linearize(ProgramTest):
             limit = (4 * exponent - nearest(coarse, exponent, speed)) / 3
             self.assertLess(abs(nearest(found, limit, speed) - limit), 1e-6 * max(1, abs(limit)))
 
+    def test_the_lyapunov_floquet_form_answers_as_the_periodic_one(self):
+        """A teetering turbine, which is damped: histories of both under the same force, from the
+        same state of the slowest modes."""
+        settings = ["--set", "gravity=9.81", "--set", "blades.damping=1e-3", "--set",
+                    "tower.damping=1e-3", "--set",
+                    "nacelle.yaw={joint: free, stiffness: 1e6, damping: 1e5}"]
+        self.succeed("linearize", BASELINE, *SMALL, *settings, "--set",
+                     "linearize={azimuths: 49, harmonics: 24, inputs: [top_force_n2], "
+                     "outputs: [NacYaw, TTDspFA], forms: [state_space, lyapunov_floquet], "
+                     "lyapunov_floquet_states: 10}", "-o", "linear.h5")
+        with h5py.File(self.folder / "linear.h5") as file:
+            speed = file["/linearize"].attrs["rotor_speed"]
+            whole, small, between = ([file["/linearize"][form][name][:] for name in "ABC"]
+                                     for form in ("state_space", "lyapunov_floquet",
+                                                  "lyapunov_floquet_map"))
+        self.assertEqual(small[0].shape[1], 10)
+
+        def at(series, psi):
+            harmonics = numpy.arange(1, (len(series) + 1) // 2)
+            functions = numpy.ravel([numpy.cos(harmonics * psi), numpy.sin(harmonics * psi)], "F")
+            return numpy.tensordot(numpy.concatenate([[1], functions]), series, 1)
+
+        def history(form, x, steps=4000, revolutions=2):
+            # What the small form leaves out must not be excited: no input, only a state.
+            dt = revolutions * 2 * numpy.pi / speed / steps
+            rows = []
+            for i in range(steps):
+                rows.append(at(form[2], speed * i * dt) @ x)
+                A = at(form[0], speed * (i + 0.5) * dt)
+                half = dt / 2 * A
+                one = numpy.eye(len(x))
+                x = numpy.linalg.solve(one - half, (one + half) @ x)
+            return numpy.array(rows)
+
+        start = numpy.array([1, 0.3, -0.5, 0.2, 0.1, 0.4, -0.2, 0.1, 0.3, -0.1])
+        found = history(small, start)
+        wanted = history(whole, at(between[2], 0.0) @ start)
+        size = abs(wanted).max(axis=0)
+        self.assertLess((abs(found - wanted) / size).max(), 1e-4)
+        # And inputs reach the coordinates through the map: B there = Q B.
+        for psi in (0.0, 1.0, 4.0):
+            numpy.testing.assert_allclose(at(small[1], psi), at(between[1], psi) @ at(whole[1], psi),
+                                          rtol=1e-4, atol=1e-6 * abs(small[1]).max())
+
+    def test_matrices_at_azimuths_of_ones_own(self):
+        self.succeed("linearize", BASELINE, *SMALL, "--set",
+                     "linearize={azimuths: 25, harmonics: 12, inputs: [yaw_torque], outputs: "
+                     "[NacYaw], forms: [state_space, descriptor], at_deg: [30, 211.5]}",
+                     "-o", "linear.h5")
+        with h5py.File(self.folder / "linear.h5") as file:
+            numpy.testing.assert_allclose(file["/linearize/azimuth"][:],
+                                          numpy.radians([30, 211.5]), rtol=1e-15)
+            group = file["/linearize/state_space"]
+            A = group["A"][:]
+            self.assertEqual(file["/linearize/descriptor/M"].shape[0], 2)
+            for i, psi in enumerate(numpy.radians([30, 211.5])):
+                series = A[0] + sum(A[2 * k - 1] * numpy.cos(k * psi) +
+                                    A[2 * k] * numpy.sin(k * psi) for k in range(1, 13))
+                numpy.testing.assert_allclose(group["at_azimuths/A"][i], series,
+                                              atol=1e-4 * abs(A[0]).max())
+
+    def test_multiblade_coordinates_of_unlike_and_of_parked_blades(self):
+        """The transformation is exact whatever the blades are, and at rest a change of names."""
+        turbine = [*SMALL, "--set", "blades.count=3", "--set", "hub.teeter={joint: locked}",
+                   "--set", "nacelle.yaw={joint: free, stiffness: 1e6}",
+                   "--set", "blades.each.2.mass_factor=1.05"]
+        keys = ("linearize={azimuths: 25, harmonics: 12, inputs: [yaw_torque], outputs: [NacYaw], "
+                "forms: [state_space, multiblade]}")
+        for speed in ([], ["--set", "shaft.speed=0", "--set", "shaft.azimuth_deg=25"]):
+            self.succeed("linearize", BASELINE, *turbine, *speed, "--set", keys, "-o", "linear.h5")
+            with h5py.File(self.folder / "linear.h5") as file:
+                rotor = file["/linearize"].attrs["rotor_speed"]
+                A = [file["/linearize"][form]["A"][:].reshape(-1, *file["/linearize"][form]
+                                                              ["A"].shape[-2:])
+                     for form in ("state_space", "multiblade")]
+            wanted, fewer, found = (
+                hill_eigenvalues(one, rotor, harmonics) if rotor > 0 else scipy.linalg.eigvals(one[0])
+                for one, harmonics in ((A[0], 6), (A[0], 5), (A[1], 6)))
+            # Those at the edge of Hill's matrix are of its cutting off.
+            wanted = [one for one in wanted if abs(one) < 30 and abs(fewer - one).min() < 1e-7]
+            self.assertGreater(len(wanted), 6)
+            for exponent in wanted:
+                self.assertLess(abs(found - exponent).min(), 1e-5 * max(1, abs(exponent)))
+
     def test_mat_files_have_the_same_matrices(self):
         self.succeed("linearize", BASELINE, *SMALL, "--set",
                      "linearize={azimuths: 9, inputs: [yaw_torque, pitch], outputs: [NacYaw, "
@@ -206,6 +294,12 @@ class Linearize(ProgramTest):
                     words='did you mean "NacYaw"')
         self.refuse("linearize", BASELINE, "--set", "linearize={forms: [multiblade]}",
                     words="three and more blades")
+        self.refuse("linearize", BASELINE, *SMALL, "--set",
+                    "linearize={azimuths: 9, forms: [lyapunov_floquet], "
+                    "lyapunov_floquet_states: 5000, inputs: [yaw_torque], outputs: [NacYaw]}",
+                    words="are resolved")
+        self.refuse("linearize", BASELINE, "--set", "linearize={forms: [lyapunov_flocket]}",
+                    words="lyapunov_floquet")
         self.refuse("linearize", BASELINE, "--set", "linearize={azimuths: 8, harmonics: 4}",
                     words="linearize.harmonics")
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -12,6 +13,8 @@
 
 #include "samara/analysis/azimuth_series.hpp"
 #include "samara/analysis/hill.hpp"
+#include "samara/analysis/multiblade.hpp"
+#include "samara/model/masses.hpp"
 #include "samara/system/turbine_input_output.hpp"
 
 #include "history.hpp"
@@ -221,9 +224,11 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
            "shaft.generator={joint: free, inertia: 2000, torque: 1e4, torque_slope: 3e3}",
            "shaft.rotor={torque: 1e4, torque_slope: -1e3}"})
           .turbine;
-  const std::vector<std::string> inputs{
-      "generator_torque", "yaw_torque", "top_force_n1", "top_force_n2", "top_force_n3", "pitch",
-      "pitch_1",          "base_n1",    "base_n2",      "base_n3"};
+  const std::vector<std::string> inputs{"generator_torque", "yaw_torque",   "top_force_n1",
+                                        "top_force_n2",     "top_force_n3", "pitch",
+                                        "pitch_1",          "base_n1",      "base_n2",
+                                        "base_n3",          "base_rot_n1",  "base_rot_n2",
+                                        "base_rot_n3"};
   const std::vector<std::string> channels{
       "RootMxb1", "RootMyb2",  "RootMzb1",  "RootMyc1", "TipDxb1",  "TTDspFA",
       "TTDspSS",  "TwrBsMyt",  "TwrBsMxt",  "NacYaw",   "RotSpeed", "TeetDefl",
@@ -299,6 +304,83 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
       BOOST_TEST(difference(o) <= largest_difference * scale,
                  inputs[static_cast<std::size_t>(i)] << " to " << channels[at] << ": "
                                                      << difference(o) << " of " << scale);
+    }
+  }
+}
+
+// A turbine on a stiff tower feels a foot that turns as a rigid body would: its weight to the side,
+// its inertia, and the gyroscopic moment of its rotor. Loads are those of the turbine on the
+// ground, in the axes of the foot.
+BOOST_AUTO_TEST_CASE(a_turning_foot_loads_the_tower_as_a_rigid_body_does) {
+  const std::vector<std::string> loads{"TwrBsFxt", "TwrBsFyt", "TwrBsFzt",
+                                       "TwrBsMxt", "TwrBsMyt", "TwrBsMzt"};
+  const std::vector<std::string> inputs{"base_rot_n1", "base_rot_n2", "base_rot_n3", "base_n2"};
+  const std::vector<std::string> settings{"nacelle.yaw={joint: locked}",
+                                          "hub.teeter={joint: locked}", "shaft.overhang=2.388"};
+  // What is constant in the inputs' columns is answered at once: x = -A^-1 B u.
+  const auto answer_of = [](const analysis::StateSpace& form) -> MatrixXd {
+    const MatrixXd deflection = form.A.partialPivLu().solve(form.B);
+    return 1e3 * (form.D - form.C * deflection);  // kN, kN m
+  };
+  const auto small = [&](std::vector<std::string> more) {
+    more.insert(more.end(), settings.begin(), settings.end());
+    more.insert(more.end(),
+                {"blades.elements=2", "blades.order=2", "tower.elements=2", "tower.order=2"});
+    return lee("baseline", more).turbine;
+  };
+
+  // At rest: so little gravity that no deflection matters.
+  constexpr double g = 1e-3;
+  const model::TurbineDefinition parked = small({"shaft.speed=0", "gravity=0.001"});
+  const Linearized still(parked, inputs, loads);
+  const MatrixXd rest = answer_of(still.model.state_space(0.0));
+  const model::MassProperties whole = model::compute_masses(parked, still.system.turbine()).whole;
+  const Vector3 S = whole.moment;  // n1 lateral, n2 downwind, n3 up
+  // The channels' axes: x downwind (n2), y lateral (-n1), z up.
+  const auto channels_of = [](const Vector3& n) { return Vector3(n(1), -n(0), n(2)); };
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3 e = Vector3::Unit(axis);
+    const auto compare = [&](Eigen::Index column, const Vector3& force, const Vector3& moment,
+                             double force_size, double moment_size) {
+      Vector6 expected;
+      expected << channels_of(force), channels_of(moment);
+      for (Eigen::Index i = 0; i < 6; ++i)
+        BOOST_TEST(
+            std::abs(rest(i, column) - expected(i)) < 1e-5 * (i < 3 ? force_size : moment_size),
+            loads[static_cast<std::size_t>(i)] << " about " << axis + 1 << ": " << rest(i, column)
+                                               << " and " << expected(i));
+    };
+    // Turned by phi e, the weight -M g n3 has the components of -M g (n3 - phi e x n3).
+    const Vector3 sideways = g * e.cross(Vector3::UnitZ());
+    compare(3 * axis, whole.mass * sideways, S.cross(sideways), g * whole.mass, g * S.norm());
+    // d'Alembert: - phi_ddot e x S, and minus the inertia about the foot.
+    compare(3 * axis + 2, -e.cross(S), -(whole.inertia * e), S.norm(), whole.inertia.norm());
+  }
+  BOOST_TEST(std::abs(rest(0, 11) + whole.mass) < 1e-5 * whole.mass);  // base_n2's acceleration
+
+  // A balanced rotor that turns: rates give the gyroscopic moment, angles nothing.
+  const model::TurbineDefinition turning = small({"gravity=0", "blades.count=3"});
+  const Linearized spun(turning, inputs, loads);
+  MatrixXd spinning = MatrixXd::Zero(6, 12);
+  constexpr int azimuths = 6;
+  for (int i = 0; i < azimuths; ++i) {
+    const double psi = 2.0 * std::numbers::pi * i / azimuths;
+    const analysis::Multiblade multiblade(spun.model);
+    spinning += answer_of(multiblade.transform(
+                    psi, spun.model.state_space(psi / spun.system.turbine().speed))) /
+                azimuths;
+  }
+  const model::MassProperties rotor =
+      model::compute_masses(turning, spun.system.turbine()).meshed_rotor;
+  const double spin = rotor.inertia(1, 1) * spun.system.turbine().speed;  // along n2
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3 moment = channels_of(-Vector3::Unit(axis).cross(spin * Vector3::UnitY()));
+    for (int i = 0; i < 3; ++i) {
+      BOOST_TEST(std::abs(spinning(3 + i, 3 * axis)) < 1e-6 * spin);
+      BOOST_TEST(std::abs(spinning(3 + i, 3 * axis + 1) - moment(i)) < 1e-2 * spin,
+                 loads[static_cast<std::size_t>(3 + i)] << " rate about " << axis + 1 << ": "
+                                                        << spinning(3 + i, 3 * axis + 1) << " and "
+                                                        << moment(i));
     }
   }
 }

@@ -1,4 +1,4 @@
-// Constant state-space forms with fewer states (docs/theory.md, section 10.6; A. J. Laub et al.,
+// Constant state-space forms with fewer states (docs/theory.md, section 10.7; A. J. Laub et al.,
 // IEEE Trans. Autom. Control 32 (1987), 115-122; K. Glover, Int. J. Control 39 (1984), 1115-1193).
 #pragma once
 

@@ -88,6 +88,7 @@ struct ChainState {
   double speed_dot = 0.0;   ///< of a generator that is not free [rad/s^2]
   T generator_torque = T(0);  ///< beside the chain's, against the turning [N m]
   T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
+  Vec3<T> up = Vec3<T>::UnitX();  ///< n3, components in the tower's a
 };
 
 /// The hub as the blades see it, components in H.
@@ -278,8 +279,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   top.omega = from_top(state.top_velocity.template tail<3>());
   top.alpha = from_top(state.top_velocity_dot.template tail<3>());
   top.a = from_top(state.top_velocity_dot.template head<3>()) + cross(top.omega, top.v);
-  const Vec3<T> down(T(-chain.gravity), T(0), T(0));  // components in (n3, n1, n2)
-  const Vec3<T> g_T = from_top(C_top * down);
+  const Vec3<T> g_T = from_top(C_top * (state.up * T(-chain.gravity)).eval());
 
   const T q_y = angle_of(chain.yaw, state.yaw);
   const Mat3<T> C_YT = math::turn_about<T>(Vector3::UnitZ(), q_y).transpose();

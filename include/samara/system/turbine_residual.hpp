@@ -77,6 +77,17 @@ struct TurbineInputs {
   T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
   Vec3<T> top_force = Vec3<T>::Zero();      ///< on the tower top along n1 n2 n3 [N]
   Vec3<T> base_velocity = Vec3<T>::Zero();  ///< of the tower's foot along n1 n2 n3 [m/s]
+  Vec3<T> base_turn = Vec3<T>::Zero();      ///< of the tower's foot about n1 n2 n3, small [rad]
+  Vec3<T> base_rate = Vec3<T>::Zero();      ///< of these angles [rad/s]
+
+  /// Components in the axes of the tower's foot, in their order (n3, n1, n2), of what has the
+  /// components `ground` in them where the foot is not turned.
+  Vec3<T> at_foot(const Vec3<T>& ground) const {
+    return math::turn_about<T>(Vector3::UnitX(), base_turn(2)).transpose() *
+           (math::turn_about<T>(Vector3::UnitZ(), base_turn(1)).transpose() *
+            (math::turn_about<T>(Vector3::UnitY(), base_turn(0)).transpose() * ground));
+  }
+  Vec3<T> up() const { return at_foot(Vec3<T>::UnitX()); }
 };
 
 // Inputs of the rigid chain, in this order.
@@ -134,6 +145,7 @@ class TurbineResidual {
   elements::Attachment<T> attachment(const PlacedBeam& placed, const elements::HubMotion<T>& hub,
                                      double t, const TurbineInputs<T>& inputs = {}) const;
 
+
   /// By the turbine's operation and by inputs together.
   template <class T>
   BladePitch<T> pitch_of(const PlacedBeam& placed, double t,
@@ -161,7 +173,7 @@ class TurbineResidual {
   void add_changes(const PlacedBeam& placed, const std::vector<T>& z, std::vector<T>& r) const;
   template <class T>
   void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
-                 std::vector<T>& r) const;
+                 const TurbineInputs<T>& inputs, std::vector<T>& r) const;
   template <class T>
   static void add_top_force(const PlacedBeam& tower, const Vec3<T>& force, std::vector<T>& r);
   template <class T>
@@ -223,6 +235,8 @@ elements::ChainState<T> TurbineResidual::chain_state(double t, const std::vector
   state.speed_dot = turning.acceleration;
   state.generator_torque = T(inputs.generator_torque);
   state.yaw_torque = T(inputs.yaw_torque);
+  const Vec3<Value> up = inputs.up();
+  for (int i = 0; i < 3; ++i) state.up(i) = T(up(i));
   return state;
 }
 
@@ -232,9 +246,11 @@ elements::Attachment<T> TurbineResidual::attachment(const PlacedBeam& placed,
                                                     const TurbineInputs<T>& inputs) const {
   elements::Attachment<T> a;
   if (!placed.on_hub()) {  // the tower's axes are (n3, n1, n2)
-    a.gravity(0) = T(-turbine_.chain.gravity);
+    a.gravity = inputs.up() * T(-turbine_.chain.gravity);
     const Vec3<T>& v = inputs.base_velocity;
-    a.v = Vec3<T>(v(2), v(0), v(1));
+    a.v = inputs.at_foot(Vec3<T>(v(2), v(0), v(1)));
+    const Vec3<T>& rate = inputs.base_rate;
+    a.omega = Vec3<T>(rate(2), rate(0), rate(1));
     return a;
   }
   Eigen::Matrix<T, 9, 1> motion;
@@ -281,7 +297,7 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
     for (int p = 0; p < placed.beam->point_count(); ++p) add_point(placed, p, a, z, z_dot, r);
     add_ends(placed, a, z, z_dot, r);
     add_changes(placed, z, r);
-    add_loads(placed, t, z, r);
+    add_loads(placed, t, z, inputs, r);
     if (!placed.on_hub()) add_top_force(placed, inputs.top_force, r);
   }
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
@@ -444,12 +460,17 @@ Vec3<T> TurbineResidual::rotation_before(const PlacedBeam& placed, const Referen
 /// The prescribed loads: -f, -m of the force and moment balances.
 template <class T>
 void TurbineResidual::add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
-                                std::vector<T>& r) const {
+                                const TurbineInputs<T>& inputs, std::vector<T>& r) const {
   using Rows = Eigen::Map<Vec6<T>>;
   const model::Beam& beam = *placed.beam;
-  const auto turned = [&z](const model::BeamLoad& load, const Vector6& value, int first,
-                           const Matrix3& C_ab) -> Vec6<T> {
-    if (!load.follower) return value.cast<T>();
+  const auto turned = [&](const model::BeamLoad& load, const Vector6& value, int first,
+                          const Matrix3& C_ab) -> Vec6<T> {
+    if (!load.follower) {
+      if (placed.on_hub()) return value.cast<T>();
+      Vec6<T> dead;  // fixed in the ground
+      dead << inputs.at_foot(value.head<3>().cast<T>()), inputs.at_foot(value.tail<3>().cast<T>());
+      return dead;
+    }
     return elements::follower_load<T>(Eigen::Map<const Vec3<T>>(z.data() + first + 3), C_ab, value);
   };
   for (const model::BeamLoad& load : beam.loads) {
