@@ -103,7 +103,8 @@ class Parser {
 
   static std::string unknown_option_words(const std::string& name) {
     const std::string suggestion =
-        suggest(name, {"--set", "--csv", "--all", "--restart", "--tower-only", "--report", "--help", "--version"});
+        suggest(name, {"--set", "--csv", "--all", "--restart", "--tower-only", "--report", "--help",
+                       "--version"});
     return suggestion.empty() ? "; hint: samara --help; options of PETSc have one dash"
                               : suggestion;
   }

@@ -14,18 +14,18 @@ struct CommandLine;
 /// A sub-command. One with `formats` reads the deck of another program, not a case; one with
 /// `most_results` reads results.
 struct Command {
-  const char* name;
-  const char* summary;
-  const char* description;  ///< of its --help, whole lines
-  const char* example;      ///< the arguments of a command line that works
-  bool writes_result;       ///< also without -o
-  bool has_csv;
-  void (*require)(const io::Case&);  ///< refuses before anything is solved; may be null
-  void (*run)(const Job&);
+  const char* name = nullptr;
+  const char* summary = nullptr;
+  const char* description = nullptr;  ///< of its --help, whole lines
+  const char* example = nullptr;      ///< the arguments of a command line that works
+  bool writes_result = false;         ///< also without -o
+  bool has_csv = false;
   bool lists_modes = false;
+  void (*require)(const io::Case&) = nullptr;  ///< refuses before anything is solved; may be null
+  void (*run)(const Job&) = nullptr;
   const char* formats = nullptr;  ///< of decks, with bars between: the word before the path
   void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`
-  int most_results = 0;  ///< that it reads at once
+  int most_results = 0;                           ///< that it reads at once
 };
 
 enum class Request { run, help, version };
@@ -41,8 +41,8 @@ struct CommandLine {
   bool report = false;  ///< is wanted, if need be without a case
   bool all_modes = false;
   std::vector<std::string> settings;
-  std::string result_path;  ///< of what is written; empty: not given
-  std::string csv_path;     ///< empty: none wanted
+  std::string result_path;   ///< of what is written; empty: not given
+  std::string csv_path;      ///< empty: none wanted
   std::string restart_path;  ///< of a result to go on from; empty: not given
   std::vector<std::string> petsc_options;
 };

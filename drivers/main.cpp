@@ -24,57 +24,108 @@ namespace {
 using petsc::Session;
 
 constexpr std::array<Command, 10> commands{{
-    {"check", "what the case describes: masses, sizes, unknowns; solves nothing",
-     "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh and\n"
-     "the number of unknowns. Solves nothing, and writes a result only where -o asks for one.\n",
-     "inputs/lee2002/baseline.yaml", false, false, nullptr, run_check},
-    {"static", "the turbine or beam at rest under gravity and loads",
-     "Finds the equilibrium at rest under gravity and prescribed loads, which grow step by step "
-     "from\n"
-     "nothing; with static.method=arc_length also through limit points.\n",
-     "inputs/lee2002/baseline.yaml --set shaft.speed=0 --set gravity=9.81", true, true,
-     require_rest, run_static},
-    {"modes", "modes of a parked rotor, or of a balanced one in its own axes",
-     "Finds all modes about the steady state where the coefficients do not depend on the azimuth:\n"
-     "a parked rotor, or a balanced one in its own axes. Elsewhere use samara floquet.\n",
-     "inputs/lee2002/baseline.yaml --set shaft.speed=0", true, true, require_motion, run_modes, true},
-    {"trim", "the periodic steady state",
-     "Finds the periodic steady state: deflections and loads as harmonics of the rotor speed.\n",
-     "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6", true, true,
-     require_motion, run_trim},
-    {"floquet", "the stability of the periodic steady state: all modes",
-     "Finds the periodic steady state, and all modes about it by Floquet's theory: multipliers,\n"
-     "frequencies, damping, harmonics, and where the energy is.\n",
-     "inputs/lee2002/baseline.yaml --set blades.elements=8 --csv modes.csv", true, true,
-     require_speed, run_floquet, true},
-    {"transient", "the motion in time, with loads by OpenFAST's channel names",
-     "Follows the turbine in time from its periodic steady state or from rest. Motions and loads go\n"
-     "into the result while it runs, by the channel names of OpenFAST.\n",
-     "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"", true, false,
-     require_transient, run_transient},
-    {"linearize", "the linear model about the periodic steady state, for control design",
-     "Writes the linear model about the periodic steady state over the azimuth: state-space and\n"
-     "descriptor form, in multiblade coordinates, averaged, lifted to a constant one.\n",
-     "inputs/lee2002/baseline.yaml --set \"linearize={inputs: [yaw_torque], outputs: [NacYaw]}\"",
-     true, false, require_motion, run_linearize},
-    {"import", "a case file from a turbine of OpenFAST or windIO",
-     "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it as a\n"
-     "case file, and reports key by key what was taken, derived or ignored, and why. See\n"
-     "docs/import.md.\n",
-     "openfast Main.fst -o turbine.yaml", true, false, nullptr, nullptr, false, "openfast|windio",
-     run_import},
-    {"export", "a time history in one file: .h5, .csv, or .out and .outb of OpenFAST",
-     "Writes the history of a result of samara transient as one file, by its ending: .h5, the\n"
-     "whole result without its folder of parts; .csv; .out or .outb, OpenFAST's text and binary\n"
-     "output, for the programs that read those. All digits are kept.\n",
-     "RESULT.h5 -o history.csv", true, false, nullptr, nullptr, false, nullptr, run_export, 1},
-    {"loads", "statistics, extremes, harmonics, cycles, equivalent loads of a result",
-     "Evaluates the loads in a result of samara transient, or over one revolution of the steady\n"
-     "state in a result of samara trim or floquet: statistics, extreme events, harmonics of the\n"
-     "rotor speed, rainflow cycles and damage-equivalent loads; of several results also those of\n"
-     "a lifetime. --set takes the keys of docs/case_file.md, \"Loads of a result\".\n",
-     "RESULT.h5 --set \"channels=[RootMyb1, TwrBsMyt]\" --set \"exponents=[4, 10]\"", false, true,
-     nullptr, run_loads, false, nullptr, nullptr, 1000},
+    {.name = "check",
+     .summary = "what the case describes: masses, sizes, unknowns; solves nothing",
+     .description =
+         "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh\n"
+         "and the number of unknowns. Solves nothing, and writes a result only where -o asks for\n"
+         "one.\n",
+     .example = "inputs/lee2002/baseline.yaml",
+     .run = run_check},
+    {.name = "static",
+     .summary = "the turbine or beam at rest under gravity and loads",
+     .description =
+         "Finds the equilibrium at rest under gravity and prescribed loads, which grow step by\n"
+         "step from nothing; with static.method=arc_length also through limit points.\n",
+     .example = "inputs/lee2002/baseline.yaml --set shaft.speed=0 --set gravity=9.81",
+     .writes_result = true,
+     .has_csv = true,
+     .require = require_rest,
+     .run = run_static},
+    {.name = "modes",
+     .summary = "modes of a parked rotor, or of a balanced one in its own axes",
+     .description =
+         "Finds all modes about the steady state where the coefficients do not depend on the\n"
+         "azimuth: a parked rotor, or a balanced one in its own axes. Elsewhere use samara\n"
+         "floquet.\n",
+     .example = "inputs/lee2002/baseline.yaml --set shaft.speed=0",
+     .writes_result = true,
+     .has_csv = true,
+     .lists_modes = true,
+     .require = require_motion,
+     .run = run_modes},
+    {.name = "trim",
+     .summary = "the periodic steady state",
+     .description = "Finds the periodic steady state: deflections and loads as harmonics of the "
+                    "rotor speed.\n",
+     .example = "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6",
+     .writes_result = true,
+     .has_csv = true,
+     .require = require_motion,
+     .run = run_trim},
+    {.name = "floquet",
+     .summary = "the stability of the periodic steady state: all modes",
+     .description = "Finds the periodic steady state, and all modes about it by Floquet's theory:\n"
+                    "multipliers, frequencies, damping, harmonics, and where the energy is.\n",
+     .example = "inputs/lee2002/baseline.yaml --set blades.elements=8 --csv modes.csv",
+     .writes_result = true,
+     .has_csv = true,
+     .lists_modes = true,
+     .require = require_speed,
+     .run = run_floquet},
+    {.name = "transient",
+     .summary = "the motion in time, with loads by OpenFAST's channel names",
+     .description =
+         "Follows the turbine in time from its periodic steady state, from rest, or from where\n"
+         "another run ended. Motions and loads go into the result while it runs, by the channel\n"
+         "names of OpenFAST.\n",
+     .example = "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"",
+     .writes_result = true,
+     .require = require_transient,
+     .run = run_transient},
+    {.name = "linearize",
+     .summary = "the linear model about the periodic steady state, for control design",
+     .description =
+         "Writes the linear model about the periodic steady state over the azimuth: state-space\n"
+         "and descriptor form, in multiblade coordinates, averaged, lifted to a constant one, in\n"
+         "Lyapunov-Floquet coordinates.\n",
+     .example = "inputs/lee2002/baseline.yaml "
+                "--set \"linearize={inputs: [yaw_torque], outputs: [NacYaw]}\"",
+     .writes_result = true,
+     .require = require_motion,
+     .run = run_linearize},
+    {.name = "import",
+     .summary = "a case file from a turbine of OpenFAST or windIO",
+     .description =
+         "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it\n"
+         "as a case file, and reports key by key what was taken, derived or ignored, and why. See\n"
+         "docs/import.md.\n",
+     .example = "openfast Main.fst -o turbine.yaml",
+     .writes_result = true,
+     .formats = "openfast|windio",
+     .convert = run_import},
+    {.name = "export",
+     .summary = "a time history in one file: .h5, .csv, or .out and .outb of OpenFAST",
+     .description =
+         "Writes the history of a result of samara transient as one file, by its ending: .h5, the\n"
+         "whole result without its folder of parts; .csv; .out or .outb, OpenFAST's text and\n"
+         "binary output, for the programs that read those. All digits are kept.\n",
+     .example = "RESULT.h5 -o history.csv",
+     .writes_result = true,
+     .convert = run_export,
+     .most_results = 1},
+    {.name = "loads",
+     .summary = "statistics, extremes, harmonics, cycles, equivalent loads of a result",
+     .description =
+         "Evaluates the loads in a result of samara transient, or over one revolution of the\n"
+         "steady state in a result of samara trim or floquet: statistics, extreme events,\n"
+         "harmonics of the rotor speed, rainflow cycles and damage-equivalent loads; of several\n"
+         "results also those of a lifetime. --set takes the keys of docs/case_file.md, \"Loads of\n"
+         "a result\".\n",
+     .example = "RESULT.h5 --set \"channels=[RootMyb1, TwrBsMyt]\" --set \"exponents=[4, 10]\"",
+     .has_csv = true,
+     .run = run_loads,
+     .most_results = 1000},
 }};
 
 /// How a piece of work ended.

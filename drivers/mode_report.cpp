@@ -117,9 +117,21 @@ bool has_partner(const ModeSet& set, const Mode& growing) {
   });
 }
 
+/// Multipliers of motions that nothing restores are one: free yaw, or the whole motion a moment
+/// later where a rotor turns freely. The step parts them from one by an error of its second order,
+/// and growth of that size says nothing.
+bool is_step_error(const ModeSet& set, const Mode& mode) {
+  constexpr double several = 10.0;
+  const double turned = set.rotor_speed * set.step;  // in a step
+  const double error = several * turned * turned / 12.0 * set.rotor_speed;
+  const double apart = std::remainder(mode.exponent.imag(), set.rotor_speed);
+  return set.step > 0.0 && std::hypot(mode.exponent.real(), apart) < error;
+}
+
 struct Tally {
   std::vector<const Mode*> growing;
-  std::vector<const Mode*> growing_alone;  ///< what the mesh makes of a conservative system
+  std::vector<const Mode*> hardly_growing;  ///< what the step makes of a multiplier of one
+  std::vector<const Mode*> growing_alone;   ///< what the mesh makes of a conservative system
   std::vector<const Mode*> decaying;
   int undamped = 0;
   int rigid_body = 0;
@@ -134,6 +146,8 @@ Tally tally(const ModeSet& set) {
       ++result.unresolved;
     else if (motion == Motion::growing && set.conservative && !has_partner(set, mode))
       result.growing_alone.push_back(&mode);
+    else if (motion == Motion::growing && is_step_error(set, mode))
+      result.hardly_growing.push_back(&mode);
     else if (motion == Motion::growing)
       result.growing.push_back(&mode);
     else if (motion == Motion::decaying)
@@ -208,6 +222,8 @@ std::string verdict(const ModeSet& set, bool all) {
     text = "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; of the others " + rest);
   } else if (result.undamped + result.rigid_body > 0) {
     text = "neutral: no mode grows; " + rest;
+  } else if (!result.hardly_growing.empty()) {
+    text = "neutral" + (rest.empty() ? "" : ": of the others " + rest);
   } else if (!result.decaying.empty()) {
     text = "stable: " + decay_words(result);
   } else {
@@ -221,6 +237,13 @@ std::string verdict(const ModeSet& set, bool all) {
         name_growing(result.growing_alone) +
         "; where nothing damps, growth and decay come in pairs, so this is an error of the mesh "
         "(hint: a higher order of blades and tower, or more elements)\n";
+  if (!result.hardly_growing.empty())
+    text += count(static_cast<int>(result.hardly_growing.size()), "mode") +
+            (result.hardly_growing.size() == 1 ? " grows" : " grow") +
+            " by less than the time step " +
+            "makes of a motion that nothing restores: " + name_growing(result.hardly_growing) +
+            "\n(hint: growth that is real stays with twice the floquet.steps, this one falls to a "
+            "quarter)\n";
   if (result.unresolved > 0)
     text +=
         (all ? "* " : "") + std::to_string(result.unresolved) + " unresolved, " +

@@ -470,6 +470,7 @@ class Analysis {
     result.step = dt_;
     result.set.degrees_of_freedom = subspace_.degrees_of_freedom();
     result.set.rotor_speed = speed_;
+    result.set.step = dt_;
     result.set.conservative = system_.is_conservative();
     result.set.first_harmonic = -steps_ / 2;
     result.set.participation.resize(participation_.rows(), participation_.cols());

@@ -80,6 +80,11 @@ class Integration {
     TSType type = nullptr;
     petsc::check(TSGetType(ts_.get(), &type));
     run.method = type;
+    if (run.method == TSBDF) {
+      PetscInt order = 0;
+      petsc::check(TSBDFGetOrder(ts_.get(), &order));
+      run.method += std::to_string(order);
+    }
     run.steps = steps_;
     run.newton_steps = newton_steps_;
     run.factorizations = factorizations_;

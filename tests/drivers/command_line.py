@@ -137,6 +137,15 @@ class Tables(ProgramTest):
         self.assertRegex(self.succeed("floquet", BASELINE, *settings, *fine).stdout,
                          r"(?m)^neutral: no mode grows")
 
+    def test_growth_that_the_step_makes_of_a_free_motion_is_no_verdict(self):
+        # The generator turns freely and gravity makes it swing: its whole motion a moment later is
+        # a motion again, with a multiplier of one.
+        text = self.succeed("floquet", SOURCE / "inputs/nrel5mw/land.yaml", "--set",
+                            "blades.elements=3", "--set", "tower.elements=3", "--set",
+                            "shaft.generator.joint=free").stdout
+        self.assertRegex(text, r"(?m)^neutral: ")
+        self.assertRegex(text, r"(?m)^1 mode grows by less than the time step makes")
+
     def test_damping_makes_it_stable(self):
         damped = MINIMAL.replace("length: 10", "length: 10\n  damping: 1e-3")
         self.write("case.yaml", damped + "gravity: 0\n")

@@ -33,6 +33,7 @@ struct ModeSet {
   std::vector<Mode> modes;  ///< by identified frequency
   int degrees_of_freedom = 0;
   double rotor_speed = 0.0;   ///< Omega [rad/s]
+  double step = 0.0;          ///< of time [s], of the integration; 0: nothing was integrated
   bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*
   /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
   Eigen::MatrixXd participation;
