@@ -25,8 +25,8 @@ function(samara_add_program)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/drivers/*.cpp)
   if(sources)
     add_executable(samara ${sources})
-    target_link_libraries(samara PRIVATE samara::decks samara::io samara::analysis samara::system
-                                         samara::model samara::elements samara::math samara::petsc
+    target_link_libraries(samara PRIVATE samara::decks samara::io samara::linear samara::loads
+                                         samara::analysis samara::system samara::model samara::elements samara::math samara::petsc
                                          samara::base)
   endif()
 endfunction()

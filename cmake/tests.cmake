@@ -72,7 +72,7 @@ function(samara_add_scripts folder label prefix)
 endfunction()
 
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-foreach(room base math petsc elements model system analysis)
+foreach(room base math petsc elements model system analysis linear loads)
   samara_add_tests(${room} unit samara::${room})
 endforeach()
 samara_add_tests(io unit "samara::io;samara_external_files")

@@ -1,5 +1,5 @@
 // samara linearize: the linear model about the periodic steady state.
-#include "samara/analysis/linearization.hpp"
+#include "samara/linear/linearization.hpp"
 #include "samara/base/error.hpp"
 #include "samara/io/mat_file.hpp"
 #include "samara/petsc/session.hpp"
@@ -13,7 +13,7 @@
 namespace samara::drivers {
 namespace {
 
-std::string summary(const io::Case& input, const analysis::Linearization& linear) {
+std::string summary(const io::Case& input, const linear::Linearization& linear) {
   std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
   text += linear.rotor_speed > 0.0 ? "rotor speed " + general(linear.rotor_speed, 6) + " rad/s, " +
                                          count(static_cast<int>(linear.azimuths.size()), "azimuth")
@@ -22,12 +22,12 @@ std::string summary(const io::Case& input, const analysis::Linearization& linear
   return text + "\n\n";
 }
 
-std::string form_table(const analysis::Linearization& linear) {
+std::string form_table(const linear::Linearization& linear) {
   Table table;
   table.add_column("form", "", Align::left);
   for (const char* name : {"states", "inputs", "outputs", "harmonics", "residual"})
     table.add_column(name, "");
-  for (const analysis::NamedForm& form : linear.forms)
+  for (const linear::NamedForm& form : linear.forms)
     table.add_row({form.name, std::to_string(form.states.size()),
                    std::to_string(form.inputs.size()), std::to_string(form.outputs.size()),
                    std::to_string(form.series.harmonics()),
@@ -50,7 +50,7 @@ void run_linearize(const Job& job) {
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
-  const analysis::Linearization linear = analysis::linearize(
+  const linear::Linearization linear = linear::linearize(
       system, input_output, trim.solution, turbine.azimuth, asked.options, progress);
   progress.finish();
   if (!is_first) return;

@@ -19,7 +19,7 @@ constexpr int digits = 5;
 constexpr double rounding = 1e-12;
 
 /// `value` of a channel with these extremes.
-std::string word_of(double value, const analysis::ChannelStatistics& extremes) {
+std::string word_of(double value, const loads::ChannelStatistics& extremes) {
   const double largest = std::max(std::abs(extremes.minimum), std::abs(extremes.maximum));
   return general(std::abs(value) < rounding * largest ? 0.0 : value, digits);
 }
@@ -37,7 +37,7 @@ void add_exponents(Table& table, const io::LoadOptions& options) {
 }
 
 std::string headline(const io::LoadReport& report) {
-  const analysis::LoadHistory& history = report.history;
+  const loads::LoadHistory& history = report.history;
   const auto rows = static_cast<int>(history.times.size());
   std::string text = "source       " + report.source + ": ";
   if (history.is_periodic())
@@ -57,7 +57,7 @@ std::string statistics_table(const io::LoadReport& report, const io::LoadOptions
   table.add_column("at", "s");
   add_exponents(table, options);
   for (std::size_t c = 0; c < report.channels.size(); ++c) {
-    const analysis::ChannelStatistics& one = report.evaluation.statistics[c];
+    const loads::ChannelStatistics& one = report.evaluation.statistics[c];
     std::vector<std::string> row{report.channels[c].name,   report.channels[c].unit,
                                  word_of(one.mean, one),    word_of(one.standard_deviation, one),
                                  word_of(one.minimum, one), general(one.time_of_minimum, digits),
@@ -81,7 +81,7 @@ std::string event_table(const io::LoadReport& report) {
   table.add_column("t", "s");
   for (const system::Channel& channel : report.channels)
     table.add_column(channel.name, channel.unit);
-  for (const analysis::ExtremeEvent& event : report.evaluation.events) {
+  for (const loads::ExtremeEvent& event : report.evaluation.events) {
     std::vector<std::string> row{event.is_maximum ? "maximum" : "minimum",
                                  report.history.names[static_cast<std::size_t>(event.channel)],
                                  general(event.time, digits)};
@@ -96,7 +96,7 @@ std::string event_table(const io::LoadReport& report) {
 std::string harmonic_table(const io::LoadReport& report) {
   if (!report.evaluation.harmonics)
     return "no harmonics: " + report.evaluation.why_no_harmonics + "\n";
-  const analysis::LoadHarmonics& harmonics = *report.evaluation.harmonics;
+  const loads::LoadHarmonics& harmonics = *report.evaluation.harmonics;
   Table table = channel_table();
   table.add_column("mean", "of unit");
   for (Eigen::Index k = 1; k < harmonics.amplitudes.rows(); ++k) {
@@ -105,7 +105,7 @@ std::string harmonic_table(const io::LoadReport& report) {
   }
   for (std::size_t c = 0; c < report.channels.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
-    const analysis::ChannelStatistics& extremes = report.evaluation.statistics[c];
+    const loads::ChannelStatistics& extremes = report.evaluation.statistics[c];
     std::vector<std::string> row{report.channels[c].name, report.channels[c].unit,
                                  word_of(harmonics.amplitudes(0, column), extremes)};
     for (Eigen::Index k = 1; k < harmonics.amplitudes.rows(); ++k) {
@@ -131,7 +131,7 @@ std::string rainflow_table(const io::LoadReport& report) {
     table.add_column("to " + general(static_cast<double>(i + 1) / static_cast<double>(bins), 3),
                      "1");
   for (std::size_t c = 0; c < report.channels.size(); ++c) {
-    const analysis::RainflowTable& one = report.evaluation.tables[c];
+    const loads::RainflowTable& one = report.evaluation.tables[c];
     std::vector<std::string> row{report.channels[c].name, report.channels[c].unit,
                                  general(one.range_edges(bins), digits)};
     for (Eigen::Index i = 0; i < bins; ++i) row.push_back(general(one.counts.row(i).sum(), 6));

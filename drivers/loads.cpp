@@ -22,9 +22,9 @@ void check_hours(const std::vector<std::string>& sources, const io::LoadOptions&
 }
 
 /// The options of the evaluation, with Goodman's corrections by channel.
-analysis::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
+loads::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
                                                    const std::vector<std::string>& names) {
-  analysis::LoadEvaluationOptions evaluation = options.evaluation;
+  loads::LoadEvaluationOptions evaluation = options.evaluation;
   evaluation.goodman.resize(names.size());
   for (const auto& [name, correction] : options.goodman) {
     const auto found = std::ranges::find(names, name);
@@ -40,7 +40,7 @@ io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options)
   LoadSource source = read_load_source(path, options);
   io::LoadReport& report = source.report;
   try {
-    report.evaluation = analysis::evaluate_loads(report.history, source.azimuth,
+    report.evaluation = loads::evaluate_loads(report.history, source.azimuth,
                                                  evaluation_options(options, report.history.names));
   } catch (const InputError& error) {
     const std::string words = error.what();
@@ -53,16 +53,16 @@ io::LifetimeReport evaluate_lifetime(const std::vector<io::LoadReport>& reports,
                                      const io::LoadOptions& options) {
   if (options.hours.empty()) return {};
   const std::vector<std::string>& names = reports.front().history.names;
-  std::vector<analysis::LoadEvaluation> evaluations;
+  std::vector<loads::LoadEvaluation> evaluations;
   std::vector<double> durations;
   for (const io::LoadReport& report : reports) {
     if (report.history.names != names)
       throw InputError(report.source + ": has other channels than " + reports.front().source +
                        "; hint: --set channels=[...] names those that all have");
     evaluations.push_back(report.evaluation);
-    durations.push_back(analysis::duration(report.history));
+    durations.push_back(loads::duration(report.history));
   }
-  return {options.hours, analysis::evaluate_lifetime(evaluations, durations, options.hours, names,
+  return {options.hours, loads::evaluate_lifetime(evaluations, durations, options.hours, names,
                                                      evaluation_options(options, names),
                                                      options.equivalent_cycles)};
 }

@@ -8,7 +8,7 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
-#include "sparse_parts.hpp"
+#include "samara/analysis/sparse_parts.hpp"
 
 namespace samara::analysis {
 namespace {

@@ -1,4 +1,4 @@
-#include "sparse_parts.hpp"
+#include "samara/analysis/sparse_parts.hpp"
 
 #include <numeric>
 #include <string>

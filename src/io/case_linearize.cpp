@@ -12,7 +12,7 @@ constexpr int most_azimuths = 3600;
 constexpr int most_harmonics = 200;
 constexpr int most_order = 100000;
 
-void read_forms(MapReader& map, analysis::LinearizeOptions& options) {
+void read_forms(MapReader& map, linear::LinearizeOptions& options) {
   std::vector<std::string> forms;
   read_words(map, "forms", forms);
   const std::vector<std::pair<std::string, bool*>> known{
@@ -39,7 +39,7 @@ void read_forms(MapReader& map, analysis::LinearizeOptions& options) {
 }  // namespace
 
 void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& errors) {
-  analysis::LinearizeOptions& options = linearize.options;
+  linear::LinearizeOptions& options = linearize.options;
   MapReader map(node, "linearize", errors);
   map.read("azimuths", options.azimuths, 1, most_azimuths);
   map.read("harmonics", options.harmonics, 0, most_harmonics);
@@ -65,8 +65,8 @@ void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& e
     entry.require("order", "the number of states");
     entry.read("order", options.order, 1, most_order);
     entry.read("method", options.reduction,
-               {{"balanced", analysis::ReductionMethod::balanced},
-                {"modal", analysis::ReductionMethod::modal}});
+               {{"balanced", linear::ReductionMethod::balanced},
+                {"modal", linear::ReductionMethod::modal}});
     entry.finish();
   }
   if (const YamlNode* mat = map.find("mat")) {

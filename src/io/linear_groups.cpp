@@ -5,7 +5,7 @@
 namespace samara::io {
 namespace {
 
-using analysis::NamedForm;
+using linear::NamedForm;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr char signal_frame[] = "of the states, inputs and outputs";
@@ -52,21 +52,21 @@ void write_form(Hdf5File& file, const NamedForm& form) {
   const std::string group = "/linearize/" + form.name;
   const auto& coefficients = form.series.coefficients();
   const bool is_single = coefficients.size() == 1;
-  for (const analysis::StateSpacePart& part : analysis::state_space_parts)
+  for (const linear::StateSpacePart& part : linear::state_space_parts)
     write_stack(file, group + "/" + part.name, coefficients.size(),
                 [&](std::size_t i) { return coefficients[i].*(part.matrix); }, is_single,
                 {"SI, outputs in their units", signal_frame,
                  std::string(part.meaning) +
                      (is_single ? "" : ", [mean, cos 1, sin 1, cos 2, ... of the azimuth]")});
   if (!form.at_azimuths.empty())
-    for (const analysis::StateSpacePart& part : analysis::state_space_parts)
+    for (const linear::StateSpacePart& part : linear::state_space_parts)
       write_stack(file, group + "/at_azimuths/" + part.name, form.at_azimuths.size(),
                   [&](std::size_t i) { return form.at_azimuths[i].*(part.matrix); }, false,
                   {"SI, outputs in their units", signal_frame,
                    std::string(part.meaning) + " at /linearize/azimuth"});
   std::vector<std::string> names, units;
   std::vector<double> scales;
-  for (const analysis::ModelState& state : form.states) {
+  for (const linear::ModelState& state : form.states) {
     names.push_back(state.name);
     units.push_back(state.unit);
     scales.push_back(state.scale);
@@ -91,8 +91,8 @@ void write_form(Hdf5File& file, const NamedForm& form) {
   file.set_attribute(group, "residual", form.series.residual());
 }
 
-void write_descriptors(Hdf5File& file, const analysis::Linearization& linear) {
-  using analysis::DescriptorForm;
+void write_descriptors(Hdf5File& file, const linear::Linearization& linear) {
+  using linear::DescriptorForm;
   const std::string group = "/linearize/descriptor/";
   const auto write = [&](const std::string& name, const auto& item, const std::string& meaning) {
     write_stack(
@@ -119,7 +119,7 @@ void write_descriptors(Hdf5File& file, const analysis::Linearization& linear) {
 
 }  // namespace
 
-void write_linear_groups(Hdf5File& file, const analysis::Linearization& linear) {
+void write_linear_groups(Hdf5File& file, const linear::Linearization& linear) {
   file.write(
       "/linearize/azimuth", linear.azimuths, {linear.azimuths.size()},
       {"rad", "shaft", "of blade 1, of the groups at_azimuths, descriptor and operating_outputs"});

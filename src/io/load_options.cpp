@@ -14,7 +14,7 @@ constexpr int most_azimuths = 100000;
 constexpr NumberRule woehler{"a number >= 1", 1.0};
 
 /// Reads `bins: 20`, or `bins: [20, 5]` of ranges and means.
-void read_bins(MapReader& map, analysis::LoadEvaluationOptions& options) {
+void read_bins(MapReader& map, loads::LoadEvaluationOptions& options) {
   const YamlNode* node = map.find("bins");
   if (node == nullptr) return;
   if (node->kind != YamlNode::Kind::list) {
@@ -46,7 +46,7 @@ void read_goodman(const YamlNode& node, const std::string& where, LoadOptions& o
   }
   for (const YamlNode& entry : node.children) {
     MapReader map(entry, join_path(where, entry.key), errors);
-    analysis::GoodmanCorrection& correction = options.goodman[entry.key];
+    loads::GoodmanCorrection& correction = options.goodman[entry.key];
     map.require("ultimate_load", "in the unit of the channel");
     map.read("ultimate_load", correction.ultimate_load, positive);
     map.read("fixed_mean", correction.fixed_mean, any_number);

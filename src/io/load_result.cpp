@@ -7,7 +7,7 @@
 namespace samara::io {
 namespace {
 
-using analysis::ChannelStatistics;
+using loads::ChannelStatistics;
 
 constexpr char no_frame[] = "none";
 constexpr char unit_of_channel[] = "of channel_unit";
@@ -58,7 +58,7 @@ void write_events(ResultFile& file, const std::string& group, const LoadReport& 
   std::vector<double> times;
   RowMajor values(static_cast<Eigen::Index>(report.evaluation.events.size()),
                   report.history.values.cols());
-  for (const analysis::ExtremeEvent& event : report.evaluation.events) {
+  for (const loads::ExtremeEvent& event : report.evaluation.events) {
     values.row(static_cast<Eigen::Index>(names.size())) = report.history.values.row(event.row);
     names.push_back(report.history.names[static_cast<std::size_t>(event.channel)]);
     kinds.emplace_back(event.is_maximum ? "maximum" : "minimum");
@@ -75,7 +75,7 @@ void write_events(ResultFile& file, const std::string& group, const LoadReport& 
 
 void write_harmonics(ResultFile& file, const std::string& group, const LoadReport& report) {
   if (!report.evaluation.harmonics) return;
-  const analysis::LoadHarmonics& harmonics = *report.evaluation.harmonics;
+  const loads::LoadHarmonics& harmonics = *report.evaluation.harmonics;
   const std::vector<std::size_t> shape{static_cast<std::size_t>(harmonics.amplitudes.rows()),
                                        report.channels.size()};
   file.write_array(group + "/harmonics/amplitude", flat(harmonics.amplitudes), shape,
@@ -92,7 +92,7 @@ void write_rainflow(ResultFile& file, const std::string& group, const LoadReport
   std::vector<double> ranges;
   std::vector<double> means;
   std::vector<double> counts;
-  for (const analysis::RainflowTable& table : report.evaluation.tables) {
+  for (const loads::RainflowTable& table : report.evaluation.tables) {
     ranges.insert(ranges.end(), table.range_edges.begin(), table.range_edges.end());
     means.insert(means.end(), table.mean_edges.begin(), table.mean_edges.end());
     const std::vector<double> all = flat(table.counts);
@@ -131,11 +131,11 @@ void write_report(ResultFile& file, const std::string& group, const LoadReport& 
   write_damage(file, group + "/damage", report.evaluation.damage, report.channels.size(), options,
                "range of equal cycles, equivalent_frequency [Hz] times the duration of them, that "
                "do the same damage");
-  const analysis::LoadHistory& history = report.history;
+  const loads::LoadHistory& history = report.history;
   file.set_attribute(group, "source", report.source);
   file.set_attribute(group, "rows", static_cast<double>(history.times.size()));
   file.set_attribute(group, "from", history.times(0));
-  file.set_attribute(group, "duration", analysis::duration(history));
+  file.set_attribute(group, "duration", loads::duration(history));
   file.set_attribute(group, "period", history.period);
 }
 

@@ -101,10 +101,10 @@ std::vector<std::string> names_of(const std::vector<system::Signal>& signals) {
   return texts;
 }
 
-void add_form(Writer& writer, const analysis::NamedForm& form) {
-  for (const auto& [letter, matrix, meaning] : analysis::state_space_parts) {
+void add_form(Writer& writer, const linear::NamedForm& form) {
+  for (const auto& [letter, matrix, meaning] : linear::state_space_parts) {
     std::vector<double> values;
-    for (const analysis::StateSpace& coefficient : form.series.coefficients()) {
+    for (const linear::StateSpace& coefficient : form.series.coefficients()) {
       const Eigen::MatrixXd& part = coefficient.*matrix;
       values.insert(values.end(), part.data(), part.data() + part.size());
     }
@@ -117,7 +117,7 @@ void add_form(Writer& writer, const analysis::NamedForm& form) {
   }
   std::vector<std::string> states;
   std::vector<double> scales;
-  for (const analysis::ModelState& state : form.states) {
+  for (const linear::ModelState& state : form.states) {
     states.push_back(state.name + " [" + state.unit + "]");
     scales.push_back(state.scale);
   }
@@ -129,10 +129,10 @@ void add_form(Writer& writer, const analysis::NamedForm& form) {
 
 }  // namespace
 
-void write_mat_file(const std::string& path, const analysis::Linearization& linearization) {
+void write_mat_file(const std::string& path, const linear::Linearization& linearization) {
   Writer writer;
   writer.add("rotor_speed", {1, 1}, std::vector<double>{linearization.rotor_speed});
-  for (const analysis::NamedForm& form : linearization.forms) add_form(writer, form);
+  for (const linear::NamedForm& form : linearization.forms) add_form(writer, form);
   write_whole_file(path, writer.bytes());
 }
 

@@ -465,7 +465,7 @@ void ResultFile::write_modes(const ModeSet& set) {
   write_shapes(storage_->file, "/modes", set);
 }
 
-void ResultFile::write_linearization(const analysis::Linearization& linearization) {
+void ResultFile::write_linearization(const linear::Linearization& linearization) {
   write_linear_groups(storage_->file, linearization);
 }
 

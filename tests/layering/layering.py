@@ -15,18 +15,21 @@ ROOMS = {  # room: the rooms it may include, itself always
     "model": ["base", "math", "elements"],
     "system": ["base", "math", "petsc", "elements", "model"],
     "analysis": ["base", "math", "petsc"],
-    "io": ["base", "math", "petsc", "elements", "model", "system", "analysis"],
+    "linear": ["base", "math", "petsc", "analysis"],
+    "loads": ["base"],
+    "io": ["base", "math", "petsc", "elements", "model", "system", "analysis", "linear", "loads"],
     "decks": ["base", "math", "elements", "model", "io"],
 }
 DRIVERS = "drivers"  # may include every room
 
 # An analysis knows the periodic system, and nothing of turbines.
-HEADERS = {"analysis": ["samara/system/periodic_system.hpp", "samara/system/input_output.hpp"]}
+SYSTEMS = ["samara/system/periodic_system.hpp", "samara/system/input_output.hpp"]
+HEADERS = {"analysis": SYSTEMS, "linear": SYSTEMS}
 
 LIBRARIES = [  # pattern of its headers, the rooms that may include them
     (re.compile(r"yaml-cpp/"), ["io"]),
     (re.compile(r"(.*/)?(hdf5(_hl)?|H5\w+)\.h$"), ["io"]),
-    (re.compile(r"(.*/)?(petsc|slepc)\w*\.(h|hpp)$"), ["petsc", "system", "analysis"]),
+    (re.compile(r"(.*/)?(petsc|slepc)\w*\.(h|hpp)$"), ["petsc", "system", "analysis", "linear"]),
 ]
 
 INCLUDE = re.compile(r"^\s*#\s*include\s*(?:[<\"]([^>\"]*)[>\"]|(\S.*))")

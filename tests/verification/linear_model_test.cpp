@@ -1,6 +1,6 @@
 // The linear model in state-space form: its exponents are those of the other analyses, and small
 // inputs do to the nonlinear equations what it says.
-#include "samara/analysis/linear_model.hpp"
+#include "samara/linear/linear_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
-#include "samara/analysis/azimuth_series.hpp"
-#include "samara/analysis/hill.hpp"
-#include "samara/analysis/multiblade.hpp"
+#include "samara/linear/azimuth_series.hpp"
+#include "samara/linear/hill.hpp"
+#include "samara/linear/multiblade.hpp"
 #include "samara/model/masses.hpp"
 #include "samara/system/turbine_input_output.hpp"
 
@@ -49,7 +49,7 @@ struct Linearized {
   system::TurbineSystem system;
   system::TurbineInputOutput ports;
   analysis::Trim trim;
-  analysis::LinearModel model;
+  linear::LinearModel model;
 };
 
 /// Distance of each of `wanted` to the nearest of `found`, relative to the larger of its size and
@@ -198,13 +198,13 @@ BOOST_AUTO_TEST_CASE(exponents_of_periodic_state_spaces_are_those_of_floquet) {
       wanted.push_back((16.0 * twice - once) / 15.0);
     }
     BOOST_TEST(wanted.size() >= 7u);
-    const analysis::AzimuthSeries series(
+    const linear::AzimuthSeries series(
         [&linear](double psi) {
           return linear.model.state_space(psi / linear.system.turbine().speed);
         },
         31, 15);
     BOOST_TEST(series.residual() < 1e-5);
-    const MatrixXd hill = analysis::hill_matrix(series, linear.system.turbine().speed, 8);
+    const MatrixXd hill = linear::hill_matrix(series, linear.system.turbine().speed, 8);
     BOOST_TEST(worst_distance(wanted, eigenvalues_of(hill), 1.0) < 1e-6);
   }
 }
@@ -236,7 +236,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
   const Linearized linear(definition, inputs, channels, 14);
   const auto outputs = static_cast<Eigen::Index>(channels.size());
   const auto n = static_cast<Eigen::Index>(linear.model.states().size());
-  std::vector<analysis::StateSpace> forms;
+  std::vector<linear::StateSpace> forms;
   for (int k = 0; k <= steps; ++k) forms.push_back(linear.model.state_space(step * k));
   const system::TurbineChannels measured(linear.system, {}, channels);
   const auto history_of = [&](const Driven& system) {
@@ -263,7 +263,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
     const auto input_at = [&](int k) {
       VectorXd u = VectorXd::Zero(forms[0].B.cols());
       for (std::size_t c = 0; c < linear.model.input_columns().size(); ++c) {
-        const analysis::InputColumn& column = linear.model.input_columns()[c];
+        const linear::InputColumn& column = linear.model.input_columns()[c];
         if (static_cast<int>(column.input) == i)
           u(static_cast<Eigen::Index>(c)) = up.value(step * k, column.derivative);
       }
@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
     VectorXd before = x;
     std::vector<VectorXd> y{forms[0].D * input_at(0)};
     for (int k = 1; k <= steps; ++k) {
-      const analysis::StateSpace& form = forms[static_cast<std::size_t>(k)];
+      const linear::StateSpace& form = forms[static_cast<std::size_t>(k)];
       const MatrixXd left = 1.5 * MatrixXd::Identity(n, n) - step * form.A;
       const VectorXd right = 2.0 * x - 0.5 * before + step * (form.B * input_at(k));
       before = x;
@@ -318,7 +318,7 @@ BOOST_AUTO_TEST_CASE(a_turning_foot_loads_the_tower_as_a_rigid_body_does) {
   const std::vector<std::string> settings{"nacelle.yaw={joint: locked}",
                                           "hub.teeter={joint: locked}", "shaft.overhang=2.388"};
   // What is constant in the inputs' columns is answered at once: x = -A^-1 B u.
-  const auto answer_of = [](const analysis::StateSpace& form) -> MatrixXd {
+  const auto answer_of = [](const linear::StateSpace& form) -> MatrixXd {
     const MatrixXd deflection = form.A.partialPivLu().solve(form.B);
     return 1e3 * (form.D - form.C * deflection);  // kN, kN m
   };
@@ -365,7 +365,7 @@ BOOST_AUTO_TEST_CASE(a_turning_foot_loads_the_tower_as_a_rigid_body_does) {
   constexpr int azimuths = 6;
   for (int i = 0; i < azimuths; ++i) {
     const double psi = 2.0 * std::numbers::pi * i / azimuths;
-    const analysis::Multiblade multiblade(spun.model);
+    const linear::Multiblade multiblade(spun.model);
     spinning += answer_of(multiblade.transform(
                     psi, spun.model.state_space(psi / spun.system.turbine().speed))) /
                 azimuths;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "samara/analysis/linearization.hpp"
+#include "samara/linear/linearization.hpp"
 #include "samara/analysis/options.hpp"
 #include "samara/model/definition.hpp"
 #include "samara/system/turbine_channels.hpp"
@@ -39,7 +39,7 @@ struct TransientCase {
 };
 
 struct LinearizeCase {
-  analysis::LinearizeOptions options;
+  linear::LinearizeOptions options;
   std::vector<std::string> inputs;   ///< empty: all
   std::vector<std::string> outputs;  ///< channels; empty: all but those of stations
   system::ChannelStations stations;

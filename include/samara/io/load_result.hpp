@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "samara/analysis/load_evaluation.hpp"
+#include "samara/loads/load_evaluation.hpp"
 #include "samara/io/result_file.hpp"
 #include "samara/system/turbine_channels.hpp"
 
@@ -21,8 +21,8 @@ struct LoadOptions {
   int azimuths = 720;                 ///< of a steady state, a revolution
   std::vector<double> hours;          ///< [h] of the lifetime, one a result; empty: no lifetime
   std::optional<double> equivalent_cycles;  ///< of the lifetime; none: by frequency and hours
-  std::map<std::string, analysis::GoodmanCorrection> goodman;  ///< by channel
-  analysis::LoadEvaluationOptions evaluation;  ///< without `goodman`, which is by name here
+  std::map<std::string, loads::GoodmanCorrection> goodman;  ///< by channel
+  loads::LoadEvaluationOptions evaluation;  ///< without `goodman`, which is by name here
 };
 
 /// Reads `key=value` pairs. @throws InputError with every error found, one a line
@@ -32,8 +32,8 @@ LoadOptions read_load_options(const std::vector<std::string>& settings);
 struct LoadReport {
   std::string source;  ///< path of the result
   std::vector<system::Channel> channels;
-  analysis::LoadHistory history;
-  analysis::LoadEvaluation evaluation;
+  loads::LoadHistory history;
+  loads::LoadEvaluation evaluation;
 };
 
 /// Equivalent loads of all results together.

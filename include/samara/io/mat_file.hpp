@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "samara/analysis/linearization.hpp"
+#include "samara/linear/linearization.hpp"
 
 namespace samara::io {
 
@@ -12,7 +12,7 @@ namespace samara::io {
 /// mean, cos 1, sin 1, ... where it changes with the azimuth), FORM_states, _inputs, _outputs
 /// (rows of characters, padded), FORM_scale; and rotor_speed.
 /// @throws InternalError where the environment fails
-void write_mat_file(const std::string& path, const analysis::Linearization& linearization);
+void write_mat_file(const std::string& path, const linear::Linearization& linearization);
 
 /// @throws InputError where it cannot be written, or something else is there
 void require_mat_path(const std::string& path);

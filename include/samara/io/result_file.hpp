@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "samara/analysis/floquet.hpp"
-#include "samara/analysis/linearization.hpp"
+#include "samara/linear/linearization.hpp"
 #include "samara/analysis/mode.hpp"
 #include "samara/analysis/static_path.hpp"
 #include "samara/analysis/trim.hpp"
@@ -61,7 +61,7 @@ class ResultFile {
   void write_modes(const analysis::ModeSet& set);
 
   /// /linearize
-  void write_linearization(const analysis::Linearization& linearization);
+  void write_linearization(const linear::Linearization& linearization);
 
   /// One number or a list of them; the groups of `name` are made.
   void write_value(const std::string& name, double value, const Meaning& meaning);

@@ -1,0 +1,50 @@
+// State-space forms over the azimuth in closed form (docs/theory.md, section 10.3).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/linear/linear_model.hpp"
+
+namespace samara::linear {
+
+/// A0 + sum_k Ac_k cos(k psi) + As_k sin(k psi), and so B, C, D, y0.
+class AzimuthSeries {
+ public:
+  /// Samples `form` at `azimuths` >= 2 `harmonics` + 1 places psi_i = 2 pi i / azimuths, and beside
+  /// them to know the residual. harmonics 0: a form that does not change is sampled once.
+  AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths, int harmonics);
+
+  /// Of given coefficients, A0 Ac_1 As_1 Ac_2 ...; the residual is unknown and 0.
+  explicit AzimuthSeries(std::vector<StateSpace> coefficients)
+      : coefficients_(std::move(coefficients)) {}
+
+  int harmonics() const { return (static_cast<int>(coefficients_.size()) - 1) / 2; }
+  /// A0, Ac_1, As_1, Ac_2, ...
+  const std::vector<StateSpace>& coefficients() const { return coefficients_; }
+  const StateSpace& mean() const { return coefficients_.front(); }
+  /// The forms that were sampled, at psi_i.
+  const std::vector<StateSpace>& samples() const { return samples_; }
+  const std::vector<double>& azimuths() const { return azimuths_; }
+
+  StateSpace at(double psi) const;
+  /// A alone.
+  Eigen::MatrixXd state_matrix(double psi) const;
+
+  /// Largest difference of an entry of A, B, C, D of the series from the form midway between the
+  /// samples, relative to the geometric mean of the largest entries of its row and its column at
+  /// any azimuth.
+  double residual() const { return residual_; }
+  /// Largest part that changes with the azimuth, measured the same way.
+  double variation() const;
+
+ private:
+  std::vector<double> azimuths_;
+  std::vector<StateSpace> samples_;
+  std::vector<StateSpace> coefficients_;
+  double residual_ = 0.0;
+};
+
+}  // namespace samara::linear

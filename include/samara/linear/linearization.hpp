@@ -1,0 +1,59 @@
+// All forms of the linear model that are asked for (docs/theory.md, section 10).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/analysis/observer.hpp"
+#include "samara/linear/azimuth_series.hpp"
+#include "samara/linear/linear_model.hpp"
+#include "samara/linear/model_reduction.hpp"
+
+namespace samara::linear {
+
+struct LinearizeOptions {
+  int azimuths = 24;  ///< equally spaced, from which the series are made
+  int harmonics = 8;  ///< of the series, at most (azimuths - 1)/2
+  bool descriptor = false;
+  bool state_space = true;
+  bool multiblade = false;
+  bool average =
+      false;  ///< mean over the azimuth, of multiblade coordinates where they are asked for
+  bool hill = false;
+  int hill_harmonics = 4;
+  bool lyapunov_floquet = false;
+  int lyapunov_floquet_states = 0;  ///< of the slowest modes; 0: all that are resolved
+  std::vector<double> at;  ///< at which the matrices themselves are given [rad]; none: all of them
+  int order = 0;           ///< of constant forms, reduced; 0: none
+  ReductionMethod reduction = ReductionMethod::balanced;
+};
+
+/// A form with the names of what it maps. One coefficient: it does not change with the azimuth.
+struct NamedForm {
+  std::string name;  ///< "state_space"
+  std::string description;
+  std::vector<ModelState> states;
+  std::vector<system::Signal> inputs, outputs;
+  AzimuthSeries series;
+  std::vector<StateSpace> at_azimuths = {};  ///< the matrices themselves, where they change
+  Eigen::VectorXd hankel = {};               ///< of a reduced form, see ReducedForm
+  double error_bound = 0.0;
+};
+
+struct Linearization {
+  std::vector<NamedForm> forms;
+  std::vector<double> azimuths;             ///< at which matrices are given [rad]
+  std::vector<DescriptorForm> descriptors;  ///< at the azimuths, where they are asked for
+  Eigen::MatrixXd outputs;                  ///< on the steady state, azimuths x outputs
+  double rotor_speed = 0.0;                 ///< [rad/s]
+  bool is_constant = false;                 ///< nothing changes with the azimuth
+};
+
+/// `start_azimuth` [rad]: psi at t = 0. Serial: every rank computes the same.
+/// @throws InputError where a form does not exist for the system
+Linearization linearize(const system::PeriodicSystem& system,
+                        const system::InputOutput& input_output,
+                        const analysis::PeriodicSolution& solution, double start_azimuth,
+                        const LinearizeOptions& options, analysis::Observer& observer);
+
+}  // namespace samara::linear

@@ -1,0 +1,72 @@
+// A periodic state-space form in Lyapunov-Floquet coordinates, in which A is constant
+// (docs/theory.md, section 10.6; S. C. Sinha, R. Pandiyan and J. S. Bibb, ASME J. Vib. Acoust. 118
+// (1996), 209-219):
+//     x = P(psi) q,  q = Q(psi) x,  q_dot = Lambda q + Q B u,  y = C P q + D u.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/linear/azimuth_series.hpp"
+
+namespace samara::linear {
+
+class LyapunovFloquet {
+ public:
+  /// Integrates over a revolution, by way of `azimuths` equally spaced ones, at which the forms
+  /// below then cost nothing. Of the slowest modes, `states` coordinates at the most; 0: of all up
+  /// to the first one that the integration does not resolve. `series` must live on.
+  /// @throws InputError where `states` are more than those
+  LyapunovFloquet(const AzimuthSeries& series, double rotor_speed, int azimuths, int states);
+
+  const std::vector<ModelState>& states() const { return states_; }
+  /// {Lambda, Q B, C P, D}.
+  StateSpace form(double psi) const;
+  /// {Lambda, Q, P, none}: inputs and outputs are x.
+  StateSpace transformation(double psi) const;
+
+ private:
+  /// A mode, or several whose multipliers cannot be told apart, with coordinates s:
+  /// V(t) = Phi(t) V(0) exp(-exponent t), W V = 1.
+  struct Block {
+    enum class Kind {
+      pair,      ///< with its conjugate: x = 2 Re(V s)
+      positive,  ///< real: x = V s
+      negative,  ///< of negative multipliers: x = Re(V s), s = exp(i psi/2) times something real
+    };
+    Kind kind = Kind::pair;
+    Eigen::MatrixXcd exponent;
+    std::vector<Eigen::MatrixXcd> V;  ///< at the ends of the intervals, columns
+    std::vector<Eigen::MatrixXcd> W;  ///< at the ends of the intervals, rows
+    double error = 0.0;               ///< of the exponent, by the size of the step, relative
+
+    double modulus() const;
+    int states() const;
+  };
+  struct Frame {
+    Eigen::MatrixXd P, Q;
+  };
+
+  Eigen::MatrixXd propagate(double from, double to, int steps) const;
+  void find_blocks(const Eigen::MatrixXd& monodromy, const Eigen::MatrixXd& coarse);
+  void follow(Block& block) const;
+  void choose_branch(Block& block) const;
+  void choose_scale(Block& block) const;
+  void select(int states);
+  void name_states();
+  Frame frame_at(double psi) const;
+
+  const AzimuthSeries& series_;
+  double speed_;
+  int intervals_;
+  int steps_;                                 ///< an interval
+  Eigen::VectorXd scale_;                     ///< x over what is integrated
+  std::vector<Eigen::MatrixXd> propagators_;  ///< over the intervals
+  std::vector<Block> blocks_;
+  Eigen::MatrixXd exponents_;  ///< Lambda
+  std::vector<ModelState> states_;
+};
+
+}  // namespace samara::linear

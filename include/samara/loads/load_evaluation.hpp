@@ -1,0 +1,56 @@
+// All that is made of one history of loads: statistics, extreme events, harmonics, rainflow counts
+// and damage-equivalent loads (docs/theory.md, section 8).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "samara/loads/damage_equivalent_load.hpp"
+#include "samara/loads/load_harmonics.hpp"
+#include "samara/loads/load_history.hpp"
+#include "samara/loads/load_statistics.hpp"
+#include "samara/loads/rainflow.hpp"
+
+namespace samara::loads {
+
+struct LoadEvaluationOptions {
+  std::vector<double> exponents = {4.0, 10.0};  ///< as DamageOptions
+  double frequency = 1.0;                       ///< [Hz], as DamageOptions
+  int harmonics = 4;
+  bool harmonics_are_asked_for = false;  ///< else they may be left out
+  int range_bins = 10;
+  int mean_bins = 10;
+  /// By channel; empty: of no channel.
+  std::vector<std::optional<GoodmanCorrection>> goodman;
+
+  DamageOptions damage_of(Eigen::Index channel) const;
+};
+
+/// By channel, where nothing else is said.
+struct LoadEvaluation {
+  std::vector<ChannelStatistics> statistics;
+  std::vector<ExtremeEvent> events;
+  std::optional<LoadHarmonics> harmonics;
+  std::string why_no_harmonics;             ///< empty where there are
+  std::vector<std::vector<Cycle>> cycles;   ///< as counted, without Goodman's correction
+  std::vector<RainflowTable> tables;        ///< of these cycles
+  std::vector<std::vector<double>> damage;  ///< equivalent load [channel][exponent]
+};
+
+/// `azimuth_deg` [deg], one a row, for the harmonics; empty: it is not known.
+/// @throws InputError as the single evaluations, with the channel's name; for want of an azimuth or
+/// of a whole revolution only where harmonics are asked for.
+LoadEvaluation evaluate_loads(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
+                              const LoadEvaluationOptions& options);
+
+/// Equivalent loads [channel][exponent] of a lifetime of several histories with the same channels,
+/// each for some `hours` [h]. As `compute_lifetime_loads`.
+std::vector<std::vector<double>> evaluate_lifetime(const std::vector<LoadEvaluation>& evaluations,
+                                                   const std::vector<double>& durations,
+                                                   const std::vector<double>& hours,
+                                                   const std::vector<std::string>& names,
+                                                   const LoadEvaluationOptions& options,
+                                                   std::optional<double> equivalent_cycles);
+
+}  // namespace samara::loads

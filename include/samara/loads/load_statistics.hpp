@@ -1,0 +1,41 @@
+// Statistics and extreme events of the channels of a history (docs/theory.md, section 8.1).
+#pragma once
+
+#include <vector>
+
+#include "samara/loads/load_history.hpp"
+
+namespace samara::loads {
+
+/// Of one channel, in its unit; mean and deviation are weighted by time (trapezoidal rule), so that
+/// they do not depend on where the steps are short.
+struct ChannelStatistics {
+  double mean = 0.0;
+  double standard_deviation = 0.0;  ///< of the whole history, not an estimate from a sample
+  double minimum = 0.0;
+  double maximum = 0.0;
+  double range = 0.0;            ///< maximum - minimum
+  double time_of_minimum = 0.0;  ///< [s], the first if there are several
+  double time_of_maximum = 0.0;  ///< [s]
+  Eigen::Index row_of_minimum = 0;
+  Eigen::Index row_of_maximum = 0;
+};
+
+/// One a channel.
+/// @throws as `check` of the history.
+std::vector<ChannelStatistics> compute_statistics(const LoadHistory& history);
+
+/// A channel is at its largest or smallest value; `history.values.row(row)` is what the others have
+/// at the same time.
+struct ExtremeEvent {
+  Eigen::Index channel = 0;
+  bool is_maximum = false;
+  Eigen::Index row = 0;
+  double time = 0.0;  ///< [s]
+};
+
+/// Minimum and maximum of every channel, in the order of the channels.
+/// @throws as `check` of the history.
+std::vector<ExtremeEvent> find_extreme_events(const LoadHistory& history);
+
+}  // namespace samara::loads

@@ -1,0 +1,122 @@
+#include "samara/linear/azimuth_series.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "samara/base/error.hpp"
+
+namespace samara::linear {
+namespace {
+
+/// Where the series is compared, as fractions of the azimuths: midway between two of them.
+constexpr std::array<double, 4> places{0.05, 0.33, 0.58, 0.81};
+
+void add(StateSpace& sum, double factor, const StateSpace& form) {
+  for (const auto& [name, matrix, meaning] : state_space_parts) {
+    Eigen::MatrixXd& target = sum.*matrix;
+    if (target.size() == 0) target.setZero((form.*matrix).rows(), (form.*matrix).cols());
+    target += factor * (form.*matrix);
+  }
+}
+
+/// Of the largest entry of a column: a row that is smaller everywhere is rounding.
+constexpr double least_row = 1e-6;
+/// Of the largest entry of a matrix: what is smaller everywhere in row and column is rounding.
+constexpr double rounding = 1e-12;
+
+/// The largest size of every entry at any azimuth.
+StateSpace largest_of(const std::vector<StateSpace>& samples) {
+  StateSpace largest = samples.front();
+  for (const auto& [name, matrix, meaning] : state_space_parts) {
+    Eigen::MatrixXd& target = largest.*matrix;
+    for (const StateSpace& sample : samples)
+      target = target.cwiseAbs().cwiseMax((sample.*matrix).cwiseAbs());
+  }
+  return largest;
+}
+
+/// The difference of two forms: each entry relative to the geometric mean of the largest ones of
+/// its row and of its column at any azimuth, whatever the units are. What inputs do at once (D) is
+/// counted from the rounding of what they do by way of the states.
+double compare(const StateSpace& found, const StateSpace& wanted, const StateSpace& largest) {
+  double worst = 0.0;
+  const double rate = std::sqrt(std::max(1.0, largest.A.size() > 0 ? largest.A.maxCoeff() : 0.0));
+  for (const auto& [name, matrix, meaning] : state_space_parts) {
+    const Eigen::MatrixXd& reference = wanted.*matrix;
+    if (reference.size() == 0) continue;
+    const Eigen::VectorXd rows = (largest.*matrix).rowwise().maxCoeff();
+    const Eigen::RowVectorXd columns = (largest.*matrix).colwise().maxCoeff();
+    const bool is_direct = matrix == &StateSpace::D && largest.A.size() > 0;
+    for (Eigen::Index i = 0; i < reference.rows(); ++i)
+      for (Eigen::Index j = 0; j < reference.cols(); ++j) {
+        const double size = std::max(std::sqrt(rows(i) * columns(j)), least_row * columns(j));
+        double least = rounding * rows.maxCoeff();
+        if (is_direct)
+          least = std::max(
+              least, rounding * largest.C.row(i).maxCoeff() * largest.B.col(j).maxCoeff() / rate);
+        const double difference = std::abs((found.*matrix)(i, j) - reference(i, j));
+        if (size > least) worst = std::max(worst, difference / size);
+      }
+  }
+  return worst;
+}
+
+}  // namespace
+
+AzimuthSeries::AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths,
+                             int harmonics) {
+  if (harmonics < 0 || azimuths < 2 * harmonics + 1)
+    throw InternalError("a series of more harmonics than its azimuths tell apart");
+  constexpr double turn = 2.0 * std::numbers::pi;
+  for (int i = 0; i < azimuths; ++i) {
+    azimuths_.push_back(turn * i / azimuths);
+    samples_.push_back(form(azimuths_.back()));
+  }
+  coefficients_.resize(static_cast<std::size_t>(2 * harmonics + 1));
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    add(coefficients_[0], 1.0 / azimuths, samples_[i]);
+    for (int k = 1; k <= harmonics; ++k) {
+      const auto at = static_cast<std::size_t>(2 * k - 1);
+      add(coefficients_[at], 2.0 / azimuths * std::cos(k * azimuths_[i]), samples_[i]);
+      add(coefficients_[at + 1], 2.0 / azimuths * std::sin(k * azimuths_[i]), samples_[i]);
+    }
+  }
+  const StateSpace largest = largest_of(samples_);
+  for (const double place : places) {
+    if (azimuths == 1 && harmonics == 0 && place != places.front()) break;
+    const double psi = turn * (std::floor(place * azimuths) + 0.5) / azimuths;
+    residual_ = std::max(residual_, compare(at(psi), form(psi), largest));
+  }
+}
+
+StateSpace AzimuthSeries::at(double psi) const {
+  StateSpace sum = coefficients_.front();
+  for (int k = 1; k <= harmonics(); ++k) {
+    const auto i = static_cast<std::size_t>(2 * k - 1);
+    add(sum, std::cos(k * psi), coefficients_[i]);
+    add(sum, std::sin(k * psi), coefficients_[i + 1]);
+  }
+  return sum;
+}
+
+Eigen::MatrixXd AzimuthSeries::state_matrix(double psi) const {
+  Eigen::MatrixXd sum = mean().A;
+  for (int k = 1; k <= harmonics(); ++k) {
+    const auto i = static_cast<std::size_t>(2 * k - 1);
+    sum += std::cos(k * psi) * coefficients_[i].A + std::sin(k * psi) * coefficients_[i + 1].A;
+  }
+  return sum;
+}
+
+double AzimuthSeries::variation() const {
+  double worst = 0.0;
+  if (samples_.empty()) return worst;
+  const StateSpace largest = largest_of(samples_);
+  for (const StateSpace& sample : samples_)
+    worst = std::max(worst, compare(mean(), sample, largest));
+  return worst;
+}
+
+}  // namespace samara::linear

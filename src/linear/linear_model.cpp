@@ -1,0 +1,260 @@
+#include "samara/linear/linear_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include <Eigen/LU>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/sparse_parts.hpp"
+#include "samara/base/error.hpp"
+
+namespace samara::linear {
+namespace {
+
+using analysis::multiply;
+using analysis::part;
+using analysis::rows_of;
+using analysis::Sparse;
+using analysis::SparseSolver;
+using analysis::SparseTangents;
+using analysis::tangents_on;
+using Dense = Eigen::MatrixXd;
+
+/// Central differences of order 8 over four steps on each side.
+constexpr std::array<double, 4> first_weights{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
+constexpr double second_middle = -205.0 / 72.0;
+constexpr std::array<double, 4> second_weights{8.0 / 5.0, -1.0 / 5.0, 8.0 / 315.0, -1.0 / 560.0};
+/// Steps of these differences a revolution, and for each harmonic of the steady state: what is
+/// lost is (k Omega h)^8/630 of a harmonic k, and rounding over (Omega h)^2.
+constexpr int least_steps = 256;
+constexpr int steps_a_harmonic = 32;
+
+/// A value and its first two derivatives in time.
+template <class Matrix>
+struct Jet {
+  Matrix value, first, second;
+};
+
+/// Dense solve with rows and columns of size one, refined once.
+Dense solve_scaled(const Dense& matrix, const Dense& right) {
+  if (matrix.rows() == 0) return right;
+  Eigen::VectorXd rows = matrix.cwiseAbs().rowwise().maxCoeff();
+  if (rows.minCoeff() == 0.0)
+    throw InternalError("the balances do not determine accelerations and reactions");
+  rows = rows.cwiseInverse();
+  Dense scaled = rows.asDiagonal() * matrix;
+  Eigen::VectorXd columns = scaled.cwiseAbs().colwise().maxCoeff();
+  if (columns.minCoeff() == 0.0)
+    throw InternalError("the balances do not determine accelerations and reactions");
+  columns = columns.cwiseInverse();
+  scaled = scaled * columns.asDiagonal();
+  const Eigen::PartialPivLU<Dense> lu(scaled);
+  const Dense b = rows.asDiagonal() * right;
+  Dense x = lu.solve(b);
+  x += lu.solve(b - multiply(scaled, x));
+  if (!x.allFinite())
+    throw InternalError("the balances do not determine accelerations and reactions");
+  return columns.asDiagonal() * x;
+}
+
+}  // namespace
+
+struct LinearModel::Tangents {
+  Sparse K, M;
+  Dense R, R_rate;
+};
+
+/// Columns of w = (eta, eta_dot, eta_ddot, u, u_dot, u_ddot): all of z and z_dot but the reactions.
+struct LinearModel::Motion {
+  Dense z, z_dot;
+  Sparse K, M;
+  Dense R, R_rate;
+};
+
+LinearModel::LinearModel(const system::PeriodicSystem& system,
+                         const system::InputOutput& input_output,
+                         const analysis::PeriodicSolution& solution)
+    : system_(system),
+      input_output_(input_output),
+      solution_(solution),
+      subspace_(system, solution) {
+  std::vector<bool> is_known(static_cast<std::size_t>(system.size()), false);
+  for (const PetscInt i : subspace_.coordinates()) is_known[static_cast<std::size_t>(i)] = true;
+  for (const PetscInt i : subspace_.tied()) is_known[static_cast<std::size_t>(i)] = true;
+  for (std::size_t i = 0; i < is_known.size(); ++i) {
+    if (system.rows()[i] == system::RowRole::balance) balance_.push_back(static_cast<PetscInt>(i));
+    if (system.unknowns()[i].role == system::UnknownRole::internal && !is_known[i])
+      reactions_.push_back(static_cast<PetscInt>(i));
+  }
+  const auto d = static_cast<std::size_t>(subspace_.degrees_of_freedom());
+  if (balance_.size() != d + reactions_.size())
+    throw InternalError("balances, degrees of freedom and reactions differ in number");
+  for (const char* behind : {"", " rate"})
+    for (std::size_t i = 0; i < d; ++i) {
+      const system::Unknown& unknown =
+          system.unknowns()[static_cast<std::size_t>(subspace_.coordinates()[i])];
+      states_.push_back({unknown.name + behind, unknown.unit + (*behind == '\0' ? "" : "/s"),
+                         subspace_.scale()[i]});
+    }
+  for (std::size_t i = 0; i < input_output.inputs().size(); ++i) {
+    const bool is_motion = input_output.inputs()[i].is_motion;
+    for (int derivative = 0; derivative < (is_motion ? 3 : 1); ++derivative)
+      columns_.push_back({i, derivative});
+  }
+}
+
+LinearModel::Tangents LinearModel::tangents_at(double t) const {
+  const petsc::Handle<Vec> z = system_.make_state();
+  const petsc::Handle<Vec> z_dot = system_.make_state();
+  solution_.evaluate(t, z.get(), z_dot.get());
+  const system::InputTangents inputs = input_output_.input_tangents(t, z.get(), z_dot.get());
+  const SparseTangents tangents = tangents_on(system_, solution_, t);
+  return {tangents.K, tangents.M, inputs.by_value, inputs.by_rate};
+}
+
+DescriptorForm LinearModel::descriptor(double t) const {
+  const Tangents tangents = tangents_at(t);
+  const petsc::Handle<Vec> z = system_.make_state();
+  const petsc::Handle<Vec> z_dot = system_.make_state();
+  solution_.evaluate(t, z.get(), z_dot.get());
+  const system::OutputTangents outputs = input_output_.output_tangents(t, z.get(), z_dot.get());
+  return {tangents.M,       tangents.K,      tangents.R,      tangents.R_rate,
+          outputs.by_state, outputs.by_rate, outputs.by_input};
+}
+
+Eigen::VectorXd LinearModel::operating_outputs(double t) const {
+  const petsc::Handle<Vec> z = system_.make_state();
+  const petsc::Handle<Vec> z_dot = system_.make_state();
+  solution_.evaluate(t, z.get(), z_dot.get());
+  return input_output_.output_values(t, z.get(), z_dot.get());
+}
+
+/// Positions from the constraint rows, velocities from the kinematic rows, and their rates from
+/// these rows differentiated in time: no difference of a solution is ever taken.
+LinearModel::Motion LinearModel::motion_at(double t) const {
+  const Tangents now = tangents_at(t);
+  Jet<Sparse> K{now.K, 0.0 * now.K, 0.0 * now.K};
+  Sparse M_first = 0.0 * now.M;
+  Dense R_first = Dense::Zero(now.R.rows(), now.R.cols());
+  Dense R_rate_first = R_first;
+  if (system_.period() > 0.0) {
+    const double h =
+        system_.period() / std::max(least_steps, steps_a_harmonic * solution_.harmonics());
+    K.second = (second_middle / (h * h)) * now.K;
+    for (std::size_t m = 0; m < first_weights.size(); ++m)
+      for (const double side : {1.0, -1.0}) {
+        const Tangents other = tangents_at(t + side * static_cast<double>(m + 1) * h);
+        const double weight = side * first_weights[m] / h;
+        K.first += weight * other.K;
+        K.second += (second_weights[m] / (h * h)) * other.K;
+        M_first += weight * other.M;
+        R_first += weight * other.R;
+        R_rate_first += weight * other.R_rate;
+      }
+  }
+
+  const auto d = static_cast<Eigen::Index>(subspace_.degrees_of_freedom());
+  const Eigen::Index m = now.R.cols();
+  const Eigen::Index n = system_.size();
+  const std::vector<PetscInt>& coordinates = subspace_.coordinates();
+  const std::vector<PetscInt>& tied = subspace_.tied();
+  const std::vector<PetscInt>& constraints = subspace_.constraint_rows();
+  const std::vector<PetscInt>& kinematic = subspace_.kinematic_rows();
+  const std::vector<PetscInt>& velocities = subspace_.velocities();
+
+  // Z, Z_dot, Z_ddot of positions = Z eta.
+  Jet<Dense> Z{Dense::Zero(n, d), Dense::Zero(n, d), Dense::Zero(n, d)};
+  for (Eigen::Index i = 0; i < d; ++i)
+    Z.value(coordinates[static_cast<std::size_t>(i)], i) =
+        subspace_.scale()[static_cast<std::size_t>(i)];
+  const Jet<Sparse> D{rows_of(K.value, constraints), rows_of(K.first, constraints),
+                      rows_of(K.second, constraints)};
+  const SparseSolver positions(part(K.value, constraints, tied), "constraints");
+  Z.value(tied, Eigen::all) = positions.solve(-(D.value * Z.value));
+  Z.first(tied, Eigen::all) = positions.solve(-(D.first * Z.value));
+  Z.second(tied, Eigen::all) = positions.solve(-(2.0 * (D.first * Z.first) + D.second * Z.value));
+
+  Motion motion{
+      Dense::Zero(n, 3 * (d + m)), Dense::Zero(n, 3 * (d + m)), now.K, now.M, now.R, now.R_rate};
+  Dense& z = motion.z;
+  Dense& z_dot = motion.z_dot;
+  z.leftCols(d) = Z.value;
+  z_dot.leftCols(d) = Z.first;
+  z_dot.middleCols(d, d) = Z.value;
+  Dense z_ddot = Dense::Zero(n, 3 * (d + m));
+  z_ddot.leftCols(d) = Z.second;
+  z_ddot.middleCols(d, d) = 2.0 * Z.first;
+  z_ddot.middleCols(2 * d, d) = Z.value;
+
+  // K z + M z_dot + R u + R' u_dot = 0 in the kinematic rows, and its rate.
+  const SparseSolver speeds(part(K.value, kinematic, velocities), "kinematic rows");
+  const Sparse K_rows = rows_of(K.value, kinematic);
+  const Sparse M_rows = rows_of(now.M, kinematic);
+  const auto input = [&](const Dense& matrix) { return Dense(matrix(kinematic, Eigen::all)); };
+  Dense right = K_rows * z + M_rows * z_dot;
+  right.middleCols(3 * d, m) += input(now.R);
+  right.middleCols(3 * d + m, m) += input(now.R_rate);
+  z(velocities, Eigen::all) = speeds.solve(-right);
+  right = rows_of(K.first, kinematic) * z + K_rows * z_dot + rows_of(M_first, kinematic) * z_dot +
+          M_rows * z_ddot;
+  right.middleCols(3 * d, m) += input(R_first);
+  right.middleCols(3 * d + m, m) += input(now.R) + input(R_rate_first);
+  right.middleCols(3 * d + 2 * m, m) += input(now.R_rate);
+  z_dot(velocities, Eigen::all) = speeds.solve(-right);
+  return motion;
+}
+
+StateSpace LinearModel::state_space(double t) const {
+  const Motion motion = motion_at(t);
+  const auto d = static_cast<Eigen::Index>(subspace_.degrees_of_freedom());
+  const Eigen::Index m = motion.R.cols();
+
+  // The balances: square in accelerations of eta and reactions.
+  Dense known = rows_of(motion.K, balance_) * motion.z + rows_of(motion.M, balance_) * motion.z_dot;
+  known.middleCols(3 * d, m) += motion.R(balance_, Eigen::all);
+  known.middleCols(3 * d + m, m) += motion.R_rate(balance_, Eigen::all);
+  Dense matrix(known.rows(), known.rows());
+  matrix.leftCols(d) = known.middleCols(2 * d, d);
+  matrix.rightCols(matrix.cols() - d) = part(motion.K, balance_, reactions_);
+  const auto without = [d](const Dense& all) {  // (eta, eta_dot, u, u_dot, u_ddot)
+    Dense rest(all.rows(), all.cols() - d);
+    rest << all.leftCols(2 * d), all.rightCols(all.cols() - 3 * d);
+    return rest;
+  };
+  const Dense found = solve_scaled(matrix, -without(known));
+  const Dense acceleration = found.topRows(d);
+
+  Dense z = without(motion.z);
+  z(reactions_, Eigen::all) = found.bottomRows(found.rows() - d);
+  const Dense z_dot =
+      without(motion.z_dot) + multiply(motion.z_dot.middleCols(2 * d, d), acceleration);
+
+  const petsc::Handle<Vec> state = system_.make_state();
+  const petsc::Handle<Vec> rate = system_.make_state();
+  solution_.evaluate(t, state.get(), rate.get());
+  const system::OutputTangents slopes = input_output_.output_tangents(t, state.get(), rate.get());
+  Dense y = multiply(slopes.by_state, z) + multiply(slopes.by_rate, z_dot);
+  y.middleCols(2 * d, m) += slopes.by_input;
+
+  StateSpace result;
+  result.A = Dense::Zero(2 * d, 2 * d);
+  result.A.topRightCorner(d, d).setIdentity();
+  result.A.bottomRows(d) = acceleration.leftCols(2 * d);
+  result.C = y.leftCols(2 * d);
+  const auto count = static_cast<Eigen::Index>(columns_.size());
+  result.B = Dense::Zero(2 * d, count);
+  result.D.resize(y.rows(), count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const InputColumn& column = columns_[static_cast<std::size_t>(j)];
+    const Eigen::Index from =
+        2 * d + column.derivative * m + static_cast<Eigen::Index>(column.input);
+    result.B.col(j).tail(d) = acceleration.col(from);
+    result.D.col(j) = y.col(from);
+  }
+  return result;
+}
+
+}  // namespace samara::linear

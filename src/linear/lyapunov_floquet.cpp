@@ -1,0 +1,337 @@
+#include "samara/linear/lyapunov_floquet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <sstream>
+
+#include <Eigen/LU>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/base/error.hpp"
+
+#include "ordered_schur.hpp"
+
+namespace samara::linear {
+namespace {
+
+using analysis::exponential;
+using analysis::multiply;
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+
+constexpr double turn = 2.0 * std::numbers::pi;
+constexpr Complex imaginary{0.0, 1.0};
+
+/// Of a revolution, at the least; half as many tell how large the error is.
+constexpr int least_steps = 256;
+/// What decays by more in a revolution is beyond the digits of the monodromy matrix.
+constexpr double least_multiplier = 1e-4;
+/// Below it differences are rounding.
+constexpr double rounding = 1e-9;
+/// Multipliers that are this close, relative, are parted no further.
+constexpr double same_multiplier = 1e-6;
+/// Nor are those that are this close and whose modes are the same but for a part of the third: a
+/// double multiplier that rounding has parted.
+constexpr double close_multiplier = 1e-3;
+constexpr double different_mode = 0.03;
+/// Of an exponent, relative to it or to the rotor speed: the difference that half the steps make.
+constexpr double resolved = 1e-5;
+
+MatrixXcd small_exponential(const MatrixXcd& matrix) {
+  if (matrix.rows() == 1) return MatrixXcd::Constant(1, 1, std::exp(matrix(0, 0)));
+  return matrix.exp();
+}
+
+MatrixXcd small_logarithm(const MatrixXcd& matrix) {
+  if (matrix.rows() == 1) return MatrixXcd::Constant(1, 1, std::log(matrix(0, 0)));
+  return matrix.log();
+}
+
+Complex mean_of(const MatrixXcd& matrix) {
+  return matrix.trace() / static_cast<double>(matrix.rows());
+}
+
+bool are_close(Complex a, Complex b, double tolerance) {
+  return std::abs(a - b) < tolerance * std::max(std::abs(a), std::abs(b));
+}
+
+/// True where the multipliers a and b of the diagonal belong together.
+bool are_one(const Schur& whole, Complex a, Complex b) {
+  if (are_close(a, b, same_multiplier)) return true;
+  if (!are_close(a, b, close_multiplier)) return false;
+  Schur schur = whole;
+  bring_forward(schur, [a, b](Complex value) {
+    return are_close(value, a, rounding) || are_close(value, b, rounding);
+  });
+  // The second eigenvector of (t11 t12; 0 t22) is (t12/(t22 - t11), 1).
+  return std::abs(schur.T(1, 1) - schur.T(0, 0)) < different_mode * std::abs(schur.T(0, 1));
+}
+
+/// Groups of multipliers of which each belongs to another one of the group.
+std::vector<std::vector<Complex>> group(const Schur& whole) {
+  std::vector<std::vector<Complex>> groups;
+  for (const Complex value : whole.T.diagonal()) {
+    if (std::abs(value) < least_multiplier) continue;
+    std::vector<Complex> joined{value};
+    std::erase_if(groups, [&](const std::vector<Complex>& old) {
+      const bool is_close = std::ranges::any_of(
+          old, [&whole, value](Complex one) { return are_one(whole, one, value); });
+      if (is_close) joined.insert(joined.end(), old.begin(), old.end());
+      return is_close;
+    });
+    groups.push_back(joined);
+  }
+  return groups;
+}
+
+}  // namespace
+
+double LyapunovFloquet::Block::modulus() const { return std::abs(mean_of(exponent)); }
+
+int LyapunovFloquet::Block::states() const {
+  return static_cast<int>(exponent.rows()) * (kind == Kind::positive ? 1 : 2);
+}
+
+LyapunovFloquet::LyapunovFloquet(const AzimuthSeries& series, double rotor_speed, int azimuths,
+                                 int states)
+    : series_(series),
+      speed_(rotor_speed),
+      intervals_(std::max(azimuths, 1)),
+      steps_(2 * ((least_steps / 2 + intervals_ - 1) / intervals_)),
+      scale_(series.mean().A.rows()) {
+  // Half of the states are the rates of the others: in these units none is much faster than one.
+  const Index half = scale_.size() / 2;
+  const double rate = std::sqrt(series.mean().A.bottomLeftCorner(half, half).norm());
+  scale_ << Eigen::VectorXd::Ones(half), Eigen::VectorXd::Constant(half, std::max(rate, speed_));
+  MatrixXd monodromy = MatrixXd::Identity(scale_.size(), scale_.size());
+  MatrixXd coarse = monodromy;
+  for (int i = 0; i < intervals_; ++i) {
+    const double from = turn * i / intervals_;
+    const double to = turn * (i + 1) / intervals_;
+    propagators_.push_back(propagate(from, to, steps_));
+    monodromy = multiply(propagators_.back(), monodromy);
+    coarse = multiply(propagate(from, to, steps_ / 2), coarse);
+  }
+  find_blocks(monodromy, coarse);
+  select(states);
+  name_states();
+}
+
+/// Phi(to, from) in scaled states, by two exponentials a step: fourth order, and exact where A does
+/// not change (S. Blanes and P. C. Moan, Appl. Numer. Math. 56 (2006), 1519-1537).
+MatrixXd LyapunovFloquet::propagate(double from, double to, int count) const {
+  const double place = std::sqrt(3.0) / 6.0;  // of the Gauss points from the middle
+  const double near = 0.25 + place;
+  const double far = 0.25 - place;
+  const double width = (to - from) / count;
+  MatrixXd phi = MatrixXd::Identity(scale_.size(), scale_.size());
+  if (width == 0.0) return phi;
+  const auto scaled = [this](double psi) {
+    return MatrixXd(scale_.cwiseInverse().asDiagonal() * series_.state_matrix(psi) *
+                    scale_.asDiagonal());
+  };
+  for (int i = 0; i < count; ++i) {
+    const double middle = from + (i + 0.5) * width;
+    const MatrixXd first = width / speed_ * scaled(middle - place * width);
+    const MatrixXd second = width / speed_ * scaled(middle + place * width);
+    const MatrixXd begin = exponential(near * first + far * second);
+    const MatrixXd end = exponential(far * first + near * second);
+    phi = multiply(end, multiply(begin, phi));
+  }
+  return phi;
+}
+
+void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coarse) {
+  const Schur whole = schur_of(monodromy);
+  const double period = turn / speed_;
+  for (const std::vector<Complex>& values : group(whole)) {
+    Complex mean = 0.0;
+    for (const Complex value : values) mean += value / static_cast<double>(values.size());
+    const bool is_real = std::abs(mean.imag()) < same_multiplier * std::abs(mean);
+    if (!is_real && mean.imag() < 0.0) continue;  // its conjugate comes, too
+    Schur schur = whole;
+    const Index count = bring_forward(schur, [&values](Complex value) {
+      return std::ranges::any_of(values,
+                                 [value](Complex one) { return are_close(one, value, rounding); });
+    });
+    Block block;
+    MatrixXcd V = schur.U.leftCols(count);
+    MatrixXcd W =
+        V.adjoint() - parting(schur.T, count) * schur.U.rightCols(schur.U.cols() - count).adjoint();
+    if (is_real) V = real_basis(V).cast<Complex>();
+    W = (W * V).partialPivLu().solve(W);
+    if (is_real) W = W.real().cast<Complex>();
+    const MatrixXcd multiplier = W * monodromy.cast<Complex>() * V;
+    const MatrixXcd change = W * (monodromy - coarse).cast<Complex>() * V;
+    if (is_real) {
+      block.kind = mean.real() > 0.0 ? Block::Kind::positive : Block::Kind::negative;
+      const double sign = mean.real() > 0.0 ? 1.0 : -1.0;
+      block.exponent = small_logarithm(sign * multiplier) / period;
+      if (sign < 0.0) block.exponent.diagonal().array() += 0.5 * imaginary * speed_;
+    } else {
+      block.exponent = small_logarithm(multiplier) / period;
+    }
+    block.V.push_back(scale_.asDiagonal() * V);
+    block.W.push_back(W * scale_.cwiseInverse().asDiagonal());
+    follow(block);
+    if (block.kind == Block::Kind::pair) choose_branch(block);
+    choose_scale(block);
+    block.error = multiplier.partialPivLu().solve(change).cwiseAbs().maxCoeff() / period /
+                  std::max(block.modulus(), speed_);
+    blocks_.push_back(block);
+  }
+  std::ranges::stable_sort(blocks_, {}, &Block::modulus);
+}
+
+/// Carries V forward and W backward over the revolution: neither grows but by rounding.
+void LyapunovFloquet::follow(Block& block) const {
+  const MatrixXcd back = small_exponential(-turn / speed_ / intervals_ * block.exponent);
+  const auto over = [this](int i) {
+    return MatrixXd(scale_.asDiagonal() * propagators_[static_cast<std::size_t>(i)] *
+                    scale_.cwiseInverse().asDiagonal());
+  };
+  block.W.resize(intervals_ + 1);
+  block.W.back() = block.W.front();
+  for (int i = 0; i < intervals_; ++i) block.V.push_back(over(i) * block.V.back() * back);
+  for (int i = intervals_; i-- > 1;) {
+    const auto at = static_cast<std::size_t>(i);
+    block.W[at] = back * block.W[at + 1] * over(i);
+  }
+}
+
+/// Exponents are known but for multiples of i Omega. Taken is the one next to the mean frequency of
+/// the motion: P then changes least.
+void LyapunovFloquet::choose_branch(Block& block) const {
+  const Index half = scale_.size() / 2;
+  double turning = 0.0;
+  double size = 0.0;
+  for (int i = 0; i < intervals_; ++i) {
+    const MatrixXcd& V = block.V[static_cast<std::size_t>(i)];
+    turning += (V.topRows(half).conjugate().array() * V.bottomRows(half).array()).sum().imag();
+    size += V.topRows(half).squaredNorm();
+  }
+  const double shift = std::round((turning / size - mean_of(block.exponent).imag()) / speed_);
+  block.exponent.diagonal().array() += imaginary * shift * speed_;
+  for (int i = 0; i <= intervals_; ++i) {
+    const Complex phase = std::exp(-imaginary * shift * (turn * i / intervals_));
+    block.V[static_cast<std::size_t>(i)] *= phase;
+    block.W[static_cast<std::size_t>(i)] /= phase;
+  }
+  if (mean_of(block.exponent).imag() >= 0.0) return;
+  block.exponent = block.exponent.conjugate().eval();
+  for (MatrixXcd& V : block.V) V = V.conjugate().eval();
+  for (MatrixXcd& W : block.W) W = W.conjugate().eval();
+}
+
+/// The largest entry of V over the revolution, of those that are no rates, becomes one.
+void LyapunovFloquet::choose_scale(Block& block) const {
+  Complex largest = 0.0;
+  for (const MatrixXcd& V : block.V)
+    for (const Complex entry : V.topRows(scale_.size() / 2).reshaped())
+      if (std::abs(entry) > std::abs(largest)) largest = entry;
+  if (block.kind == Block::Kind::positive) largest = largest.real();
+  for (MatrixXcd& V : block.V) V /= largest;
+  for (MatrixXcd& W : block.W) W *= largest;
+}
+
+void LyapunovFloquet::select(int states) {
+  int count = 0;
+  std::size_t kept = 0;
+  while (kept < blocks_.size() && blocks_[kept].error < resolved &&
+         (states == 0 || count + blocks_[kept].states() <= states))
+    count += blocks_[kept++].states();
+  const bool is_short = states > 0 && count < states;
+  if (is_short && (kept == blocks_.size() || !(blocks_[kept].error < resolved))) {
+    std::ostringstream text;
+    text << "linearize.lyapunov_floquet_states: only " << count << " are resolved; ";
+    if (kept == blocks_.size())
+      text << "all other modes decay to less than " << least_multiplier << " in a revolution";
+    else
+      text << "the exponent of the mode at " << blocks_[kept].modulus()
+           << " rad/s is not known to more than " << blocks_[kept].error;
+    throw InputError(text.str());
+  }
+  blocks_.resize(kept);
+}
+
+void LyapunovFloquet::name_states() {
+  int all = 0;
+  for (const Block& block : blocks_) all += block.states();
+  exponents_ = MatrixXd::Zero(all, all);
+  Index first = 0;
+  int mode = 0;
+  for (const Block& block : blocks_) {
+    const Index m = block.exponent.rows();
+    const bool is_real = block.kind == Block::Kind::positive;
+    exponents_.block(first, first, m, m) = block.exponent.real();
+    if (!is_real) {
+      exponents_.block(first, first + m, m, m) = -block.exponent.imag();
+      exponents_.block(first + m, first, m, m) = block.exponent.imag();
+      exponents_.block(first + m, first + m, m, m) = block.exponent.real();
+    }
+    for (const char* part : {"", " imaginary"}) {
+      if (is_real && *part != '\0') continue;
+      for (Index i = 0; i < m; ++i)
+        states_.push_back({"mode " + std::to_string(mode + 1 + static_cast<int>(i)) +
+                               (is_real      ? ""
+                                : *part == 0 ? " real"
+                                             : part),
+                           "1", 1.0});
+    }
+    first += block.states();
+    mode += static_cast<int>(m);
+  }
+}
+
+LyapunovFloquet::Frame LyapunovFloquet::frame_at(double psi) const {
+  const double width = turn / intervals_;
+  psi -= turn * std::floor(psi / turn);
+  const double place = psi / width;
+  const bool is_end = std::abs(place - std::round(place)) < rounding;
+  const auto at = static_cast<std::size_t>(is_end ? std::fmod(std::round(place), intervals_)
+                                                  : std::floor(place));
+  const double from = is_end ? psi : width * static_cast<double>(at);
+  const auto unscaled = [this](const MatrixXd& phi) {
+    return MatrixXd(scale_.asDiagonal() * phi * scale_.cwiseInverse().asDiagonal());
+  };
+  const MatrixXd before = unscaled(propagate(from, psi, steps_));
+  const MatrixXd behind =
+      is_end ? unscaled(propagators_[at]) : unscaled(propagate(psi, from + width, steps_));
+  Frame frame{MatrixXd(scale_.size(), exponents_.rows()),
+              MatrixXd(exponents_.rows(), scale_.size())};
+  Index first = 0;
+  for (const Block& block : blocks_) {
+    const Index m = block.exponent.rows();
+    const MatrixXcd V =
+        before * block.V[at] * small_exponential(-(psi - from) / speed_ * block.exponent);
+    const MatrixXcd W = small_exponential(-(from + width - psi) / speed_ * block.exponent) *
+                        block.W[at + 1] * behind;
+    const double factor = block.kind == Block::Kind::pair ? 2.0 : 1.0;
+    frame.P.middleCols(first, m) = factor * V.real();
+    frame.Q.middleRows(first, m) = W.real();
+    if (block.kind != Block::Kind::positive) {
+      frame.P.middleCols(first + m, m) = -factor * V.imag();
+      frame.Q.middleRows(first + m, m) = W.imag();
+    }
+    first += block.states();
+  }
+  return frame;
+}
+
+StateSpace LyapunovFloquet::form(double psi) const {
+  const Frame frame = frame_at(psi);
+  const StateSpace form = series_.at(psi);
+  return {exponents_, frame.Q * form.B, form.C * frame.P, form.D};
+}
+
+StateSpace LyapunovFloquet::transformation(double psi) const {
+  const Frame frame = frame_at(psi);
+  return {exponents_, frame.Q, frame.P, MatrixXd::Zero(scale_.size(), scale_.size())};
+}
+
+}  // namespace samara::linear

@@ -1,0 +1,214 @@
+#include "samara/linear/multiblade.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "samara/base/error.hpp"
+
+namespace samara::linear {
+namespace {
+
+/// "blade 1 point 3 M2" -> 1 and " point 3 M2"; 0 of what belongs to no blade.
+std::pair<int, std::string> blade_of(const std::string& name) {
+  const std::string stem = "blade ";
+  if (!name.starts_with(stem)) return {0, name};
+  std::size_t end = 0;
+  const int blade = std::stoi(name.substr(stem.size()), &end);
+  return {blade, name.substr(stem.size() + end)};
+}
+
+int binomial(int p, int q) { return p == 2 && q == 1 ? 2 : 1; }
+
+}  // namespace
+
+std::vector<system::Signal> column_signals(const LinearModel& model) {
+  const char* behind[] = {"", "_rate", "_acceleration"};
+  const char* units[] = {"", "/s", "/s^2"};
+  std::vector<system::Signal> signals;
+  for (const InputColumn& column : model.input_columns()) {
+    system::Signal signal = model.input_output().inputs()[column.input];
+    signal.name += behind[column.derivative];
+    signal.unit += units[column.derivative];
+    if (!signal.family.empty()) signal.family += behind[column.derivative];
+    signals.push_back(signal);
+  }
+  return signals;
+}
+
+std::vector<std::string> Multiblade::words(int blades) {
+  std::vector<std::string> result{"mean"};
+  for (int n = 1; 2 * n < blades; ++n) {
+    result.push_back("cos " + std::to_string(n));
+    result.push_back("sin " + std::to_string(n));
+  }
+  if (blades % 2 == 0) result.emplace_back("alternating");
+  return result;
+}
+
+Multiblade::Multiblade(const LinearModel& model) : model_(model) {
+  for (const system::Unknown& unknown : model.system().unknowns())
+    blades_ = std::max(blades_, blade_of(unknown.name).first);
+  if (blades_ < 3)
+    throw InputError(
+        "linearize.forms: multiblade coordinates are for three and more blades; hint: "
+        "lyapunov_floquet, hill");
+  const double period = model.system().period();
+  speed_ = period > 0.0 ? 2.0 * std::numbers::pi / period : 0.0;
+  states_ = model.states();
+  inputs_ = column_signals(model);
+  outputs_ = model.input_output().outputs();
+  find_state_families();
+  find_input_families();
+  find_output_families();
+}
+
+void Multiblade::find_state_families() {
+  const analysis::ConsistentSubspace& subspace = model_.subspace();
+  const std::vector<PetscInt>& coordinates = subspace.coordinates();
+  const int d = subspace.degrees_of_freedom();
+  std::vector<std::string> stems;                     // in the order of the coordinates
+  std::map<std::string, std::map<int, int>> members;  // by stem and blade
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const auto at = static_cast<std::size_t>(coordinates[i]);
+    const auto [blade, stem] = blade_of(model_.system().unknowns()[at].name);
+    if (blade == 0) continue;
+    if (!members.contains(stem)) stems.push_back(stem);
+    members[stem][blade] = static_cast<int>(i);
+  }
+  for (const std::string& stem : stems) {
+    Family family;
+    for (const auto& [blade, place] : members[stem]) {
+      family.members.push_back(place);
+      family.scales.push_back(subspace.scale()[static_cast<std::size_t>(place)]);
+    }
+    if (static_cast<int>(family.members.size()) != blades_)
+      throw InputError(
+          "linearize.forms: multiblade coordinates are for blades with the same "
+          "states, \"" +
+          stem + "\" is not one of all");
+    for (int derivative = 0; derivative < 2; ++derivative) {
+      family.derivative = derivative;
+      family.first = static_cast<int>(state_families_.size()) - derivative;
+      const std::vector<std::string> names = words(blades_);
+      const ModelState first = states_[static_cast<std::size_t>(family.members.front())];
+      for (std::size_t j = 0; j < names.size(); ++j) {
+        ModelState& state = states_[static_cast<std::size_t>(family.members[j])];
+        state = first;
+        state.name = names[j] + blade_of(first.name).second;
+      }
+      state_families_.push_back(family);
+      for (int& place : family.members) place += d;
+    }
+  }
+}
+
+void Multiblade::find_input_families() {
+  const std::vector<system::Signal> signals = column_signals(model_);
+  std::map<std::pair<std::string, int>, std::vector<int>> found;  // by family and derivative
+  const auto stem = [&](std::size_t i) {
+    return model_.input_output().inputs()[model_.input_columns()[i].input].family;
+  };
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    if (!stem(i).empty())
+      found[{stem(i), model_.input_columns()[i].derivative}].push_back(static_cast<int>(i));
+  for (auto& [key, members] : found) {
+    if (static_cast<int>(members.size()) != blades_) continue;
+    std::sort(members.begin(), members.end(), [&](int a, int b) {
+      return signals[static_cast<std::size_t>(a)].blade <
+             signals[static_cast<std::size_t>(b)].blade;
+    });
+    Family family{members, std::vector<double>(members.size(), 1.0), key.second,
+                  static_cast<int>(input_families_.size()) - key.second};
+    const std::vector<std::string> names = words(blades_);
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      system::Signal& signal = inputs_[static_cast<std::size_t>(members[j])];
+      signal.name = signals[static_cast<std::size_t>(members[j])].family + " " + names[j];
+      signal.frame = "multiblade";
+    }
+    input_families_.push_back(family);
+  }
+}
+
+void Multiblade::find_output_families() {
+  const std::vector<system::Signal>& signals = model_.input_output().outputs();
+  std::map<std::string, std::vector<int>> found;
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    if (!signals[i].family.empty()) found[signals[i].family].push_back(static_cast<int>(i));
+  for (auto& [name, members] : found) {
+    if (static_cast<int>(members.size()) != blades_) continue;
+    std::sort(members.begin(), members.end(), [&](int a, int b) {
+      return signals[static_cast<std::size_t>(a)].blade <
+             signals[static_cast<std::size_t>(b)].blade;
+    });
+    output_families_.push_back({members, std::vector<double>(members.size(), 1.0), 0,
+                                static_cast<int>(output_families_.size())});
+    const std::vector<std::string> names = words(blades_);
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      system::Signal& signal = outputs_[static_cast<std::size_t>(members[j])];
+      signal.name = name + " " + names[j];
+      signal.frame = "multiblade";
+    }
+  }
+}
+
+Eigen::MatrixXd Multiblade::functions(double psi, int derivative) const {
+  Eigen::MatrixXd result(blades_, blades_);
+  for (int k = 0; k < blades_; ++k) {
+    const double azimuth = psi + 2.0 * std::numbers::pi * k / blades_;
+    result(k, 0) = derivative == 0 ? 1.0 : 0.0;
+    int column = 1;
+    for (int n = 1; 2 * n < blades_; ++n) {
+      const double quarter = 0.5 * std::numbers::pi * derivative;
+      const double size = std::pow(n, derivative);
+      result(k, column++) = size * std::cos(n * azimuth + quarter);
+      result(k, column++) = size * std::sin(n * azimuth + quarter);
+    }
+    if (blades_ % 2 == 0) result(k, column) = derivative > 0 ? 0.0 : k % 2 == 0 ? 1.0 : -1.0;
+  }
+  return result;
+}
+
+/// The transformation, differentiated `extra` times by time. A derivative of a quantity contains
+/// the quantity itself: (B q)^(p) = sum_r binomial(p, r) Omega^(p - r) B^(p - r) q^(r).
+Eigen::MatrixXd Multiblade::matrix(const std::vector<Family>& families, Eigen::Index size,
+                                   double psi, int extra) const {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
+  if (extra == 0) result.setIdentity();
+  for (const Family& family : families) {
+    for (int r = 0; r <= family.derivative; ++r) {
+      const Family& lower = families[static_cast<std::size_t>(family.first + r)];
+      const int order = family.derivative - r + extra;
+      const Eigen::MatrixXd block =
+          binomial(family.derivative, r) * std::pow(speed_, order) * functions(psi, order);
+      for (std::size_t k = 0; k < family.members.size(); ++k)
+        for (std::size_t j = 0; j < lower.members.size(); ++j)
+          result(family.members[k], lower.members[j]) =
+              block(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) *
+              family.scales.front() / family.scales[k];
+    }
+  }
+  return result;
+}
+
+StateSpace Multiblade::transform(double psi, const StateSpace& form) const {
+  const Eigen::MatrixXd T = matrix(state_families_, form.A.rows(), psi, 0);
+  const Eigen::MatrixXd T_dot = matrix(state_families_, form.A.rows(), psi, 1);
+  const Eigen::MatrixXd U = matrix(input_families_, form.B.cols(), psi, 0);
+  const Eigen::MatrixXd Y = matrix(output_families_, form.C.rows(), psi, 0);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> states(T);
+  StateSpace result;
+  result.A = states.solve(form.A * T - T_dot);
+  result.B = states.solve(form.B * U);
+  if (form.C.rows() == 0) return {result.A, result.B, form.C, form.D};
+  const Eigen::PartialPivLU<Eigen::MatrixXd> outputs(Y);
+  result.C = outputs.solve(form.C * T);
+  result.D = outputs.solve(form.D * U);
+  return result;
+}
+
+}  // namespace samara::linear

@@ -1,0 +1,147 @@
+#include "samara/loads/load_harmonics.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include <Eigen/QR>
+
+#include "samara/base/error.hpp"
+
+namespace samara::loads {
+namespace {
+
+constexpr double revolution = 360.0;  // [deg], as azimuths are
+constexpr double degree = std::numbers::pi / 180.0;
+/// Of a revolution: azimuths closer than this are the same, and so little is not missing to a whole
+/// revolution.
+constexpr double same_azimuth = 1e-9;
+/// Of the largest pivot: below it the rows do not tell the harmonics apart.
+constexpr double least_pivot = 1e-8;
+
+void check_azimuth(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg) {
+  if (azimuth_deg.size() != history.times.size())
+    throw InternalError("the azimuth differs from its history in size");
+  for (Eigen::Index i = 0; i < azimuth_deg.size(); ++i)
+    if (!std::isfinite(azimuth_deg(i)))
+      throw InputError("azimuth: row " + std::to_string(i + 1) + " is not a finite number");
+}
+
+/// Without the jumps of an azimuth that is kept within a revolution.
+Eigen::VectorXd unwrap(Eigen::VectorXd azimuth) {
+  if (azimuth.maxCoeff() - azimuth.minCoeff() > revolution * (1.0 + same_azimuth)) return azimuth;
+  double turns = 0.0;
+  double before = azimuth(0);
+  for (Eigen::Index i = 1; i < azimuth.size(); ++i) {
+    // Half a revolution is one forward.
+    turns -= std::ceil((azimuth(i) - before) / revolution - 0.5);
+    before = azimuth(i);
+    azimuth(i) += turns * revolution;
+  }
+  return azimuth;
+}
+
+/// The first of the rows at the end over which the azimuth grows.
+Eigen::Index first_growing_row(const Eigen::VectorXd& azimuth) {
+  Eigen::Index first = azimuth.size() - 1;
+  while (first > 0 && azimuth(first - 1) < azimuth(first)) --first;
+  return first;
+}
+
+struct Window {
+  Eigen::Index first_row = 0;
+  int revolutions = 1;
+};
+
+/// The last whole revolutions; the row of their beginning is that of their end again, and left out.
+Window find_window(const Eigen::VectorXd& azimuth) {
+  const double end = azimuth(azimuth.size() - 1);
+  Window window;
+  window.first_row = first_growing_row(azimuth);
+  const double turns = (end - azimuth(window.first_row)) / revolution;
+  window.revolutions = static_cast<int>(std::floor(turns + same_azimuth));
+  if (window.revolutions < 1) {
+    std::ostringstream text;
+    text << "azimuth: it grows by " << turns * revolution
+         << " deg until the end of the history, harmonics need a whole revolution";
+    throw InputError(text.str());
+  }
+  const double begin = end - window.revolutions * revolution;
+  while (azimuth(window.first_row) < begin + same_azimuth * revolution) ++window.first_row;
+  return window;
+}
+
+/// Of a periodic history, whose first row does not come again.
+void check_one_revolution(const Eigen::VectorXd& azimuth) {
+  const double span = azimuth(azimuth.size() - 1) - azimuth(0);
+  if (first_growing_row(azimuth) > 0 || !(span < revolution))
+    throw InputError("azimuth: it must grow from row to row, by less than 360 deg in all");
+}
+
+/// Columns 1, cos psi, sin psi, cos 2 psi ... at azimuths psi [rad].
+Eigen::MatrixXd fourier_columns(const Eigen::VectorXd& psi, Eigen::Index harmonics) {
+  Eigen::MatrixXd columns(psi.size(), 2 * harmonics + 1);
+  columns.col(0).setOnes();
+  for (Eigen::Index k = 1; k <= harmonics; ++k) {
+    columns.col(2 * k - 1) = (static_cast<double>(k) * psi.array()).cos();
+    columns.col(2 * k) = (static_cast<double>(k) * psi.array()).sin();
+  }
+  return columns;
+}
+
+/// Columns of coefficients 1, cos, sin ... of the columns of `values`.
+Eigen::MatrixXd fit(const Eigen::VectorXd& psi, const Eigen::VectorXd& weights,
+                    const Eigen::MatrixXd& values, int harmonics) {
+  const Eigen::VectorXd roots = weights.cwiseSqrt();
+  const Eigen::MatrixXd columns = roots.asDiagonal() * fourier_columns(psi, harmonics);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns.rows(), columns.cols());
+  factors.setThreshold(least_pivot);
+  factors.compute(columns);
+  if (factors.rank() < columns.cols())
+    throw InputError("azimuth: " + std::to_string(psi.size()) + " rows do not tell " +
+                     std::to_string(harmonics) +
+                     " harmonics apart; hint: more rows a revolution, or fewer harmonics");
+  return factors.solve(roots.asDiagonal() * values);
+}
+
+/// From c cos + s sin to amplitude and phase.
+void take_coefficients(const Eigen::MatrixXd& coefficients, LoadHarmonics& result) {
+  const Eigen::Index harmonics = coefficients.rows() / 2;
+  result.amplitudes.setZero(harmonics + 1, coefficients.cols());
+  result.phases.setZero(harmonics + 1, coefficients.cols());
+  result.amplitudes.row(0) = coefficients.row(0);
+  for (Eigen::Index c = 0; c < coefficients.cols(); ++c)
+    for (Eigen::Index k = 1; k <= harmonics; ++k) {
+      const double cosine = coefficients(2 * k - 1, c);
+      const double sine = coefficients(2 * k, c);
+      result.amplitudes(k, c) = std::hypot(cosine, sine);
+      result.phases(k, c) = std::atan2(-sine, cosine);
+    }
+}
+
+}  // namespace
+
+LoadHarmonics compute_harmonics(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
+                                int harmonics) {
+  check(history);
+  check_azimuth(history, azimuth_deg);
+  if (harmonics < 0)
+    throw InputError("the number of harmonics must be >= 0, not " + std::to_string(harmonics));
+  const Eigen::VectorXd azimuth = unwrap(azimuth_deg);
+  Window window;
+  if (!history.is_periodic())
+    window = find_window(azimuth);
+  else
+    check_one_revolution(azimuth);
+  const Eigen::Index rows = azimuth.size() - window.first_row;
+  const Eigen::VectorXd used = azimuth.tail(rows);
+  const Eigen::VectorXd weights = trapezoidal_weights(used, window.revolutions * revolution);
+  LoadHarmonics result;
+  result.revolutions = window.revolutions;
+  result.first_row = window.first_row;
+  take_coefficients(fit(used * degree, weights, history.values.bottomRows(rows), harmonics),
+                    result);
+  return result;
+}
+
+}  // namespace samara::loads
