@@ -10,8 +10,9 @@
 namespace samara::drivers {
 namespace {
 
-/// Of a step: an event this close to where a leg begins is there.
-constexpr double closest_event = 1e-6;
+/// Of a step: an event this close to an instant of the grid is there. A step that short would lose
+/// its digits.
+constexpr double closest_event = 1e-3;
 
 }  // namespace
 
@@ -53,6 +54,10 @@ analysis::TransientRun HistoryLegs::run() {
   while (true) {
     file_.note_events(fired_);
     const std::optional<double> stop = next_time();
+    if (stop && *stop <= start_.time) {
+      fire_at(*stop);
+      continue;
+    }
     const analysis::TransientRun leg = run_leg(stop, to_watch());
     if (recorder_.crossing()) {
       pass(*recorder_.crossing(), leg);
@@ -64,9 +69,22 @@ analysis::TransientRun HistoryLegs::run() {
       total_.reason = leg.reason;
       return total_;
     }
-    for (std::size_t i = 0; i < fired_.size(); ++i)
-      if (!std::isfinite(fired_[i]) && transient_.events[i].trigger.time == stop) fire(i);
+    fire_at(*stop);
   }
+}
+
+void HistoryLegs::fire_at(double time) {
+  for (std::size_t i = 0; i < fired_.size(); ++i)
+    if (const std::optional<double>& at = transient_.events[i].trigger.time;
+        !std::isfinite(fired_[i]) && at && on_grid(*at) == time)
+      fire(i);
+}
+
+/// The time of an event, or the instant of the grid that is next to it.
+double HistoryLegs::on_grid(double time) const {
+  const double step = transient_.options.step;
+  const double nearest = start_.origin + std::round((time - start_.origin) / step) * step;
+  return std::abs(time - nearest) < closest_event * step ? nearest : time;
 }
 
 analysis::TransientRun HistoryLegs::run_leg(std::optional<double> stop,
@@ -86,10 +104,9 @@ analysis::TransientRun HistoryLegs::run_leg(std::optional<double> stop,
 
 /// Goes to where a state event came, from the step before it.
 void HistoryLegs::pass(Crossing crossing, const analysis::TransientRun& leg) {
-  const double close = closest_event * transient_.options.step;
+  const double time = std::min(on_grid(crossing.time), leg.end.time);
   if (leg.steps > 0) start_ = leg.before;
-  if (leg.steps > 0 && crossing.time > start_.time + close)
-    start_ = run_leg(std::min(crossing.time, leg.end.time), {}).end;
+  if (leg.steps > 0 && time > start_.time) start_ = run_leg(time, {}).end;
   fire(crossing.event);
 }
 
@@ -106,7 +123,8 @@ std::optional<double> HistoryLegs::next_time() const {
   std::optional<double> next;
   for (std::size_t i = 0; i < fired_.size(); ++i) {
     const std::optional<double>& time = transient_.events[i].trigger.time;
-    if (!std::isfinite(fired_[i]) && time && (!next || *time < *next)) next = time;
+    if (!std::isfinite(fired_[i]) && time && (!next || on_grid(*time) < *next))
+      next = on_grid(*time);
   }
   return next;
 }

@@ -40,6 +40,8 @@ class HistoryLegs {
   analysis::TransientRun run_leg(std::optional<double> stop, const std::vector<std::size_t>& watch);
   void pass(Crossing crossing, const analysis::TransientRun& leg);
   void fire(std::size_t i);
+  void fire_at(double time);
+  double on_grid(double time) const;
   std::optional<double> next_time() const;
   std::vector<std::size_t> to_watch() const;
 

@@ -61,7 +61,9 @@ void HistoryRecorder::begin_leg(const system::TurbineSystem& system,
 
 bool HistoryRecorder::sample(const analysis::TransientSample& sample) {
   if (find_crossing(sample)) return false;
-  if (sample.on_grid && sample.step % transient_.output_steps == 0) {
+  const bool is_new = !has_rows_ || sample.t > last_row_;  // an event may start the run anew
+  if (is_new && sample.on_grid && sample.step % transient_.output_steps == 0) {
+    last_row_ = sample.t;
     channels_->evaluate(sample.t, sample.z, sample.z_dot, values_);
     file_.append(sample.t, values_);
     has_rows_ = true;

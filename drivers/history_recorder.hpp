@@ -81,6 +81,7 @@ class HistoryRecorder final : public analysis::TransientObserver {
   std::vector<Extent> extents_;
   long steps_;
   bool has_rows_ = false;
+  double last_row_ = 0.0;  ///< [s]
 };
 
 }  // namespace samara::drivers

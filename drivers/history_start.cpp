@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <sstream>
 #include <string_view>
 
@@ -25,7 +27,7 @@ constexpr std::array<std::string_view, 7> free_keys{
     "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator.torque",
     "shaft.rotor", "shaft.speed", "blades.pitch_deg"};
 /// Of motions at the start: rates relative to the largest, angles [rad].
-constexpr double motion_tolerance = 1e-6;
+constexpr double motion_tolerance = 2e-6;
 
 bool is_free_key(const std::string& line) {
   return std::ranges::any_of(free_keys, [&line](std::string_view key) {
@@ -42,13 +44,31 @@ std::vector<std::string> lines_of(const std::string& text, bool leave_out_free) 
   return lines;
 }
 
-/// Where the two first differ: `key: value there, key: value here`; empty: nowhere.
+/// Lines `key: value`, by key.
+std::map<std::string, std::string> values_of(const std::vector<std::string>& lines) {
+  std::map<std::string, std::string> values;
+  for (const std::string& line : lines) {
+    const std::size_t end = line.find(": ");
+    values[line.substr(0, end)] = end == std::string::npos ? "" : line.substr(end + 2);
+  }
+  return values;
+}
+
+/// The first key in which the two differ: `key: value there, value here`; empty: none.
 std::string find_difference(const std::vector<std::string>& there,
                             const std::vector<std::string>& here) {
-  const auto [a, b] = std::ranges::mismatch(there, here);
-  if (a == there.end() && b == here.end()) return "";
-  return (a == there.end() ? std::string("nothing") : *a) + " there, " +
-         (b == here.end() ? std::string("nothing") : *b) + " here";
+  const std::map<std::string, std::string> a = values_of(there);
+  const std::map<std::string, std::string> b = values_of(here);
+  std::map<std::string, std::string> all = a;
+  all.insert(b.begin(), b.end());
+  const auto of = [](const std::map<std::string, std::string>& values, const std::string& key) {
+    const auto found = values.find(key);
+    return found == values.end() ? std::string("absent") : found->second;
+  };
+  for (const auto& [key, value] : all)
+    if (of(a, key) != of(b, key))
+      return key + ": " + of(a, key) + " there, " + of(b, key) + " here";
+  return "";
 }
 
 void require_same_model(const std::string& path, const std::string& there, const std::string& here,
@@ -77,13 +97,28 @@ HistoryStart restart(const Job& job, const model::Turbine& turbine,
   const analysis::TransientOptions& options = job.input.transient.options;
   const double grid = point.origin + static_cast<double>(point.step) * options.step;
   if (std::abs(grid - point.time) > 1e-9 * options.step)
-    throw InputError(job.restart_path + ": was run with another transient.step");
+    throw InputError(job.restart_path +
+                     ": was run with another transient.step; hint: transient.start: " +
+                     job.restart_path + " begins a history of its own there");
+  const analysis::TransientOptions& before =
+      io::read_result_case(job.restart_path).transient.options;
+  if (before.method != options.method || before.step_tolerance != options.step_tolerance)
+    throw InputError(job.restart_path +
+                     ": was run with another transient.method or step_tolerance; hint: "
+                     "transient.start: " +
+                     job.restart_path + " begins a history of its own there");
   if (point.time >= point.origin + options.duration * (1.0 - 1e-12))
     throw InputError(job.restart_path + ": reaches to t = " + general(point.time, 6) +
                      " s already; hint: a longer transient.duration");
   if (content.checkpoint_events.size() != job.input.transient.events.size())
-    throw InputError(job.restart_path + ": was run with other transient.events");
-  return {point, content.checkpoint_events, content.azimuth.value_or(turbine.azimuth)};
+    throw InputError(job.restart_path +
+                     ": was run with other transient.events; hint: transient.start: " +
+                     job.restart_path + " takes new ones");
+  HistoryStart start{point, content.checkpoint_events, turbine};
+  start.turbine.azimuth = content.azimuth.value_or(turbine.azimuth);
+  start.turbine.chain.brake_torque = content.brake_torque;
+  if (content.is_generator_lost) start.turbine.chain.generator_torque = {};
+  return start;
 }
 
 /// What is prescribed goes on where it was.
@@ -92,12 +127,13 @@ void require_same_motion(const std::string& path, const model::Turbine& there, d
   const auto compare = [&path](const std::string& what, double before, double now, double size,
                                double unit, const std::string& unit_name) {
     if (std::abs(before - now) <= motion_tolerance * size) return;
-    throw InputError(path + ": ends with " + what + " " + general(before / unit, 6) + " " +
-                     unit_name + ", this history begins with " + general(now / unit, 6));
+    throw InputError(path + ": has " + what + " " + general(before / unit, 10) + " " + unit_name +
+                     ", this history begins with " + general(now / unit, 10) +
+                     "; hint: what moves goes on from there, for a jump would be an infinite load");
   };
   constexpr double degree = std::numbers::pi / 180.0;
   const double speed = there.turning_at(t).rate;
-  compare("a speed of", speed, here.turning_at(0.0).rate, std::max(1.0, std::abs(speed)), 1.0,
+  compare("the speed", speed, here.turning_at(0.0).rate, std::max(1.0, std::abs(speed)), 1.0,
           "rad/s");
   for (std::size_t k = 0; k < here.blades.size(); ++k) {
     const math::TimeCurve::Value before = there.pitch_at(k, t);
@@ -115,25 +151,42 @@ void require_same_motion(const std::string& path, const model::Turbine& there, d
   compare_joint("teeter", there.teeter_at(t), here.teeter_at(0.0));
 }
 
+bool is_generator_lost(const io::TransientCase& transient, const std::vector<double>& fired) {
+  for (std::size_t i = 0; i < fired.size(); ++i)
+    if (std::isfinite(fired[i]) && transient.events[i].generator_off) return true;
+  return false;
+}
+
 /// The end of a history, or the steady state, of a result: with it t = 0 comes.
 HistoryStart start_from(const std::string& path, const Job& job, const model::Turbine& turbine,
-                        const system::TurbineSystem& system) {
+                        const system::TurbineSystem& system, Progress& progress) {
   const io::Case before = io::read_result_case(path);
   require_same_model(path, before.model_text, job.input.model_text, true);
-  const model::Turbine there = operated_turbine(before);
+  model::Turbine there = operated_turbine(before);
   switch (io::find_result_kind(path)) {
     case io::ResultKind::history: {
       const io::HistoryReader history(path);
       const io::HistoryContent& content = history.content();
       TransientStart point = checkpoint_of(path, content, system);
-      model::Turbine last = turbine_after(before.transient, there, content.checkpoint_events);
-      last.azimuth = content.azimuth.value_or(last.azimuth);
+      there.azimuth = content.azimuth.value_or(there.azimuth);
+      there.chain.brake_torque = content.brake_torque;
+      const model::Turbine last = turbine_after(before.transient, there, content.checkpoint_events);
       require_same_motion(path, last, point.time, turbine);
-      const double azimuth = last.turning_at(point.time).value;
+      model::Turbine begun = turbine;
+      begun.azimuth = last.turning_at(point.time).value;
+      // What events did to the drive train stays done.
+      begun.chain.brake_torque = last.chain.brake_torque;
+      const bool is_lost = content.is_generator_lost ||
+                           is_generator_lost(before.transient, content.checkpoint_events);
+      if (is_lost) begun.chain.generator_torque = {};
+      if (is_lost || last.chain.brake_torque > 0.0)
+        progress.note(path + " left " + (is_lost ? "its generator lost" : "") +
+                      (is_lost && last.chain.brake_torque > 0.0 ? " and " : "") +
+                      (last.chain.brake_torque > 0.0 ? "its brake set" : "") + ", and so it stays");
       point.time = 0.0;
       point.origin = 0.0;
       point.step = 0;
-      return {point, {}, azimuth};
+      return {point, {}, begun};
     }
     case io::ResultKind::steady_state: {
       const model::Turbine steady = model::build_turbine(before.turbine);
@@ -143,7 +196,9 @@ HistoryStart start_from(const std::string& path, const Job& job, const model::Tu
         throw InputError(path + ": its steady state has " +
                          std::to_string(trim.solution.coefficients().rows()) +
                          " unknowns, the model " + std::to_string(system.size()));
-      return {analysis::start_on(system, trim, 0.0), {}, steady.azimuth};
+      model::Turbine begun = turbine;
+      begun.azimuth = steady.azimuth;
+      return {analysis::start_on(system, trim, 0.0), {}, begun};
     }
     case io::ResultKind::other:
       break;
@@ -160,16 +215,20 @@ HistoryStart find_history_start(const Job& job, const model::Turbine& turbine, P
   if (!job.restart_path.empty()) return restart(job, turbine, system);
   switch (transient.start) {
     case io::TransientOrigin::undeformed:
-      return {analysis::start_undeformed(system, 0.0), {}, turbine.azimuth};
+      return {analysis::start_undeformed(system, 0.0), {}, turbine};
     case io::TransientOrigin::result:
-      return at_place(job.input.path + ": transient.start",
-                      [&] { return start_from(transient.start_path, job, turbine, system); });
+      return at_place(job.input.path + ": transient.start", [&] {
+        return start_from(transient.start_path, job, turbine, system, progress);
+      });
     case io::TransientOrigin::trim:
       break;
   }
-  return {analysis::start_on(system, analysis::find_trim(system, job.input.trim, progress), 0.0),
-          {},
-          turbine.azimuth};
+  // What moves in time begins where the steady state is.
+  const model::Turbine steady = model::build_turbine(job.input.turbine);
+  require_same_motion(job.input.path + ": transient.start: trim", steady, 0.0, turbine);
+  const system::TurbineSystem repeating(steady, PETSC_COMM_SELF);
+  const analysis::Trim trim = analysis::find_trim(repeating, job.input.trim, progress);
+  return {analysis::start_on(repeating, trim, 0.0), {}, turbine};
 }
 
 }  // namespace samara::drivers

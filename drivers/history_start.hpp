@@ -14,7 +14,7 @@ namespace samara::drivers {
 struct HistoryStart {
   analysis::TransientStart point;
   std::vector<double> fired;  ///< when the events came that have come already
-  double azimuth = 0.0;       ///< of blade 1 at t = 0 [rad]
+  model::Turbine turbine;     ///< at the azimuth of the start, as earlier events left it
 };
 
 /// From the checkpoint of --restart, on the trim, undeformed, or from the end of another result, as

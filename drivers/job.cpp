@@ -1,6 +1,7 @@
 #include "job.hpp"
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
 
 #include "samara/base/error.hpp"
@@ -48,6 +49,14 @@ void deliver(const Job& job, const std::string& tables,
   std::cout << std::flush;
   if (failure) std::rethrow_exception(failure);
   if (!std::cout) throw InternalError("standard output cannot be written");
+}
+
+void require_other_path(const std::string& path, const std::vector<std::string>& sources) {
+  for (const std::string& source : sources) {
+    std::error_code error;
+    if (std::filesystem::equivalent(path, source, error))
+      throw InputError(path + ": is read by this run; hint: -o gives what it writes another name");
+  }
 }
 
 }  // namespace samara::drivers

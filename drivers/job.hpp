@@ -25,6 +25,9 @@ struct Job {
 /// How the result came about, for its attributes.
 io::RunRecord record_of(const Job& job);
 
+/// What a command reads it does not write over. @throws InputError
+void require_other_path(const std::string& path, const std::vector<std::string>& sources);
+
 /// Writes the files and prints the tables; the tables also where a file cannot be written, for they
 /// may have taken long. The first rank alone calls it.
 void deliver(const Job& job, const std::string& tables,

@@ -1,7 +1,7 @@
 // samara linearize: the linear model about the periodic steady state.
-#include "samara/linear/linearization.hpp"
 #include "samara/base/error.hpp"
 #include "samara/io/mat_file.hpp"
+#include "samara/linear/linearization.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/system/turbine_input_output.hpp"
 
@@ -50,8 +50,8 @@ void run_linearize(const Job& job) {
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
-  const linear::Linearization linear = linear::linearize(
-      system, input_output, trim.solution, turbine.azimuth, asked.options, progress);
+  const linear::Linearization linear = linear::linearize(system, input_output, trim.solution,
+                                                         turbine.azimuth, asked.options, progress);
   progress.finish();
   if (!is_first) return;
   if (!asked.mat_path.empty()) io::write_mat_file(asked.mat_path, linear);

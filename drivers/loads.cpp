@@ -23,7 +23,7 @@ void check_hours(const std::vector<std::string>& sources, const io::LoadOptions&
 
 /// The options of the evaluation, with Goodman's corrections by channel.
 loads::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
-                                                   const std::vector<std::string>& names) {
+                                                const std::vector<std::string>& names) {
   loads::LoadEvaluationOptions evaluation = options.evaluation;
   evaluation.goodman.resize(names.size());
   for (const auto& [name, correction] : options.goodman) {
@@ -41,7 +41,7 @@ io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options)
   io::LoadReport& report = source.report;
   try {
     report.evaluation = loads::evaluate_loads(report.history, source.azimuth,
-                                                 evaluation_options(options, report.history.names));
+                                              evaluation_options(options, report.history.names));
   } catch (const InputError& error) {
     const std::string words = error.what();
     throw InputError(words.starts_with("--set ") ? words : path + ": " + words);
@@ -62,9 +62,9 @@ io::LifetimeReport evaluate_lifetime(const std::vector<io::LoadReport>& reports,
     evaluations.push_back(report.evaluation);
     durations.push_back(loads::duration(report.history));
   }
-  return {options.hours, loads::evaluate_lifetime(evaluations, durations, options.hours, names,
-                                                     evaluation_options(options, names),
-                                                     options.equivalent_cycles)};
+  return {options.hours,
+          loads::evaluate_lifetime(evaluations, durations, options.hours, names,
+                                   evaluation_options(options, names), options.equivalent_cycles)};
 }
 
 }  // namespace

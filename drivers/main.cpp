@@ -168,15 +168,6 @@ Outcome attempt(const std::string& case_path, const Work& work) {
   }
 }
 
-/// What a command reads it does not write over.
-void require_other_path(const std::string& path, const std::vector<std::string>& sources) {
-  for (const std::string& source : sources) {
-    std::error_code error;
-    if (std::filesystem::equivalent(path, source, error))
-      throw InputError(path + ": is read by this run; hint: -o gives what it writes another name");
-  }
-}
-
 /// Everything that can be found wrong before anything is computed.
 Job prepare(const CommandLine& line) {
   Job job;

@@ -127,14 +127,22 @@ void require_transient(const io::Case& input) {
 void run_transient(const Job& job) {
   if (petsc::Session::rank() != 0) return;  // one system, one integrator
   const io::TransientCase& transient = job.input.transient;
-  model::Turbine turbine = operated_turbine(job.input);
+  if (transient.start == io::TransientOrigin::result && job.restart_path.empty())
+    require_other_path(job.result_path, {transient.start_path});
+  const model::Turbine wanted = operated_turbine(job.input);
   const std::vector<system::Channel> channels =
-      find_channels(job.input, system::TurbineSystem(turbine, PETSC_COMM_SELF)).channels();
+      find_channels(job.input, system::TurbineSystem(wanted, PETSC_COMM_SELF)).channels();
   Progress progress(true);
-  const HistoryStart start = find_history_start(job, turbine, progress);
-  turbine.azimuth = start.azimuth;
+  const HistoryStart start = find_history_start(job, wanted, progress);
+  const model::Turbine& turbine = start.turbine;
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
-  io::HistoryFile file(job.result_path, job.input, record_of(job), channels, start.azimuth,
+  io::HistoryContent content;
+  content.channels = channels;
+  content.azimuth = turbine.azimuth;
+  content.brake_torque = turbine.chain.brake_torque;
+  content.is_generator_lost =
+      !wanted.chain.generator_torque.is_zero() && turbine.chain.generator_torque.is_zero();
+  io::HistoryFile file(job.result_path, job.input, record_of(job), content,
                        [&](io::ResultFile& result) {
                          result.write_model(system);
                          write_masses(result, model::compute_masses(job.input.turbine, turbine));

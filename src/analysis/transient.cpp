@@ -64,7 +64,12 @@ class Integration {
 
   TransientRun run() {
     const petsc::Stage stage("transient");
-    if (start_time_ == origin_) sample_start();
+    if (start_time_ == origin_ && !sample_start()) {
+      TransientRun run;
+      run.end = state();
+      run.reason = TransientEnd::observer;
+      return run;
+    }
     const PetscErrorCode code = TSSolve(ts_.get(), x_.get());
     if (code != 0 && error_) std::rethrow_exception(error_);
     petsc::check(code);
@@ -116,6 +121,10 @@ class Integration {
     TransientStart point = point_of(x_.get());
     petsc::check(TSGetTime(ts_.get(), &point.time));
     point.step = step_;
+    if (steps_ > 0 && std::abs(t_ - point.time) <= rounding * options_.step) {
+      const petsc::ReadView view(z_dot_.get());
+      point.z_dot = Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
+    }
     return point;
   }
 
@@ -151,9 +160,10 @@ class Integration {
     is_new_tangent_ = true;
   }
 
-  /// The first row of the history. Where the rates are not known yet, rates and internal loads are
-  /// those of a backward Euler step that is too short to move anything.
-  void sample_start() {
+  /// The first row of the history; false where the observer ends it there. Where the rates are not
+  /// known yet, rates and internal loads are those of a backward Euler step that is too short to
+  /// move anything.
+  bool sample_start() {
     const TransientStart start = state();
     const double dt = start_fraction * options_.step;
     const auto copy = [](const Eigen::VectorXd& values, Vec target) {
@@ -187,7 +197,7 @@ class Integration {
     }
     copy(z, z_.get());
     copy(z_dot, z_dot_.get());
-    observer_.sample({start.time, z_.get(), z_dot_.get(), 0, true});
+    return observer_.sample({start.time, z_.get(), z_dot_.get(), 0, true});
   }
 
   // ---- TS --------------------------------------------------------------------------------------

@@ -35,17 +35,15 @@ std::string new_run_name() {
 }  // namespace
 
 HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
-                         std::vector<system::Channel> channels, double azimuth,
-                         std::function<void(ResultFile&)> write_rest)
+                         HistoryContent content, std::function<void(ResultFile&)> write_rest)
     : path_(std::move(path)),
       input_(input),
       record_(std::move(record)),
       write_rest_(std::move(write_rest)),
+      content_(std::move(content)),
       run_(new_run_name()),
       due_(std::chrono::steady_clock::now() + segment_time) {
-  content_.channels = std::move(channels);
   content_.model = input.model_text;
-  content_.azimuth = azimuth;
   content_.status = "running";
 }
 
@@ -154,6 +152,7 @@ class HistoryReader::Storage {
 };
 
 HistoryReader::HistoryReader(const std::string& path) {
+  if (!fs::exists(path)) throw InputError(path + ": no such file");
   if (!is_result(path)) throw InputError(path + ": is no result of samara");
   storage_ = std::make_unique<Storage>(path);
   const Hdf5Reader& file = storage_->file;
@@ -168,6 +167,10 @@ HistoryReader::HistoryReader(const std::string& path) {
   content_.model = file.text("/transient/model");
   if (file.has_attribute("/transient", "azimuth"))
     content_.azimuth = file.number_attribute("/transient", "azimuth");
+  if (file.has_attribute("/transient", "brake_torque"))
+    content_.brake_torque = file.number_attribute("/transient", "brake_torque");
+  if (file.has_attribute("/transient", "generator_lost"))
+    content_.is_generator_lost = file.number_attribute("/transient", "generator_lost") != 0.0;
   const std::vector<std::string> segments = file.texts("/transient/segment_file");
   const std::vector<double> counts = file.numbers("/transient/segment_rows");
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -177,7 +180,10 @@ HistoryReader::HistoryReader(const std::string& path) {
         fs::exists(place) && Hdf5Reader(place.string()).has(history_values) &&
         Hdf5Reader(place.string()).shape(history_values).at(0) == content_.segments.back().rows;
     if (!is_whole)
-      throw InputError(path + ": its segment " + place.string() + " is missing or damaged");
+      throw InputError(path + ": its segment " + place.string() +
+                       " is missing or damaged; hint: the folder " +
+                       fs::path(segments[i]).parent_path().string() +
+                       " belongs to the file, samara export makes one of both");
   }
   rows_ = file.shape(history_time).at(0);
   if (!file.has("/transient/checkpoint/state")) return;
@@ -188,6 +194,11 @@ HistoryReader::HistoryReader(const std::string& path) {
   const std::vector<double> state = file.numbers("/transient/checkpoint/state");
   point.z =
       Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
+  if (file.has("/transient/checkpoint/rate")) {
+    const std::vector<double> rate = file.numbers("/transient/checkpoint/rate");
+    point.z_dot =
+        Eigen::Map<const Eigen::VectorXd>(rate.data(), static_cast<Eigen::Index>(rate.size()));
+  }
   point.held = read_held_loads(file, "/transient/checkpoint");
   content_.checkpoint = point;
   content_.checkpoint_events = file.numbers("/transient/checkpoint/event_time");

@@ -422,11 +422,16 @@ void ResultFile::write_history(const HistoryContent& history) {
              {"", no_frame, "the keys of the case that make the model"});
   file.set_attribute("/transient", "status", history.status);
   if (history.azimuth) file.set_attribute("/transient", "azimuth", *history.azimuth);
+  file.set_attribute("/transient", "brake_torque", history.brake_torque);
+  file.set_attribute("/transient", "generator_lost", history.is_generator_lost ? 1 : 0);
   if (!history.checkpoint) return;
   const analysis::TransientStart& point = *history.checkpoint;
   const std::vector<double> state(point.z.data(), point.z.data() + point.z.size());
   write_values("/transient/checkpoint/state", state,
                {"of /model/unknowns/unit", unknown_frame, "from which the run can go on"});
+  if (point.z_dot.size() > 0)
+    write_values("/transient/checkpoint/rate", {point.z_dot.begin(), point.z_dot.end()},
+                 {"of /model/unknowns/unit, /s", unknown_frame, "of the state"});
   write_values("/transient/checkpoint/event_time", history.checkpoint_events,
                {"s", no_frame, "when each of transient.events came; not-a-number: not yet"});
   write_held_loads(file, "/transient/checkpoint", point.held,

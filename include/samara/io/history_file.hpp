@@ -35,7 +35,9 @@ struct HistoryContent {
   std::vector<double> time;    ///< of rows that are in no segment; empty where there are segments
   std::vector<double> values;  ///< row by row
   std::string model;           ///< Case::model_text
-  std::optional<double> azimuth;  ///< of blade 1 at t = 0 [rad]; none: that of the case
+  std::optional<double> azimuth;   ///< of blade 1 at t = 0 [rad]; none: that of the case
+  double brake_torque = 0.0;       ///< that acts from the start [N m]
+  bool is_generator_lost = false;  ///< from the start
   std::optional<analysis::TransientStart> checkpoint;
   std::size_t checkpoint_rows = 0;        ///< rows up to the checkpoint
   std::vector<double> checkpoint_events;  ///< when each event came [s]; not-a-number: not yet
@@ -44,10 +46,9 @@ struct HistoryContent {
 
 class HistoryFile {
  public:
-  /// `azimuth`: of blade 1 at t = 0 [rad]; `write_rest` adds to each version of the result what
-  /// else belongs in it.
-  HistoryFile(std::string path, const Case& input, RunRecord record,
-              std::vector<system::Channel> channels, double azimuth,
+  /// `content`: channels, and how the drive train is at the start; `write_rest` adds to each
+  /// version of the result what else belongs in it.
+  HistoryFile(std::string path, const Case& input, RunRecord record, HistoryContent content,
               std::function<void(ResultFile&)> write_rest);
 
   /// Goes on with the history that is in the result already, up to its checkpoint.
