@@ -202,7 +202,9 @@ class Parser {
     if (!line_.restart_path.empty() && name != "transient")
       throw InputError("--restart: samara " + name + " has no use for it, samara transient has");
     if (!line_.csv_path.empty() && !line_.command->has_csv)
-      throw InputError("--csv: samara " + name + " has no table to write");
+      throw InputError(
+          "--csv: samara " + name + " has no table to write" +
+          (name == "transient" ? "; hint: samara export makes one of the result" : ""));
     if (!line_.csv_path.empty() && line_.csv_path == line_.result_path)
       throw InputError("-o and --csv name the same file; give each its own");
   }

@@ -30,6 +30,8 @@ constexpr std::array<std::string_view, 7> free_keys{
 constexpr double motion_tolerance = 2e-6;
 
 bool is_free_key(const std::string& line) {
+  if (line.starts_with("blades.each") && line.find(".pitch_deg: ") != std::string::npos)
+    return true;
   return std::ranges::any_of(free_keys, [&line](std::string_view key) {
     return line.starts_with(key) &&
            std::string_view(":._[").find(line[key.size()]) != std::string_view::npos;
@@ -69,6 +71,26 @@ std::string find_difference(const std::vector<std::string>& there,
     if (of(a, key) != of(b, key))
       return key + ": " + of(a, key) + " there, " + of(b, key) + " here";
   return "";
+}
+
+/// The lines of a key and those below it.
+std::vector<std::string> lines_below(const std::string& text, const std::string& key) {
+  std::vector<std::string> found;
+  for (const std::string& line : lines_of(text, false))
+    if (line.starts_with(key)) found.push_back(line);
+  return found;
+}
+
+/// Turns the rotor at t = 0; what goes with it keeps its azimuth.
+void set_azimuth(model::Turbine& turbine, double azimuth) {
+  const double gained = azimuth - turbine.azimuth;
+  turbine.azimuth = azimuth;
+  const auto turn = [gained](auto& history) { history.phase += history.per_rev * gained; };
+  turn(turbine.yaw_motion);
+  turn(turbine.teeter_motion);
+  for (model::BeamLoad& load : turbine.tower.loads) turn(load.history);
+  for (model::Beam& blade : turbine.blades)
+    for (model::BeamLoad& load : blade.loads) turn(load.history);
 }
 
 void require_same_model(const std::string& path, const std::string& there, const std::string& here,
@@ -115,7 +137,7 @@ HistoryStart restart(const Job& job, const model::Turbine& turbine,
                      ": was run with other transient.events; hint: transient.start: " +
                      job.restart_path + " takes new ones");
   HistoryStart start{point, content.checkpoint_events, turbine};
-  start.turbine.azimuth = content.azimuth.value_or(turbine.azimuth);
+  set_azimuth(start.turbine, content.azimuth.value_or(turbine.azimuth));
   start.turbine.chain.brake_torque = content.brake_torque;
   if (content.is_generator_lost) start.turbine.chain.generator_torque = {};
   return start;
@@ -163,17 +185,25 @@ HistoryStart start_from(const std::string& path, const Job& job, const model::Tu
   const io::Case before = io::read_result_case(path);
   require_same_model(path, before.model_text, job.input.model_text, true);
   model::Turbine there = operated_turbine(before);
+  // A new law is all of the torque: what held the mean speed under the old one goes.
+  const std::string law = "shaft.generator.torque";
+  const bool is_new_law =
+      lines_below(before.model_text, law) != lines_below(job.input.model_text, law);
+  const auto drop_generator = [](std::vector<analysis::HeldCoordinate>& held) {
+    std::erase_if(held,
+                  [](const analysis::HeldCoordinate& one) { return one.name == "generator"; });
+  };
   switch (io::find_result_kind(path)) {
     case io::ResultKind::history: {
       const io::HistoryReader history(path);
       const io::HistoryContent& content = history.content();
       TransientStart point = checkpoint_of(path, content, system);
-      there.azimuth = content.azimuth.value_or(there.azimuth);
+      set_azimuth(there, content.azimuth.value_or(there.azimuth));
       there.chain.brake_torque = content.brake_torque;
       const model::Turbine last = turbine_after(before.transient, there, content.checkpoint_events);
-      require_same_motion(path, last, point.time, turbine);
       model::Turbine begun = turbine;
-      begun.azimuth = last.turning_at(point.time).value;
+      set_azimuth(begun, last.turning_at(point.time).value);
+      require_same_motion(path, last, point.time, begun);
       // What events did to the drive train stays done.
       begun.chain.brake_torque = last.chain.brake_torque;
       const bool is_lost = content.is_generator_lost ||
@@ -186,19 +216,26 @@ HistoryStart start_from(const std::string& path, const Job& job, const model::Tu
       point.time = 0.0;
       point.origin = 0.0;
       point.step = 0;
+      // With other loads, or from the middle of a step, rates are not known, and differences of the
+      // state would show what a step leaves in the constraints.
+      point.is_row = point.z_dot.size() > 0 && before.model_text == job.input.model_text;
+      if (is_new_law) drop_generator(point.held);
       return {point, {}, begun};
     }
     case io::ResultKind::steady_state: {
       const model::Turbine steady = model::build_turbine(before.turbine);
-      require_same_motion(path, steady, 0.0, turbine);
+      model::Turbine begun = turbine;
+      set_azimuth(begun, steady.azimuth);
+      require_same_motion(path, steady, 0.0, begun);
       const analysis::Trim trim = io::read_result_trim(path);
       if (trim.solution.coefficients().rows() != system.size())
         throw InputError(path + ": its steady state has " +
                          std::to_string(trim.solution.coefficients().rows()) +
                          " unknowns, the model " + std::to_string(system.size()));
-      model::Turbine begun = turbine;
-      begun.azimuth = steady.azimuth;
-      return {analysis::start_on(system, trim, 0.0), {}, begun};
+      TransientStart point = analysis::start_on(system, trim, 0.0);
+      if (before.model_text != job.input.model_text) point.z_dot.resize(0);
+      if (is_new_law) drop_generator(point.held);
+      return {point, {}, begun};
     }
     case io::ResultKind::other:
       break;

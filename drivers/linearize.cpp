@@ -1,6 +1,7 @@
 // samara linearize: the linear model about the periodic steady state.
 #include "samara/base/error.hpp"
 #include "samara/io/mat_file.hpp"
+#include "samara/io/whole_file.hpp"
 #include "samara/linear/linearization.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/system/turbine_input_output.hpp"
@@ -16,7 +17,7 @@ namespace {
 std::string summary(const io::Case& input, const linear::Linearization& linear) {
   std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
   text += linear.rotor_speed > 0.0 ? "rotor speed " + general(linear.rotor_speed, 6) + " rad/s, " +
-                                         count(static_cast<int>(linear.azimuths.size()), "azimuth")
+                                         count(linear.series_azimuths, "azimuth")
                                    : std::string("parked rotor");
   if (linear.is_constant) text += "; nothing changes with the azimuth";
   return text + "\n\n";
@@ -31,7 +32,10 @@ std::string form_table(const linear::Linearization& linear) {
     table.add_row({form.name, std::to_string(form.states.size()),
                    std::to_string(form.inputs.size()), std::to_string(form.outputs.size()),
                    std::to_string(form.series.harmonics()),
-                   form.series.samples().empty() ? "" : scientific(form.series.residual(), 1)});
+                   form.series.samples().empty() && form.series.residual() == 0.0
+                       ? ""
+                       : scientific(form.series.residual(), 1)});
+  if (linear.rotor_speed == 0.0) return table.text();
   return table.text() +
          "residual: of the series in the azimuth midway between the azimuths, relative; where it "
          "is\nnot small more linearize.azimuths and harmonics are needed\n";
@@ -41,7 +45,12 @@ std::string form_table(const linear::Linearization& linear) {
 
 void run_linearize(const Job& job) {
   const io::LinearizeCase& asked = job.input.linearize;
-  if (!asked.mat_path.empty()) io::require_mat_path(asked.mat_path);
+  if (!asked.mat_path.empty()) {
+    io::require_mat_path(asked.mat_path);
+    if (io::same_file(asked.mat_path, job.result_path))
+      throw InputError(job.input.path +
+                       ": linearize.mat and -o name the same file; give each its own");
+  }
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const system::TurbineInputOutput input_output = at_place(job.input.path + ": linearize", [&] {
@@ -54,8 +63,12 @@ void run_linearize(const Job& job) {
                                                          turbine.azimuth, asked.options, progress);
   progress.finish();
   if (!is_first) return;
-  if (!asked.mat_path.empty()) io::write_mat_file(asked.mat_path, linear);
-  deliver(job, summary(job.input, linear) + form_table(linear),
+  std::string text = summary(job.input, linear) + form_table(linear);
+  if (!asked.mat_path.empty()) {
+    io::write_mat_file(asked.mat_path, linear);
+    text += "MAT-file: " + asked.mat_path + "\n";
+  }
+  deliver(job, text,
           [&](io::ResultFile& file) {
             file.write_model(system);
             write_masses(file, model::compute_masses(job.input.turbine, turbine));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iostream>
 
 #include "samara/base/error.hpp"
 #include "samara/base/words.hpp"
@@ -109,6 +110,8 @@ class Rows {
 
 LoadSource read_history(const std::string& path, const io::LoadOptions& options) {
   const io::HistoryReader history(path);
+  if (history.content().status != "complete")
+    std::cerr << "note: " << path << ": " << history.content().status << "\n";
   const std::vector<Channel>& all = history.content().channels;
   const Columns columns = choose_columns(path, all, options);
   LoadSource source = make_source(path, all, columns);

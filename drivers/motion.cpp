@@ -64,8 +64,9 @@ void require_motion(const io::Case& input) {
     const std::string place = input.path + ": loads[" + std::to_string(i) + "]";
     if (!history.is_constant() && (!history.table.empty() || history.per_rev == 0))
       throw InputError(place +
-                       " does not repeat with the rotor; hint: harmonic: {per_rev: ...}, or samara "
-                       "static, which takes the loads at t = 0");
+                       " does not repeat with the rotor; hint: harmonic: {per_rev: ...}; samara "
+                       "static takes the loads at t = 0, samara transient any with "
+                       "transient.start: undeformed or RESULT.h5");
     require_harmonics(input, place, history.per_rev);
   }
   require_repeating_motion(input, "nacelle.yaw", input.turbine.nacelle.yaw.motion);

@@ -112,7 +112,8 @@ void require_transient(const io::Case& input) {
              "the generator is locked and takes any torque; hint: "
              "shaft.generator.joint: free");
     if (event.pitch && event.pitch->blade > turbine.blades.count)
-      refuse(place + ".pitch.blade", "there is no such blade");
+      refuse(place + ".pitch.blade",
+             "there is no such blade, there are " + std::to_string(turbine.blades.count));
   }
   for (std::size_t i = 0; i < turbine.loads.size(); ++i) {
     const auto& table = turbine.loads[i].history.table;
@@ -120,7 +121,8 @@ void require_transient(const io::Case& input) {
         (table.front().first > 0.0 || table.back().first < input.transient.options.duration))
       throw InputError(input.path + ": loads[" + std::to_string(i) +
                        "].table: does not reach over the run, from 0 to " +
-                       general(input.transient.options.duration, 6) + " s");
+                       general(input.transient.options.duration, 6) +
+                       " s; hint: entries at the start and at the end");
   }
 }
 

@@ -47,6 +47,7 @@ class Integration {
         start_rates_(start.z_dot),
         origin_(start.origin),
         start_time_(start.time),
+        start_is_row_(start.is_row),
         step_(start.step),
         last_step_(
             static_cast<long>(std::ceil(options.duration / options.step * (1.0 - rounding)))),
@@ -64,7 +65,7 @@ class Integration {
 
   TransientRun run() {
     const petsc::Stage stage("transient");
-    if (start_time_ == origin_ && !sample_start()) {
+    if (start_time_ == origin_ && start_is_row_ && !sample_start()) {
       TransientRun run;
       run.end = state();
       run.reason = TransientEnd::observer;
@@ -484,6 +485,7 @@ class Integration {
   Eigen::VectorXd start_rates_;
   double origin_;
   double start_time_;
+  bool start_is_row_;
   long step_;           ///< of the grid, done
   long last_step_;      ///< of the grid
   double limit_ = 0.0;  ///< of the step [s], less than its length after a cut

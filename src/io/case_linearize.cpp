@@ -11,6 +11,7 @@ namespace {
 constexpr int most_azimuths = 3600;
 constexpr int most_harmonics = 200;
 constexpr int most_order = 100000;
+constexpr int most_steps = 100000;
 
 void read_forms(MapReader& map, linear::LinearizeOptions& options) {
   std::vector<std::string> forms;
@@ -57,6 +58,7 @@ void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& e
   read_stations(map, "tower_stations", linearize.stations.tower);
   read_forms(map, options);
   map.read("hill_harmonics", options.hill_harmonics, 1, most_harmonics);
+  map.read("lyapunov_floquet_steps", options.lyapunov_floquet_steps, 16, most_steps);
   map.read("lyapunov_floquet_states", options.lyapunov_floquet_states, 1, most_order);
   read_numbers(map, "at_deg", any_number, options.at);
   for (double& azimuth : options.at) azimuth *= std::numbers::pi / 180.0;

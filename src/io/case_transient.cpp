@@ -179,6 +179,12 @@ void read_start(MapReader& map, TransientCase& transient) {
     transient.start_path = start->text;
     return;
   }
+  if (start != nullptr && start->text != "trim" && start->text != "undeformed") {
+    map.find("start");
+    map.refuse(*start, "start",
+               "expected trim, undeformed or the name of a result, RESULT.h5, " + describe(*start));
+    return;
+  }
   map.read("start", transient.start,
            {{"trim", TransientOrigin::trim}, {"undeformed", TransientOrigin::undeformed}});
 }

@@ -102,4 +102,9 @@ std::string read_whole_file(const std::string& path, std::size_t megabytes,
   return text;
 }
 
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return std::filesystem::weakly_canonical(a, error) == std::filesystem::weakly_canonical(b, error);
+}
+
 }  // namespace samara::io

@@ -265,7 +265,7 @@ bool MapReader::read(std::string_view key, std::span<double> values, const Numbe
 }
 
 void MapReader::refuse(const YamlNode& entry, std::string_view key, const std::string& what) const {
-  errors_.add(entry.place, where(key), what);
+  errors_.add(entry.place, key.empty() ? where_ : where(key), what);
 }
 
 void MapReader::note(const YamlNode& entry, std::string_view key, const std::string& what) const {

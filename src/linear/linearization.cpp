@@ -58,7 +58,11 @@ NamedForm average_of(const NamedForm& form) {
 }
 
 /// Its states are combinations of all.
-NamedForm reduced_of(const NamedForm& form, const LinearizeOptions& options) {
+NamedForm reduced_of(const NamedForm& form, const LinearizeOptions& options,
+                     analysis::Observer& observer) {
+  if (options.order >= form.series.mean().A.rows())
+    observer.note("note: " + form.name + " has " + std::to_string(form.series.mean().A.rows()) +
+                  " states and is not reduced to " + std::to_string(options.order));
   const ReducedForm reduced = reduce(form.series.mean(), options.order, options.reduction);
   NamedForm small = form;
   small.name = form.name + "_reduced";
@@ -108,7 +112,18 @@ Linearization linearize(const system::PeriodicSystem& system,
     result.azimuths = {start_azimuth};
   else
     result.azimuths = options.at.empty() ? periodic.series.azimuths() : options.at;
-  result.is_constant = periodic.series.variation() < constant_tolerance;
+  result.is_constant =
+      std::max(periodic.series.variation(), periodic.series.residual()) < constant_tolerance;
+  result.series_azimuths = azimuths;
+  if (!has_period && (options.hill || options.lyapunov_floquet))
+    throw InputError(
+        "linearize.forms: nothing repeats where the rotor stands still; hint: state_space is "
+        "constant there, without hill and lyapunov_floquet");
+  if (options.average && !options.multiblade && has_period && !result.is_constant)
+    observer.note(
+        "note: the average of rotating coordinates loses what couples tower and blades; hint: "
+        "linearize.forms with multiblade and average for three and more blades, with hill or "
+        "lyapunov_floquet for less");
   result.outputs.resize(static_cast<Eigen::Index>(result.azimuths.size()),
                         static_cast<Eigen::Index>(input_output.outputs().size()));
   for (std::size_t i = 0; i < result.azimuths.size(); ++i) {
@@ -134,16 +149,18 @@ Linearization linearize(const system::PeriodicSystem& system,
   } else if (options.average) {
     result.forms.push_back(average_of(periodic));
   }
-  if (options.hill && has_period) {
+  if (options.hill) {
     const int h = options.hill_harmonics;
     result.forms.push_back({"hill", "harmonic lifting (Hill): constant",
                             repeated(periodic.states, h), repeated(periodic.inputs, h),
                             repeated(periodic.outputs, h),
-                            AzimuthSeries({hill_form(periodic.series, result.rotor_speed, h)})});
+                            AzimuthSeries({hill_form(periodic.series, result.rotor_speed, h)},
+                                          periodic.series.residual())});
   }
-  if (options.lyapunov_floquet && has_period) {
+  if (options.lyapunov_floquet) {
     const LyapunovFloquet floquet(periodic.series, result.rotor_speed, azimuths,
-                                  options.lyapunov_floquet_states);
+                                  options.lyapunov_floquet_states, options.lyapunov_floquet_steps);
+    if (!floquet.remark().empty()) observer.note("note: " + floquet.remark());
     const auto constant_at = [&](double psi) { return floquet.form(psi); };
     result.forms.push_back({"lyapunov_floquet",
                             "Lyapunov-Floquet coordinates q: A is constant, B and C periodic",
@@ -162,11 +179,11 @@ Linearization linearize(const system::PeriodicSystem& system,
     if (result.is_constant) {
       NamedForm constant = average_of(periodic);
       constant.name = periodic.name;
-      reduced.push_back(reduced_of(constant, options));
+      reduced.push_back(reduced_of(constant, options, observer));
     } else {
       for (const NamedForm& form : result.forms)
         if (form.series.harmonics() == 0 && form.series.samples().empty())
-          reduced.push_back(reduced_of(form, options));
+          reduced.push_back(reduced_of(form, options, observer));
     }
     if (reduced.empty())
       throw InputError(

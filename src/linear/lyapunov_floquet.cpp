@@ -27,8 +27,6 @@ using Eigen::MatrixXd;
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr Complex imaginary{0.0, 1.0};
 
-/// Of a revolution, at the least; half as many tell how large the error is.
-constexpr int least_steps = 256;
 /// What decays by more in a revolution is beyond the digits of the monodromy matrix.
 constexpr double least_multiplier = 1e-4;
 /// Below it differences are rounding.
@@ -39,8 +37,11 @@ constexpr double same_multiplier = 1e-6;
 /// double multiplier that rounding has parted.
 constexpr double close_multiplier = 1e-3;
 constexpr double different_mode = 0.03;
+/// Multipliers this close to one are of motions that nothing restores, several of which rounding
+/// parts by more than that: they stay together.
+constexpr double neutral_multiplier = 1e-3;
 /// Of an exponent, relative to it or to the rotor speed: the difference that half the steps make.
-constexpr double resolved = 1e-5;
+constexpr double resolved = 1e-4;
 
 MatrixXcd small_exponential(const MatrixXcd& matrix) {
   if (matrix.rows() == 1) return MatrixXcd::Constant(1, 1, std::exp(matrix(0, 0)));
@@ -63,6 +64,7 @@ bool are_close(Complex a, Complex b, double tolerance) {
 /// True where the multipliers a and b of the diagonal belong together.
 bool are_one(const Schur& whole, Complex a, Complex b) {
   if (are_close(a, b, same_multiplier)) return true;
+  if (are_close(a, 1.0, neutral_multiplier) && are_close(b, 1.0, neutral_multiplier)) return true;
   if (!are_close(a, b, close_multiplier)) return false;
   Schur schur = whole;
   bring_forward(schur, [a, b](Complex value) {
@@ -98,11 +100,11 @@ int LyapunovFloquet::Block::states() const {
 }
 
 LyapunovFloquet::LyapunovFloquet(const AzimuthSeries& series, double rotor_speed, int azimuths,
-                                 int states)
+                                 int states, int steps)
     : series_(series),
       speed_(rotor_speed),
       intervals_(std::max(azimuths, 1)),
-      steps_(2 * ((least_steps / 2 + intervals_ - 1) / intervals_)),
+      steps_(2 * ((steps / 2 + intervals_ - 1) / intervals_)),
       scale_(series.mean().A.rows()) {
   // Half of the states are the rates of the others: in these units none is much faster than one.
   const Index half = scale_.size() / 2;
@@ -152,7 +154,7 @@ void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coa
   for (const std::vector<Complex>& values : group(whole)) {
     Complex mean = 0.0;
     for (const Complex value : values) mean += value / static_cast<double>(values.size());
-    const bool is_real = std::abs(mean.imag()) < same_multiplier * std::abs(mean);
+    const bool is_real = std::abs(mean.imag()) < 0.5 * same_multiplier * std::abs(mean);
     if (!is_real && mean.imag() < 0.0) continue;  // its conjugate comes, too
     Schur schur = whole;
     const Index count = bring_forward(schur, [&values](Complex value) {
@@ -181,7 +183,7 @@ void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coa
     follow(block);
     if (block.kind == Block::Kind::pair) choose_branch(block);
     choose_scale(block);
-    block.error = multiplier.partialPivLu().solve(change).cwiseAbs().maxCoeff() / period /
+    block.error = std::abs(mean_of(multiplier.partialPivLu().solve(change))) / period /
                   std::max(block.modulus(), speed_);
     blocks_.push_back(block);
   }
@@ -239,24 +241,37 @@ void LyapunovFloquet::choose_scale(Block& block) const {
   for (MatrixXcd& W : block.W) W *= largest;
 }
 
+/// The slowest of those that are resolved.
 void LyapunovFloquet::select(int states) {
+  std::vector<Block> kept;
   int count = 0;
-  std::size_t kept = 0;
-  while (kept < blocks_.size() && blocks_[kept].error < resolved &&
-         (states == 0 || count + blocks_[kept].states() <= states))
-    count += blocks_[kept++].states();
-  const bool is_short = states > 0 && count < states;
-  if (is_short && (kept == blocks_.size() || !(blocks_[kept].error < resolved))) {
-    std::ostringstream text;
-    text << "linearize.lyapunov_floquet_states: only " << count << " are resolved; ";
-    if (kept == blocks_.size())
-      text << "all other modes decay to less than " << least_multiplier << " in a revolution";
-    else
-      text << "the exponent of the mode at " << blocks_[kept].modulus()
-           << " rad/s is not known to more than " << blocks_[kept].error;
-    throw InputError(text.str());
+  int unresolved = 0;
+  const Block* first = nullptr;  // of those
+  for (const Block& block : blocks_) {
+    if (states > 0 && count + block.states() > states) break;
+    if (block.error < resolved) {
+      count += block.states();
+      kept.push_back(block);
+    } else {
+      first = first == nullptr ? &block : first;
+      unresolved += block.states();
+    }
   }
-  blocks_.resize(kept);
+  std::ostringstream text;
+  text << "lyapunov_floquet has " << count << " of " << scale_.size() << " states";
+  if (first != nullptr)
+    text << "; " << unresolved << " are not resolved, the slowest of them at " << first->modulus()
+         << " rad/s to " << first->error << " of its exponent; hint: more "
+         << "linearize.lyapunov_floquet_steps";
+  if (count == 0 && !blocks_.empty() && first == nullptr)
+    text << "; hint: the slowest motion has " << blocks_.front().states();
+  else if (count < scale_.size() && (states == 0 || count + 1 < states))
+    text << "; modes that decay to less than " << least_multiplier
+         << " in a revolution are left out";
+  const bool is_short = states > 0 && count + 1 < states && kept.size() + 1 > blocks_.size();
+  if (count == 0 || is_short) throw InputError("linearize.lyapunov_floquet_states: " + text.str());
+  if (first != nullptr || (states == 0 && count < scale_.size())) remark_ = text.str();
+  blocks_ = std::move(kept);
 }
 
 void LyapunovFloquet::name_states() {
@@ -302,31 +317,77 @@ LyapunovFloquet::Frame LyapunovFloquet::frame_at(double psi) const {
   const MatrixXd before = unscaled(propagate(from, psi, steps_));
   const MatrixXd behind =
       is_end ? unscaled(propagators_[at]) : unscaled(propagate(psi, from + width, steps_));
+  std::vector<MatrixXcd> V;
+  std::vector<MatrixXcd> W;
+  for (const Block& block : blocks_) {
+    V.push_back(before * block.V[at] * small_exponential(-(psi - from) / speed_ * block.exponent));
+    W.push_back(small_exponential(-(from + width - psi) / speed_ * block.exponent) *
+                block.W[at + 1] * behind);
+  }
+  orthogonalize(V, W);
   Frame frame{MatrixXd(scale_.size(), exponents_.rows()),
               MatrixXd(exponents_.rows(), scale_.size())};
   Index first = 0;
-  for (const Block& block : blocks_) {
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Block& block = blocks_[b];
     const Index m = block.exponent.rows();
-    const MatrixXcd V =
-        before * block.V[at] * small_exponential(-(psi - from) / speed_ * block.exponent);
-    const MatrixXcd W = small_exponential(-(from + width - psi) / speed_ * block.exponent) *
-                        block.W[at + 1] * behind;
     const double factor = block.kind == Block::Kind::pair ? 2.0 : 1.0;
-    frame.P.middleCols(first, m) = factor * V.real();
-    frame.Q.middleRows(first, m) = W.real();
+    frame.P.middleCols(first, m) = factor * V[b].real();
+    frame.Q.middleRows(first, m) = W[b].real();
     if (block.kind != Block::Kind::positive) {
-      frame.P.middleCols(first + m, m) = -factor * V.imag();
-      frame.Q.middleRows(first + m, m) = W.imag();
+      frame.P.middleCols(first + m, m) = -factor * V[b].imag();
+      frame.Q.middleRows(first + m, m) = W[b].imag();
     }
     first += block.states();
   }
   return frame;
 }
 
+/// Makes W V = 1 of all blocks together, which the steps keep up to their error.
+void LyapunovFloquet::orthogonalize(const std::vector<MatrixXcd>& V,
+                                    std::vector<MatrixXcd>& W) const {
+  Index count = 0;
+  for (std::size_t b = 0; b < V.size(); ++b)
+    count += V[b].cols() * (blocks_[b].kind == Block::Kind::pair ? 2 : 1);
+  MatrixXcd columns(scale_.size(), count);
+  MatrixXcd rows(count, scale_.size());
+  Index at = 0;
+  for (std::size_t b = 0; b < V.size(); ++b) {
+    const Index m = V[b].cols();
+    const bool is_pair = blocks_[b].kind == Block::Kind::pair;
+    columns.middleCols(at, m) = V[b];
+    rows.middleRows(at, m) = W[b];
+    if (is_pair) {
+      columns.middleCols(at + m, m) = V[b].conjugate();
+      rows.middleRows(at + m, m) = W[b].conjugate();
+    }
+    at += is_pair ? 2 * m : m;
+  }
+  rows = (rows * columns).partialPivLu().solve(rows).eval();
+  at = 0;
+  for (std::size_t b = 0; b < V.size(); ++b) {
+    const Index m = V[b].cols();
+    W[b] = rows.middleRows(at, m);
+    at += blocks_[b].kind == Block::Kind::pair ? 2 * m : m;
+  }
+}
+
+/// What is left out answers at once, as if A stood still meanwhile: 0 = A x + B u in its space.
 StateSpace LyapunovFloquet::form(double psi) const {
   const Frame frame = frame_at(psi);
   const StateSpace form = series_.at(psi);
-  return {exponents_, frame.Q * form.B, form.C * frame.P, form.D};
+  const MatrixXd kept = multiply(frame.P, frame.Q);
+  const MatrixXd rest = MatrixXd::Identity(kept.rows(), kept.cols()) - kept;
+  MatrixXd direct = form.D;
+  const bool is_whole = kept.trace() > static_cast<double>(kept.rows()) - 0.5;
+  if (!is_whole) {
+    const Eigen::VectorXd units = scale_.cwiseInverse();
+    const MatrixXd A = multiply(rest, multiply(form.A, rest)) + speed_ * kept;
+    const MatrixXd scaled = units.asDiagonal() * A * scale_.asDiagonal();
+    const MatrixXd input = units.asDiagonal() * multiply(rest, form.B);
+    direct -= form.C * multiply(rest, scale_.asDiagonal() * scaled.partialPivLu().solve(input));
+  }
+  return {exponents_, frame.Q * form.B, form.C * frame.P, direct};
 }
 
 StateSpace LyapunovFloquet::transformation(double psi) const {

@@ -226,6 +226,21 @@ class Linearize(ProgramTest):
             numpy.testing.assert_allclose(at(small[1], psi), at(between[1], psi) @ at(whole[1], psi),
                                           rtol=1e-4, atol=1e-6 * abs(small[1]).max())
 
+    def test_free_motions_stay_together_in_lyapunov_floquet_coordinates(self):
+        """Free yaw, generator and gravity: four multipliers at one, of which two are one."""
+        turbine = [*SMALL, "--set", "blades.count=3", "--set", "hub.teeter={joint: locked}",
+                   "--set", "shaft.generator={joint: free, inertia: 2000}"]
+        self.succeed("linearize", BASELINE, *turbine, "--set",
+                     "linearize={azimuths: 31, forms: [state_space, lyapunov_floquet], outputs: "
+                     "[NacYaw], inputs: [yaw_torque], at_deg: [12.3, 90]}", "-o", "linear.h5")
+        with h5py.File(self.folder / "linear.h5") as file:
+            group = file["/linearize/lyapunov_floquet_map/at_azimuths"]
+            self.assertEqual(group["B"].shape[1:], (52, 52))
+            for Q, P in zip(group["B"][:], group["C"][:]):
+                numpy.testing.assert_allclose(Q @ P, numpy.eye(52), atol=1e-7)
+            exponents = scipy.linalg.eigvals(file["/linearize/lyapunov_floquet/A"][0])
+            self.assertEqual(sum(abs(exponents) < 1e-2), 4)
+
     def test_matrices_at_azimuths_of_ones_own(self):
         self.succeed("linearize", BASELINE, *SMALL, "--set",
                      "linearize={azimuths: 25, harmonics: 12, inputs: [yaw_torque], outputs: "
@@ -297,7 +312,16 @@ class Linearize(ProgramTest):
         self.refuse("linearize", BASELINE, *SMALL, "--set",
                     "linearize={azimuths: 9, forms: [lyapunov_floquet], "
                     "lyapunov_floquet_states: 5000, inputs: [yaw_torque], outputs: [NacYaw]}",
-                    words="are resolved")
+                    words="has 40 of 40 states")
+        small = "inputs: [yaw_torque], outputs: [NacYaw]"
+        self.refuse("linearize", BASELINE, *SMALL, "--set",
+                    f"linearize={{forms: [lyapunov_floquet], lyapunov_floquet_states: 1, {small}}}",
+                    words="the slowest motion has")
+        self.refuse("linearize", BASELINE, *SMALL, "--set", "shaft.speed=0", "--set",
+                    f"linearize={{forms: [hill], {small}}}", words="rotor stands still")
+        self.refuse("linearize", BASELINE, *SMALL, "--set",
+                    f"linearize={{mat: linear.h5, {small}}}", "-o", "./linear.h5",
+                    words="name the same file")
         self.refuse("linearize", BASELINE, "--set", "linearize={forms: [lyapunov_flocket]}",
                     words="lyapunov_floquet")
         self.refuse("linearize", BASELINE, "--set", "linearize={azimuths: 8, harmonics: 4}",

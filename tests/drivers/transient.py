@@ -193,6 +193,39 @@ class Starts(ProgramTest):
         speed = 6.02 * 180 / numpy.pi
         numpy.testing.assert_allclose(last[1][:, 4], (speed * (last[0] + 2.03)) % 360, atol=1e-6)
 
+    def test_loads_that_turn_with_the_rotor_keep_their_azimuth(self):
+        loads = ["--set", "loads=[{beam: blade 1, at: 1, force: [0, 0, 300], harmonic: {per_rev: 1}}]"]
+        self.succeed("transient", BASELINE, *COARSE, *loads, "-o", "whole.h5",
+                     *block(duration=3, step=0.01, checkpoint=2.1, start="undeformed"))
+        self.succeed("transient", BASELINE, *COARSE, *loads, "-o", "first.h5",
+                     *block(duration=2.1, step=0.01, start="undeformed"))
+        self.succeed("transient", BASELINE, *COARSE, *loads, "-o", "then.h5",
+                     *block(duration=0.9, step=0.01, start="first.h5"))
+        whole = history(self.folder / "whole.h5")[1]
+        then = history(self.folder / "then.h5")[1]
+        size = numpy.abs(whole).max(axis=0)
+        numpy.testing.assert_allclose(then / size, whole[210:] / size, atol=1e-7)
+
+    def test_a_start_whose_rates_are_not_known_has_no_row(self):
+        # The midpoint rule ends a step with a state that has no rates of its own.
+        keys = dict(step=0.01, method="midpoint")
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "first.h5",
+                     *block(duration=2, **keys))
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "then.h5",
+                     *block(duration=1, start="first.h5", **keys))
+        times, values, _, _ = history(self.folder / "then.h5")
+        numpy.testing.assert_allclose(times, 0.005 + 0.01 * numpy.arange(100), atol=1e-12)
+        first = history(self.folder / "first.h5")[1]
+        for column in range(4):
+            self.assertLess(numpy.ptp(values[:, column]), 1.2 * numpy.ptp(first[:, column]) + 1e-9)
+
+    def test_a_pitched_blade_goes_on_where_it_is(self):
+        self.succeed("transient", BASELINE, *COARSE, "-o", "first.h5", "--set",
+                     "transient={duration: 2, step: 0.01, events: [{at: 0.5, pitch: "
+                     "{to_deg: 6, rate_deg: 20, blade: 1}}], output: {channels: [BldPitch1]}}")
+        self.succeed("transient", BASELINE, *COARSE, "--set", "blades.each.1.pitch_deg=6", "-o",
+                     "then.h5", *block(duration=0.2, step=0.01, start="first.h5"))
+
     def test_a_history_starts_on_the_steady_state_of_a_result(self):
         self.succeed("trim", BASELINE, *COARSE, *self.GRAVITY, "-o", "trim.h5")
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "own.h5",
@@ -280,6 +313,18 @@ class Operation(ProgramTest):
         self.assertEqual(run.returncode, 2)
         self.assertIn("transient.start: trim: has the pitch of blade 1 0 deg, this history begins "
                       "with 2", run.stderr)
+
+    def test_a_new_torque_law_takes_the_place_of_what_held_the_speed(self):
+        case = ROTOR.replace("torque: 100, inertia", "inertia")
+        path = self.write("rotor.yaml", case)
+        self.succeed("trim", path, "-o", "trim.h5")
+        for law, speed in ((["--set", "shaft.generator.torque=100"], 6),
+                           (["--set", "shaft.generator.torque=40"], 6 + 60 / INERTIA)):
+            self.succeed("transient", path, *law, "-o", "a.h5", "--set",
+                         "transient={duration: 1, step: 0.01, start: trim.h5, "
+                         "output: {channels: [RotSpeed]}}")
+            last = history(self.folder / "a.h5")[1][-1, 0] * 2 * numpy.pi / 60
+            self.assertAlmostEqual(last, speed, delta=1e-6)
 
     def test_what_events_did_to_the_drive_train_stays_done(self):
         keys = "step: 0.01, output: {channels: [RotSpeed]}"
@@ -428,7 +473,7 @@ class Refusals(ProgramTest):
         refuse("multiple of transient.step", "duration: 1, step: 0.1, checkpoint: 0.25")
         refuse("did you mean \"RootMxb1\"",
                "duration: 1, step: 0.1, output: {channels: [RootMbx1]}")
-        refuse("expected trim or undeformed", "duration: 1, step: 0.1, start: rest")
+        refuse("expected trim, undeformed or the name of a result", "duration: 1, step: 0.1, start: rest")
 
     def test_missing_block(self):
         self.refuse("transient", BASELINE, words=["missing key \"transient\"", "hint"])

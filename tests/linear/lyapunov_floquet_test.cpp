@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
 #include "samara/base/error.hpp"
@@ -152,6 +153,32 @@ BOOST_AUTO_TEST_CASE(frames_follow_a_parametric_oscillator) {
   BOOST_TEST((slow.form(1.0).A - floquet.form(1.0).A.topLeftCorner(2, 2)).norm() < 1e-12);
 }
 
+// Two oscillators, of which the fast one is left out: its static answer stays.
+BOOST_AUTO_TEST_CASE(what_is_left_out_answers_at_once) {
+  MatrixXd A = MatrixXd::Zero(4, 4);
+  A.topRightCorner(2, 2).setIdentity();
+  A.bottomLeftCorner(2, 2).diagonal() << -4.0, -900.0;
+  A.bottomRightCorner(2, 2).diagonal() << -0.1, -0.4;
+  MatrixXd B = MatrixXd::Zero(4, 1);
+  B(2, 0) = 1.0;
+  B(3, 0) = 1.0;
+  MatrixXd C(1, 4);
+  C << 1.0, 1.0, 0.0, 0.0;
+  const AzimuthSeries series(
+      [&](double) {
+        return StateSpace{A, B, C, MatrixXd::Constant(1, 1, 0.25)};
+      },
+      1, 0);
+  const LyapunovFloquet floquet(series, 1.0, 8, 2);
+  const StateSpace small = floquet.form(0.4);
+  BOOST_TEST(small.A.rows() == 2);
+  BOOST_TEST(std::abs(small.D(0, 0) - 0.25 - 1.0 / 900.0) < 1e-9);
+  const double still = (small.D - small.C * small.A.partialPivLu().solve(small.B))(0, 0);
+  BOOST_TEST(std::abs(still - 0.25 - 0.25 - 1.0 / 900.0) < 1e-9);
+  BOOST_TEST(LyapunovFloquet(series, 1.0, 8, 0).remark().empty());
+  BOOST_CHECK_THROW(LyapunovFloquet(series, 1.0, 8, 1), InputError);
+}
+
 BOOST_AUTO_TEST_CASE(modes_that_are_gone_in_a_revolution_are_not_made_up) {
   MatrixXd A = MatrixXd::Zero(4, 4);
   A.topRightCorner(2, 2).setIdentity();
@@ -160,7 +187,7 @@ BOOST_AUTO_TEST_CASE(modes_that_are_gone_in_a_revolution_are_not_made_up) {
   const AzimuthSeries series = series_of([&A](double) { return A; }, 0);
   BOOST_TEST(LyapunovFloquet(series, 1.0, 8, 0).states().size() == 2U);
   BOOST_CHECK_EXCEPTION(LyapunovFloquet(series, 1.0, 8, 4), InputError, [](const InputError& e) {
-    return std::string(e.what()).find("only 2 are resolved") != std::string::npos;
+    return std::string(e.what()).find("has 2 of 4 states") != std::string::npos;
   });
 }
 

@@ -26,6 +26,8 @@ struct TransientStart {
   Eigen::VectorXd z;                 ///< consistent: constraints and kinematic rows hold
   Eigen::VectorXd z_dot;             ///< empty: not known
   std::vector<HeldCoordinate> held;  ///< constant loads that act beside those of the system
+  /// The observer sees it. False: its internal loads and rates are not those of the system.
+  bool is_row = true;
 };
 
 /// The equations hold at t with z and z_dot: at the end of a step, for the midpoint rule in its

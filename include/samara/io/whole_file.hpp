@@ -10,6 +10,9 @@
 
 namespace samara::io {
 
+/// True where both paths lead to the same place, whether there is a file or not.
+bool same_file(const std::string& a, const std::string& b);
+
 /// A file that is written piece by piece: a temporary file in the folder of `path`, which takes
 /// that name in the end. Where anything fails it is removed, and what was at `path` stays.
 class WholeFile {

@@ -22,7 +22,8 @@ struct LinearizeOptions {
   bool hill = false;
   int hill_harmonics = 4;
   bool lyapunov_floquet = false;
-  int lyapunov_floquet_states = 0;  ///< of the slowest modes; 0: all that are resolved
+  int lyapunov_floquet_steps = 512;  ///< a revolution, at the least
+  int lyapunov_floquet_states = 0;   ///< of the slowest modes; 0: all that are resolved
   std::vector<double> at;  ///< at which the matrices themselves are given [rad]; none: all of them
   int order = 0;           ///< of constant forms, reduced; 0: none
   ReductionMethod reduction = ReductionMethod::balanced;
@@ -46,6 +47,7 @@ struct Linearization {
   std::vector<DescriptorForm> descriptors;  ///< at the azimuths, where they are asked for
   Eigen::MatrixXd outputs;                  ///< on the steady state, azimuths x outputs
   double rotor_speed = 0.0;                 ///< [rad/s]
+  int series_azimuths = 0;                  ///< from which the series are made
   bool is_constant = false;                 ///< nothing changes with the azimuth
 };
 

@@ -16,13 +16,19 @@ namespace samara::linear {
 class LyapunovFloquet {
  public:
   /// Integrates over a revolution, by way of `azimuths` equally spaced ones, at which the forms
-  /// below then cost nothing. Of the slowest modes, `states` coordinates at the most; 0: of all up
-  /// to the first one that the integration does not resolve. `series` must live on.
-  /// @throws InputError where `states` are more than those
-  LyapunovFloquet(const AzimuthSeries& series, double rotor_speed, int azimuths, int states);
+  /// below then cost nothing, in `steps` steps at the least; half as many tell how large the error
+  /// is. Of the slowest modes that are resolved so, `states` coordinates at the most; 0: all.
+  /// `series` must live on.
+  /// @throws InputError where there are none, or less than `states`
+  LyapunovFloquet(const AzimuthSeries& series, double rotor_speed, int azimuths, int states,
+                  int steps = default_steps);
+
+  static constexpr int default_steps = 512;
 
   const std::vector<ModelState>& states() const { return states_; }
-  /// {Lambda, Q B, C P, D}.
+  /// Why there are not all of the states; empty: there are, or as many as were asked for.
+  const std::string& remark() const { return remark_; }
+  /// {Lambda, Q B, C P, D with the static answer of the modes that are left out}.
   StateSpace form(double psi) const;
   /// {Lambda, Q, P, none}: inputs and outputs are x.
   StateSpace transformation(double psi) const;
@@ -57,6 +63,8 @@ class LyapunovFloquet {
   void select(int states);
   void name_states();
   Frame frame_at(double psi) const;
+  void orthogonalize(const std::vector<Eigen::MatrixXcd>& V,
+                     std::vector<Eigen::MatrixXcd>& W) const;
 
   const AzimuthSeries& series_;
   double speed_;
@@ -67,6 +75,7 @@ class LyapunovFloquet {
   std::vector<Block> blocks_;
   Eigen::MatrixXd exponents_;  ///< Lambda
   std::vector<ModelState> states_;
+  std::string remark_;
 };
 
 }  // namespace samara::linear

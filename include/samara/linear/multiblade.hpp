@@ -1,6 +1,6 @@
 // Multiblade coordinates (R. P. Coleman and A. M. Feingold, NACA report 1351, 1958) of a
 // state-space form with three or more blades (docs/theory.md, section 10.4):
-//     x_k = a0 + sum_n ac_n cos(n psi_k) + as_n sin(n psi_k) [+ ad (-1)^k],
+//     x_k = a0 + sum_n ac_n cos(n psi_k) + as_n sin(n psi_k) [+ ad (-1)^(k - 1)],
 //     psi_k = psi + 2 pi (k - 1)/Q.
 #pragma once
 
