@@ -9,6 +9,7 @@
 #include "samara/system/turbine_system.hpp"
 
 #include "commands.hpp"
+#include "history_recorder.hpp"
 #include "masses.hpp"
 #include "table.hpp"
 
@@ -205,6 +206,8 @@ void run_check(const Job& job) {
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
   if (petsc::Session::rank() != 0) return;
+  if (job.input.transient.is_given) find_channels(job.input, system);
+  if (job.input.linearize.is_given) make_input_output(job.input, system);
   const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
   const std::string& title = job.input.turbine.title;
   deliver(

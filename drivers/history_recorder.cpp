@@ -4,6 +4,8 @@
 #include <cmath>
 #include <csignal>
 
+#include "samara/base/error.hpp"
+
 namespace samara::drivers {
 namespace {
 
@@ -35,6 +37,18 @@ void Extent::add(double value) {
   sum += value;
   last = value;
   ++rows;
+}
+
+system::TurbineChannels find_channels(const io::Case& input, const system::TurbineSystem& system) {
+  const io::TransientCase& transient = input.transient;
+  for (std::size_t i = 0; i < transient.events.size(); ++i)
+    if (const system::EventTrigger& trigger = transient.events[i].trigger; !trigger.time)
+      at_place(input.path + ": transient.events[" + std::to_string(i) + "].when.channel", [&] {
+        return system::TurbineChannels(system, transient.stations, {trigger.channel});
+      });
+  return at_place(input.path + ": transient.output.channels", [&] {
+    return system::TurbineChannels(system, transient.stations, transient.channels);
+  });
 }
 
 HistoryRecorder::HistoryRecorder(const io::TransientCase& transient, io::HistoryFile& file,

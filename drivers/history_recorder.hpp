@@ -45,6 +45,9 @@ struct Crossing {
   double time = 0.0;  ///< by the secant of its channel over the step
 };
 
+/// The channels of the history; those of events must exist, too. @throws InputError
+system::TurbineChannels find_channels(const io::Case& input, const system::TurbineSystem& system);
+
 /// Writes the history while it grows, and watches for events.
 class HistoryRecorder final : public analysis::TransientObserver {
  public:

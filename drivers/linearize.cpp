@@ -43,6 +43,14 @@ std::string form_table(const linear::Linearization& linear) {
 
 }  // namespace
 
+system::TurbineInputOutput make_input_output(const io::Case& input,
+                                             const system::TurbineSystem& system) {
+  const io::LinearizeCase& asked = input.linearize;
+  return at_place(input.path + ": linearize", [&] {
+    return system::TurbineInputOutput(system, asked.inputs, asked.stations, asked.outputs);
+  });
+}
+
 void run_linearize(const Job& job) {
   const io::LinearizeCase& asked = job.input.linearize;
   if (!asked.mat_path.empty()) {
@@ -53,9 +61,7 @@ void run_linearize(const Job& job) {
   }
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
-  const system::TurbineInputOutput input_output = at_place(job.input.path + ": linearize", [&] {
-    return system::TurbineInputOutput(system, asked.inputs, asked.stations, asked.outputs);
-  });
+  const system::TurbineInputOutput input_output = make_input_output(job.input, system);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);

@@ -70,19 +70,6 @@ void require_fired(const io::TransientCase& transient, const std::vector<double>
   }
 }
 
-/// The channels of the history; those of events must exist, too.
-system::TurbineChannels find_channels(const io::Case& input, const system::TurbineSystem& system) {
-  const io::TransientCase& transient = input.transient;
-  for (std::size_t i = 0; i < transient.events.size(); ++i)
-    if (const system::EventTrigger& trigger = transient.events[i].trigger; !trigger.time)
-      at_place(input.path + ": transient.events[" + std::to_string(i) + "].when.channel", [&] {
-        return system::TurbineChannels(system, transient.stations, {trigger.channel});
-      });
-  return at_place(input.path + ": transient.output.channels", [&] {
-    return system::TurbineChannels(system, transient.stations, transient.channels);
-  });
-}
-
 }  // namespace
 
 void require_transient(const io::Case& input) {

@@ -41,6 +41,7 @@ void read_forms(MapReader& map, linear::LinearizeOptions& options) {
 
 void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& errors) {
   linear::LinearizeOptions& options = linearize.options;
+  linearize.is_given = true;
   MapReader map(node, "linearize", errors);
   map.read("azimuths", options.azimuths, 1, most_azimuths);
   map.read("harmonics", options.harmonics, 0, most_harmonics);

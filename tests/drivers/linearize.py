@@ -301,6 +301,10 @@ class Linearize(ProgramTest):
                     words="no MAT-file of samara")
 
     def test_what_does_not_exist_is_refused(self):
+        self.refuse("check", BASELINE, "--set", "linearize={outputs: [NacYav]}",
+                    words='did you mean "NacYaw"')
+        self.refuse("check", BASELINE, "--set", "transient={duration: 1, step: 0.1, "
+                    "output: {channels: [RotSped]}}", words='did you mean "RotSpeed"')
         self.refuse("linearize", BASELINE, "--set", "linearize={inputs: [yaw_torqe]}",
                     words='did you mean "yaw_torque"')
         self.refuse("linearize", BASELINE, "--set", "linearize={inputs: [generator_torque]}",

@@ -39,6 +39,7 @@ struct TransientCase {
 };
 
 struct LinearizeCase {
+  bool is_given = false;
   linear::LinearizeOptions options;
   std::vector<std::string> inputs;   ///< empty: all
   std::vector<std::string> outputs;  ///< channels; empty: all but those of stations
