@@ -117,6 +117,22 @@ BOOST_AUTO_TEST_CASE(a_constant_system_stays_as_it_is) {
   check_frames(floquet, series, 1.0, 1e-8);
 }
 
+// Where a pair of multipliers meets on the real axis it is one block or two, and never half of one.
+BOOST_AUTO_TEST_CASE(pairs_that_nearly_meet_lose_no_mode) {
+  for (const double turns : {0.5, 1.0, 1.5})
+    for (const double apart : {0.0, 1e-8, 1.2e-7, 2.5e-7, 6e-7, 2e-6, 1e-5, 1e-4, 1e-3}) {
+      const double omega = turns * (1.0 + apart);
+      MatrixXd A(2, 2);
+      A << 0.0, 1.0, -omega * omega, 0.0;
+      const AzimuthSeries series = series_of([&A](double) { return A; }, 0);
+      const LyapunovFloquet floquet(series, 1.0, 8, 0);
+      const StateSpace map = floquet.transformation(1.3);
+      BOOST_TEST((map.C * map.B - MatrixXd::Identity(2, 2)).norm() < 1e-6,
+                 turns << " and " << apart << ": " << floquet.states().size() << " states");
+      BOOST_TEST(map.C.norm() * map.B.norm() < 100.0);
+    }
+}
+
 // A free mass: one mode with a double multiplier and no second shape. It stays one block.
 BOOST_AUTO_TEST_CASE(a_free_motion_is_no_two_modes) {
   MatrixXd A = MatrixXd::Zero(4, 4);
