@@ -63,7 +63,8 @@ Window find_window(const Eigen::VectorXd& azimuth) {
   if (window.revolutions < 1) {
     std::ostringstream text;
     text << "azimuth: it grows by " << turns * revolution
-         << " deg until the end of the history, harmonics need a whole revolution";
+         << " deg until the end of the history, harmonics need a whole revolution; hint: "
+            "where the rotor stops, `until` a time before";
     throw InputError(text.str());
   }
   const double begin = end - window.revolutions * revolution;
