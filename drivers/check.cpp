@@ -167,14 +167,25 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
                      joint_words(turbine.chain.torsion) + "; generator " +
                      joint_words(turbine.chain.generator));
   const model::ShaftDefinition& shaft = definition.shaft;
-  const auto torque = [&](const std::string& name, const model::TorqueLaw& law) {
-    const elements::TorqueLine at_speed = law.at(shaft.speed);
+  if (shaft.generator.inertia > 0.0 || shaft.gear_ratio != 1.0)
+    line("generator", "inertia " + general(shaft.generator.inertia, 5) +
+                          " kg m^2 about its own axis" +
+                          (shaft.gear_ratio == 1.0
+                               ? ""
+                               : ", gear ratio " + general(shaft.gear_ratio, 5) + ": " +
+                                     general(shaft.generator_speed() * 30.0 / std::numbers::pi, 5) +
+                                     " rpm"));
+  const auto torque = [&](const std::string& name, const model::TorqueLaw& law,
+                          const std::string& whose, double at) {
+    const elements::TorqueLine at_speed = law.at(at);
     if (at_speed.torque != 0.0 || at_speed.slope != 0.0)
-      line(name, general(at_speed.torque, 5) + " N m at the rotor speed, slope " +
+      line(name, general(at_speed.torque, 5) + " N m at " + whose + " speed, slope " +
                      general(at_speed.slope, 5) + " N m s/rad");
   };
-  if (turbine.chain.generator.free) torque("generator torque", shaft.generator.law);
-  torque("rotor torque", shaft.rotor);
+  if (turbine.chain.generator.free)
+    torque("generator torque", shaft.generator.law,
+           shaft.gear_ratio == 1.0 ? "the rotor" : "its own", shaft.generator_speed());
+  torque("rotor torque", shaft.rotor, "the rotor", shaft.speed);
   if (definition.has_tower) line("tower foot", support_words(definition.tower.support));
   if (!definition.blades.beam.support.is_clamp())
     line("blade roots", support_words(definition.blades.beam.support));

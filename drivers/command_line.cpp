@@ -9,6 +9,7 @@
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
 #include "samara/base/words.hpp"
+#include "samara/io/whole_file.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -205,7 +206,7 @@ class Parser {
       throw InputError(
           "--csv: samara " + name + " has no table to write" +
           (name == "transient" ? "; hint: samara export makes one of the result" : ""));
-    if (!line_.csv_path.empty() && line_.csv_path == line_.result_path)
+    if (!line_.csv_path.empty() && io::is_same_file(line_.csv_path, line_.result_path))
       throw InputError("-o and --csv name the same file; give each its own");
   }
 

@@ -1,6 +1,7 @@
 // samara floquet: the stability of the periodic steady state.
 #include "samara/analysis/floquet.hpp"
 
+#include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
@@ -11,6 +12,7 @@
 #include "mode_report.hpp"
 #include "progress.hpp"
 #include "table.hpp"
+#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -37,19 +39,21 @@ void require_speed(const io::Case& input) {
 }
 
 void run_floquet(const Job& job) {
+  analysis::require_whole_spectrum("floquet_");
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
+  note_roughness(trim, progress);
   const analysis::Floquet floquet = analysis::find_floquet_modes(
       system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
   progress.finish();
   if (!is_first) return;
+  const Verdict verdict = find_verdict(floquet.set, job.all_modes);
   deliver(
       job,
-      headline(job.input, floquet) + mode_table(floquet.set, job.all_modes) + "\n" +
-          verdict(floquet.set, job.all_modes),
+      headline(job.input, floquet) + mode_table(floquet.set, job.all_modes) + "\n" + verdict.text,
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
@@ -57,6 +61,7 @@ void run_floquet(const Job& job) {
         file.write_floquet(floquet);
       },
       [&](const std::string& path) { io::write_mode_table(path, floquet.set); });
+  require_verdict(verdict);
 }
 
 }  // namespace samara::drivers

@@ -11,10 +11,10 @@
 #include "samara/base/error.hpp"
 #include "samara/io/history_file.hpp"
 #include "samara/io/result_reader.hpp"
-#include "samara/system/turbine_system.hpp"
 
 #include "history_legs.hpp"
 #include "table.hpp"
+#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -29,56 +29,52 @@ constexpr std::array<std::string_view, 7> free_keys{
 /// Of motions at the start: rates relative to the largest, angles [rad].
 constexpr double motion_tolerance = 2e-6;
 
-bool is_free_key(const std::string& line) {
-  if (line.starts_with("blades.each") && line.find(".pitch_deg: ") != std::string::npos)
-    return true;
-  return std::ranges::any_of(free_keys, [&line](std::string_view key) {
-    return line.starts_with(key) &&
-           std::string_view(":._[").find(line[key.size()]) != std::string_view::npos;
+/// Values by key, as lines `key: value` state them.
+using Keys = std::map<std::string, std::string>;
+
+Keys keys_of(const std::string& text) {
+  Keys keys;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t end = line.find(": ");
+    keys[line.substr(0, end)] = end == std::string::npos ? "" : line.substr(end + 2);
+  }
+  return keys;
+}
+
+bool is_free_key(const std::string& key) {
+  if (key.starts_with("blades.each") && key.ends_with(".pitch_deg")) return true;
+  return std::ranges::any_of(free_keys, [&key](std::string_view free) {
+    return key.starts_with(free) &&
+           (key.size() == free.size() ||
+            std::string_view("._[").find(key[free.size()]) != std::string_view::npos);
   });
 }
 
-std::vector<std::string> lines_of(const std::string& text, bool leave_out_free) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);)
-    if (!leave_out_free || !is_free_key(line)) lines.push_back(line);
-  return lines;
-}
-
-/// Lines `key: value`, by key.
-std::map<std::string, std::string> values_of(const std::vector<std::string>& lines) {
-  std::map<std::string, std::string> values;
-  for (const std::string& line : lines) {
-    const std::size_t end = line.find(": ");
-    values[line.substr(0, end)] = end == std::string::npos ? "" : line.substr(end + 2);
-  }
-  return values;
-}
-
-/// The first key in which the two differ: `key: value there, value here`; empty: none.
-std::string find_difference(const std::vector<std::string>& there,
-                            const std::vector<std::string>& here) {
-  const std::map<std::string, std::string> a = values_of(there);
-  const std::map<std::string, std::string> b = values_of(here);
-  std::map<std::string, std::string> all = a;
-  all.insert(b.begin(), b.end());
-  const auto of = [](const std::map<std::string, std::string>& values, const std::string& key) {
-    const auto found = values.find(key);
-    return found == values.end() ? std::string("absent") : found->second;
+/// Refuses a result whose model differs in another key than the free ones, or in any.
+void require_same_model(const std::string& path, const std::string& there, const std::string& here,
+                        bool may_differ) {
+  const Keys a = keys_of(there);
+  const Keys b = keys_of(here);
+  const auto value_of = [](const Keys& keys, const std::string& key) {
+    const auto found = keys.find(key);
+    return found == keys.end() ? std::string("absent") : found->second;
   };
-  for (const auto& [key, value] : all)
-    if (of(a, key) != of(b, key))
-      return key + ": " + of(a, key) + " there, " + of(b, key) + " here";
-  return "";
+  Keys all = a;
+  all.insert(b.begin(), b.end());
+  for (const auto& [key, value] : all) {
+    if (value_of(a, key) == value_of(b, key) || (may_differ && is_free_key(key))) continue;
+    throw InputError(path + ": is of another model (" + key + ": " + value_of(a, key) + " there, " +
+                     value_of(b, key) + " here)");
+  }
 }
 
-/// The lines of a key and those below it.
-std::vector<std::string> lines_below(const std::string& text, const std::string& key) {
-  std::vector<std::string> found;
-  for (const std::string& line : lines_of(text, false))
-    if (line.starts_with(key)) found.push_back(line);
-  return found;
+/// The torque law of the generator.
+Keys law_of(const std::string& text) {
+  Keys keys = keys_of(text);
+  std::erase_if(keys,
+                [](const auto& one) { return !one.first.starts_with("shaft.generator.torque"); });
+  return keys;
 }
 
 /// Turns the rotor at t = 0; what goes with it keeps its azimuth.
@@ -93,13 +89,6 @@ void set_azimuth(model::Turbine& turbine, double azimuth) {
     for (model::BeamLoad& load : blade.loads) turn(load.history);
 }
 
-void require_same_model(const std::string& path, const std::string& there, const std::string& here,
-                        bool leave_out_free) {
-  const std::string difference =
-      find_difference(lines_of(there, leave_out_free), lines_of(here, leave_out_free));
-  if (!difference.empty()) throw InputError(path + ": is of another model (" + difference + ")");
-}
-
 TransientStart checkpoint_of(const std::string& path, const io::HistoryContent& content,
                              const system::TurbineSystem& system) {
   if (!content.checkpoint)
@@ -110,8 +99,7 @@ TransientStart checkpoint_of(const std::string& path, const io::HistoryContent& 
   return *content.checkpoint;
 }
 
-HistoryStart restart(const Job& job, const model::Turbine& turbine,
-                     const system::TurbineSystem& system) {
+HistoryStart restart(const Job& job, const system::TurbineSystem& system) {
   const io::HistoryReader history(job.restart_path);
   const io::HistoryContent& content = history.content();
   require_same_model(job.restart_path, content.model, job.input.model_text, false);
@@ -136,10 +124,10 @@ HistoryStart restart(const Job& job, const model::Turbine& turbine,
     throw InputError(job.restart_path +
                      ": was run with other transient.events; hint: transient.start: " +
                      job.restart_path + " takes new ones");
-  HistoryStart start{point, content.checkpoint_events, turbine};
-  set_azimuth(start.turbine, content.azimuth.value_or(turbine.azimuth));
+  HistoryStart start{point, content.checkpoint_events, system.turbine(), content.is_generator_lost};
+  set_azimuth(start.turbine, content.azimuth.value_or(system.turbine().azimuth));
   start.turbine.chain.brake_torque = content.brake_torque;
-  if (content.is_generator_lost) start.turbine.chain.generator_torque = {};
+  if (start.is_generator_lost) start.turbine.chain.generator_torque = {};
   return start;
 }
 
@@ -179,93 +167,97 @@ bool is_generator_lost(const io::TransientCase& transient, const std::vector<dou
   return false;
 }
 
-/// The end of a history, or the steady state, of a result: with it t = 0 comes.
-HistoryStart start_from(const std::string& path, const Job& job, const model::Turbine& turbine,
+/// The end of a history: with it t = 0 comes.
+HistoryStart start_behind(const std::string& path, const io::Case& before, const io::Case& input,
+                          const system::TurbineSystem& system, Progress& progress) {
+  const io::HistoryReader history(path);
+  const io::HistoryContent& content = history.content();
+  model::Turbine there = operated_turbine(before);
+  set_azimuth(there, content.azimuth.value_or(there.azimuth));
+  there.chain.brake_torque = content.brake_torque;
+  const model::Turbine last = turbine_after(before.transient, there, content.checkpoint_events);
+  HistoryStart start{checkpoint_of(path, content, system), {}, system.turbine()};
+  TransientStart& point = start.point;
+  set_azimuth(start.turbine, last.turning_at(point.time).value);
+  require_same_motion(path, last, point.time, start.turbine);
+  // What events did to the drive train stays done.
+  const bool is_braked = last.chain.brake_torque > 0.0;
+  start.turbine.chain.brake_torque = last.chain.brake_torque;
+  start.is_generator_lost =
+      content.is_generator_lost || is_generator_lost(before.transient, content.checkpoint_events);
+  if (start.is_generator_lost) start.turbine.chain.generator_torque = {};
+  if (start.is_generator_lost || is_braked)
+    progress.note(path + " left " + (start.is_generator_lost ? "its generator lost" : "") +
+                  (start.is_generator_lost && is_braked ? " and " : "") +
+                  (is_braked ? "its brake set" : "") + ", and so it stays");
+  point.time = 0.0;
+  point.origin = 0.0;
+  point.step = 0;
+  // With other loads, or from the middle of a step, rates are not known, and differences of the
+  // state would show what a step leaves in the constraints.
+  point.is_row = point.z_dot.size() > 0 && before.model_text == input.model_text;
+  return start;
+}
+
+HistoryStart start_on_steady_state(const std::string& path, const io::Case& before,
+                                   const io::Case& input, const system::TurbineSystem& system,
+                                   Progress& progress) {
+  const model::Turbine steady = model::build_turbine(before.turbine);
+  HistoryStart start{{}, {}, system.turbine()};
+  set_azimuth(start.turbine, steady.azimuth);
+  require_same_motion(path, steady, 0.0, start.turbine);
+  const analysis::Trim trim = io::read_result_trim(path);
+  note_roughness(trim, progress, path);
+  if (trim.solution.coefficients().rows() != system.size())
+    throw InputError(path + ": its steady state has " +
+                     std::to_string(trim.solution.coefficients().rows()) + " unknowns, the model " +
+                     std::to_string(system.size()));
+  start.point = analysis::start_on(system, trim, 0.0);
+  if (before.model_text != input.model_text) start.point.z_dot.resize(0);
+  return start;
+}
+
+HistoryStart start_from(const std::string& path, const io::Case& input,
                         const system::TurbineSystem& system, Progress& progress) {
   const io::Case before = io::read_result_case(path);
-  require_same_model(path, before.model_text, job.input.model_text, true);
-  model::Turbine there = operated_turbine(before);
+  require_same_model(path, before.model_text, input.model_text, true);
+  const io::ResultKind kind = io::find_result_kind(path);
+  if (kind == io::ResultKind::other)
+    throw InputError(
+        path + ": has no state to start from; hint: results of transient, trim and floquet have");
+  HistoryStart start = kind == io::ResultKind::history
+                           ? start_behind(path, before, input, system, progress)
+                           : start_on_steady_state(path, before, input, system, progress);
   // A new law is all of the torque: what held the mean speed under the old one goes.
-  const std::string law = "shaft.generator.torque";
-  const bool is_new_law =
-      lines_below(before.model_text, law) != lines_below(job.input.model_text, law);
-  const auto drop_generator = [](std::vector<analysis::HeldCoordinate>& held) {
-    std::erase_if(held,
+  if (law_of(before.model_text) != law_of(input.model_text))
+    std::erase_if(start.point.held,
                   [](const analysis::HeldCoordinate& one) { return one.name == "generator"; });
-  };
-  switch (io::find_result_kind(path)) {
-    case io::ResultKind::history: {
-      const io::HistoryReader history(path);
-      const io::HistoryContent& content = history.content();
-      TransientStart point = checkpoint_of(path, content, system);
-      set_azimuth(there, content.azimuth.value_or(there.azimuth));
-      there.chain.brake_torque = content.brake_torque;
-      const model::Turbine last = turbine_after(before.transient, there, content.checkpoint_events);
-      model::Turbine begun = turbine;
-      set_azimuth(begun, last.turning_at(point.time).value);
-      require_same_motion(path, last, point.time, begun);
-      // What events did to the drive train stays done.
-      begun.chain.brake_torque = last.chain.brake_torque;
-      const bool is_lost = content.is_generator_lost ||
-                           is_generator_lost(before.transient, content.checkpoint_events);
-      if (is_lost) begun.chain.generator_torque = {};
-      if (is_lost || last.chain.brake_torque > 0.0)
-        progress.note(path + " left " + (is_lost ? "its generator lost" : "") +
-                      (is_lost && last.chain.brake_torque > 0.0 ? " and " : "") +
-                      (last.chain.brake_torque > 0.0 ? "its brake set" : "") + ", and so it stays");
-      point.time = 0.0;
-      point.origin = 0.0;
-      point.step = 0;
-      // With other loads, or from the middle of a step, rates are not known, and differences of the
-      // state would show what a step leaves in the constraints.
-      point.is_row = point.z_dot.size() > 0 && before.model_text == job.input.model_text;
-      if (is_new_law) drop_generator(point.held);
-      return {point, {}, begun};
-    }
-    case io::ResultKind::steady_state: {
-      const model::Turbine steady = model::build_turbine(before.turbine);
-      model::Turbine begun = turbine;
-      set_azimuth(begun, steady.azimuth);
-      require_same_motion(path, steady, 0.0, begun);
-      const analysis::Trim trim = io::read_result_trim(path);
-      if (trim.solution.coefficients().rows() != system.size())
-        throw InputError(path + ": its steady state has " +
-                         std::to_string(trim.solution.coefficients().rows()) +
-                         " unknowns, the model " + std::to_string(system.size()));
-      TransientStart point = analysis::start_on(system, trim, 0.0);
-      if (before.model_text != job.input.model_text) point.z_dot.resize(0);
-      if (is_new_law) drop_generator(point.held);
-      return {point, {}, begun};
-    }
-    case io::ResultKind::other:
-      break;
-  }
-  throw InputError(
-      path + ": has no state to start from; hint: results of transient, trim and floquet have");
+  return start;
 }
 
 }  // namespace
 
-HistoryStart find_history_start(const Job& job, const model::Turbine& turbine, Progress& progress) {
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+HistoryStart find_history_start(const Job& job, const system::TurbineSystem& system,
+                                Progress& progress) {
   const io::TransientCase& transient = job.input.transient;
-  if (!job.restart_path.empty()) return restart(job, turbine, system);
+  if (!job.restart_path.empty()) return restart(job, system);
   switch (transient.start) {
     case io::TransientOrigin::undeformed:
-      return {analysis::start_undeformed(system, 0.0), {}, turbine};
+      return {analysis::start_undeformed(system, 0.0), {}, system.turbine()};
     case io::TransientOrigin::result:
       return at_place(job.input.path + ": transient.start", [&] {
-        return start_from(transient.start_path, job, turbine, system, progress);
+        return start_from(transient.start_path, job.input, system, progress);
       });
     case io::TransientOrigin::trim:
       break;
   }
   // What moves in time begins where the steady state is.
   const model::Turbine steady = model::build_turbine(job.input.turbine);
-  require_same_motion(job.input.path + ": transient.start: trim", steady, 0.0, turbine);
+  require_same_motion(job.input.path + ": transient.start: trim", steady, 0.0, system.turbine());
   const system::TurbineSystem repeating(steady, PETSC_COMM_SELF);
   const analysis::Trim trim = analysis::find_trim(repeating, job.input.trim, progress);
-  return {analysis::start_on(repeating, trim, 0.0), {}, turbine};
+  note_roughness(trim, progress);
+  return {analysis::start_on(repeating, trim, 0.0), {}, system.turbine()};
 }
 
 }  // namespace samara::drivers

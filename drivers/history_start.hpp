@@ -5,6 +5,7 @@
 
 #include "samara/analysis/transient.hpp"
 #include "samara/model/turbine.hpp"
+#include "samara/system/turbine_system.hpp"
 
 #include "job.hpp"
 #include "progress.hpp"
@@ -13,13 +14,15 @@ namespace samara::drivers {
 
 struct HistoryStart {
   analysis::TransientStart point;
-  std::vector<double> fired;  ///< when the events came that have come already
-  model::Turbine turbine;     ///< at the azimuth of the start, as earlier events left it
+  std::vector<double> fired;       ///< when the events came that have come already
+  model::Turbine turbine;          ///< at the azimuth of the start, as earlier events left it
+  bool is_generator_lost = false;  ///< by one of them
 };
 
 /// From the checkpoint of --restart, on the trim, undeformed, or from the end of another result, as
-/// the case says. `turbine`: with what the case prescribes in time.
+/// the case says. `system`: of the turbine with what the case prescribes in time.
 /// @throws InputError where a result does not fit to the case
-HistoryStart find_history_start(const Job& job, const model::Turbine& turbine, Progress& progress);
+HistoryStart find_history_start(const Job& job, const system::TurbineSystem& system,
+                                Progress& progress);
 
 }  // namespace samara::drivers

@@ -1,10 +1,10 @@
 #include "job.hpp"
 
 #include <exception>
-#include <filesystem>
 #include <iostream>
 
 #include "samara/base/error.hpp"
+#include "samara/io/whole_file.hpp"
 #include "samara/petsc/session.hpp"
 
 namespace samara::drivers {
@@ -52,11 +52,9 @@ void deliver(const Job& job, const std::string& tables,
 }
 
 void require_other_path(const std::string& path, const std::vector<std::string>& sources) {
-  for (const std::string& source : sources) {
-    std::error_code error;
-    if (std::filesystem::equivalent(path, source, error))
+  for (const std::string& source : sources)
+    if (io::is_same_file(path, source))
       throw InputError(path + ": is read by this run; hint: -o gives what it writes another name");
-  }
 }
 
 }  // namespace samara::drivers

@@ -10,6 +10,7 @@
 #include "masses.hpp"
 #include "progress.hpp"
 #include "table.hpp"
+#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -55,7 +56,7 @@ void run_linearize(const Job& job) {
   const io::LinearizeCase& asked = job.input.linearize;
   if (!asked.mat_path.empty()) {
     io::require_mat_path(asked.mat_path);
-    if (io::same_file(asked.mat_path, job.result_path))
+    if (io::is_same_file(asked.mat_path, job.result_path))
       throw InputError(job.input.path +
                        ": linearize.mat and -o name the same file; give each its own");
   }
@@ -65,6 +66,7 @@ void run_linearize(const Job& job) {
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
+  note_roughness(trim, progress);
   const linear::Linearization linear = linear::linearize(system, input_output, trim.solution,
                                                          turbine.azimuth, asked.options, progress);
   progress.finish();

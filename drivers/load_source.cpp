@@ -13,6 +13,7 @@
 #include "samara/system/turbine_system.hpp"
 
 #include "table.hpp"
+#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -152,12 +153,15 @@ system::TurbineChannels make_channels(const system::TurbineSystem& system,
   });
 }
 
-LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& options) {
+LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& options,
+                               analysis::Observer& observer) {
   if (options.from || options.until)
     throw InputError(path +
                      ": a steady state is one revolution; hint: leave `from` and `until` out");
   const io::Case input = io::read_result_case(path);
-  const analysis::PeriodicSolution solution = io::read_result_trim(path).solution;
+  const analysis::Trim trim = io::read_result_trim(path);
+  note_roughness(trim, observer, path);
+  const analysis::PeriodicSolution& solution = trim.solution;
   if (!(solution.period() > 0.0))
     throw InputError(path +
                      ": its rotor stands still and its loads are constant; hint: samara "
@@ -188,12 +192,13 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
 
 }  // namespace
 
-LoadSource read_load_source(const std::string& path, const io::LoadOptions& options) {
+LoadSource read_load_source(const std::string& path, const io::LoadOptions& options,
+                            analysis::Observer& observer) {
   switch (io::find_result_kind(path)) {
     case io::ResultKind::history:
       return read_history(path, options);
     case io::ResultKind::steady_state:
-      return sample_steady_state(path, options);
+      return sample_steady_state(path, options, observer);
     case io::ResultKind::other:
       break;
   }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "samara/analysis/observer.hpp"
 #include "samara/io/load_result.hpp"
 
 namespace samara::drivers {
@@ -12,8 +13,9 @@ struct LoadSource {
   Eigen::VectorXd azimuth;  ///< [deg] of each row; empty: the history has none
 };
 
-/// Of a steady state needs a PETSc session.
+/// Of a steady state needs a PETSc session; a rough one is noted.
 /// @throws InputError where the result has neither, or not what the options ask for
-LoadSource read_load_source(const std::string& path, const io::LoadOptions& options);
+LoadSource read_load_source(const std::string& path, const io::LoadOptions& options,
+                            analysis::Observer& observer);
 
 }  // namespace samara::drivers

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "load_source.hpp"
 #include "load_tables.hpp"
+#include "progress.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -36,8 +37,9 @@ loads::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
   return evaluation;
 }
 
-io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options) {
-  LoadSource source = read_load_source(path, options);
+io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options,
+                        analysis::Observer& observer) {
+  LoadSource source = read_load_source(path, options, observer);
   io::LoadReport& report = source.report;
   try {
     report.evaluation = loads::evaluate_loads(report.history, source.azimuth,
@@ -74,7 +76,8 @@ void run_loads(const Job& job) {
   const io::LoadOptions options = io::read_load_options(job.settings);
   check_hours(job.sources, options);
   std::vector<io::LoadReport> reports;
-  for (const std::string& path : job.sources) reports.push_back(evaluate(path, options));
+  Progress progress(true);
+  for (const std::string& path : job.sources) reports.push_back(evaluate(path, options, progress));
   const io::LifetimeReport lifetime = evaluate_lifetime(reports, options);
   std::string tables;
   for (const io::LoadReport& report : reports) tables += load_tables(report, options);

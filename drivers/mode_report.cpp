@@ -6,6 +6,8 @@
 #include <tuple>
 #include <vector>
 
+#include "samara/base/error.hpp"
+
 #include "table.hpp"
 
 namespace samara::drivers {
@@ -18,6 +20,11 @@ constexpr double visible_share = 0.05;
 constexpr std::size_t most_parts = 2;
 constexpr std::size_t most_harmonics = 2;
 constexpr std::size_t most_names = 4;
+/// Estimated errors beyond which a row is marked, and beyond which it counts for no verdict.
+constexpr double marked_error = 0.01;
+constexpr double largest_error = 0.1;
+/// A verdict holds for the slowest modes, so many at the least.
+constexpr std::size_t first_modes = 10;
 
 double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
 
@@ -58,23 +65,37 @@ std::string other_harmonics(const ModeSet& set, std::size_t m) {
   return text;
 }
 
+/// Whether too little is known of a mode to say whether it grows.
+bool is_rough(const Mode& mode) {
+  return total_error(mode) > largest_error ||
+         mode.growth_error >
+             std::max(marked_error * std::abs(mode.exponent), std::abs(mode.exponent.real()));
+}
+
 std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
-  if (!set.modes[m].resolved) return "unresolved*";
+  const Mode& mode = set.modes[m];
+  if (!mode.resolved) return "unresolved*";
   if (motion == Motion::rigid_body) return "rigid-body";
-  return set.participation.size() > 0 ? other_harmonics(set, m) : "";
+  const std::string harmonics = set.participation.size() > 0 ? other_harmonics(set, m) : "";
+  if (total_error(mode) <= marked_error) return harmonics;
+  const double percents = 100.0 * total_error(mode);
+  return (percents < 100.0 ? "error " + general(percents, 2) + " %" : "error above 100 %") +
+         (harmonics.empty() ? "" : "; " + harmonics);
 }
 
 std::vector<std::string> row_of(const ModeSet& set, std::size_t m) {
   const Mode& mode = set.modes[m];
   const Motion motion = motion_of(mode, set.rotor_speed);
   const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
+  const bool is_known = has_rate || motion == Motion::rigid_body || !is_rough(mode);
   const double frequency = motion == Motion::rigid_body ? 0.0 : mode.exponent.imag();
   std::vector<std::string> row{std::to_string(m + 1), mode.label};
   if (set.rotor_speed > 0.0) row.push_back(fixed(frequency / set.rotor_speed, 4));
   row.push_back(fixed(frequency / (2.0 * std::numbers::pi), 4));
-  row.push_back(frequency == 0.0 ? "-" : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
-  row.push_back(!has_rate
-                    ? "0"
+  row.push_back(frequency == 0.0 || !is_known
+                    ? "-"
+                    : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
+  row.push_back(!has_rate ? (is_known ? "0" : "-")
                     : (motion == Motion::growing ? "+" : "") + scientific(mode.exponent.real(), 2));
   if (set.participation.size() > 0) row.push_back(std::to_string(mode.harmonic));
   row.push_back(parts_of(mode));
@@ -117,24 +138,13 @@ bool has_partner(const ModeSet& set, const Mode& growing) {
   });
 }
 
-/// Multipliers of motions that nothing restores are one: free yaw, or the whole motion a moment
-/// later where a rotor turns freely. The step parts them from one by an error of its second order,
-/// and growth of that size says nothing.
-bool is_step_error(const ModeSet& set, const Mode& mode) {
-  constexpr double several = 10.0;
-  const double turned = set.rotor_speed * set.step;  // in a step
-  const double error = several * turned * turned / 12.0 * set.rotor_speed;
-  const double apart = std::remainder(mode.exponent.imag(), set.rotor_speed);
-  return set.step > 0.0 && std::hypot(mode.exponent.real(), apart) < error;
-}
-
 struct Tally {
   std::vector<const Mode*> growing;
-  std::vector<const Mode*> hardly_growing;  ///< what the step makes of a multiplier of one
-  std::vector<const Mode*> growing_alone;   ///< what the mesh makes of a conservative system
+  std::vector<const Mode*> growing_alone;  ///< what the mesh makes of a conservative system
   std::vector<const Mode*> decaying;
   int undamped = 0;
   int rigid_body = 0;
+  int rough = 0;  ///< resolved by the step, with a large error
   int unresolved = 0;
 };
 
@@ -144,18 +154,30 @@ Tally tally(const ModeSet& set) {
     const Motion motion = motion_of(mode, set.rotor_speed);
     if (!mode.resolved)
       ++result.unresolved;
+    else if (motion == Motion::rigid_body)
+      ++result.rigid_body;
+    else if (is_rough(mode))
+      ++result.rough;
     else if (motion == Motion::growing && set.conservative && !has_partner(set, mode))
       result.growing_alone.push_back(&mode);
-    else if (motion == Motion::growing && is_step_error(set, mode))
-      result.hardly_growing.push_back(&mode);
     else if (motion == Motion::growing)
       result.growing.push_back(&mode);
     else if (motion == Motion::decaying)
       result.decaying.push_back(&mode);
     else
-      ++(motion == Motion::undamped ? result.undamped : result.rigid_body);
+      ++result.undamped;
   }
   return result;
+}
+
+/// Highest modulus among the first modes of the set that are resolved [rad/s]; 0: there are none.
+double highest_of_first(const ModeSet& set) {
+  double highest = 0.0;
+  std::size_t count = 0;
+  for (const Mode& mode : set.modes)
+    if (mode.resolved && count++ < first_modes)
+      highest = std::max(highest, std::abs(mode.exponent));
+  return highest;
 }
 
 std::string decay_words(const Tally& result) {
@@ -178,7 +200,7 @@ std::string rest_words(const Tally& result) {
                    " rigid-body");
   if (result.undamped > 0)
     rest.push_back(std::to_string(result.undamped) + (result.undamped == 1 ? " is" : " are") +
-                   " undamped, neither growing nor decaying");
+                   " undamped, neither growing nor decaying by more than the error");
   std::string text;
   for (const std::string& words : rest) text += (text.empty() ? "" : "; ") + words;
   return text;
@@ -188,8 +210,12 @@ std::string rest_words(const Tally& result) {
 
 Motion motion_of(const Mode& mode, double rotor_speed) {
   const double zero = analysis::zero_exponent * rate_scale(rotor_speed);
-  if (std::abs(mode.exponent) < zero) return Motion::rigid_body;
-  if (std::abs(mode.exponent.real()) < zero) return Motion::undamped;
+  // Of the error of a growth, what step and rounding make is about zero; the elements' is not.
+  const double unsure = mode.growth_error - mode.mesh_growth_error;
+  if (std::abs(mode.exponent) < zero ||
+      (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure))
+    return Motion::rigid_body;
+  if (std::abs(mode.exponent.real()) <= mode.growth_error) return Motion::undamped;
   return mode.exponent.real() > 0.0 ? Motion::growing : Motion::decaying;
 }
 
@@ -210,26 +236,47 @@ std::string mode_table(const ModeSet& set, bool all) {
   return table.text();
 }
 
-std::string verdict(const ModeSet& set, bool all) {
+Verdict find_verdict(const ModeSet& set, bool all) {
   const Tally result = tally(set);
   const std::string rest = rest_words(result);
-  std::string text;
-  if (!result.growing.empty()) {
+  const bool is_periodic = set.participation.size() > 0;
+  const double highest = highest_of_first(set);
+  const auto hertz = [](double rate) {
+    return general(rate / (2.0 * std::numbers::pi), 3) + " Hz";
+  };
+  Verdict verdict;
+  std::string& text = verdict.text;
+  if (set.reach < highest || (highest == 0.0 && result.unresolved > 0)) {
+    verdict.is_given = false;
+    text = "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
+           (is_periodic ? "; hint: more floquet.steps" : "");
+  } else if (!result.growing.empty()) {
     const int growing = static_cast<int>(result.growing.size());
     text = "unstable: " + count(growing, "mode") + (growing == 1 ? " grows: " : " grow: ") +
            name_growing(result.growing) + (rest.empty() ? "" : "\nof the others " + rest);
   } else if (!result.growing_alone.empty()) {
+    verdict.is_given = false;
     text = "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; of the others " + rest);
   } else if (result.undamped + result.rigid_body > 0) {
     text = "neutral: no mode grows; " + rest;
-  } else if (!result.hardly_growing.empty()) {
-    text = "neutral" + (rest.empty() ? "" : ": of the others " + rest);
   } else if (!result.decaying.empty()) {
     text = "stable: " + decay_words(result);
   } else {
-    text = "no verdict: no mode is resolved";
+    verdict.is_given = false;
+    text = "no verdict: every mode has an error above " + general(100.0 * largest_error, 2) +
+           " %; hint: a higher order of blades and tower, or more elements" +
+           (is_periodic ? ", or more floquet.steps" : "");
   }
   text += "\n";
+  const std::string hidden = set.deflated == 0
+                                 ? ""
+                                 : ", but for " + count(set.deflated, "exponent") + " of " +
+                                       std::to_string(set.states) + " that decay faster than " +
+                                       general(set.deflated_rate, 3) + " 1/s";
+  if (verdict.is_given)
+    text += (std::isfinite(set.reach) ? "all modes below " + hertz(set.reach) + " are resolved"
+                                      : "all modes are resolved") +
+            hidden + "\n";
   if (!result.growing_alone.empty())
     text +=
         count(static_cast<int>(result.growing_alone.size()), "mode") +
@@ -237,22 +284,24 @@ std::string verdict(const ModeSet& set, bool all) {
         name_growing(result.growing_alone) +
         "; where nothing damps, growth and decay come in pairs, so this is an error of the mesh "
         "(hint: a higher order of blades and tower, or more elements)\n";
-  if (!result.hardly_growing.empty())
-    text += count(static_cast<int>(result.hardly_growing.size()), "mode") +
-            (result.hardly_growing.size() == 1 ? " grows" : " grow") +
-            " by less than the time step " +
-            "makes of a motion that nothing restores: " + name_growing(result.hardly_growing) +
-            "\n(hint: growth that is real stays with twice the floquet.steps, this one falls to a "
-            "quarter)\n";
+  if (result.rough > 0)
+    text += count(result.rough, "mode") + (result.rough == 1 ? " has" : " have") +
+            " too large an error and " + (result.rough == 1 ? "counts" : "count") +
+            " for no verdict (hint: a higher order of blades and tower, more elements" +
+            (is_periodic ? ", more floquet.steps" : "") + ")\n";
   if (result.unresolved > 0)
     text +=
         (all ? "* " : "") + std::to_string(result.unresolved) + " unresolved, " +
         (all ? "left out of the verdict: "
              : "not listed (--all lists them) and left out of the verdict:\n") +
-        (set.participation.size() > 0
+        (is_periodic
              ? "too fast for the time step (hint: more floquet.steps), or a residual too large\n"
              : "a residual too large\n");
-  return text;
+  return verdict;
+}
+
+void require_verdict(const Verdict& verdict) {
+  if (!verdict.is_given) throw ConvergenceError(verdict.text.substr(0, verdict.text.find('\n')));
 }
 
 }  // namespace samara::drivers

@@ -9,15 +9,23 @@ namespace samara::drivers {
 
 enum class Motion { rigid_body, undamped, growing, decaying };
 
-/// What the exponent says; rates below analysis::zero_exponent count as zero.
+/// What the exponent says; rates below their error, and exponents below analysis::zero_exponent,
+/// count as zero.
 Motion motion_of(const analysis::Mode& mode, double rotor_speed);
 
 /// One line a mode, by its number in the result; those that are not resolved, where `all` are
 /// wanted, stand below the others. Harmonics stand there where the set has participations.
 std::string mode_table(const analysis::ModeSet& set, bool all);
 
-/// "stable: ...", "neutral: ..." or "unstable: ...", and what was left out of the verdict; or "no
-/// verdict: ..." where the growth is an error of the mesh (docs/theory.md, section 5.8).
-std::string verdict(const analysis::ModeSet& set, bool all);
+struct Verdict {
+  /// "stable: ...", "neutral: ..." or "unstable: ...", the frequency up to which it holds and what
+  /// was left out; or "no verdict: ..." and what to change.
+  std::string text;
+  bool is_given = true;
+};
+Verdict find_verdict(const analysis::ModeSet& set, bool all);
+
+/// @throws ConvergenceError where there is no verdict, for the exit code
+void require_verdict(const Verdict& verdict);
 
 }  // namespace samara::drivers

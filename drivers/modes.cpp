@@ -1,5 +1,6 @@
 // samara modes: the modes of constant tangents, of a parked rotor or a balanced one in its axes.
 #include "samara/analysis/constant_modes.hpp"
+#include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
@@ -10,6 +11,7 @@
 #include "mode_report.hpp"
 #include "progress.hpp"
 #include "table.hpp"
+#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -25,6 +27,7 @@ std::string headline(const io::Case& input, const analysis::ModeSet& set) {
 }  // namespace
 
 void run_modes(const Job& job) {
+  analysis::require_whole_spectrum("modes_");
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
@@ -32,6 +35,7 @@ void run_modes(const Job& job) {
   analysis::TrimOptions options = job.input.trim;
   if (turbine.speed == 0.0) options.harmonics = 0;
   const analysis::Trim trim = analysis::find_trim(system, options, progress);
+  note_roughness(trim, progress);
   if (!trim.solution.is_constant())
     throw InputError(job.input.path +
                      ": the coefficients are periodic, the steady state changes with the "
@@ -39,10 +43,9 @@ void run_modes(const Job& job) {
   const analysis::ModeSet set = analysis::find_constant_modes(system, trim.solution);
   progress.finish();
   if (!is_first) return;
+  const Verdict verdict = find_verdict(set, job.all_modes);
   deliver(
-      job,
-      headline(job.input, set) + mode_table(set, job.all_modes) + "\n" +
-          verdict(set, job.all_modes),
+      job, headline(job.input, set) + mode_table(set, job.all_modes) + "\n" + verdict.text,
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
@@ -50,6 +53,7 @@ void run_modes(const Job& job) {
         file.write_modes(set);
       },
       [&](const std::string& path) { io::write_mode_table(path, set); });
+  require_verdict(verdict);
 }
 
 }  // namespace samara::drivers

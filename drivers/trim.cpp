@@ -12,6 +12,7 @@
 #include "masses.hpp"
 #include "progress.hpp"
 #include "table.hpp"
+#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -23,9 +24,6 @@ constexpr int instants = 180;
 
 /// Relative to the size of what it is part of: below it a value is rounding.
 constexpr double rounding = 1e-9;
-
-/// Of the largest load: a residual between the samples beyond it is said to be rough.
-constexpr double rough_residual = 1e-3;
 
 /// A line of the table: an unknown that people ask for.
 struct Output {
@@ -131,10 +129,13 @@ std::string explain(const std::string& reason) {
   return reason;
 }
 
-/// A free generator holds the mean speed, by its law and a constant torque beside it.
-std::string generator_words(const io::Case& input, double load, double zero) {
+/// A free generator holds the mean speed, by its law and a constant torque beside it. The load that
+/// was found acts at the shaft, the words count at the generator.
+std::string generator_words(const io::Case& input, double shaft_load, double shaft_zero) {
   const model::ShaftDefinition& shaft = input.turbine.shaft;
-  const double law = shaft.generator.law.at(shaft.speed).torque;
+  const double law = shaft.generator.law.at(shaft.generator_speed()).torque;
+  const double load = shaft_load / std::abs(shaft.gear_ratio);
+  const double zero = shaft_zero / std::abs(shaft.gear_ratio);
   const auto number = [zero](double torque) {
     return std::abs(torque) < zero ? std::string("0") : general(torque, 4);
   };
@@ -161,9 +162,8 @@ std::string summary(const io::Case& input, const Trim& trim) {
   text += "residual     " + scientific(trim.residual, 1) + " at the samples, " +
           scientific(trim.residual_between, 1) + " between them [N, N m]; largest load " +
           general(trim.load_level, 4) + "\n";
-  if (trim.residual_between > rough_residual * trim.load_level)
-    text += "rough        loads out of balance between the samples by more than " +
-            general(rough_residual, 1) + " of the largest; hint: more trim.harmonics\n";
+  if (const std::string words = roughness(trim); !words.empty())
+    text += "rough        " + words + "\n";
   for (const analysis::HeldCoordinate& held : trim.held) {
     const double zero = rounding * std::max(trim.load_level, 1.0);
     if (held.name == "generator") {

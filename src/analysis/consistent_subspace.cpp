@@ -1,14 +1,14 @@
 #include "samara/analysis/consistent_subspace.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include <Eigen/QR>
 
 #include "samara/analysis/linear_algebra.hpp"
-#include "samara/base/error.hpp"
-
 #include "samara/analysis/sparse_parts.hpp"
+#include "samara/base/error.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -57,8 +57,11 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
   for (std::size_t i = 0; i < n; ++i) {
     if (system.rows()[i] == system::RowRole::kinematic)
       kinematic_.push_back(static_cast<PetscInt>(i));
+    if (system.rows()[i] == system::RowRole::balance) balance_.push_back(static_cast<PetscInt>(i));
     if (system.unknowns()[i].role == system::UnknownRole::velocity)
       velocities_.push_back(static_cast<PetscInt>(i));
+    if (system.unknowns()[i].role == system::UnknownRole::internal && !carried_[i])
+      reactions_.push_back(static_cast<PetscInt>(i));
   }
   if (kinematic_.size() != velocities_.size())
     throw InternalError("kinematic rows and velocities differ in number");
@@ -193,6 +196,71 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
   for (std::size_t i = 0; i < velocities_.size(); ++i)
     z.row(velocities_[i]) = v.row(static_cast<Eigen::Index>(i));
   return z;
+}
+
+Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
+                                             double rate_step) const {
+  const Eigen::Index d = degrees_of_freedom();
+  Eigen::MatrixXd state(2 * d, z.cols());
+  state.topRows(d) = coordinates_of(z);
+  const Eigen::MatrixXd at_rest = basis(t, rate_step)(velocities_, Eigen::seqN(0, d));
+  const Eigen::MatrixXd moving = z(velocities_, Eigen::all) - multiply(at_rest, state.topRows(d));
+
+  // D p_dot + D_eta eta_dot = 0, velocities V of these rates, and M (V - moving) + E_y y = 0 in the
+  // balance rows, with the impulses y of the reactions.
+  const SparseTangents tangents = tangents_on(system_, solution_, t);
+  const Sparse inertia = part(tangents.M, balance_, velocities_);
+  const std::array<const std::vector<PetscInt>*, 3> rows{&constraints_, &kinematic_, &balance_};
+  const std::array<const std::vector<PetscInt>*, 4> columns{&tied_, &coordinates_, &velocities_,
+                                                            &reactions_};
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::Index n = 0;
+  for (const std::vector<PetscInt>* some : columns) n += static_cast<Eigen::Index>(some->size());
+  Eigen::VectorXd row_largest = Eigen::VectorXd::Zero(n);
+  const auto put = [&](std::size_t row, std::size_t column, const Sparse& values,
+                       const Eigen::VectorXd& factors) {
+    Eigen::Index first_row = 0;
+    Eigen::Index first_column = 0;
+    for (std::size_t i = 0; i < row; ++i) first_row += static_cast<Eigen::Index>(rows[i]->size());
+    for (std::size_t i = 0; i < column; ++i)
+      first_column += static_cast<Eigen::Index>(columns[i]->size());
+    for (Eigen::Index j = 0; j < values.outerSize(); ++j)
+      for (Sparse::InnerIterator it(values, j); it; ++it) {
+        const double value = it.value() * factors(j);
+        entries.emplace_back(first_row + it.row(), first_column + j, value);
+        row_largest(first_row + it.row()) =
+            std::max(row_largest(first_row + it.row()), std::abs(value));
+      }
+  };
+  const auto ones = [](const std::vector<PetscInt>& some) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Ones(static_cast<Eigen::Index>(some.size()));
+  };
+  const Eigen::Map<const Eigen::VectorXd> eta_scale(scale_.data(), d);
+  put(0, 0, part(tangents.K, constraints_, tied_), ones(tied_));
+  put(0, 1, part(tangents.K, constraints_, coordinates_), eta_scale);
+  put(1, 0, part(tangents.M, kinematic_, tied_), ones(tied_));
+  put(1, 1, part(tangents.M, kinematic_, coordinates_), eta_scale);
+  put(1, 2, part(tangents.K, kinematic_, velocities_), ones(velocities_));
+  put(2, 2, inertia, ones(velocities_));
+  // Impulses count by the inertia that they act on: 5.3.
+  std::vector<double> levels;
+  for (Eigen::Index i = row_largest.size() - static_cast<Eigen::Index>(balance_.size());
+       i < row_largest.size(); ++i)
+    if (row_largest(i) > 0.0) levels.push_back(row_largest(i));
+  std::sort(levels.begin(), levels.end());
+  const double impulse = levels.empty() ? 1.0 : levels[levels.size() / 2];
+  put(2, 3, part(tangents.K, balance_, reactions_), impulse * ones(reactions_));
+  Sparse matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd row_scale =
+      row_largest.unaryExpr([](double a) { return a > 0.0 ? 1.0 / a : 1.0; });
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n, z.cols());
+  const auto balances = static_cast<Eigen::Index>(balance_.size());
+  right.bottomRows(balances) = row_scale.tail(balances).asDiagonal() * (inertia * moving);
+  const Eigen::MatrixXd found =
+      SparseSolver(row_scale.asDiagonal() * matrix, "momenta").solve(right);
+  state.bottomRows(d) = found.middleRows(static_cast<Eigen::Index>(tied_.size()), d);
+  return state;
 }
 
 void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,

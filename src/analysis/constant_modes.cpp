@@ -6,13 +6,14 @@
 #include <numbers>
 #include <numeric>
 
-#include <Eigen/LU>
-
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/mode_error.hpp"
 #include "samara/base/error.hpp"
+
+#include "energy_coordinates.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -33,7 +34,6 @@ constexpr std::size_t slow_modes = 12;
 /// Below this, relative to the shift, an exponent is zero: a double zero in double precision.
 constexpr double zero_to_shift = 1e-7;
 
-/// The pair of consecutive images that stands for a state: see find_spectrum.
 struct Spectrum {
   std::vector<Complex> exponents;
   Eigen::MatrixXcd shapes;  ///< size x modes
@@ -61,10 +61,11 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
   }
 }
 
-/// B = (K + sigma M)^-1 M maps a consistent state with exponent lambda to itself times
-/// 1 / (sigma - lambda), and a state is known by eta of itself and of its image.
+/// y of (K + sigma M) y = M x is a consistent state where x is one, with the rate sigma y - x: in
+/// (eta, eta_dot) the map from x to y is (sigma - A)^-1, and a state with exponent lambda becomes
+/// itself times 1 / (sigma - lambda). `rate`: of the energy coordinates.
 Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                       const ConsistentSubspace& subspace, double sigma) {
+                       const ConsistentSubspace& subspace, double sigma, double rate) {
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Mat> jacobian = system.make_jacobian();
@@ -77,26 +78,19 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   solver.factor(jacobian.get());
   const Eigen::Index d = subspace.degrees_of_freedom();
   Eigen::MatrixXd states = subspace.basis(0.0, 1e-3 / sigma);
-  states.rightCols(d) *= sigma;
-  Eigen::MatrixXd shapes;
-  std::vector<Eigen::MatrixXd> eta{subspace.coordinates_of(states)};
-  for (int image = 0; image < 2; ++image) {
-    states = M * states;
-    solver.solve(states);
-    states *= sigma;
-    if (image == 0) shapes = states;
-    eta.push_back(subspace.coordinates_of(states));
-  }
-  Eigen::MatrixXd first(2 * d, 2 * d);
-  Eigen::MatrixXd second(2 * d, 2 * d);
-  first << eta[0], eta[1] - eta[0];
-  second << eta[1], eta[2] - eta[1];
-  const Eigen::MatrixXd map = first.partialPivLu().solve(second);
+  const EnergyCoordinates coordinates(system, states, rate);
+  coordinates.divide(states);
+  Eigen::MatrixXd shapes = M * states;
+  solver.solve(shapes);
+  Eigen::MatrixXd images(2 * d, 2 * d);
+  images.topRows(d) = subspace.coordinates_of(shapes);
+  images.bottomRows(d) = sigma * images.topRows(d) - subspace.coordinates_of(states);
+  const Eigen::MatrixXd map = coordinates.of(images);
   const Eigenpairs pairs = dense_eigenpairs(map, "modes_");
   Spectrum spectrum;
   spectrum.shapes.resize(system.size(), 0);
   for (std::size_t i = 0; i < pairs.values.size(); ++i) {
-    const Complex exponent = sigma * (1.0 - 1.0 / pairs.values[i]);
+    const Complex exponent = sigma - 1.0 / pairs.values[i];
     if (exponent.imag() < 0.0) continue;
     const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
     const auto keep = [&](Complex value, const Eigen::VectorXcd& combination) {
@@ -171,14 +165,14 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   const double speed = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const double rate = speed > 0.0 ? speed : 1.0;
   const auto checked = [&](double sigma) {
-    return CheckedSpectrum{sigma, find_spectrum(system, solution, subspace, sigma),
-                           find_spectrum(system, solution, subspace, check_shift * sigma)};
+    return CheckedSpectrum{sigma, find_spectrum(system, solution, subspace, sigma, rate),
+                           find_spectrum(system, solution, subspace, check_shift * sigma, rate)};
   };
   // The error of an exponent is about that of max(sigma, |lambda|^2 / sigma): the slow modes, which
   // matter, and the fast ones, which a fine mesh brings along, want a shift each.
   const double zero = zero_exponent * rate;
   const std::vector<double> moduli =
-      moduli_of(find_spectrum(system, solution, subspace, rate), zero);
+      moduli_of(find_spectrum(system, solution, subspace, rate, rate), zero);
   const CheckedSpectrum slow = checked(middle_of(moduli, slow_modes, rate));
   const CheckedSpectrum fast = checked(middle_of(moduli, moduli.size(), rate));
   const double border = widest_gap(moduli_of(slow.found, zero), slow.sigma, fast.sigma);
@@ -209,7 +203,9 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   });
   HarmonicEnergy energy(system);
   const Eigen::VectorXcd one = Eigen::VectorXcd::Ones(1);
+  const std::vector<system::MeshError> elements = system.mesh_errors();
   ModeSet set;
+  set.states = 2 * subspace.degrees_of_freedom();
   set.degrees_of_freedom = subspace.degrees_of_freedom();
   set.rotor_speed = speed;
   set.conservative = system.is_conservative();
@@ -232,6 +228,13 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     mode.residual =
         mode.exponent == 0.0 ? 0.0 : distance(mode.exponent, found.spectrum->check, zero);
     mode.resolved = mode.residual <= largest_difference;
+    mode.step_exponent = mode.exponent;
+    mode.rounding_error = mode.residual;
+    set_growth_error(mode, {}, mode.exponent);
+    if (mode.resolved && mode.exponent != 0.0)
+      add_mesh_error(mode, find_mesh_error(elements, shape, mode.exponent, mode.kinetic_energy));
+    if (!mode.resolved) set.reach = std::min(set.reach, std::abs(mode.exponent));
+    set.found += found.exponent.imag() != 0.0 ? 2 : 1;
     const double size = std::abs(mode.exponent);
     mode.damping_ratio = size > 0.0 ? -mode.exponent.real() / size : 0.0;
     set.modes.push_back(mode);

@@ -3,21 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <sstream>
 #include <string>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/mode_error.hpp"
 #include "samara/analysis/monodromy.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
+#include "energy_coordinates.hpp"
 #include "ranks.hpp"
 #include "signal_history.hpp"
 
@@ -27,9 +27,14 @@ namespace {
 using Complex = std::complex<double>;
 using namespace std::complex_literals;
 
-/// Half the phase of a step beyond which a mode counts as unresolved.
+/// |lambda| dt / 2 beyond which a mode counts as unresolved.
 constexpr double largest_half_phase = 0.7;
 constexpr double largest_residual = 1e-6;
+/// Of the largest multiplier: a smaller one is rounding.
+constexpr double least_multiplier = 1e-12;
+/// A multiplier below the first that leaves more than the second of its exponent open is rounding.
+constexpr double small_multiplier = 1e-6;
+constexpr double largest_rounding = 1e-2;
 /// Share of the kinetic energy of a resolved mode in harmonics beyond that phase, at the most: more
 /// is a mixture of modes so fast that they all look alike, with multipliers near -1 or 1.
 constexpr double largest_fast_share = 0.01;
@@ -40,9 +45,12 @@ constexpr int shape_samples = 24;
 /// Instants a sector that name a mode which is not resolved.
 constexpr Eigen::Index label_samples = 3;
 
-/// Of the middles of the steps on both sides of t = 0, see Analysis::smooth_velocities.
-constexpr std::array<double, 4> smoothing_weights{93.0 / 128.0, -37.0 / 128.0, 9.0 / 128.0,
-                                                  -1.0 / 128.0};
+/// Of the ends of the first steps: what changes sign with each, see Analysis::smooth_velocities.
+constexpr std::array<double, 9> alternating_weights{1.0 / 256.0,   -8.0 / 256.0, 28.0 / 256.0,
+                                                    -56.0 / 256.0, 70.0 / 256.0, -56.0 / 256.0,
+                                                    28.0 / 256.0,  -8.0 / 256.0, 1.0 / 256.0};
+/// The directions that change sign turn with the azimuth: one pass leaves a few hundredths.
+constexpr int smoothing_passes = 2;
 
 class Analysis {
  public:
@@ -87,60 +95,58 @@ class Analysis {
   void integrate() {
     const Eigen::Index d = subspace_.degrees_of_freedom();
     Eigen::MatrixXd start = subspace_.basis(0.0, 0.5 * dt_);
-    start.rightCols(d) *= speed_;  // a rate of one per radian of rotor azimuth
+    coordinates_ = EnergyCoordinates(system_, start, speed_);
+    coordinates_.divide(start);
     for (Eigen::Index j = ranks_.rank; j < states_; j += ranks_.size) own_.push_back(j);
-    Eigen::MatrixXd z(start.rows(), static_cast<Eigen::Index>(own_.size()));
-    for (std::size_t j = 0; j < own_.size(); ++j)
-      z.col(static_cast<Eigen::Index>(j)) = start.col(own_[j]);
+    Eigen::MatrixXd z = start(Eigen::all, own_);
     const Eigen::Index shapes = (span_ + stride_ - 1) / stride_;
     shapes_.resize(z.rows() * shapes, z.cols());
-    first_.setZero(states_, states_);
-    last_.setZero(states_, states_);
     smooth_velocities(start.rightCols(d), z);
     StepPropagator propagator(system_, solution_, subspace_.carried(), dt_);
-    put_coordinates(z, first_, 0);
     for (long k = 0; k <= span_; ++k) {
+      if (k == span_) take_states(z);
       const Eigen::MatrixXd& middle = propagator.advance(k, z);
       if (k == span_) end_ = middle;
       if (k < span_) {
         history_.append(middle);
         if (k % stride_ == 0) shapes_.middleRows(k / stride_ * z.rows(), z.rows()) = middle;
       }
-      if (k == 0) put_coordinates(z, first_, d);
-      if (k == span_ - 1) put_coordinates(z, last_, 0);
       observer_.progress("floquet", k + 1, span_ + 1);
     }
-    put_coordinates(z, last_, d);
-    ranks_.sum(first_);
-    ranks_.sum(last_);
+  }
+
+  /// The map over a sector, P (eta, eta_dot) in the coordinates of the start: its columns.
+  void take_states(const Eigen::MatrixXd& z) {
+    map_.setZero(states_, states_);
+    map_(Eigen::all, own_) =
+        coordinates_.of(turned(subspace_.state_of(static_cast<double>(span_) * dt_, z, 0.5 * dt_)));
+    ranks_.sum(map_);
   }
 
   /// Velocities that obey the constraints at t = 0 differ from those of a smooth sequence of steps
-  /// by O(dt^2), and that part would change sign with every step for ever. The middles of the
-  /// steps around t = 0 hardly feel it: sum_m w_m (V_(m-1/2) + V_-(m-1/2)) is the value at 0 of the
-  /// sequence whose means they are, times 1 - sin^8(omega dt / 2). Only what no rate of eta makes,
-  /// `admissible`, is corrected: fast modes are not smooth at all, and keep their velocities.
+  /// by O(dt^2), and that part would change sign with every step for ever. The eighth difference of
+  /// the steps' ends is this part and, of a motion of frequency omega, sin^8(omega dt / 2). Steps
+  /// go forward only: a step back multiplies a decay with lambda dt / 2 = -1 by infinity. Only what
+  /// no rate of eta makes, `admissible`, is corrected: fast modes are not smooth at all, and keep
+  /// their velocities.
   void smooth_velocities(const Eigen::MatrixXd& admissible, Eigen::MatrixXd& z) const {
-    Eigen::MatrixXd smooth = Eigen::MatrixXd::Zero(z.rows(), z.cols());
-    for (const double step : {dt_, -dt_}) {
-      StepPropagator propagator(system_, solution_, subspace_.carried(), step);
-      Eigen::MatrixXd moved = z;
-      for (std::size_t m = 0; m < smoothing_weights.size(); ++m)
-        smooth += smoothing_weights[m] * propagator.advance(static_cast<long>(m), moved);
-    }
     std::vector<PetscInt> velocities;
     for (Eigen::Index i = 0; i < z.rows(); ++i)
       if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::velocity)
         velocities.push_back(static_cast<PetscInt>(i));
-    const Eigen::MatrixXd change = smooth(velocities, Eigen::all) - z(velocities, Eigen::all);
-    const Eigen::MatrixXd T = admissible(velocities, Eigen::all);
-    z(velocities, Eigen::all) += change - T * T.householderQr().solve(change);
-  }
-
-  void put_coordinates(const Eigen::MatrixXd& z, Eigen::MatrixXd& target, Eigen::Index row) const {
-    const Eigen::MatrixXd eta = subspace_.coordinates_of(z);
-    for (std::size_t j = 0; j < own_.size(); ++j)
-      target.block(row, own_[j], eta.rows(), 1) = eta.col(static_cast<Eigen::Index>(j));
+    StepPropagator propagator(system_, solution_, subspace_.carried(), dt_);
+    for (int pass = 0; pass < smoothing_passes; ++pass) {
+      Eigen::MatrixXd moved = z;
+      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(z.rows(), z.cols());
+      for (std::size_t m = 0; m < alternating_weights.size(); ++m) {
+        if (m > 0) propagator.advance(static_cast<long>(m) - 1, moved);
+        change(velocities, Eigen::all) -= alternating_weights[m] * moved(velocities, Eigen::all);
+      }
+      const Eigen::MatrixXd rates =
+          subspace_.state_of(0.0, change, 0.5 * dt_).bottomRows(subspace_.degrees_of_freedom());
+      z(velocities, Eigen::all) += change(velocities, Eigen::all) -
+                                   admissible(velocities, Eigen::all) * coordinates_.rates(rates);
+    }
   }
 
   /// P on eta: the coordinates are unknowns, each by a scale of its own, and P renames and signs
@@ -166,54 +172,65 @@ class Analysis {
     return result;
   }
 
-  /// Two consecutive states are a state and its rate, without ever asking for velocities: the
-  /// mean and the difference, in rotor angle, of eta.
-  Eigen::MatrixXd mean_and_rate(const Eigen::MatrixXd& pairs) const {
-    const Eigen::Index d = pairs.rows() / 2;
-    Eigen::MatrixXd result(pairs.rows(), pairs.cols());
-    result.topRows(d) = 0.5 * (pairs.topRows(d) + pairs.bottomRows(d));
-    result.bottomRows(d) = (pairs.bottomRows(d) - pairs.topRows(d)) / (dt_ * speed_);
-    return result;
-  }
-
   Complex principal_exponent(Complex multiplier) const {
     return std::log(multiplier) * static_cast<double>(sectors_) / system_.period();
   }
 
-  bool is_zero(Complex exponent) const { return std::abs(exponent) < zero_exponent * speed_; }
-
-  /// Whether the step resolves an oscillation of its sequence of states, at omega [rad/s].
-  bool in_reach(double omega) const {
-    const double half_phase = 0.5 * std::abs(omega) * dt_;
-    return half_phase < 0.5 * std::numbers::pi && std::tan(half_phase) <= largest_half_phase;
+  /// Of a multiplier [1/s].
+  double decay_of(double size) const {
+    return -std::log(size) * static_cast<double>(sectors_) / system_.period();
   }
 
-  void keep(Complex multiplier, const Eigen::VectorXcd& vector) {
+  bool is_zero(Complex exponent) const { return std::abs(exponent) < zero_exponent * speed_; }
+
+  /// Whether the step resolves an exponent, lambda of the motion itself.
+  bool in_reach(Complex exponent) const {
+    return 0.5 * std::abs(exponent.imag()) * dt_ <= largest_half_phase &&
+           0.5 * std::abs(exponent.real()) * dt_ <= largest_half_phase;
+  }
+  /// The exponent of a motion in the harmonic k from the principal one of the steps.
+  Complex unwarped_at(Complex principal, int k) const {
+    return unwarped(principal + Complex(0.0, k * speed_), dt_);
+  }
+
+  void keep(Complex multiplier, const Eigen::VectorXcd& vector, double condition) {
     multipliers_.push_back(multiplier);
+    conditions_.push_back(condition);
     vectors_.conservativeResize(states_, vectors_.cols() + 1);
     vectors_.col(vectors_.cols() - 1) = vector;
   }
 
   void solve_eigenproblem() {
-    const Eigen::PartialPivLU<Eigen::MatrixXd> first(mean_and_rate(first_));
-    const Eigen::MatrixXd map = first.solve(mean_and_rate(turned(last_)));
-    const Eigenpairs pairs = dense_eigenpairs(map, "floquet_");
+    const Eigenpairs pairs = dense_eigenpairs(map_, "floquet_");
+    const Eigen::VectorXd conditions = condition_numbers(pairs);
+    double largest = 1.0;
+    for (const Complex value : pairs.values) largest = std::max(largest, std::abs(value));
     for (std::size_t i = 0; i < pairs.values.size(); ++i) {
+      if (std::abs(pairs.values[i]) < least_multiplier * largest) {
+        ++deflated_;
+        deflated_rate_ = std::min(deflated_rate_, decay_of(least_multiplier * largest));
+        continue;
+      }
       if (pairs.values[i].imag() < 0.0) continue;  // its conjugate stands for it
       const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
+      const double condition = conditions(static_cast<Eigen::Index>(i));
       const Complex exponent = principal_exponent(pairs.values[i]);
       if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
         // A double zero that rounding has split into a pair: two real rows, as on another day.
-        keep(pairs.values[i].real(), real_part(vector));
-        keep(pairs.values[i].real(), real_part(vector));
+        keep(pairs.values[i].real(), real_part(vector), condition);
+        keep(pairs.values[i].real(), real_part(vector), condition);
       } else {
-        keep(pairs.values[i], vector);
+        keep(pairs.values[i], vector, condition);
       }
     }
     if (ranks_.size > 1) {  // one rank decides
       int count = static_cast<int>(multipliers_.size());
       MPI_Bcast(&count, 1, MPI_INT, 0, ranks_.comm);
+      MPI_Bcast(&deflated_, 1, MPI_INT, 0, ranks_.comm);
+      MPI_Bcast(&deflated_rate_, 1, MPI_DOUBLE, 0, ranks_.comm);
       multipliers_.resize(static_cast<std::size_t>(count));
+      conditions_.resize(static_cast<std::size_t>(count));
+      MPI_Bcast(conditions_.data(), count, MPI_DOUBLE, 0, ranks_.comm);
       vectors_.conservativeResize(states_, count);
       MPI_Bcast(multipliers_.data(), 2 * count, MPI_DOUBLE, 0, ranks_.comm);
       MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0, ranks_.comm);
@@ -368,7 +385,7 @@ class Analysis {
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       const Complex exponent = exponents_[m];
       const bool may_be_rigid = exponent.imag() == 0.0 || is_zero(exponent);
-      const bool fine = may_be_rigid || in_reach(exponent.imag() + modes_[m].harmonic * speed_);
+      const bool fine = may_be_rigid || in_reach(unwarped_at(exponent, modes_[m].harmonic));
       (fine && modes_[m].residual <= largest_residual ? trusted : others)
           .push_back(static_cast<Eigen::Index>(m));
     }
@@ -397,7 +414,8 @@ class Analysis {
   }
 
   /// A real growth or decay of the joints alone, and what counts as zero, is no oscillation: the
-  /// harmonics that the rotor sees of it are those of its own turning, and k stays 0.
+  /// harmonics that the rotor sees of it are those of its own turning, and k stays 0. What changes
+  /// sign with every step, or nearly so, is none of them: a decay too fast for the step.
   void settle_rigid_body_modes() {
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
     if (ranks_.rank == 0) {
@@ -406,7 +424,7 @@ class Analysis {
         mode.exponent = exponents_[m];
         const bool real =
             exponents_[m].imag() == 0.0 && is_rigid_body(system_, mode_shapes_[m], mode);
-        if (!is_zero(exponents_[m]) && !real)
+        if ((!is_zero(exponents_[m]) && !real) || fast_share(m) > largest_fast_share)
           harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
       }
     }
@@ -421,21 +439,26 @@ class Analysis {
   double fast_share(std::size_t m) const {
     double share = 0.0;
     for (Eigen::Index i = 0; i < steps_; ++i) {
-      const double harmonic = static_cast<double>(i - steps_ / 2);
-      if (!in_reach(exponents_[m].imag() + harmonic * speed_))
+      const auto harmonic = static_cast<int>(i - steps_ / 2);
+      if (!in_reach(unwarped_at(exponents_[m], harmonic)))
         share += participation_(static_cast<Eigen::Index>(m), i);
     }
     return share;
   }
 
-  /// Moves the dominant harmonic into the exponent and chooses the conjugate with Im >= 0.
+  /// Moves the dominant harmonic into the exponent, maps the step back and chooses the conjugate
+  /// with Im >= 0.
   void settle(std::size_t m) {
     Mode& mode = modes_[m];
     const bool slow = fast_share(m) <= largest_fast_share;
-    Complex exponent = exponents_[m];
-    exponent += Complex(0.0, mode.harmonic * speed_);
-    if (exponent.imag() < -zero_exponent * speed_) {
-      exponent = std::conj(exponent);
+    const WarpingSpread spread =
+        warping_spread(exponents_[m], participation_.row(static_cast<Eigen::Index>(m)),
+                       -static_cast<int>(steps_ / 2), mode.harmonic, speed_, dt_);
+    mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
+    mode.exponent = unwarped(mode.step_exponent, dt_);
+    if (mode.exponent.imag() < -zero_exponent * speed_) {
+      mode.exponent = std::conj(mode.exponent);
+      mode.step_exponent = std::conj(mode.step_exponent);
       mode.harmonic = -mode.harmonic;
       mode.multiplier = std::conj(mode.multiplier);
       const auto row = static_cast<Eigen::Index>(m);
@@ -447,20 +470,42 @@ class Analysis {
       }
       if (!mode_shapes_.empty()) mode_shapes_[m] = mode_shapes_[m].conjugate().eval();
     }
-    mode.exponent = exponent;
-    mode.damping_ratio = is_zero(exponent) ? 0.0 : -exponent.real() / std::abs(exponent);
-    const bool moderate = 0.5 * std::abs(exponent.real()) * dt_ <= largest_half_phase;
-    mode.resolved =
-        slow && moderate && in_reach(exponent.imag()) && mode.residual <= largest_residual;
+    const double size = std::abs(mode.exponent);
+    mode.damping_ratio = is_zero(mode.exponent) ? 0.0 : -mode.exponent.real() / size;
+    if (!is_zero(mode.exponent)) {
+      mode.step_error = spread.modulus / size;
+      mode.rounding_error = conditions_[m] * relative_residual(m) /
+                            (size * system_.period() / static_cast<double>(sectors_));
+    }
+    set_growth_error(mode, spread, exponents_[m]);
+    mode.resolved = slow && in_reach(mode.exponent) && mode.residual <= largest_residual;
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
   }
 
+  double relative_residual(std::size_t m) const {
+    return modes_[m].residual / std::abs(multipliers_[m]);
+  }
+
+  /// Whether a multiplier is so small that rounding has made it.
+  bool is_rounding(std::size_t m) const {
+    return std::abs(multipliers_[m]) < small_multiplier &&
+           modes_[m].rounding_error > largest_rounding;
+  }
+
   Floquet finish() {
     for (std::size_t m = 0; m < modes_.size(); ++m) settle(m);
-    std::vector<std::size_t> order(modes_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::size_t> order;
+    for (std::size_t m = 0; m < modes_.size(); ++m) {
+      if (is_rounding(m)) {
+        deflated_ += multipliers_[m].imag() == 0.0 ? 1 : 2;
+        deflated_rate_ = std::min(deflated_rate_, decay_of(std::abs(multipliers_[m])));
+      } else {
+        order.push_back(m);
+      }
+    }
     std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+      if (modes_[a].resolved != modes_[b].resolved) return modes_[a].resolved;
       return sorting_frequency(modes_[a].exponent, speed_) <
              sorting_frequency(modes_[b].exponent, speed_);
     });
@@ -473,9 +518,20 @@ class Analysis {
     result.set.step = dt_;
     result.set.conservative = system_.is_conservative();
     result.set.first_harmonic = -steps_ / 2;
-    result.set.participation.resize(participation_.rows(), participation_.cols());
+    result.set.states = static_cast<int>(states_);
+    result.set.deflated = deflated_;
+    for (const std::size_t m : order) result.set.found += multipliers_[m].imag() == 0.0 ? 1 : 2;
+    if (result.set.found + deflated_ != result.set.states)
+      throw InternalError("floquet: " + std::to_string(result.set.found) + " exponents found and " +
+                          std::to_string(deflated_) + " deflated of " +
+                          std::to_string(result.set.states));
+    result.set.deflated_rate = deflated_rate_;
+    result.set.reach = 2.0 * largest_half_phase / dt_;
+    result.set.participation.resize(static_cast<Eigen::Index>(order.size()), participation_.cols());
     for (std::size_t i = 0; i < order.size(); ++i) {
-      result.set.modes.push_back(modes_[order[i]]);
+      const Mode& mode = modes_[order[i]];
+      result.set.modes.push_back(mode);
+      if (!mode.resolved) result.set.reach = std::min(result.set.reach, std::abs(mode.exponent));
       result.set.participation.row(static_cast<Eigen::Index>(i)) =
           participation_.row(static_cast<Eigen::Index>(order[i]));
       if (!mode_shapes_.empty()) result.set.shapes.push_back(std::move(mode_shapes_[order[i]]));
@@ -485,12 +541,26 @@ class Analysis {
       for (Eigen::Index k = 0; k < columns; ++k)
         result.set.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) *
                                          dt_);
+    find_mesh_errors(result.set);
     label_modes(system_, result.set);
     scale_shapes(system_, result.set);
     for (std::size_t m = 0; m < result.set.shapes.size(); ++m)
       if (!result.set.modes[m].resolved) result.set.shapes[m].resize(0, 0);
     share_labels(result.set);
     return result;
+  }
+
+  /// From the shapes, which only the first rank has.
+  void find_mesh_errors(ModeSet& set) const {
+    const std::vector<system::MeshError> elements = system_.mesh_errors();
+    Eigen::VectorXd errors = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.modes.size()));
+    for (std::size_t m = 0; m < set.shapes.size(); ++m)
+      if (set.modes[m].resolved && !is_zero(set.modes[m].exponent))
+        errors(static_cast<Eigen::Index>(m)) = find_mesh_error(
+            elements, set.shapes[m], set.modes[m].exponent, set.modes[m].kinetic_energy);
+    ranks_.sum(errors);
+    for (std::size_t m = 0; m < set.modes.size(); ++m)
+      add_mesh_error(set.modes[m], errors(static_cast<Eigen::Index>(m)));
   }
 
   /// Names come from the shapes, which only the first rank has.
@@ -521,9 +591,13 @@ class Analysis {
   std::vector<Eigen::Index> own_;     ///< initial states of this rank
   Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th step x own states
   Eigen::MatrixXd end_;               ///< all unknowns in the middle of the step after the sector
-  Eigen::MatrixXd first_, last_;      ///< eta at the first two and the last two instants
+  EnergyCoordinates coordinates_;     ///< of the states at the start
+  Eigen::MatrixXd map_;               ///< of these, over a sector
   std::vector<Complex> multipliers_;  ///< of the sector
-  std::vector<Complex> exponents_;    ///< principal
+  std::vector<double> conditions_;    ///< of these
+  int deflated_ = 0;                  ///< states whose multipliers are rounding
+  double deflated_rate_ = std::numeric_limits<double>::infinity();  ///< of their slowest [1/s]
+  std::vector<Complex> exponents_;                                  ///< principal
   Eigen::MatrixXcd vectors_;
   std::vector<Mode> modes_;
   Eigen::MatrixXd participation_;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <exception>
 #include <optional>
-#include <random>
 #include <sstream>
 
 #include "samara/analysis/free_supports.hpp"
@@ -15,7 +14,6 @@
 namespace samara::analysis {
 namespace {
 
-constexpr double rounding = 1e-12;
 /// A scaled residual that is rounding.
 constexpr double vanished = 1e-13;
 /// Relative: what scaling there and back does to a vector.
@@ -108,33 +106,18 @@ class Balance {
     insert_blocks(multiply(harmonics, sampled.transpose()), matrix);
   }
 
-  /// An AIJ matrix with the pattern of the tangent: every entry of K and M that is not always zero,
-  /// found at a state where everything moves, becomes a block of harmonics.
+  /// An AIJ matrix with the pattern of the tangent: every place of K and M becomes a block of
+  /// harmonics.
   petsc::Handle<Mat> make_matrix() {
-    std::minstd_rand random(1);
-    std::uniform_real_distribution<double> uniform(-0.1, 0.1);
-    pattern_.resize(size_, size_);
-    for (int probe = 0; probe < 2; ++probe) {
-      system_.reference_state(0.0, z_.get());
-      {
-        const petsc::WriteView z(z_.get());
-        const petsc::WriteView z_dot(z_dot_.get());
-        for (PetscInt i = 0; i < system_.size(); ++i) {
-          z[i] += uniform(random);
-          z_dot[i] = uniform(random);
-        }
-      }
-      const double t = (0.37 + probe * 0.29) * system_.period();
-      system_.tangents(t, z_.get(), z_dot_.get(), 1.0 + uniform(random), jacobian_.get(),
-                       mass_.get());
-      const Eigen::SparseMatrix<double, Eigen::RowMajor> found =
-          to_sparse(jacobian_.get()).cwiseAbs();
-      pattern_ = Eigen::SparseMatrix<double, Eigen::RowMajor>(pattern_ + found);
-    }
+    std::vector<Eigen::Triplet<double>> places;
+    const std::vector<std::vector<PetscInt>> rows = system_.pattern();
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (const PetscInt j : rows[i]) places.emplace_back(static_cast<PetscInt>(i), j, 1.0);
     // The load that holds a coordinate stands in the place of its mean.
     for (const system::NeutralCoordinate& coordinate : held_)
-      pattern_.coeffRef(coordinate.row, coordinate.unknown) += 1.0;
-    pattern_.makeCompressed();
+      places.emplace_back(coordinate.row, coordinate.unknown, 1.0);
+    pattern_.resize(size_, size_);
+    pattern_.setFromTriplets(places.begin(), places.end());
     return make_block_matrix();
   }
 
@@ -188,19 +171,15 @@ class Balance {
       const PetscInt* columns = nullptr;
       const PetscScalar* values = nullptr;
       petsc::check(MatGetRow(sample, i, &count, &columns, &values));
-      double largest = 0.0;
-      double outside = 0.0;
       for (PetscInt c = 0; c < count; ++c) {
         const Eigen::Index e = place[static_cast<std::size_t>(columns[c])];
-        largest = std::max(largest, std::abs(values[c]));
         if (e >= 0)
           out(e) = values[c];
-        else
-          outside = std::max(outside, std::abs(values[c]));
+        else if (values[c] != 0.0)
+          throw InternalError("row " + std::to_string(i) +
+                              " of the tangents has an entry in column " +
+                              std::to_string(columns[c]) + ", outside their pattern");
       }
-      // Terms that cancel leave rounding now and then where the pattern has nothing.
-      if (outside > rounding * largest)
-        throw InternalError("the tangents have an entry outside their pattern");
       petsc::check(MatRestoreRow(sample, i, &count, &columns, &values));
       for (Eigen::Index e = first; e < last; ++e)
         place[static_cast<std::size_t>(pattern_.innerIndexPtr()[e])] = -1;
@@ -266,6 +245,7 @@ PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
       context.balance->residual(context.unscale(x), view.data());
     }
     petsc::check(VecPointwiseMult(f, f, context.scaling->rows.get()));
+    context.error = nullptr;  // what a line search has left behind is no cause of what comes
   } catch (const DomainError&) {
     context.error = std::current_exception();
     return SNESSetFunctionDomainError(snes);
@@ -276,7 +256,25 @@ PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
   return 0;
 }
 
-PetscErrorCode form_jacobian(SNES snes, Vec x, Mat, Mat matrix, void* pointer) noexcept {
+/// Here and not in SNES, which would only say that the linear solve failed.
+void factor(SNES snes, Mat operators, Mat matrix) {
+  KSP linear = nullptr;
+  PetscInt iterations = 0;
+  petsc::check(SNESGetKSP(snes, &linear));
+  petsc::check(SNESGetIterationNumber(snes, &iterations));
+  petsc::check(KSPSetOperators(linear, operators, matrix));
+  const FactorFailure failure = set_up(linear);
+  if (failure.reason == PC_NOERROR) return;
+  const std::string text =
+      "trim: " + failure.words + " after " + std::to_string(iterations) + " Newton steps; hint: ";
+  if (!failure.is_singular) throw ConvergenceError(text + failure.hint);
+  throw SingularError(text + (iterations == 0
+                                  ? "something may move that nothing holds, or is held twice"
+                                  : "-trim_snes_monitor shows the steps; a softer load or a "
+                                    "stiffer blade shows whether a steady state exists"));
+}
+
+PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* pointer) noexcept {
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
     const PetscScalar* h = context.unscale(x);
@@ -286,6 +284,7 @@ PetscErrorCode form_jacobian(SNES snes, Vec x, Mat, Mat matrix, void* pointer) n
     context.start = nullptr;
     petsc::check(
         MatDiagonalScale(matrix, context.scaling->rows.get(), context.scaling->columns.get()));
+    factor(snes, operators, matrix);
   } catch (const DomainError&) {
     context.error = std::current_exception();
     return SNESSetJacobianDomainError(snes);
@@ -305,9 +304,14 @@ void fail(SNES solver, const SolverContext& context) {
   petsc::check(SNESGetFunctionNorm(solver, &norm));
   std::ostringstream text;
   if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
-    text << "trim: the matrix is singular after " << iterations
-         << " Newton steps; hint: something may move that nothing holds, or is held twice";
-    throw SingularError(text.str());
+    KSP linear = nullptr;
+    KSPConvergedReason linear_reason = KSP_CONVERGED_ITERATING;
+    petsc::check(SNESGetKSP(solver, &linear));
+    petsc::check(KSPGetConvergedReason(linear, &linear_reason));
+    text << "trim: the linear solve failed after " << iterations << " Newton steps ("
+         << KSPConvergedReasons[linear_reason]
+         << "); hint: leave -trim_ksp and -trim_pc options out";
+    throw ConvergenceError(text.str());
   }
   text << "trim: " << SNESConvergedReasons[reason] << " after " << iterations
        << " Newton steps, scaled residual " << norm;

@@ -62,8 +62,9 @@ int count_alike(const std::vector<std::vector<Image>>& sectors) {
   return alike;
 }
 
-/// R with weight = R^T R, without rows of nothing.
-Eigen::MatrixXd square_root(const EnergyGroup& group) {
+}  // namespace
+
+Eigen::MatrixXd energy_root(const EnergyGroup& group) {
   const auto n = static_cast<Eigen::Index>(group.unknowns.size());
   const Eigen::Map<const Eigen::MatrixXd> weight(group.weight.data(), n, n);
   const Eigen::LDLT<Eigen::MatrixXd> factors(weight);
@@ -78,8 +79,6 @@ Eigen::MatrixXd square_root(const EnergyGroup& group) {
     if (pivots(i) > least) root.row(rows++) = std::sqrt(pivots(i)) * upper.row(i);
   return root.topRows(rows);
 }
-
-}  // namespace
 
 HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors, int share,
                                int shares)
@@ -102,7 +101,7 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors
     const std::vector<std::vector<Image>> images = sectors_of(group, sectors, before);
     const int alike = count_alike(images);
     if (alike == 0) continue;
-    const Eigen::MatrixXd root = std::sqrt(static_cast<double>(alike)) * square_root(group);
+    const Eigen::MatrixXd root = std::sqrt(static_cast<double>(alike)) * energy_root(group);
     const auto least = std::min_element(loads.begin(), loads.end());
     *least += static_cast<std::size_t>(root.rows());
     if (least - loads.begin() != share) continue;

@@ -1,9 +1,12 @@
 #include "samara/analysis/linear_algebra.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
+#include <Eigen/LU>
 #include <petscblaslapack.h>
 
 #include "samara/base/error.hpp"
@@ -27,6 +30,75 @@ PetscErrorCode keep_order(PetscScalar, PetscScalar, PetscScalar, PetscScalar, Pe
                           void*) noexcept {
   *result = 0;
   return 0;
+}
+
+constexpr char room_option[] = "mat_mumps_icntl_14";
+
+std::string prefix_of(KSP solver) {
+  const char* prefix = nullptr;
+  petsc::check(KSPGetOptionsPrefix(solver, &prefix));
+  return prefix == nullptr ? "" : prefix;
+}
+
+bool is_given(KSP solver, const char* option) {
+  PetscBool given = PETSC_FALSE;
+  petsc::check(PetscOptionsHasName(nullptr, prefix_of(solver).c_str(),
+                                   (std::string("-") + option).c_str(), &given));
+  return given != PETSC_FALSE;
+}
+
+bool is_solver_chosen(KSP solver) { return is_given(solver, "pc_factor_mat_solver_type"); }
+
+/// What MUMPS says of its last phase: INFOG(1) and (2) of its user's guide.
+FactorFailure explain_mumps(KSP solver, PC factored, PCFailedReason reason) {
+  Mat factors = nullptr;
+  PetscInt code = 0;
+  PetscInt detail = 0;
+  petsc::check(PCFactorGetMatrix(factored, &factors));
+  petsc::check(MatMumpsGetInfog(factors, 1, &code));
+  petsc::check(MatMumpsGetInfog(factors, 2, &detail));
+  constexpr std::array<int, 2> singular{-6, -10};
+  constexpr std::array<int, 2> no_memory{-7, -13};
+  constexpr std::array<int, 8> no_room{-8, -9, -11, -12, -14, -15, -17, -20};
+  const auto is_one_of = [code](const auto& codes) {
+    return std::find(codes.begin(), codes.end(), code) != codes.end();
+  };
+  const std::string name =
+      "INFOG(1) = " + std::to_string(code) + ", INFOG(2) = " + std::to_string(detail);
+  const std::string room = "-" + prefix_of(solver) + room_option;
+  FactorFailure failure{reason, "MUMPS ended with " + name, "", false, false};
+  if (is_one_of(singular)) {
+    failure.words = "the matrix is singular (MUMPS: " + name + ")";
+    failure.is_singular = true;
+  } else if (is_one_of(no_memory)) {
+    throw InternalError("linear solve (" + prefix_of(solver) +
+                        "): there is not enough memory for the factors (MUMPS: " + name + ")");
+  } else if (is_one_of(no_room)) {
+    failure.words += ": its work array is too small";
+    failure.hint = "a larger " + room;
+    failure.wants_room = !is_given(solver, room_option);
+  } else {
+    failure.hint = "the user's guide of MUMPS has the meaning of these numbers";
+  }
+  return failure;
+}
+
+FactorFailure find_failure(KSP solver) {
+  PC factored = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  petsc::check(KSPGetPC(solver, &factored));
+  petsc::check(PCGetFailedReason(factored, &reason));
+  if (reason == PC_NOERROR) return {};
+  MatSolverType type = nullptr;
+  petsc::check(PCFactorGetMatSolverType(factored, &type));
+  const std::string name = type == nullptr ? "" : type;
+  if (name == MATSOLVERMUMPS) return explain_mumps(solver, factored, reason);
+  FactorFailure failure{reason, "the factorization failed", "", false, false};
+  if (reason == PC_FACTOR_NUMERIC_ZEROPIVOT || reason == PC_FACTOR_STRUCT_ZEROPIVOT)
+    failure.words = "the factorization met a zero pivot";
+  failure.words += " (" + (name.empty() ? "" : name + ": ") + PCFailedReasons[reason] + ")";
+  failure.hint = "-" + prefix_of(solver) + "pc_factor_mat_solver_type mumps";
+  return failure;
 }
 
 }  // namespace
@@ -149,6 +221,28 @@ Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, do
   return scaling;
 }
 
+FactorFailure set_up(KSP solver) {
+  petsc::check(KSPSetUp(solver));
+  for (const char* room : {"100", "300", "1000", "3000"}) {
+    FactorFailure failure = find_failure(solver);
+    if (!failure.wants_room) return failure;
+    // MUMPS takes another size of its work array only before it looks at the pattern.
+    const std::string option = "-" + prefix_of(solver) + room_option;
+    PC factored = nullptr;
+    Mat operators = nullptr;
+    Mat matrix = nullptr;
+    petsc::check(KSPGetPC(solver, &factored));
+    petsc::check(KSPGetOperators(solver, &operators, &matrix));
+    petsc::check(PetscOptionsSetValue(nullptr, option.c_str(), room));
+    petsc::check(PCReset(factored));
+    petsc::check(KSPSetOperators(solver, operators, matrix));
+    const PetscErrorCode code = KSPSetUp(solver);
+    petsc::check(PetscOptionsClearValue(nullptr, option.c_str()));
+    petsc::check(code);
+  }
+  return find_failure(solver);
+}
+
 DirectSolver::DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale)
     : prefix_(std::move(prefix)), scale_(std::move(scale)) {}
 
@@ -168,39 +262,29 @@ void DirectSolver::factor(Mat matrix) {
   }
   apply_scaling(scaling_, matrix);
   petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
-  petsc::check(KSPSetUp(solver_.get()));
   matrix_ = matrix;
-  if (failure() != PC_NOERROR) take_pivoting_solver();
-  if (const PCFailedReason reason = failure(); reason != PC_NOERROR) {
-    PC factored = nullptr;
-    petsc::check(KSPGetPC(solver_.get(), &factored));
-    petsc::check(PCReset(factored));  // or the next matrix would be taken for factored
-    throw SingularError("linear solve (" + prefix_ + "): the matrix is singular (" +
-                        PCFailedReasons[reason] + ")");
+  FactorFailure failure = set_up(solver_.get());
+  if (failure.reason != PC_NOERROR && !is_solver_chosen(solver_.get())) {
+    take_pivoting_solver();
+    failure = set_up(solver_.get());
   }
-}
-
-PCFailedReason DirectSolver::failure() const {
+  if (failure.reason == PC_NOERROR) return;
   PC factored = nullptr;
-  PCFailedReason reason = PC_NOERROR;
   petsc::check(KSPGetPC(solver_.get(), &factored));
-  petsc::check(PCGetFailedReason(factored, &reason));
-  return reason;
+  petsc::check(PCReset(factored));  // or the next matrix would be taken for factored
+  const std::string text = "linear solve (" + prefix_ + "): " + failure.words;
+  if (failure.is_singular) throw SingularError(text);
+  throw ConvergenceError(text + "; hint: " + failure.hint);
 }
 
 /// A beam held at its end has a block without an inverse of its own: rows must change places. The
 /// solver of the user's choice stands.
 void DirectSolver::take_pivoting_solver() {
   PC factored = nullptr;
-  PetscBool chosen = PETSC_FALSE;
-  petsc::check(
-      PetscOptionsHasName(nullptr, prefix_.c_str(), "-pc_factor_mat_solver_type", &chosen));
-  if (chosen != PETSC_FALSE) return;
   petsc::check(KSPGetPC(solver_.get(), &factored));
   petsc::check(PCReset(factored));
   petsc::check(PCFactorSetMatSolverType(factored, MATSOLVERMUMPS));
   petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
-  petsc::check(KSPSetUp(solver_.get()));
 }
 
 /// Of one column, a new one each time.
@@ -318,6 +402,51 @@ Eigen::SparseMatrix<double> to_sparse(Mat matrix) {
   return sparse;
 }
 
+namespace {
+
+/// Types of SLEPc's that find a few eigenvalues only do not accept the order of all.
+void solve_whole(EPS solver, const std::string& prefix) {
+  const PetscErrorCode code = EPSSolve(solver);
+  if (code == PETSC_ERR_SUP || code == PETSC_ERR_USER_INPUT) {
+    EPSType type = nullptr;
+    petsc::check(EPSGetType(solver, &type));
+    throw InputError("-" + prefix + "eps_type " + type +
+                     ": SLEPc does not find all eigenvalues with it; hint: lapack");
+  }
+  petsc::check(code);
+}
+
+}  // namespace
+
+void require_whole_spectrum(const std::string& prefix) {
+  constexpr std::array partial{"nev",
+                               "all",
+                               "interval",
+                               "target",
+                               "target_real",
+                               "target_imaginary",
+                               "target_magnitude",
+                               "largest_magnitude",
+                               "smallest_magnitude",
+                               "largest_real",
+                               "smallest_real",
+                               "largest_imaginary",
+                               "smallest_imaginary",
+                               "hermitian",
+                               "gen_hermitian",
+                               "pos_gen_non_hermitian",
+                               "gen_indefinite"};
+  for (const char* name : partial) {
+    const std::string option = "-" + prefix + "eps_" + name;
+    PetscBool given = PETSC_FALSE;
+    petsc::check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
+    if (given != PETSC_FALSE)
+      throw InputError(option +
+                       ": all eigenvalues are computed, of a matrix without symmetry; "
+                       "hint: leave the option out");
+  }
+}
+
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& prefix) {
   const auto n = static_cast<PetscInt>(matrix.rows());
   Eigenpairs pairs;
@@ -336,7 +465,8 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
   petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_WHICH_USER));
   petsc::check(EPSSetEigenvalueComparison(solver.get(), keep_order, nullptr));
   petsc::check(EPSSetFromOptions(solver.get()));
-  petsc::check(EPSSolve(solver.get()));
+  require_whole_spectrum(prefix);
+  solve_whole(solver.get(), prefix);
   PetscInt converged = 0;
   petsc::check(EPSGetConverged(solver.get(), &converged));
   if (converged < n) {
@@ -368,6 +498,15 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
     pairs.residuals.push_back(defect.norm() / pairs.vectors.col(i).norm());
   }
   return pairs;
+}
+
+Eigen::VectorXd condition_numbers(const Eigenpairs& pairs) {
+  const Eigen::MatrixXcd left = pairs.vectors.partialPivLu().inverse();
+  const Eigen::VectorXd sizes =
+      left.rowwise().norm().cwiseProduct(pairs.vectors.colwise().norm().transpose());
+  return sizes.unaryExpr([](double size) {
+    return std::isfinite(size) ? size : std::numeric_limits<double>::infinity();
+  });
 }
 
 }  // namespace samara::analysis

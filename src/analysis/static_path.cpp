@@ -405,7 +405,9 @@ class PathFollower {
       text << load_hint();
       throw ConvergenceError(text.str());
     } catch (const ConvergenceError& error) {
-      text << error.what() << "; hint: " << load_hint();
+      const std::string words = error.what();
+      text << words;
+      if (words.find("; hint: ") == std::string::npos) text << "; hint: " << load_hint();
       throw ConvergenceError(text.str());
     }
   }

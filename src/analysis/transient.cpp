@@ -4,17 +4,23 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <sstream>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
+#include "admissible_velocities.hpp"
+#include "matrix_entries.hpp"
+
 namespace samara::analysis {
 namespace {
 
 /// What integrates this system, with the orders that docs/theory.md, section 9.1, states.
 constexpr std::array<const char*, 5> sound_types{TSBDF, TSTHETA, TSCN, TSALPHA, TSBEULER};
+/// Of BDF beside rigid strains (docs/theory.md, section 9.1).
+constexpr PetscInt most_stable_order = 2;
 /// Newton with an old tangent goes on while each correction is this much smaller than the last.
 constexpr double slow_contraction = 0.1;
 /// The first steps after a start differ in what multiplies M.
@@ -43,11 +49,8 @@ class Integration {
       : system_(system),
         options_(options),
         observer_(observer),
-        held_(start.held),
-        start_rates_(start.z_dot),
+        start_(start),
         origin_(start.origin),
-        start_time_(start.time),
-        start_is_row_(start.is_row),
         step_(start.step),
         last_step_(
             static_cast<long>(std::ceil(options.duration / options.step * (1.0 - rounding)))),
@@ -61,11 +64,12 @@ class Integration {
     write_state(start.z);
     make_integrator(start.time);
     limit_ = start_limit();
+    begin_midpoint();
   }
 
   TransientRun run() {
     const petsc::Stage stage("transient");
-    if (start_time_ == origin_ && start_is_row_ && !sample_start()) {
+    if (start_.time == origin_ && start_.is_row && !sample_start()) {
       TransientRun run;
       run.end = state();
       run.reason = TransientEnd::observer;
@@ -118,6 +122,13 @@ class Integration {
     petsc::check(VecPointwiseDivide(x_.get(), x_.get(), scaling_.columns.get()));
   }
 
+  /// z of the scaled state `x`.
+  Eigen::VectorXd read_state(Vec x) const {
+    petsc::check(VecPointwiseMult(r_.get(), x, scaling_.columns.get()));
+    const petsc::ReadView view(r_.get());
+    return Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
+  }
+
   TransientStart state() {
     TransientStart point = point_of(x_.get());
     petsc::check(TSGetTime(ts_.get(), &point.time));
@@ -133,10 +144,8 @@ class Integration {
   TransientStart point_of(Vec x) {
     TransientStart point;
     point.origin = origin_;
-    petsc::check(VecPointwiseMult(r_.get(), x, scaling_.columns.get()));
-    const petsc::ReadView view(r_.get());
-    point.z = Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
-    point.held = held_;
+    point.z = read_state(x);
+    point.held = start_.held;
     return point;
   }
 
@@ -149,41 +158,168 @@ class Integration {
     unscale(x, x_dot);
     t_ = t;
     system_.residual(t, z_.get(), z_dot_.get(), f);
-    add_held_loads(system_, held_, f);
+    add_held_loads(system_, start_.held, f);
+    if (is_midpoint_) constrain_end(f);
     petsc::check(VecPointwiseMult(f, f, scaling_.rows.get()));
   }
 
   void tangent(double t, Vec x, Vec x_dot, double shift, Mat matrix) {
     unscale(x, x_dot);
     system_.tangents(t, z_.get(), z_dot_.get(), shift, matrix, nullptr);
+    if (is_midpoint_) constrain_end(matrix);
     apply_scaling(scaling_, matrix);
+    KSP linear = nullptr;
+    petsc::check(SNESGetKSP(snes_, &linear));
+    petsc::check(KSPSetOperators(linear, matrix, matrix));
+    factor_failure_ = set_up(linear);  // without factors SNES gives up, and TS cuts the step
     ++factorizations_;
     is_new_tangent_ = true;
+  }
+
+  // ---- the midpoint rule -----------------------------------------------------------------------
+
+  /// Half the residual of the constraint rows at the end of the step, where z = z_m + z_dot dt/2:
+  /// its derivative by z_m is K there.
+  void constrain_end(Vec f) {
+    find_end();
+    system_.residual(end_time_, z_end_.get(), no_rates_.get(), r_.get());
+    const petsc::ReadView at_end(r_.get());
+    const petsc::WriteView rows(f);
+    for (const PetscInt i : constraints_) rows[i] = 0.5 * at_end[i];
+  }
+
+  void constrain_end(Mat matrix) {
+    find_end();
+    system_.tangents(end_time_, z_end_.get(), no_rates_.get(), 0.0, jacobian_end_.get(), nullptr);
+    const std::vector<system::RowRole>& roles = system_.rows();
+    MatrixEntries at_end(jacobian_end_.get());
+    MatrixEntries target(matrix);
+    const PetscScalar* values = at_end.values();
+    target.for_each([&, n = std::size_t{0}](PetscInt i, PetscInt, PetscScalar& value) mutable {
+      if (roles[static_cast<std::size_t>(i)] == system::RowRole::constraint) value = values[n];
+      ++n;
+    });
+  }
+
+  /// With the middle of the step in z_, z_dot_ and t_.
+  void find_end() {
+    PetscReal dt = 0.0;
+    petsc::check(TSGetTimeStep(ts_.get(), &dt));
+    end_time_ = t_ + 0.5 * dt;
+    petsc::check(VecWAXPY(z_end_.get(), 0.5 * dt, z_dot_.get(), z_.get()));
+  }
+
+  /// A start: velocities are made admissible, and nothing is known of the steps before.
+  void begin_midpoint() {
+    if (!is_midpoint_) return;
+    velocities_.emplace(system_, options_.step);
+    if (!velocities_->is_restricted()) {
+      velocities_.reset();
+      return;
+    }
+    const Eigen::Index n = system_.size();
+    kick_ = Eigen::VectorXd::Zero(n);
+    used_kick_ = kick_;
+    missed_.resize(0);
+    kick_step_ = options_.step;
+    double t = 0.0;
+    petsc::check(TSGetTime(ts_.get(), &t));
+    const Eigen::VectorXd z = read_state(x_.get());
+    put(z, z_end_.get());
+    const Jumps jumps = velocities_->correct(t, z_end_.get(), kick_);
+    admissible_ = z + velocities_only(jumps.col(0));
+    write_state(admissible_);
+  }
+
+  Eigen::VectorXd velocities_only(const Eigen::VectorXd& jumps) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(jumps.size());
+    for (Eigen::Index i = 0; i < jumps.size(); ++i)
+      if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::velocity)
+        result(i) = jumps(i);
+    return result;
+  }
+
+  /// Behind the back of TS, which would take a solution that has changed between steps for a new
+  /// start and leave the error of the steps out of its choice of the next.
+  void change_state(const Eigen::VectorXd& z) {
+    const petsc::ReadView factors(scaling_.columns.get());
+    const PetscScalar* values = nullptr;
+    petsc::check(VecGetArrayRead(x_.get(), &values));
+    Eigen::Map<Eigen::VectorXd>(const_cast<PetscScalar*>(values), z.size()) =
+        z.cwiseQuotient(Eigen::Map<const Eigen::VectorXd>(factors.data(), z.size()));
+    petsc::check(VecRestoreArrayRead(x_.get(), &values));
+  }
+
+  /// Half of what the next step is expected to miss is taken off the velocities before it. What a
+  /// step misses goes with the square of its length.
+  void kick(double dt) {
+    if (!velocities_) return;
+    const double growth = dt / kick_step_;
+    used_kick_ = growth * growth * kick_;
+    missed_ *= growth * growth;
+    change_state(admissible_ + velocities_only(used_kick_));
+  }
+
+  /// Makes the velocities at the end of a step admissible. Leaves in z_ and z_dot_ the middle of
+  /// the step between admissible velocities, with the reactions' mean over the step.
+  void finish_midpoint(double t, double dt) {
+    if (!velocities_) return;
+    const Eigen::VectorXd before = admissible_;
+    const Eigen::VectorXd z = read_state(x_.get());
+    put(z, z_end_.get());
+    // What the step missed is d = e - k, of the jump e at its end and the kick k before it; the
+    // next kick is -d/2, or with the last d -(2/3 d - d_last/6).
+    const bool is_first = missed_.size() == 0;
+    const Eigen::VectorXd carried =
+        is_first ? Eigen::VectorXd(0.5 * used_kick_)
+                 : Eigen::VectorXd(2.0 / 3.0 * used_kick_ + 1.0 / 6.0 * missed_);
+    const Jumps jumps = velocities_->correct(t, z_end_.get(), velocities_only(carried));
+    admissible_ = z + velocities_only(jumps.col(0));
+    {
+      const petsc::WriteView middle(z_.get());
+      const petsc::WriteView rates(z_dot_.get());
+      for (Eigen::Index i = 0; i < z.size(); ++i) {
+        const auto k = static_cast<PetscInt>(i);
+        if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::velocity) {
+          middle[k] = 0.5 * (before(i) + admissible_(i));
+          rates[k] = (admissible_(i) - before(i)) / dt;
+        } else if (velocities_->is_reaction(i)) {
+          middle[k] += (used_kick_(i) + jumps(i, 0)) / dt;
+          admissible_(i) =
+              middle[k];  // the ends of steps know no reactions, TS takes it for a guess
+          rates[k] = 0.0;
+        }
+      }
+    }
+    change_state(admissible_);
+    missed_ = jumps.col(0) - used_kick_;
+    kick_ = -(is_first ? 0.5 : 2.0 / 3.0) * jumps.col(0) - jumps.col(1);
+    kick_step_ = dt;
+  }
+
+  static void put(const Eigen::VectorXd& values, Vec target) {
+    const petsc::WriteView view(target);
+    Eigen::Map<Eigen::VectorXd>(view.data(), values.size()) = values;
   }
 
   /// The first row of the history; false where the observer ends it there. Where the rates are not
   /// known yet, rates and internal loads are those of a backward Euler step that is too short to
   /// move anything.
   bool sample_start() {
-    const TransientStart start = state();
     const double dt = start_fraction * options_.step;
-    const auto copy = [](const Eigen::VectorXd& values, Vec target) {
-      const petsc::WriteView view(target);
-      Eigen::Map<Eigen::VectorXd>(view.data(), values.size()) = values;
-    };
-    Eigen::VectorXd z = start.z;
-    Eigen::VectorXd z_dot = start_rates_;
+    Eigen::VectorXd z = start_.z;
+    Eigen::VectorXd z_dot = start_.z_dot;
     if (z_dot.size() == 0) {
       z_dot = Eigen::VectorXd::Zero(z.size());
       DirectSolver solver("transient_start_", [this, dt](Mat matrix) {
         return scale_by_role(system_, matrix, 1.0 / dt);
       });
       for (int i = 0; i < start_iterations; ++i) {
-        copy(z, z_.get());
-        copy(z_dot, z_dot_.get());
-        system_.residual(start.time + dt, z_.get(), z_dot_.get(), r_.get());
-        add_held_loads(system_, held_, r_.get());
-        system_.tangents(start.time + dt, z_.get(), z_dot_.get(), 1.0 / dt, jacobian_.get(),
+        put(z, z_.get());
+        put(z_dot, z_dot_.get());
+        system_.residual(start_.time + dt, z_.get(), z_dot_.get(), r_.get());
+        add_held_loads(system_, start_.held, r_.get());
+        system_.tangents(start_.time + dt, z_.get(), z_dot_.get(), 1.0 / dt, jacobian_.get(),
                          nullptr);
         solver.factor(jacobian_.get());
         Eigen::MatrixXd change(z.size(), 1);
@@ -193,12 +329,12 @@ class Integration {
         }
         solver.solve(change);
         z -= change.col(0);
-        z_dot = (z - start.z) / dt;
+        z_dot = (z - start_.z) / dt;
       }
     }
-    copy(z, z_.get());
-    copy(z_dot, z_dot_.get());
-    return observer_.sample({start.time, z_.get(), z_dot_.get(), 0, true});
+    put(z, z_.get());
+    put(z_dot, z_dot_.get());
+    return observer_.sample({start_.time, z_.get(), z_dot_.get(), 0, true});
   }
 
   // ---- TS --------------------------------------------------------------------------------------
@@ -245,6 +381,28 @@ class Integration {
     petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
     petsc::check(TSSetFromOptions(ts));
     require_sound_type();
+    prepare_midpoint();
+  }
+
+  /// The midpoint rule is TS's theta method where its stage is the middle of the step.
+  void prepare_midpoint() {
+    PetscBool is_theta = PETSC_FALSE;
+    PetscBool ends = PETSC_FALSE;
+    PetscReal theta = 0.0;
+    petsc::check(
+        PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ts_.get()), TSTHETA, &is_theta));
+    if (is_theta == PETSC_FALSE) return;
+    petsc::check(TSThetaGetTheta(ts_.get(), &theta));
+    petsc::check(TSThetaGetEndpoint(ts_.get(), &ends));
+    is_midpoint_ = theta == 0.5 && ends == PETSC_FALSE;
+    if (!is_midpoint_) return;
+    z_end_ = system_.make_state();
+    no_rates_ = system_.make_state();
+    petsc::check(VecSet(no_rates_.get(), 0.0));
+    jacobian_end_ = system_.make_jacobian();
+    for (std::size_t i = 0; i < system_.rows().size(); ++i)
+      if (system_.rows()[i] == system::RowRole::constraint)
+        constraints_.push_back(static_cast<PetscInt>(i));
   }
 
   /// Steps by the error of the positions: internal loads and, beside rigid strains, velocities are
@@ -275,11 +433,20 @@ class Integration {
     TSType type = nullptr;
     petsc::check(TSGetType(ts_.get(), &type));
     const std::string name = type;
+    if (name == TSBDF) require_stable_order();
     if (std::find(sound_types.begin(), sound_types.end(), name) != sound_types.end()) return;
     std::string words;
     for (const char* sound : sound_types) words += std::string(words.empty() ? "" : ", ") + sound;
     throw InputError("-transient_ts_type " + name +
                      ": not for a system with constraints; those that are: " + words);
+  }
+
+  void require_stable_order() const {
+    PetscInt order = 0;
+    petsc::check(TSBDFGetOrder(ts_.get(), &order));
+    if (order > most_stable_order)
+      throw InputError("-transient_ts_bdf_order " + std::to_string(order) +
+                       ": from order 3 on BDF is unstable beside rigid strains; hint: order 2");
   }
 
   double grid(long step) const { return origin_ + static_cast<double>(step) * options_.step; }
@@ -313,6 +480,7 @@ class Integration {
       const double rest = self.target() - t;
       const double parts = std::ceil(rest / self.limit_ * (1.0 - rounding));
       self.asked_ = rest / std::max(parts, 1.0);
+      self.kick(self.asked_);
       petsc::check(TSSetTimeStep(ts, self.asked_));
     });
   }
@@ -366,6 +534,7 @@ class Integration {
       ++step_;
       petsc::check(TSSetTime(ts, grid(step_)));
     }
+    finish_midpoint(t, taken);
     const bool goes_on = observer_.sample({t_, z_.get(), z_dot_.get(), step_, on_grid});
     if (on_grid && step_ < last_step_ && options_.checkpoint_steps > 0 &&
         step_ % options_.checkpoint_steps == 0)
@@ -386,6 +555,7 @@ class Integration {
     steps_since_start_ = 0;
     limit_ = start_limit();
     observer_.checkpoint(state());
+    begin_midpoint();
   }
 
   static PetscErrorCode form_function(TS, PetscReal t, Vec x, Vec x_dot, Vec f,
@@ -406,6 +576,7 @@ class Integration {
   PetscErrorCode in_domain(PetscErrorCode (*refuse)(SNES), const Work& work) noexcept {
     try {
       work();
+      error_ = nullptr;  // what was out of range in an attempt before is no cause of what comes
     } catch (const DomainError&) {
       error_ = std::current_exception();
       return refuse(snes_);
@@ -467,6 +638,7 @@ class Integration {
       values.cwiseAbs().maxCoeff(&worst);
       text << "; what changes most: " << system_.unknowns()[static_cast<std::size_t>(worst)].name;
     }
+    if (factor_failure_.reason != PC_NOERROR) text << "; " << factor_failure_.words;
     if (error_) {
       try {
         std::rethrow_exception(error_);
@@ -481,11 +653,8 @@ class Integration {
   const system::PeriodicSystem& system_;
   const TransientOptions& options_;
   TransientObserver& observer_;
-  std::vector<HeldCoordinate> held_;
-  Eigen::VectorXd start_rates_;
+  const TransientStart& start_;
   double origin_;
-  double start_time_;
-  bool start_is_row_;
   long step_;           ///< of the grid, done
   long last_step_;      ///< of the grid
   double limit_ = 0.0;  ///< of the step [s], less than its length after a cut
@@ -500,6 +669,18 @@ class Integration {
   petsc::Handle<TS> ts_;
   SNES snes_ = nullptr;
   double t_ = 0.0;  ///< of the last residual
+  bool is_midpoint_ = false;
+  std::vector<PetscInt> constraints_;
+  petsc::Handle<Vec> z_end_;
+  double end_time_ = 0.0;
+  petsc::Handle<Vec> no_rates_;
+  petsc::Handle<Mat> jacobian_end_;
+  std::optional<AdmissibleVelocities> velocities_;  ///< where not all are admissible
+  Eigen::VectorXd admissible_;                      ///< z at the end of the last step
+  Eigen::VectorXd kick_;       ///< jump before the next step, velocities and impulses
+  double kick_step_ = 0.0;     ///< [s] the step that it is of
+  Eigen::VectorXd used_kick_;  ///< jump before the last step
+  Eigen::VectorXd missed_;     ///< by the last step; empty: none since the start
   double last_residual_ = 0.0;
   int steps_since_start_ = 0;
   bool is_new_tangent_ = false;  ///< since the last correction
@@ -511,6 +692,7 @@ class Integration {
   long newton_steps_ = 0;
   long factorizations_ = 0;
   long cuts_ = 0;
+  FactorFailure factor_failure_;  ///< of the last tangent
   std::exception_ptr error_;
 };
 

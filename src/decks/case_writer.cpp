@@ -151,8 +151,9 @@ class Writer {
                                  ", damping: " + exact(draft_.torsion_damping) + "}"
                            : "{joint: locked}",
         "");
+    add("shaft", 2, "gear_ratio", exact(draft_.gear_ratio), "");
     add("shaft", 2, "generator",
-        "{joint: locked, inertia: " + exact(draft_.generator_inertia) + "}", "kg m^2");
+        "{joint: locked, own_inertia: " + exact(draft_.generator_inertia) + "}", "kg m^2");
   }
 
   void add_hub() {

@@ -52,7 +52,8 @@ struct CaseDraft {
   double tilt_deg = 0.0;
   double height = 0.0;
   double azimuth_deg = 0.0;
-  double generator_inertia = 0.0;  ///< about the shaft, at its speed
+  double gear_ratio = 1.0;         ///< < 0: the generator turns the other way
+  double generator_inertia = 0.0;  ///< about its own axis
   bool has_torsion = false;
   double torsion_stiffness = 0.0;
   double torsion_damping = 0.0;

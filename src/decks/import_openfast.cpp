@@ -274,22 +274,19 @@ class Importer {
             " kg m^2; ElastoDyn has none about the other axes");
     note("nacelle.inertia", "NacYIner - NacMass (NacCMxn^2 + NacCMyn^2), about its own centre");
 
-    const double generator = deck.number("GenIner");
-    const double ratio = deck.number("GBRatio");
-    draft_.generator_inertia = generator * ratio * ratio;
-    const std::string sum =
-        "shaft.generator.inertia = GenIner GBRatio^2 = " + rounded(draft_.generator_inertia) +
-        " kg m^2";
-    say(deck, "GenIner", Fate::derived, sum);
-    say(deck, "GBRatio", Fate::derived, sum);
-    note("shaft.generator", "GenIner GBRatio^2; GenDOF: the torque of ServoDyn is not read");
+    draft_.generator_inertia = take(deck, "GenIner", "shaft.generator.own_inertia");
+    const std::size_t errors_before = errors_.size();
+    draft_.gear_ratio = take(deck, "GBRatio", "shaft.gear_ratio");
+    require(draft_.gear_ratio != 0.0 || errors_.size() > errors_before, deck, "GBRatio",
+            "expected a number other than 0");
+    note("shaft.generator", "GenIner; GenDOF: the torque of ServoDyn is not read");
 
     draft_.tower.tip_mass = take(deck, "YawBrMass", "tower.tip_mass");
     read_hub();
     for (const auto& [key, value] : {std::pair<const char*, double>{"NacMass", draft_.nacelle_mass},
                                      {"YawBrMass", draft_.tower.tip_mass},
                                      {"HubMass", draft_.hub_mass},
-                                     {"GenIner", generator}})
+                                     {"GenIner", draft_.generator_inertia}})
       require(value >= 0.0, deck, key, "expected a number >= 0");
   }
 

@@ -169,7 +169,7 @@ class Importer {
 
   /// What a deck may leave out is 0 in the case.
   void missing(const std::string& what, const std::string& key) {
-    note(key == "shaft.generator.inertia" ? "shaft.inertia" : key, "not in the deck");
+    note(key == "shaft.generator.own_inertia" ? "shaft.generator" : key, "not in the deck");
     report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
   }
 
@@ -434,16 +434,22 @@ class Importer {
                 "components.drivetrain.generator.elastic_properties_mb.rotor_inertia",
                 "components.nacelle.generator.elastic_properties_mb.rotor_inertia"});
     if (generator.empty()) {
-      missing("the inertia of the generator", "shaft.generator.inertia");
+      missing("the inertia of the generator", "shaft.generator.own_inertia");
       return;
     }
-    const double ratio = number(
+    const std::string gear = choose(
+        {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"});
+    const std::size_t errors_before = errors_.size();
+    draft_.gear_ratio = number(
         {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
-        Fate::derived, "shaft.generator.inertia");
-    const Vector3 inertia = inertia_of(
-        generator, "shaft.generator.inertia = Ixx gear_ratio^2; its mass is the nacelle's");
-    draft_.generator_inertia = inertia(0) * ratio * ratio;
-    note("shaft.generator", "generator Ixx gear_ratio^2");
+        Fate::taken, "shaft.gear_ratio");
+    if (draft_.gear_ratio == 0.0 && errors_.size() == errors_before)
+      refuse(gear, "expected a number other than 0");
+    note("shaft.gear_ratio", "gear_ratio");
+    const Vector3 inertia =
+        inertia_of(generator, "shaft.generator.own_inertia = Ixx; its mass is the nacelle's");
+    draft_.generator_inertia = inertia(0);
+    note("shaft.generator", "generator Ixx");
   }
 
   void read_hub() {

@@ -2,6 +2,7 @@
 // line of column names. Everything is found by its name, never by the number of its line.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ class DeckErrors {
   /// A whole line.
   void add_message(const std::string& message);
   bool empty() const { return messages_.empty(); }
+  std::size_t size() const { return messages_.size(); }
   /// @throws InputError with one error a line, if there are any.
   void throw_if_any() const;
 

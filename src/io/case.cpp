@@ -133,27 +133,33 @@ void read_torsion(const YamlNode& node, const std::string& where, model::JointDe
   map.finish();
 }
 
+/// The mean speed that a torque law is about.
+struct MeanSpeed {
+  const char* what;
+  double value = 0.0;  ///< [rad/s]
+};
+
 /// Refuses a table that does not reach to the speed. At rest it gives no torque then, which is
 /// noted.
-void check_reach(MapReader& map, const YamlNode& table, double speed, model::TorqueLaw& law) {
-  if (law.covers(speed)) return;
+void check_reach(MapReader& map, const YamlNode& table, const MeanSpeed& speed,
+                 model::TorqueLaw& law) {
+  if (law.covers(speed.value)) return;
   std::ostringstream text;
   text << "the table reaches from " << law.table.front().first << " to " << law.table.back().first
        << " rad/s, ";
-  if (speed == 0.0) {
+  if (speed.value == 0.0) {
     text << "the rotor is parked: no torque";
     map.note(table, "torque_table", text.str());
   } else {
-    text << "shaft.speed is " << speed << " rad/s; hint: entries up to there, or torque and "
-         << "torque_slope at this speed";
+    text << speed.what << " is " << speed.value << " rad/s; hint: entries up to there, or torque "
+         << "and torque_slope at this speed";
     map.refuse(table, "torque_table", text.str());
     law.table.clear();
   }
 }
 
-/// Reads the keys of a torque law of a rotor whose mean speed is known. A law that does not act is
-/// read, and said to have no effect.
-void read_torque(MapReader& map, double speed, bool acts, model::TorqueLaw& law) {
+/// Reads the keys of a torque law. A law that does not act is read, and said to have no effect.
+void read_torque(MapReader& map, const MeanSpeed& speed, bool acts, model::TorqueLaw& law) {
   map.read("torque", law.torque, any_number);
   map.read("torque_slope", law.slope, any_number);
   const YamlNode* table = map.find("torque_table");
@@ -176,12 +182,20 @@ void read_torque(MapReader& map, double speed, bool acts, model::TorqueLaw& law)
   }
 }
 
-void read_generator(const YamlNode& node, const std::string& where, double speed,
-                    model::GeneratorDefinition& generator, ErrorList& errors) {
+void read_generator(const YamlNode& node, const std::string& where, model::ShaftDefinition& shaft,
+                    ErrorList& errors) {
+  model::GeneratorDefinition& generator = shaft.generator;
   MapReader map(node, where, errors);
   map.require("joint", "free or locked");
   map.read("joint", generator.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
-  map.read("inertia", generator.inertia, non_negative);
+  map.read("own_inertia", generator.inertia, non_negative);
+  if (const YamlNode* old = map.find("inertia"))
+    map.refuse(*old, "inertia",
+               "was counted at the speed of the shaft, gears included, and is no longer read; hint: "
+               "own_inertia, of the generator about its own axis, and shaft.gear_ratio (of an "
+               "OpenFAST deck GenIner and GBRatio); without gears own_inertia is the same number");
+  const MeanSpeed speed{shaft.gear_ratio == 1.0 ? "shaft.speed" : "shaft.speed times gear_ratio",
+                        shaft.generator_speed()};
   read_torque(map, speed, generator.kind == JointKind::free, generator.law);
   map.finish();
 }
@@ -204,8 +218,12 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
   if (const YamlNode* entry = map.find("torsion")) {
     read_torsion(*entry, map.where("torsion"), shaft.torsion, errors);
   }
+  if (map.read("gear_ratio", shaft.gear_ratio, any_number) && shaft.gear_ratio == 0.0) {
+    map.refuse(*map.node().find("gear_ratio"), "gear_ratio", "expected a number other than 0");
+    shaft.gear_ratio = 1.0;
+  }
   if (const YamlNode* entry = map.find("generator")) {
-    read_generator(*entry, map.where("generator"), shaft.speed, shaft.generator, errors);
+    read_generator(*entry, map.where("generator"), shaft, errors);
     if (shaft.generator.kind == JointKind::free && shaft.torsion.kind == JointKind::free &&
         shaft.generator.inertia == 0.0)
       map.refuse(*entry, "generator",
@@ -213,7 +231,7 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
   }
   if (const YamlNode* entry = map.find("rotor")) {
     MapReader rotor(*entry, map.where("rotor"), errors);
-    read_torque(rotor, shaft.speed, true, shaft.rotor);
+    read_torque(rotor, {"shaft.speed", shaft.speed}, true, shaft.rotor);
     rotor.finish();
   }
   map.finish();
@@ -383,7 +401,7 @@ void read_static(const YamlNode& node, analysis::StaticOptions& statics, ErrorLi
   map.read(
       "method", statics.method,
       {{"load", analysis::StaticMethod::load}, {"arc_length", analysis::StaticMethod::arc_length}});
-  map.read("tolerance", statics.tolerance, positive);
+  map.read("tolerance", statics.tolerance, tolerance);
   map.read("max_steps", statics.most_steps, 1, max_steps);
   map.finish();
 }
@@ -399,8 +417,8 @@ void read_trim(const YamlNode& node, analysis::TrimOptions& trim, ErrorList& err
   } else {
     map.read("harmonics", trim.harmonics, 0, max_harmonics);
   }
-  map.read("tolerance", trim.tolerance, positive);
-  map.read("auto_tolerance", trim.auto_tolerance, positive);
+  map.read("tolerance", trim.tolerance, tolerance);
+  map.read("auto_tolerance", trim.auto_tolerance, tolerance);
   map.read("steps", trim.steps, min_steps, max_steps);
   map.finish();
 }

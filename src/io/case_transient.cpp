@@ -17,6 +17,8 @@ namespace {
 /// Of a step: how far from a whole number of steps a time may be.
 constexpr double rounding = 1e-6;
 constexpr double most_steps = 1e9;
+/// Of positions [m, rad].
+constexpr NumberRule step_error{"a number from 1e-12 to 0.1", 1e-12, 0.1};
 
 /// Keys of a case that change no model.
 constexpr std::array<const char*, 7> other_keys{"samara", "title",     "trim",     "floquet",
@@ -212,8 +214,8 @@ void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& e
   map.read("method", options.method,
            {{"bdf2", analysis::TransientMethod::bdf2},
             {"midpoint", analysis::TransientMethod::midpoint}});
-  map.read("tolerance", options.tolerance, positive);
-  map.read("step_tolerance", options.step_tolerance, positive);
+  map.read("tolerance", options.tolerance, tolerance);
+  map.read("step_tolerance", options.step_tolerance, step_error);
   options.checkpoint_steps = std::max(1L, std::lround(default_checkpoint / options.step));
   const YamlNode* checkpoint = node.find("checkpoint");
   if (checkpoint != nullptr && checkpoint->text == "none") {

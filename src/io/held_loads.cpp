@@ -20,7 +20,8 @@ void write_held_loads(Hdf5File& file, const std::string& group,
   }
   file.write(group + names, words, {"", "none", description});
   file.write(group + loads, values, {values.size()},
-             {unit, "about the joint", "constant load on each of held_name"});
+             {unit, "about the joint",
+              "constant load on each of held_name, of a generator at the shaft's end of its gear"});
 }
 
 std::vector<analysis::HeldCoordinate> read_held_loads(const Hdf5Reader& file,

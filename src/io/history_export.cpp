@@ -238,8 +238,7 @@ HistoryFormat find_history_format(const std::string& path) {
 
 void require_export_path(const std::string& path, const std::string& source) {
   const HistoryFormat format = find_history_format(path);
-  std::error_code error;
-  if (fs::equivalent(path, source, error))
+  if (is_same_file(path, source))
     throw InputError(path + ": is the result itself; hint: -o gives the export another name");
   if (format == HistoryFormat::result) return require_result_path(path);
   if (!require_writable(path) || (format == HistoryFormat::table && is_table(path))) return;

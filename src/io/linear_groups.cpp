@@ -91,30 +91,22 @@ void write_form(Hdf5File& file, const NamedForm& form) {
   file.set_attribute(group, "residual", form.series.residual());
 }
 
-void write_descriptors(Hdf5File& file, const linear::Linearization& linear) {
+void write_descriptors(Hdf5File& file, const std::vector<linear::DescriptorForm>& forms) {
   using linear::DescriptorForm;
-  const std::string group = "/linearize/descriptor/";
-  const auto write = [&](const std::string& name, const auto& item, const std::string& meaning) {
+  const auto write = [&](const std::string& name, auto member, const std::string& meaning) {
     write_stack(
-        file, group + name, linear.descriptors.size(),
-        [&](std::size_t i) { return Eigen::MatrixXd(item(linear.descriptors[i])); }, false,
+        file, "/linearize/descriptor/" + name, forms.size(),
+        [&](std::size_t i) { return Eigen::MatrixXd(forms[i].*member); }, false,
         {"SI, outputs in their units", "of the unknowns (/model/unknowns), inputs and outputs",
          meaning + " at /linearize/azimuth"});
   };
-  write(
-      "M", [](const DescriptorForm& f) { return f.M; }, "M z_dot + K z + R u + R_rate u_dot = 0:");
-  write(
-      "K", [](const DescriptorForm& f) { return f.K; }, "row by unknown");
-  write(
-      "R", [](const DescriptorForm& f) { return f.R; }, "row by input");
-  write(
-      "R_rate", [](const DescriptorForm& f) { return f.R_rate; }, "row by input");
-  write(
-      "C", [](const DescriptorForm& f) { return f.C; }, "y = C z + C_rate z_dot + D u:");
-  write(
-      "C_rate", [](const DescriptorForm& f) { return f.C_rate; }, "output by unknown");
-  write(
-      "D", [](const DescriptorForm& f) { return f.D; }, "output by input");
+  write("M", &DescriptorForm::M, "M z_dot + K z + R u + R_rate u_dot = 0:");
+  write("K", &DescriptorForm::K, "row by unknown");
+  write("R", &DescriptorForm::R, "row by input");
+  write("R_rate", &DescriptorForm::R_rate, "row by input");
+  write("C", &DescriptorForm::C, "y = C z + C_rate z_dot + D u:");
+  write("C_rate", &DescriptorForm::C_rate, "output by unknown");
+  write("D", &DescriptorForm::D, "output by input");
 }
 
 }  // namespace
@@ -130,7 +122,7 @@ void write_linear_groups(Hdf5File& file, const linear::Linearization& linear) {
   file.set_attribute("/linearize", "rotor_speed", linear.rotor_speed);
   file.set_attribute("/linearize", "is_constant", linear.is_constant ? 1 : 0);
   for (const NamedForm& form : linear.forms) write_form(file, form);
-  if (!linear.descriptors.empty()) write_descriptors(file, linear);
+  if (!linear.descriptors.empty()) write_descriptors(file, linear.descriptors);
 }
 
 }  // namespace samara::io

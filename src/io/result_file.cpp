@@ -118,6 +118,18 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
              {count, 2},
              {"rad/s", mode_frame,
               "lambda + i k Omega with the identified harmonic k; [mode, re/im], im >= 0"});
+  file.write(group + "/error", collect(set, [](const Mode& m) { return total_error(m); }), {count},
+             {"1", mode_frame,
+              "estimated error of the exponent, relative to its modulus: the sum of those below"});
+  file.write(group + "/error_step", collect(set, [](const Mode& m) { return m.step_error; }),
+             {count}, {"1", mode_frame, "of the time step"});
+  file.write(group + "/error_mesh", collect(set, [](const Mode& m) { return m.mesh_error; }),
+             {count}, {"1", mode_frame, "of the elements; 0 where the mode is not resolved"});
+  file.write(group + "/error_rounding",
+             collect(set, [](const Mode& m) { return m.rounding_error; }), {count},
+             {"1", mode_frame, "of rounding"});
+  file.write(group + "/error_growth", collect(set, [](const Mode& m) { return m.growth_error; }),
+             {count}, {"1/s", mode_frame, "estimated error of the real part of the exponent"});
   file.write(group + "/frequency_hz", collect(set, hertz), {count},
              {"Hz", mode_frame, "imaginary part of the exponent over 2 pi"});
   if (set.rotor_speed > 0.0)
@@ -151,6 +163,11 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
              {"1", mode_frame, "share of the mean kinetic energy; [mode, part]"});
   file.set_attribute(group, "degrees_of_freedom", set.degrees_of_freedom);
   file.set_attribute(group, "rotor_speed", set.rotor_speed);
+  file.set_attribute(group, "states", set.states);
+  file.set_attribute(group, "states_found", set.found);
+  file.set_attribute(group, "states_deflated", set.deflated);
+  file.set_attribute(group, "deflated_rate", set.deflated_rate);
+  file.set_attribute(group, "reach_hz", set.reach / (2.0 * std::numbers::pi));
 }
 
 void write_shapes(Hdf5File& file, const std::string& group, const ModeSet& set) {
@@ -336,6 +353,10 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
                 "between them]"});
   write_value("/trim/load_level", trim.load_level,
               {"N, N m", no_frame, "largest internal load, to compare the residual with"});
+  write_value("/trim/imbalance", trim.imbalance(),
+              {"1", no_frame,
+               "the larger residual relative to the largest internal load; a steady state is rough "
+               "beyond 1e-4"});
   write_held_loads(file, "/trim", trim.held,
                    "coordinates that nothing restores: their mean is set to zero");
   file.set_attribute(
@@ -451,6 +472,11 @@ void ResultFile::write_floquet(const analysis::Floquet& floquet) {
              {"1", no_frame,
               "over one revolution; [mode, re/im], im >= 0 before it is raised to "
               "the number of sectors"});
+  file.write("/floquet/step_exponents",
+             collect_complex(set, [](const Mode& m) { return m.step_exponent; }),
+             {set.modes.size(), 2},
+             {"rad/s", mode_frame,
+              "of the sequence of steps, before (2/dt) tanh(. dt/2) maps it to exponents"});
   std::vector<int> harmonics;
   for (const Mode& mode : set.modes) harmonics.push_back(mode.harmonic);
   file.write("/floquet/harmonic", harmonics,
@@ -518,7 +544,8 @@ void write_mode_table(const std::string& path, const ModeSet& set) {
   std::ostringstream text = exact_text();
   text << mode_table_start << (turns ? "frequency_per_rev," : "")
        << "frequency_hz,damping_ratio,exponent_re,exponent_im,"
-       << (periodic ? "multiplier_re,multiplier_im,harmonic," : "") << "resolved,residual\n";
+       << (periodic ? "multiplier_re,multiplier_im,harmonic," : "")
+       << "resolved,residual,error,error_growth\n";
   int number = 0;
   for (const Mode& mode : set.modes) {
     text << ++number << ',' << mode.label << ',';
@@ -528,7 +555,8 @@ void write_mode_table(const std::string& path, const ModeSet& set) {
     if (periodic)
       text << mode.multiplier.real() << ',' << mode.multiplier.imag() << ',' << mode.harmonic
            << ',';
-    text << (mode.resolved ? 1 : 0) << ',' << mode.residual << '\n';
+    text << (mode.resolved ? 1 : 0) << ',' << mode.residual << ',' << total_error(mode) << ','
+         << mode.growth_error << '\n';
   }
   write_whole_file(path, text.str());
 }

@@ -68,6 +68,13 @@ analysis::Trim read_result_trim(const std::string& path) {
                                                 static_cast<Eigen::Index>(shape[1]));
   analysis::Trim trim{{coefficients, file.numbers("/model/period").at(0)}};
   trim.held = read_held_loads(file, "/trim");
+  const std::vector<double> residual = file.numbers("/trim/residual");
+  if (residual.size() != 2) throw InputError(path + ": /trim/residual has not two values");
+  trim.residual = residual[0];
+  trim.residual_between = residual[1];
+  trim.load_level = file.numbers("/trim/load_level").at(0);
+  if (file.text_attribute("/trim", "method") == "shooting")
+    trim.method = analysis::TrimMethod::shooting;
   return trim;
 }
 

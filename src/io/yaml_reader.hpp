@@ -56,6 +56,8 @@ inline constexpr NumberRule any_number{"a finite number"};
 inline constexpr NumberRule positive{"a number > 0", 0.0, std::numeric_limits<double>::infinity(),
                                      true};
 inline constexpr NumberRule non_negative{"a number >= 0", 0.0};
+/// Beyond it nothing converges; below it rounding decides.
+inline constexpr NumberRule tolerance{"a number from 1e-14 to 1e-3", 1e-14, 1e-3};
 inline constexpr NumberRule fraction_of_one{"a number from 0 to 1", 0.0, 1.0};
 inline constexpr NumberRule quarter_turn{"an angle between -90 and 90 degrees", -90.0, 90.0, true};
 inline constexpr NumberRule half_turn{"an angle from -180 to 180 degrees", -180.0, 180.0};

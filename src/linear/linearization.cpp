@@ -1,12 +1,13 @@
 #include "samara/linear/linearization.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "samara/base/error.hpp"
 #include "samara/linear/hill.hpp"
-#include "samara/linear/lyapunov_floquet.hpp"
 #include "samara/linear/multiblade.hpp"
 
 namespace samara::linear {
@@ -80,119 +81,189 @@ NamedForm reduced_of(const NamedForm& form, const LinearizeOptions& options,
   return small;
 }
 
+/// Forms over the azimuth, each of which is computed once.
+class Remembered {
+ public:
+  explicit Remembered(std::function<StateSpace(double)> compute) : compute_(std::move(compute)) {}
+
+  const StateSpace& at(double psi) {
+    const auto found = known_.find(psi);
+    return found != known_.end() ? found->second : known_.emplace(psi, compute_(psi)).first->second;
+  }
+  std::size_t size() const { return known_.size(); }
+
+ private:
+  std::function<StateSpace(double)> compute_;
+  std::map<double, StateSpace> known_;
+};
+
+/// Makes the forms that are asked for from those of one linear model.
+class Linearizer {
+ public:
+  Linearizer(const LinearModel& model, double start_azimuth, const LinearizeOptions& options,
+             analysis::Observer& observer)
+      : model_(model),
+        start_azimuth_(start_azimuth),
+        options_(options),
+        observer_(observer),
+        has_period_(model.system().period() > 0.0),
+        speed_(has_period_ ? 2.0 * std::numbers::pi / model.system().period() : 0.0),
+        azimuths_(has_period_ ? options.azimuths : 1),
+        harmonics_(std::min(options.harmonics, (azimuths_ - 1) / 2)),
+        forms_([this](double psi) { return compute(psi); }),
+        periodic_(over_azimuth("state_space", "x_dot = A x + B u, y = C x + D u over the azimuth",
+                               model.states(), column_signals(model),
+                               model.input_output().outputs(),
+                               [this](double psi) { return forms_.at(psi); })) {}
+
+  Linearizer(const Linearizer&) = delete;
+  Linearizer& operator=(const Linearizer&) = delete;
+
+  Linearization run() {
+    result_.rotor_speed = speed_;
+    result_.series_azimuths = azimuths_;
+    result_.azimuths = azimuths();
+    result_.is_constant =
+        std::max(periodic_.series.variation(), periodic_.series.residual()) < constant_tolerance;
+    add_operation();
+    if (options_.multiblade) add_multiblade();
+    if (options_.average && !options_.multiblade) add_average();
+    if (options_.hill) add_hill();
+    if (options_.lyapunov_floquet) add_lyapunov_floquet();
+    if (options_.order > 0) add_reduced();
+    if (options_.state_space) result_.forms.insert(result_.forms.begin(), std::move(periodic_));
+    return std::move(result_);
+  }
+
+ private:
+  double time_of(double psi) const { return has_period_ ? (psi - start_azimuth_) / speed_ : 0.0; }
+
+  StateSpace compute(double psi) const {
+    const auto all = static_cast<long>(azimuths_) + static_cast<long>(options_.at.size());
+    observer_.progress("linearize", std::min(static_cast<long>(forms_.size()) + 1, all), all);
+    return model_.state_space(time_of(psi));
+  }
+
+  bool has_own_azimuths() const { return has_period_ && !options_.at.empty(); }
+
+  /// At which matrices are given beside the series.
+  std::vector<double> azimuths() const {
+    if (has_own_azimuths()) return options_.at;
+    return has_period_ ? periodic_.series.azimuths() : std::vector<double>{start_azimuth_};
+  }
+
+  NamedForm over_azimuth(const std::string& name, const std::string& description,
+                         const std::vector<ModelState>& states,
+                         const std::vector<system::Signal>& inputs,
+                         const std::vector<system::Signal>& outputs,
+                         const std::function<StateSpace(double)>& form_at) const {
+    NamedForm form{name,   description, states,
+                   inputs, outputs,     AzimuthSeries(form_at, azimuths_, harmonics_)};
+    if (!has_own_azimuths()) form.at_azimuths = form.series.samples();
+    if (has_own_azimuths())
+      for (const double psi : options_.at) form.at_azimuths.push_back(form_at(psi));
+    return form;
+  }
+
+  void add_operation() {
+    result_.outputs.resize(static_cast<Eigen::Index>(result_.azimuths.size()),
+                           static_cast<Eigen::Index>(periodic_.outputs.size()));
+    for (std::size_t i = 0; i < result_.azimuths.size(); ++i) {
+      const double t = time_of(result_.azimuths[i]);
+      result_.outputs.row(static_cast<Eigen::Index>(i)) = model_.operating_outputs(t).transpose();
+      if (options_.descriptor) result_.descriptors.push_back(model_.descriptor(t));
+    }
+  }
+
+  void add_multiblade() {
+    const Multiblade multiblade(model_);
+    NamedForm turned = over_azimuth(
+        "multiblade", "in multiblade coordinates over the azimuth", multiblade.states(),
+        multiblade.inputs(), multiblade.outputs(), [&](double psi) {
+          return multiblade.transform(has_period_ ? psi : start_azimuth_, forms_.at(psi));
+        });
+    if (options_.average) result_.forms.push_back(average_of(turned));
+    result_.forms.push_back(std::move(turned));
+  }
+
+  void add_average() {
+    if (has_period_ && !result_.is_constant)
+      observer_.note(
+          "note: the average of rotating coordinates loses what couples tower and blades; hint: "
+          "linearize.forms with multiblade and average for three and more blades, with hill or "
+          "lyapunov_floquet for less");
+    result_.forms.push_back(average_of(periodic_));
+  }
+
+  void add_hill() {
+    const int h = options_.hill_harmonics;
+    result_.forms.push_back(
+        {"hill", "harmonic lifting (Hill): constant", repeated(periodic_.states, h),
+         repeated(periodic_.inputs, h), repeated(periodic_.outputs, h),
+         AzimuthSeries({hill_form(periodic_.series, speed_, h)}, periodic_.series.residual())});
+  }
+
+  void add_lyapunov_floquet() {
+    const LyapunovFloquet floquet(periodic_.series, speed_, azimuths_,
+                                  options_.lyapunov_floquet_states,
+                                  options_.lyapunov_floquet_steps);
+    if (!floquet.remark().empty()) observer_.note("note: " + floquet.remark());
+    Remembered maps([&floquet](double psi) { return floquet.transformation(psi); });
+    result_.forms.push_back(over_azimuth(
+        "lyapunov_floquet", "Lyapunov-Floquet coordinates q: A is constant, B and C periodic",
+        floquet.states(), periodic_.inputs, periodic_.outputs,
+        [&](double psi) { return floquet.form(psi, maps.at(psi)); }));
+    const std::vector<system::Signal> states = signals_of(periodic_.states);
+    result_.forms.push_back(
+        over_azimuth("lyapunov_floquet_map", "q = B x and x = C q, x the states of state_space",
+                     floquet.states(), states, states, [&](double psi) { return maps.at(psi); }));
+  }
+
+  void add_reduced() {
+    std::vector<NamedForm> reduced;
+    if (result_.is_constant) {
+      NamedForm constant = average_of(periodic_);
+      constant.name = periodic_.name;
+      reduced.push_back(reduced_of(constant, options_, observer_));
+    } else {
+      for (const NamedForm& form : result_.forms)
+        if (form.series.harmonics() == 0 && form.series.samples().empty())
+          reduced.push_back(reduced_of(form, options_, observer_));
+    }
+    if (reduced.empty())
+      throw InputError(
+          "linearize.reduce: there is no constant form; hint: linearize.forms with average or "
+          "hill");
+    result_.forms.insert(result_.forms.end(), reduced.begin(), reduced.end());
+  }
+
+  const LinearModel& model_;
+  double start_azimuth_;
+  const LinearizeOptions& options_;
+  analysis::Observer& observer_;
+  bool has_period_;
+  double speed_;
+  int azimuths_;
+  int harmonics_;
+  Remembered forms_;
+  NamedForm periodic_;
+  Linearization result_;
+};
+
 }  // namespace
 
 Linearization linearize(const system::PeriodicSystem& system,
                         const system::InputOutput& input_output,
                         const analysis::PeriodicSolution& solution, double start_azimuth,
                         const LinearizeOptions& options, analysis::Observer& observer) {
-  const LinearModel model(system, input_output, solution);
-  if (model.states().empty())
-    throw InputError("linearize: nothing can move, all strains and joints are rigid");
-  Linearization result;
-  const bool has_period = system.period() > 0.0;
-  result.rotor_speed = has_period ? 2.0 * std::numbers::pi / system.period() : 0.0;
-  const int azimuths = has_period ? options.azimuths : 1;
-  const int harmonics = std::min(options.harmonics, (azimuths - 1) / 2);
-  const auto time_of = [&](double psi) {
-    return has_period ? (psi - start_azimuth) / result.rotor_speed : 0.0;
-  };
-  std::map<double, StateSpace> known;
-  const auto form_at = [&](double psi) -> const StateSpace& {
-    const auto found = known.find(psi);
-    if (found != known.end()) return found->second;
-    const auto all = static_cast<long>(azimuths) + static_cast<long>(options.at.size());
-    observer.progress("linearize", std::min(static_cast<long>(known.size()) + 1, all), all);
-    return known.emplace(psi, model.state_space(time_of(psi))).first->second;
-  };
-  NamedForm periodic{"state_space",          "x_dot = A x + B u, y = C x + D u over the azimuth",
-                     model.states(),         column_signals(model),
-                     input_output.outputs(), AzimuthSeries(form_at, azimuths, harmonics)};
-  if (!has_period)
-    result.azimuths = {start_azimuth};
-  else
-    result.azimuths = options.at.empty() ? periodic.series.azimuths() : options.at;
-  result.is_constant =
-      std::max(periodic.series.variation(), periodic.series.residual()) < constant_tolerance;
-  result.series_azimuths = azimuths;
-  if (!has_period && (options.hill || options.lyapunov_floquet))
+  if (!(system.period() > 0.0) && (options.hill || options.lyapunov_floquet))
     throw InputError(
         "linearize.forms: nothing repeats where the rotor stands still; hint: state_space is "
         "constant there, without hill and lyapunov_floquet");
-  if (options.average && !options.multiblade && has_period && !result.is_constant)
-    observer.note(
-        "note: the average of rotating coordinates loses what couples tower and blades; hint: "
-        "linearize.forms with multiblade and average for three and more blades, with hill or "
-        "lyapunov_floquet for less");
-  result.outputs.resize(static_cast<Eigen::Index>(result.azimuths.size()),
-                        static_cast<Eigen::Index>(input_output.outputs().size()));
-  for (std::size_t i = 0; i < result.azimuths.size(); ++i) {
-    const double t = time_of(result.azimuths[i]);
-    result.outputs.row(static_cast<Eigen::Index>(i)) = model.operating_outputs(t).transpose();
-    if (options.descriptor) result.descriptors.push_back(model.descriptor(t));
-  }
-  const auto give_at_azimuths = [&](NamedForm& form, const auto& item) {
-    for (const double psi : result.azimuths) form.at_azimuths.push_back(item(psi));
-  };
-  give_at_azimuths(periodic, form_at);
-  if (options.multiblade) {
-    const Multiblade multiblade(model);
-    const auto turned_at = [&](double psi) {
-      return multiblade.transform(has_period ? psi : start_azimuth, form_at(psi));
-    };
-    NamedForm turned{"multiblade",         "in multiblade coordinates over the azimuth",
-                     multiblade.states(),  multiblade.inputs(),
-                     multiblade.outputs(), AzimuthSeries(turned_at, azimuths, harmonics)};
-    give_at_azimuths(turned, turned_at);
-    if (options.average) result.forms.push_back(average_of(turned));
-    result.forms.push_back(std::move(turned));
-  } else if (options.average) {
-    result.forms.push_back(average_of(periodic));
-  }
-  if (options.hill) {
-    const int h = options.hill_harmonics;
-    result.forms.push_back({"hill", "harmonic lifting (Hill): constant",
-                            repeated(periodic.states, h), repeated(periodic.inputs, h),
-                            repeated(periodic.outputs, h),
-                            AzimuthSeries({hill_form(periodic.series, result.rotor_speed, h)},
-                                          periodic.series.residual())});
-  }
-  if (options.lyapunov_floquet) {
-    const LyapunovFloquet floquet(periodic.series, result.rotor_speed, azimuths,
-                                  options.lyapunov_floquet_states, options.lyapunov_floquet_steps);
-    if (!floquet.remark().empty()) observer.note("note: " + floquet.remark());
-    const auto constant_at = [&](double psi) { return floquet.form(psi); };
-    result.forms.push_back({"lyapunov_floquet",
-                            "Lyapunov-Floquet coordinates q: A is constant, B and C periodic",
-                            floquet.states(), periodic.inputs, periodic.outputs,
-                            AzimuthSeries(constant_at, azimuths, harmonics)});
-    give_at_azimuths(result.forms.back(), constant_at);
-    const std::vector<system::Signal> states = signals_of(periodic.states);
-    const auto map_at = [&](double psi) { return floquet.transformation(psi); };
-    result.forms.push_back({"lyapunov_floquet_map",
-                            "q = B x and x = C q, x the states of state_space", floquet.states(),
-                            states, states, AzimuthSeries(map_at, azimuths, harmonics)});
-    give_at_azimuths(result.forms.back(), map_at);
-  }
-  if (options.order > 0) {
-    std::vector<NamedForm> reduced;
-    if (result.is_constant) {
-      NamedForm constant = average_of(periodic);
-      constant.name = periodic.name;
-      reduced.push_back(reduced_of(constant, options, observer));
-    } else {
-      for (const NamedForm& form : result.forms)
-        if (form.series.harmonics() == 0 && form.series.samples().empty())
-          reduced.push_back(reduced_of(form, options, observer));
-    }
-    if (reduced.empty())
-      throw InputError(
-          "linearize.reduce: there is no constant form; hint: linearize.forms with average or "
-          "hill");
-    result.forms.insert(result.forms.end(), reduced.begin(), reduced.end());
-  }
-  if (options.state_space) result.forms.insert(result.forms.begin(), std::move(periodic));
-  return result;
+  const LinearModel model(system, input_output, solution);
+  if (model.states().empty())
+    throw InputError("linearize: nothing can move, all strains and joints are rigid");
+  return Linearizer(model, start_azimuth, options, observer).run();
 }
 
 }  // namespace samara::linear

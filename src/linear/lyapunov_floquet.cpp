@@ -115,8 +115,9 @@ LyapunovFloquet::LyapunovFloquet(const AzimuthSeries& series, double rotor_speed
   for (int i = 0; i < intervals_; ++i) {
     const double from = turn * i / intervals_;
     const double to = turn * (i + 1) / intervals_;
-    propagators_.push_back(propagate(from, to, steps_));
-    monodromy = multiply(propagators_.back(), monodromy);
+    const MatrixXd phi = propagate(from, to, steps_);
+    propagators_.push_back(unscaled(phi));
+    monodromy = multiply(phi, monodromy);
     coarse = multiply(propagate(from, to, steps_ / 2), coarse);
   }
   find_blocks(monodromy, coarse);
@@ -146,6 +147,10 @@ MatrixXd LyapunovFloquet::propagate(double from, double to, int count) const {
     phi = multiply(end, multiply(begin, phi));
   }
   return phi;
+}
+
+MatrixXd LyapunovFloquet::unscaled(const MatrixXd& phi) const {
+  return scale_.asDiagonal() * phi * scale_.cwiseInverse().asDiagonal();
 }
 
 void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coarse) {
@@ -193,17 +198,11 @@ void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coa
 /// Carries V forward and W backward over the revolution: neither grows but by rounding.
 void LyapunovFloquet::follow(Block& block) const {
   const MatrixXcd back = small_exponential(-turn / speed_ / intervals_ * block.exponent);
-  const auto over = [this](int i) {
-    return MatrixXd(scale_.asDiagonal() * propagators_[static_cast<std::size_t>(i)] *
-                    scale_.cwiseInverse().asDiagonal());
-  };
-  block.W.resize(intervals_ + 1);
+  for (const MatrixXd& phi : propagators_) block.V.push_back(phi * block.V.back() * back);
+  block.W.resize(propagators_.size() + 1);
   block.W.back() = block.W.front();
-  for (int i = 0; i < intervals_; ++i) block.V.push_back(over(i) * block.V.back() * back);
-  for (int i = intervals_; i-- > 1;) {
-    const auto at = static_cast<std::size_t>(i);
-    block.W[at] = back * block.W[at + 1] * over(i);
-  }
+  for (std::size_t i = propagators_.size(); i-- > 1;)
+    block.W[i] = back * block.W[i + 1] * propagators_[i];
 }
 
 /// Exponents are known but for multiples of i Omega. Taken is the one next to the mean frequency of
@@ -247,8 +246,12 @@ void LyapunovFloquet::select(int states) {
   int count = 0;
   int unresolved = 0;
   const Block* first = nullptr;  // of those
+  const Block* next = nullptr;   // that has no room
   for (const Block& block : blocks_) {
-    if (states > 0 && count + block.states() > states) break;
+    if (states > 0 && count + block.states() > states) {
+      next = &block;
+      break;
+    }
     if (block.error < resolved) {
       count += block.states();
       kept.push_back(block);
@@ -263,12 +266,11 @@ void LyapunovFloquet::select(int states) {
     text << "; " << unresolved << " are not resolved, the slowest of them at " << first->modulus()
          << " rad/s to " << first->error << " of its exponent; hint: more "
          << "linearize.lyapunov_floquet_steps";
-  if (count == 0 && !blocks_.empty() && first == nullptr)
-    text << "; hint: the slowest motion has " << blocks_.front().states();
-  else if (count < scale_.size() && (states == 0 || count + 1 < states))
+  if (next == nullptr && count + unresolved < scale_.size())
     text << "; modes that decay to less than " << least_multiplier
          << " in a revolution are left out";
-  const bool is_short = states > 0 && count + 1 < states && kept.size() + 1 > blocks_.size();
+  if (count == 0 && next != nullptr) text << "; hint: the slowest motion has " << next->states();
+  const bool is_short = next == nullptr && count + 1 < states;
   if (count == 0 || is_short) throw InputError("linearize.lyapunov_floquet_states: " + text.str());
   if (first != nullptr || (states == 0 && count < scale_.size())) remark_ = text.str();
   blocks_ = std::move(kept);
@@ -311,12 +313,9 @@ LyapunovFloquet::Frame LyapunovFloquet::frame_at(double psi) const {
   const auto at = static_cast<std::size_t>(is_end ? std::fmod(std::round(place), intervals_)
                                                   : std::floor(place));
   const double from = is_end ? psi : width * static_cast<double>(at);
-  const auto unscaled = [this](const MatrixXd& phi) {
-    return MatrixXd(scale_.asDiagonal() * phi * scale_.cwiseInverse().asDiagonal());
-  };
   const MatrixXd before = unscaled(propagate(from, psi, steps_));
   const MatrixXd behind =
-      is_end ? unscaled(propagators_[at]) : unscaled(propagate(psi, from + width, steps_));
+      is_end ? propagators_[at] : unscaled(propagate(psi, from + width, steps_));
   std::vector<MatrixXcd> V;
   std::vector<MatrixXcd> W;
   for (const Block& block : blocks_) {
@@ -372,27 +371,28 @@ void LyapunovFloquet::orthogonalize(const std::vector<MatrixXcd>& V,
   }
 }
 
-/// What is left out answers at once, as if A stood still meanwhile: 0 = A x + B u in its space.
-StateSpace LyapunovFloquet::form(double psi) const {
+StateSpace LyapunovFloquet::transformation(double psi) const {
   const Frame frame = frame_at(psi);
+  return {exponents_, frame.Q, frame.P, MatrixXd::Zero(scale_.size(), scale_.size())};
+}
+
+/// What is left out answers at once, as if A stood still meanwhile: 0 = A x + B u in its space.
+StateSpace LyapunovFloquet::form(double psi, const StateSpace& map) const {
+  const MatrixXd& Q = map.B;
+  const MatrixXd& P = map.C;
   const StateSpace form = series_.at(psi);
-  const MatrixXd kept = multiply(frame.P, frame.Q);
-  const MatrixXd rest = MatrixXd::Identity(kept.rows(), kept.cols()) - kept;
+  const MatrixXd kept = multiply(P, Q);
   MatrixXd direct = form.D;
   const bool is_whole = kept.trace() > static_cast<double>(kept.rows()) - 0.5;
   if (!is_whole) {
+    const MatrixXd rest = MatrixXd::Identity(kept.rows(), kept.cols()) - kept;
     const Eigen::VectorXd units = scale_.cwiseInverse();
     const MatrixXd A = multiply(rest, multiply(form.A, rest)) + speed_ * kept;
     const MatrixXd scaled = units.asDiagonal() * A * scale_.asDiagonal();
     const MatrixXd input = units.asDiagonal() * multiply(rest, form.B);
     direct -= form.C * multiply(rest, scale_.asDiagonal() * scaled.partialPivLu().solve(input));
   }
-  return {exponents_, frame.Q * form.B, form.C * frame.P, direct};
-}
-
-StateSpace LyapunovFloquet::transformation(double psi) const {
-  const Frame frame = frame_at(psi);
-  return {exponents_, frame.Q, frame.P, MatrixXd::Zero(scale_.size(), scale_.size())};
+  return {exponents_, Q * form.B, form.C * P, direct};
 }
 
 }  // namespace samara::linear

@@ -63,8 +63,13 @@ Multiblade::Multiblade(const LinearModel& model) : model_(model) {
   inputs_ = column_signals(model);
   outputs_ = model.input_output().outputs();
   find_state_families();
-  find_input_families();
-  find_output_families();
+  std::vector<SignalKey> inputs;
+  for (const InputColumn& column : model.input_columns())
+    inputs.emplace_back(model.input_output().inputs()[column.input].family, column.derivative);
+  find_signal_families(inputs, inputs_, input_families_);
+  std::vector<SignalKey> outputs;
+  for (const system::Signal& output : outputs_) outputs.emplace_back(output.family, 0);
+  find_signal_families(outputs, outputs_, output_families_);
 }
 
 void Multiblade::find_state_families() {
@@ -107,50 +112,25 @@ void Multiblade::find_state_families() {
   }
 }
 
-void Multiblade::find_input_families() {
-  const std::vector<system::Signal> signals = column_signals(model_);
-  std::map<std::pair<std::string, int>, std::vector<int>> found;  // by family and derivative
-  const auto stem = [&](std::size_t i) {
-    return model_.input_output().inputs()[model_.input_columns()[i].input].family;
+/// Signals that are given for all blades; `keys`: what each is of and which derivative of it.
+void Multiblade::find_signal_families(const std::vector<SignalKey>& keys,
+                                      std::vector<system::Signal>& signals,
+                                      std::vector<Family>& families) const {
+  std::map<SignalKey, std::vector<int>> found;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (!keys[i].first.empty()) found[keys[i]].push_back(static_cast<int>(i));
+  const std::vector<std::string> names = words(blades_);
+  const auto signal_of = [&signals](int i) -> system::Signal& {
+    return signals[static_cast<std::size_t>(i)];
   };
-  for (std::size_t i = 0; i < signals.size(); ++i)
-    if (!stem(i).empty())
-      found[{stem(i), model_.input_columns()[i].derivative}].push_back(static_cast<int>(i));
   for (auto& [key, members] : found) {
     if (static_cast<int>(members.size()) != blades_) continue;
-    std::sort(members.begin(), members.end(), [&](int a, int b) {
-      return signals[static_cast<std::size_t>(a)].blade <
-             signals[static_cast<std::size_t>(b)].blade;
-    });
-    Family family{members, std::vector<double>(members.size(), 1.0), key.second,
-                  static_cast<int>(input_families_.size()) - key.second};
-    const std::vector<std::string> names = words(blades_);
+    std::ranges::sort(members, {}, [&](int i) { return signal_of(i).blade; });
+    families.push_back({members, std::vector<double>(members.size(), 1.0), key.second,
+                        static_cast<int>(families.size()) - key.second});
     for (std::size_t j = 0; j < names.size(); ++j) {
-      system::Signal& signal = inputs_[static_cast<std::size_t>(members[j])];
-      signal.name = signals[static_cast<std::size_t>(members[j])].family + " " + names[j];
-      signal.frame = "multiblade";
-    }
-    input_families_.push_back(family);
-  }
-}
-
-void Multiblade::find_output_families() {
-  const std::vector<system::Signal>& signals = model_.input_output().outputs();
-  std::map<std::string, std::vector<int>> found;
-  for (std::size_t i = 0; i < signals.size(); ++i)
-    if (!signals[i].family.empty()) found[signals[i].family].push_back(static_cast<int>(i));
-  for (auto& [name, members] : found) {
-    if (static_cast<int>(members.size()) != blades_) continue;
-    std::sort(members.begin(), members.end(), [&](int a, int b) {
-      return signals[static_cast<std::size_t>(a)].blade <
-             signals[static_cast<std::size_t>(b)].blade;
-    });
-    output_families_.push_back({members, std::vector<double>(members.size(), 1.0), 0,
-                                static_cast<int>(output_families_.size())});
-    const std::vector<std::string> names = words(blades_);
-    for (std::size_t j = 0; j < names.size(); ++j) {
-      system::Signal& signal = outputs_[static_cast<std::size_t>(members[j])];
-      signal.name = name + " " + names[j];
+      system::Signal& signal = signal_of(members[j]);
+      signal.name = signal.family + " " + names[j];
       signal.frame = "multiblade";
     }
   }

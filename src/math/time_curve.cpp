@@ -103,7 +103,18 @@ TimeCurve TimeCurve::formula(const std::string& text) {
   }
   return TimeCurve([parsed](double t) -> Value {
     constexpr double h = difference_step;
-    const double f = parsed->at(t);
+    // No formula is asked for what is before the start: by one-sided differences there.
+    const double f = parsed->at(std::max(t, 0.0));
+    if (t < 2.0 * h) {
+      const double at = std::max(t, 0.0);
+      const double f1 = parsed->at(at + h);
+      const double f2 = parsed->at(at + 2.0 * h);
+      const double f3 = parsed->at(at + 3.0 * h);
+      const double f4 = parsed->at(at + 4.0 * h);
+      const double rate = (-25.0 * f + 48.0 * f1 - 36.0 * f2 + 16.0 * f3 - 3.0 * f4) / (12.0 * h);
+      return {f + std::min(t, 0.0) * rate, rate,
+              (35.0 * f - 104.0 * f1 + 114.0 * f2 - 56.0 * f3 + 11.0 * f4) / (12.0 * h * h)};
+    }
     const double a1 = parsed->at(t + h);
     const double b1 = parsed->at(t - h);
     const double a2 = parsed->at(t + 2.0 * h);

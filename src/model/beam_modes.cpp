@@ -201,6 +201,13 @@ std::array<std::vector<BeamMode>, 3> first_modes(const Beam& beam) {
   return result;
 }
 
+bool is_rigid(const Beam& beam, const std::array<int, 2>& of_direction) {
+  for (const elements::BeamPoint& point : beam.points)
+    for (const int strain : of_direction)
+      if (point.compliance(strain, strain) > 0.0) return false;
+  return true;
+}
+
 Vector6 fit_damping(const Beam& beam, const ModalDamping& ratios) {
   const std::array<std::vector<BeamMode>, 3> modes = first_modes(beam);
   std::vector<std::size_t> given;
@@ -208,7 +215,10 @@ Vector6 fit_damping(const Beam& beam, const ModalDamping& ratios) {
     if (!ratios[d]) continue;
     if (modes[d].empty())
       throw InputError(std::string("the beam has no mode of ") + words[d] +
-                       ": its strain is rigid, or the mesh too coarse; leave this ratio out");
+                       (is_rigid(beam, strains[d])
+                            ? ": its strain is rigid; hint: leave this ratio out"
+                            : ": other strains have the larger share of every mode; hint: leave "
+                              "this ratio out, or more elements"));
     given.push_back(d);
   }
   const auto n = static_cast<Eigen::Index>(given.size());

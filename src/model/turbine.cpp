@@ -59,10 +59,11 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.torsion = hinge_of(shaft.torsion);
   if (shaft.generator.kind == JointKind::free) {
     chain.generator.free = true;
-    chain.generator_torque = shaft.generator.law.line_at(shaft.speed);
+    chain.generator_torque = shaft.generator.law.line_at(shaft.generator_speed());
   }
   chain.rotor_torque = shaft.rotor.line_at(shaft.speed);
   chain.generator_inertia = shaft.generator.inertia;
+  chain.gear_ratio = shaft.gear_ratio;
   chain.height = shaft.height;
   chain.tilt = shaft.tilt;
   chain.overhang = shaft.overhang;

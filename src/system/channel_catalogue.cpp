@@ -64,8 +64,12 @@ void ChannelCatalogue::add_rotation() {
       azimuth_slot, to_degrees);
   add("RotSpeed LSSTipVxa LSSTipVxs", "rpm", "shaft", "rotor speed against the nacelle",
       rotor_speed, to_rpm);
-  add("GenSpeed HSShftV", "rpm", "shaft", "generator speed, at the shaft's speed", generator_speed,
-      to_rpm);
+  add("GenSpeed HSShftV", "rpm", "shaft", "generator speed against the nacelle, behind the gear",
+      generator_speed, to_rpm);
+  add_moment("GenTq", "shaft", "torque on the generator against its turning, without the brake",
+             generator_torque);
+  add_moment("HSSBrTq", "shaft", "torque of the brake on the generator against its turning",
+             brake_torque);
   add("NacYaw YawPzn NacYawP YawPos", "deg", "tower top", "nacelle yaw", yaw_slot, to_degrees);
   add("NacYawV YawVzn YawRate", "deg/s", "tower top", "nacelle yaw rate", yaw_rate, to_degrees);
   if (turbine_.blades.size() != 2) return;

@@ -46,7 +46,9 @@ inline constexpr int yaw_rate = 43;
 inline constexpr int teeter_slot = 44;
 inline constexpr int teeter_rate = 45;
 inline constexpr int rotor_power = 46;
-inline constexpr int whole_slots = 47;
+inline constexpr int generator_torque = 47;
+inline constexpr int brake_torque = 48;
+inline constexpr int whole_slots = 49;
 // Of a station:
 inline constexpr int section_force = 0;  // axes of the section
 inline constexpr int section_moment = 3;

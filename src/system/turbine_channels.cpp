@@ -160,6 +160,8 @@ class Quantities {
     put(azimuth_slot, chain.azimuth - T(turn * std::floor(real_of(chain.azimuth) / turn)));
     put(rotor_speed, chain.shaft_rate);
     put(generator_speed, chain.generator_rate);
+    put(generator_torque, chain.generator_torque);
+    put(brake_torque, chain.brake_torque);
     put(yaw_slot, chain.yaw);
     put(yaw_rate, chain.yaw_rate);
     put(teeter_slot, chain.teeter);

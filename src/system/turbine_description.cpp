@@ -225,13 +225,19 @@ class Describer {
 
   bool turns_freely() const { return turbine_.chain.torsion.free || turbine_.chain.generator.free; }
 
+  /// Axes of the bearing in t1 t2 t3 at the mean of a prescribed yaw.
+  Matrix3 bearing_axes() const {
+    return math::turn_about<double>(Vector3::UnitZ(), turbine_.yaw_motion.angle) *
+           math::turn_about<double>(Vector3::UnitX(), turbine_.chain.tilt);
+  }
+
   /// What the tower top carries, at zero azimuth and the mean of a prescribed yaw: nacelle and
   /// shaft, and the hub, of which a free teeter leaves only the mass at the pin; what turns about
-  /// the hinge is the hub's own.
+  /// the hinge is the hub's own. A generator that is not free rolls with the nacelle, gear or not.
   Matrix6 carried_mass() const {
     const elements::RigidChain& chain = turbine_.chain;
     const Matrix3 yawed = math::turn_about<double>(Vector3::UnitZ(), turbine_.yaw_motion.angle);
-    const Matrix3 tilted = yawed * math::turn_about<double>(Vector3::UnitX(), chain.tilt);
+    const Matrix3 tilted = bearing_axes();
     const Vector3 bearing(0.0, 0.0, chain.height);
     const Vector3 pin = bearing + tilted * Vector3(0.0, chain.overhang, 0.0);
     Matrix6 weight = Matrix6::Zero();
@@ -251,6 +257,8 @@ class Describer {
     elements::RigidBody hub = chain.hub;
     if (turns_freely()) shaft.inertia(1, 1) = hub.inertia(1, 1) = 0.0;  // counted with their speed
     add_body(shaft, tilted, bearing);
+    if (!chain.generator.free)
+      add(0.0, Vector3::Zero(), chain.generator_inertia * tilted.col(1) * tilted.col(1).transpose());
     if (chain.teeter.free)
       add(chain.hub.mass, pin, Matrix3::Zero());
     else
@@ -299,10 +307,33 @@ class Describer {
     const double hub_turning = chain.hub.inertia(1, 1) + chain.hub.mass * off_axis.squaredNorm();
     const double turning = chain.shaft.inertia(1, 1) + (chain.teeter.free ? 0.0 : hub_turning);
     if (turns_freely()) add_shaft(layout_.shaft_torsion() + 1, turning);
-    if (chain.generator.free) add_shaft(layout_.generator() + 1, chain.generator_inertia);
+    if (chain.generator.free) add_generator();
     add_spring(chain.yaw, "yaw", Frame::fixed, layout_.yaw());
     add_spring(chain.teeter, "teeter", Frame::rotating, layout_.teeter());
     add_spring(chain.torsion, "shaft torsion", Frame::rotating, layout_.shaft_torsion());
+  }
+
+  /// J_g w^2/2 of a free generator, w = (1 - n) omega_Y.s2 + n U_g.
+  void add_generator() {
+    const elements::RigidChain& chain = turbine_.chain;
+    if (chain.generator_inertia == 0.0) return;
+    EnergyGroup group{
+        EnergyGroup::Kind::kinetic, "drivetrain", "", 0, Frame::rotating, {layout_.generator() + 1}, {}};
+    std::vector<double> shares{chain.gear_ratio};
+    const Vector3 along = (1.0 - chain.gear_ratio) * bearing_axes().col(1);
+    const auto add_share = [&](int unknown, double share) {
+      if (share == 0.0) return;
+      group.unknowns.push_back(unknown);
+      shares.push_back(share);
+    };
+    if (turbine_.has_tower) {
+      add_share(layout_.tower_tip() + 10, along(0));
+      add_share(layout_.tower_tip() + 11, along(1));
+    }
+    if (turbine_.has_tower || chain.yaw.free) add_share(layout_.yaw() + 1, along(2));
+    for (const double a : shares)
+      for (const double b : shares) group.weight.push_back(chain.generator_inertia * a * b);
+    result_.groups.push_back(group);
   }
 
   void add_spring(const elements::Hinge& hinge, const std::string& name, Frame frame, int angle) {

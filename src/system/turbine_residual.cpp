@@ -59,6 +59,19 @@ TurbineResidual::TurbineResidual(const model::Turbine& turbine)
   place_beams();
 }
 
+int TurbineResidual::chain_unknown(int i) const {
+  const int top = layout_.tower_tip();
+  const bool is_joint =
+      (i >= at_joints && i < at_top_velocity_dot) || (i >= at_joint_rates && i < at_top_load);
+  if (!is_joint && (!turbine_.has_tower || i >= at_hub_load)) return -1;
+  if (i < at_top_velocity) return top + 3 + i;
+  if (i < at_joints) return top + 6 + i - at_top_velocity;
+  if (i < at_top_velocity_dot) return layout_.joints() + i - at_joints;
+  if (i < at_joint_rates) return top + 6 + i - at_top_velocity_dot;
+  if (i < at_top_load) return layout_.joints() + i - at_joint_rates;
+  return top + 12 + i - at_top_load;
+}
+
 void TurbineResidual::check_rotation(const Vector3& theta, const std::string& place) {
   if (!(theta.norm() < math::largest_rodrigues_length))
     throw DomainError(place + ": rotation beyond 170 degrees");

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
-#include <random>
 
+#include "mesh_error.hpp"
 #include "turbine_description.hpp"
+#include "turbine_pattern.hpp"
 #include "turbine_tangents.hpp"
 
 namespace samara::system {
@@ -27,9 +29,10 @@ class TurbineSystem::Assembly {
         layout(equations.layout()),
         description(describe(turbine, layout)),
         comm(communicator),
+        pattern(find_pattern(equations)),
         tangents(equations) {
     find_range();
-    find_mass_pattern();
+    place_mass();
   }
 
   TurbineResidual equations;
@@ -37,9 +40,9 @@ class TurbineSystem::Assembly {
   const model::Layout& layout;
   TurbineDescription description;
   MPI_Comm comm;
+  TurbinePattern pattern;
   std::vector<bool> differential;
-  std::vector<std::vector<PetscInt>> mass_columns;  ///< by row
-  std::vector<std::size_t> mass_offsets;            ///< into the blocks, row by row
+  std::vector<std::size_t> mass_offsets;  ///< of M's places into its blocks, row by row
   PetscInt first_row = 0;
   PetscInt last_row = 0;
   mutable TurbineTangents tangents;
@@ -128,39 +131,20 @@ class TurbineSystem::Assembly {
     petsc::check(VecGetOwnershipRange(z.get(), &first_row, &last_row));
   }
 
-  /// The places of M that are not always zero, found at states where everything moves.
-  void find_mass_pattern() {
-    const auto n = static_cast<std::size_t>(layout.size());
-    std::vector<bool> used(tangents.M().values().size(), false);
-    std::minstd_rand random(1);
-    std::uniform_real_distribution<double> uniform(-0.5, 0.5);
-    for (int trial = 0; trial < 2; ++trial) {
-      std::vector<double> z(n);
-      std::vector<double> z_dot(n);
-      for (std::size_t i = 0; i < n; ++i) {
-        z[i] = uniform(random);
-        z_dot[i] = uniform(random);
-      }
-      tangents.evaluate(0.1 + trial, z, z_dot);
-      const std::vector<double>& values = tangents.M().values();
-      for (std::size_t i = 0; i < values.size(); ++i)
-        if (values[i] != 0.0) used[i] = true;
-    }
-    differential.assign(n, false);
-    mass_columns.resize(n);
+  /// Where M's places are in its blocks.
+  void place_mass() {
+    differential.assign(static_cast<std::size_t>(layout.size()), false);
     for (int row = 0; row < layout.size(); ++row) {
-      const std::vector<int>& columns =
+      const std::vector<int>& blocks =
           tangents.M().columns()[static_cast<std::size_t>(row / block)];
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        for (int j = 0; j < block; ++j) {
-          const std::size_t offset = tangents.M().offset(row / block, static_cast<int>(c)) +
-                                     static_cast<std::size_t>(j * block + row % block);
-          if (!used[offset]) continue;
-          const int column = columns[c] * block + j;
-          mass_columns[static_cast<std::size_t>(row)].push_back(column);
-          mass_offsets.push_back(offset);
-          differential[static_cast<std::size_t>(column)] = true;
-        }
+      for (const int column : pattern.M[static_cast<std::size_t>(row)]) {
+        const auto found = std::lower_bound(blocks.begin(), blocks.end(), column / block);
+        if (found == blocks.end() || *found != column / block)
+          throw InternalError("a place of M is in no block");
+        mass_offsets.push_back(
+            tangents.M().offset(row / block, static_cast<int>(found - blocks.begin())) +
+            static_cast<std::size_t>(column % block * block + row % block));
+        differential[static_cast<std::size_t>(column)] = true;
       }
     }
   }
@@ -204,6 +188,10 @@ const std::vector<EnergyGroup>& TurbineSystem::energy_groups() const {
 }
 const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const {
   return assembly_->description.neutral;
+}
+
+std::vector<MeshError> TurbineSystem::mesh_errors() const {
+  return find_mesh_errors(turbine(), layout());
 }
 
 bool TurbineSystem::constraints_are_autonomous() const {
@@ -289,7 +277,7 @@ petsc::Handle<Mat> TurbineSystem::make_mass() const {
   std::vector<PetscInt> outside;
   for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i) {
     PetscInt own = 0;
-    const auto& row = assembly.mass_columns[static_cast<std::size_t>(i)];
+    const auto& row = assembly.pattern.M[static_cast<std::size_t>(i)];
     for (const PetscInt j : row)
       if (j >= assembly.first_row && j < assembly.last_row) ++own;
     inside.push_back(own);
@@ -302,7 +290,7 @@ petsc::Handle<Mat> TurbineSystem::make_mass() const {
   petsc::check(MatSeqAIJSetPreallocation(matrix.get(), 0, inside.data()));
   petsc::check(MatMPIAIJSetPreallocation(matrix.get(), 0, inside.data(), 0, outside.data()));
   for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i) {  // sets the pattern
-    const auto& row = assembly.mass_columns[static_cast<std::size_t>(i)];
+    const auto& row = assembly.pattern.M[static_cast<std::size_t>(i)];
     const std::vector<double> zeros(row.size(), 0.0);
     petsc::check(MatSetValues(matrix.get(), 1, &i, static_cast<PetscInt>(row.size()), row.data(),
                               zeros.data(), INSERT_VALUES));
@@ -310,6 +298,15 @@ petsc::Handle<Mat> TurbineSystem::make_mass() const {
   petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
   petsc::check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
   return matrix;
+}
+
+std::vector<std::vector<PetscInt>> TurbineSystem::pattern() const {
+  const TurbinePattern& pattern = assembly_->pattern;
+  std::vector<std::vector<PetscInt>> columns(pattern.K.size());
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    std::set_union(pattern.K[i].begin(), pattern.K[i].end(), pattern.M[i].begin(),
+                   pattern.M[i].end(), std::back_inserter(columns[i]));
+  return columns;
 }
 
 void TurbineSystem::reference_state(double t, Vec z) const {
@@ -414,7 +411,7 @@ void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacob
     std::size_t entry = 0;
     std::vector<PetscScalar> row_values;
     for (PetscInt i = 0; i < size(); ++i) {
-      const auto& columns = assembly.mass_columns[static_cast<std::size_t>(i)];
+      const auto& columns = assembly.pattern.M[static_cast<std::size_t>(i)];
       const bool own = i >= assembly.first_row && i < assembly.last_row;
       row_values.clear();
       for (std::size_t c = 0; c < columns.size(); ++c)

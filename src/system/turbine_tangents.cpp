@@ -144,29 +144,9 @@ class TurbineTangents::Scatter {
     matrix.at(i / block, j / block)(i % block, j % block) += value;
   }
 
-  /// The unknown behind input i of the chain (motion inputs and rates), -1 where there is none.
-  int chain_unknown(int i) const {
-    const int top = turbine_.has_tower ? layout_.tower_tip() : -1000;
-    int unknown = -1;
-    if (i < at_top_velocity) {
-      unknown = top + 3 + i;
-    } else if (i < at_joints) {
-      unknown = top + 6 + i - at_top_velocity;
-    } else if (i < at_top_velocity_dot) {
-      unknown = layout_.joints() + i - at_joints;
-    } else if (i < at_joint_rates) {
-      unknown = top + 6 + i - at_top_velocity_dot;
-    } else if (i < at_top_load) {
-      unknown = layout_.joints() + i - at_joint_rates;
-    } else if (i < at_hub_load) {
-      unknown = top + 12 + i - at_top_load;
-    }
-    return unknown < 0 ? -1 : unknown;
-  }
-
   void add_motion(int row, const Eigen::Matrix<double, 3, chain_motion_inputs>& values) {
     for (int c = 0; c < chain_motion_inputs; ++c) {
-      const int unknown = chain_unknown(c);
+      const int unknown = equations_.chain_unknown(c);
       if (unknown < 0 || values.col(c).isZero(0.0)) continue;
       BlockMatrix::Block target = K_.at(row / block, unknown / block);
       target.block<3, 1>(row % block, unknown % block) += values.col(c);
@@ -426,7 +406,7 @@ class TurbineTangents::Scatter {
 
   void add_chain_row(int row, const ChainDual& value) {
     for (int i = 0; i < at_hub_load; ++i) {
-      const int unknown = chain_unknown(i);
+      const int unknown = equations_.chain_unknown(i);
       const double d = value.derivatives()(i);
       if (unknown < 0 || d == 0.0) continue;
       add(i >= at_top_velocity_dot && i < at_top_load ? M_ : K_, row, unknown, d);

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/sparse_parts.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/system/turbine_system.hpp"
 
@@ -21,21 +21,6 @@ analysis::PeriodicSolution trim_of(const system::PeriodicSystem& system) {
   analysis::TrimOptions options;
   options.harmonics = 2;
   return analysis::find_trim(system, options, observer).solution;
-}
-
-struct Tangents {
-  Eigen::MatrixXd K, M;
-};
-
-Tangents tangents_at(const system::PeriodicSystem& system,
-                     const analysis::PeriodicSolution& solution, double t) {
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const petsc::Handle<Mat> jacobian = system.make_jacobian();
-  const petsc::Handle<Mat> mass = system.make_mass();
-  solution.evaluate(t, z.get(), z_dot.get());
-  system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-  return {analysis::to_sparse(jacobian.get()), analysis::to_sparse(mass.get())};
 }
 
 /// Largest entry of the rows of one role in `sum`, relative to the largest of the row in `terms`,
@@ -113,7 +98,7 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_constant_soluti
     const Eigen::Index d = subspace.degrees_of_freedom();
     for (const double t : {0.0, 0.31}) {  // the velocities change with azimuth
       const Eigen::MatrixXd z = subspace.basis(t, 1e-3);
-      const Tangents tangents = tangents_at(system, solution, t);
+      const analysis::SparseTangents tangents = analysis::tangents_on(system, solution, t);
       // Positions in the left half, at rest; in the right half they are the rates of position.
       Eigen::MatrixXd z_dot = Eigen::MatrixXd::Zero(z.rows(), z.cols());
       z_dot.rightCols(d) = z.leftCols(d);
@@ -143,7 +128,7 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_periodic_soluti
   constexpr double step = 1e-4;
   const double t = 0.4;
   const Eigen::MatrixXd z = subspace.basis(t, step);
-  const Tangents tangents = tangents_at(system, solution, t);
+  const analysis::SparseTangents tangents = analysis::tangents_on(system, solution, t);
   const Eigen::MatrixXd rate =
       (subspace.basis(t + step, step) - subspace.basis(t - step, step)) / (2.0 * step);
   Eigen::MatrixXd z_dot(z.rows(), z.cols());

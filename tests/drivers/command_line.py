@@ -116,7 +116,6 @@ class Tables(ProgramTest):
         text = self.succeed("floquet", BASELINE, *QUICK).stdout
         self.assertRegex(text, r"(?m)^unstable: 1 mode grows: yaw \d+ doubles in \d")
         self.assertNotRegex(text, r"-0\.0+\s")
-        self.assertNotRegex(text, r"e-(0[89]|[1-9]\d)")
         self.assertLessEqual(max(map(len, text.splitlines())), 120)
 
     def test_a_clamped_rotor_is_neutral(self):
@@ -124,15 +123,16 @@ class Tables(ProgramTest):
         text = self.succeed("floquet", "case.yaml").stdout
         self.assertRegex(text, r"(?m)^neutral: no mode grows; \d+ are undamped, neither growing")
 
-    def test_a_growth_of_the_mesh_is_told_from_that_of_the_turbine(self):
+    def test_a_growth_of_the_mesh_is_none_of_the_turbine(self):
         # Pitch, unequal bending and a steady deflection break the mirror symmetry; a yaw that is
         # locked leaves nothing to grow.
         skew = ("gravity=9.81", "shaft.tilt_deg=5", "blades.pitch_deg=12",
                 "blades.sections.0.stiffness.EI3=4e7", "nacelle.yaw.joint=locked")
         settings = [word for setting in skew for word in ("--set", setting)]
         text = self.succeed("floquet", BASELINE, *settings).stdout
-        self.assertRegex(text, r"(?m)^no verdict: the mesh is too coarse")
-        self.assertRegex(text, r"(?m)^\d+ modes grow alone: .* an error of the mesh")
+        self.assertRegex(text, r"(?m)^neutral: no mode grows; \d+ are undamped")
+        self.assertRegex(text, r"(?m)^\d+ modes have too large an error and count for no verdict")
+        self.assertRegex(text, r"(?m)^ *\d+  blade lead-lag \d .* - +- .* error \d+ %")
         fine = ("--set", "blades.order=2", "--set", "tower.order=2")
         self.assertRegex(self.succeed("floquet", BASELINE, *settings, *fine).stdout,
                          r"(?m)^neutral: no mode grows")
@@ -144,7 +144,6 @@ class Tables(ProgramTest):
                             "blades.elements=3", "--set", "tower.elements=3", "--set",
                             "shaft.generator.joint=free").stdout
         self.assertRegex(text, r"(?m)^neutral: ")
-        self.assertRegex(text, r"(?m)^1 mode grows by less than the time step makes")
 
     def test_damping_makes_it_stable(self):
         damped = MINIMAL.replace("length: 10", "length: 10\n  damping: 1e-3")
@@ -170,9 +169,20 @@ class Tables(ProgramTest):
         self.assertIn("generator    480 N m against its turning hold the mean speed: 500 by its law "
                       "and -20 beside it", self.succeed("trim", "case.yaml").stdout)
 
+    def test_a_generator_behind_a_gear_says_what_it_gives_itself(self):
+        laws = ("gear_ratio: -20, generator: {joint: free, torque: 25, torque_slope: 0.075}, "
+                "rotor: {torque: 480, torque_slope: -20}")
+        text = MINIMAL.replace("{speed: 6}", "{speed: 6, " + laws + "}")
+        self.write("case.yaml", text + "gravity: 0\n")
+        self.assertIn("generator    24 N m against its turning hold the mean speed: 25 by its law "
+                      "and -1 beside it", self.succeed("trim", "case.yaml").stdout)
+        self.assertRegex(self.succeed("check", "case.yaml").stdout,
+                         r"(?m)^generator +inertia 0 kg m\^2 about its own axis, gear ratio -20: "
+                         r"1145.9 rpm\n(.*\n)*generator torque +25 N m at its own speed, slope")
+
     def test_a_parked_rotor_needs_no_torque_at_rest(self):
         table = "torque_table: [[4, 0], [8, 900]]"
-        laws = "{speed: 6, generator: {joint: free, inertia: 50, %s}, rotor: {%s}}" % (table, table)
+        laws = "{speed: 6, generator: {joint: free, own_inertia: 50, %s}, rotor: {%s}}" % (table, table)
         self.write("case.yaml", MINIMAL.replace("{speed: 6}", laws))
         self.assertEqual(self.succeed("check", "case.yaml").stderr, "")
         for command in ("static", "modes"):

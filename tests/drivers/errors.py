@@ -135,6 +135,71 @@ class Physics(ProgramTest):
         self.refuse("check", "case.yaml", words=["point_masses", "more elements"])
 
 
+# A blade for which the matrix of harmonic balance needs more room than MUMPS estimates.
+HEAVY_TIP = """samara: 1
+gravity: 0
+shaft: {speed: 8}
+blades:
+  length: 31.623
+  tip_mass: 3162.3
+  elements: 8
+  order: 3
+  sections:
+    - mass: 100
+      inertia: [2e-2, 1e-2, 1e-2]
+      stiffness: {EA: 1e10, GA2: 4e9, GA3: 4e9, GJ: 1e8, EI2: 1e8, EI3: 1e8}
+"""
+
+# Blades whose tangents have entries that vanish at most states but for rounding.
+WHIRLING = """samara: 1
+gravity: 9.81
+shaft: {speed: 18.949601294659434}
+hub: {radius: 0.25}
+blades:
+  length: 5
+  tip_mass: 75
+  elements: 4
+  order: 2
+  sections:
+    - mass: 300
+      inertia: [0.04, 0.02, 0.02]
+      stiffness: {EA: 6e10, GA2: 2e10, GA3: 2e10, GJ: 2e6, EI2: 4e6, EI3: 1.3e7}
+"""
+
+
+class Solvers(ProgramTest):
+    """What a solver cannot do has its own name, and what it can do is done."""
+
+    def test_a_work_array_that_is_too_small_is_no_singular_matrix(self):
+        self.write("case.yaml", HEAVY_TIP)
+        small = ["-trim_mat_mumps_icntl_14", "1"]
+        self.refuse("trim", "case.yaml", *small, code=3,
+                    words=["INFOG(1) = -9", "work array", "hint: a larger -trim_mat_mumps_icntl_14"])
+        run = self.succeed("trim", "case.yaml")
+        self.assertEqual(run.stderr, "")
+
+    def test_entries_that_only_rounding_makes_are_in_the_pattern(self):
+        self.write("case.yaml", WHIRLING)
+        self.succeed("trim", "case.yaml")
+
+    def test_a_partial_spectrum_is_refused_before_anything_is_solved(self):
+        self.write("case.yaml", MINIMAL)
+        for command in ("floquet", "modes"):
+            for option in (["nev", "10"], ["largest_magnitude"], ["target", "1"], ["hermitian"]):
+                name = f"-{command}_eps_{option[0]}"
+                self.refuse(command, "case.yaml", name, *option[1:], place=f"samara: {name}: ",
+                            words=["all eigenvalues are computed", "hint: "])
+
+    def test_an_unstable_order_is_refused(self):
+        history = ["--set", "transient={duration: 0.1, step: 0.01}"]
+        self.write("case.yaml", MINIMAL)
+        for order in (3, 6):
+            self.refuse("transient", "case.yaml", *history, "-transient_ts_bdf_order", order,
+                        place=f"samara: -transient_ts_bdf_order {order}: ",
+                        words=["unstable", "hint: "])
+        self.succeed("transient", "case.yaml", *history, "-transient_ts_bdf_order", 2)
+
+
 class Results(ProgramTest):
     """Where the result goes."""
 

@@ -229,7 +229,7 @@ class Linearize(ProgramTest):
     def test_free_motions_stay_together_in_lyapunov_floquet_coordinates(self):
         """Free yaw, generator and gravity: four multipliers at one, of which two are one."""
         turbine = [*SMALL, "--set", "blades.count=3", "--set", "hub.teeter={joint: locked}",
-                   "--set", "shaft.generator={joint: free, inertia: 2000}"]
+                   "--set", "shaft.generator={joint: free, own_inertia: 2000}"]
         self.succeed("linearize", BASELINE, *turbine, "--set",
                      "linearize={azimuths: 31, forms: [state_space, lyapunov_floquet], outputs: "
                      "[NacYaw], inputs: [yaw_torque], at_deg: [12.3, 90]}", "-o", "linear.h5")

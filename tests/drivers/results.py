@@ -77,14 +77,24 @@ class Floquet(ProgramTest):
         speed = group.attrs["rotor_speed"]
         rates, frequencies = group["exponents"][:].T
         self.assertTrue(numpy.all(frequencies >= 0))
-        self.assertTrue(numpy.all(numpy.diff(frequencies) >= 0))
+        # The slowest first, those that are not resolved behind the others.
+        resolved = group["resolved"][:] == 1
+        self.assertTrue(numpy.all(numpy.diff(resolved.astype(int)) <= 0))
+        for some in (resolved, ~resolved):
+            self.assertTrue(numpy.all(numpy.diff(frequencies[some]) >= 0))
         for name, unit in (("frequency_hz", 2 * numpy.pi), ("frequency_per_rev", speed)):
             numpy.testing.assert_allclose(group[name][:] * unit, frequencies, rtol=1e-14)
         # exp(lambda T) is the multiplier, whatever harmonic was identified.
         period = self.file["/model/period"][()]
         multipliers = group["multipliers"][:] @ [1, 1j]
-        numpy.testing.assert_allclose(numpy.exp((rates + 1j * frequencies) * period), multipliers,
-                                      rtol=1e-9)
+        steps = group["step_exponents"][:] @ [1, 1j]
+        numpy.testing.assert_allclose(numpy.exp(steps * period), multipliers, rtol=1e-9)
+        # The step's map, undone.
+        step = group.attrs["step"]
+        numpy.testing.assert_allclose(rates + 1j * frequencies,
+                                      2 / step * numpy.tanh(steps * step / 2), rtol=1e-9)
+        self.assertLessEqual(len(rates), group.attrs["states_found"])
+        self.assertEqual(group.attrs["states_found"] + group.attrs["states_deflated"], group.attrs["states"])
         self.assertEqual(len(group["label"]), len(rates))
 
     def test_participations_and_parts_are_shares(self):

@@ -94,6 +94,14 @@ class Restarts(ProgramTest):
         for a, b in zip(whole, parts):
             numpy.testing.assert_array_equal(a, b)
 
+    def test_restart_into_its_own_file_however_it_is_written(self):
+        self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
+                     *block(duration=1, step=0.01, checkpoint=0.5))
+        self.succeed("transient", BASELINE, *COARSE, "-o", "./a.h5", "--restart", "a.h5",
+                     *block(duration=1.5, step=0.01, checkpoint=0.5))
+        times = history(self.folder / "a.h5")[0]
+        numpy.testing.assert_allclose(times, 0.01 * numpy.arange(151), atol=1e-12)
+
     def test_restart_into_another_file_holds_the_rest(self):
         self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
                      *block(duration=1, step=0.01, checkpoint=0.5))
@@ -255,12 +263,142 @@ class Starts(ProgramTest):
             self.assertIn(words, run.stderr)
 
 
+class Midpoint(ProgramTest):
+    """Reactions of rigid strains by the midpoint rule."""
+
+    GRAVITY = ["--set", "gravity=9.81", "--set", "nacelle.yaw.joint=locked"]
+
+    def test_reactions_of_rigid_strains_do_not_alternate(self):
+        extents = {}
+        for method, step in (("bdf2", 0.0025), ("midpoint", 0.0025), ("midpoint", 0.00125)):
+            self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "a.h5", "--set",
+                         f"transient={{duration: 5, step: {step}, method: {method}, "
+                         "output: {channels: [RootFzb1]}}")
+            values = history(self.folder / "a.h5")[1][1:]
+            extents[method, step] = numpy.array([values.min(), values.max()])
+            if method == "midpoint":  # what alternates is the second difference
+                rough = numpy.abs(numpy.diff(values[:, 0], 2)).max()
+                self.assertLess(rough, 1e-3 * numpy.ptp(values))
+        reference = extents["bdf2", 0.0025]
+        for found in extents.values():
+            numpy.testing.assert_allclose(found, reference, rtol=1e-2)
+
+    def test_restart_goes_on_bit_by_bit(self):
+        keys = dict(step=0.01, checkpoint=0.5, method="midpoint")
+        self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "whole.h5",
+                     *block(duration=1.5, **keys))
+        for duration, more in ((1, []), (1.5, ["--restart", "parts.h5"])):
+            self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "parts.h5", *more,
+                         *block(duration=duration, **keys))
+        for a, b in zip(history(self.folder / "whole.h5"), history(self.folder / "parts.h5")):
+            numpy.testing.assert_array_equal(a, b)
+
+    def test_a_hinged_rotor_turns_on(self):
+        # With rigid strains and free hinges: what alternates would stop it after a minute.
+        path = self.write("hinged.yaml", HINGED)
+        self.succeed("transient", path, "-o", "a.h5", "--set",
+                     "transient={duration: 80, step: 0.01, start: undeformed, method: midpoint, "
+                     "output: {channels: [RootFzb1, TipDyb1]}}")
+        _, values, _, status = history(self.folder / "a.h5")
+        self.assertEqual(status, "complete")
+        self.assertLess(abs(values[:, 1]).max(), 4)
+
+
+HINGED = """samara: 1
+gravity: 9.81
+shaft: {speed: 6}
+hub: {radius: 0.5}
+blades:
+  length: 10
+  elements: 2
+  order: 2
+  support: {stiffness: {theta2: free, theta3: free}, mass: 1, inertia: [0.1, 0.1, 0.1]}
+  sections:
+    - mass: 1
+      inertia: [2e-4, 1e-4, 1e-4]
+      stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: 8e3, EI2: 1e4, EI3: 1e4}
+loads:
+  - {beam: blades, at: 1, force: [0, 10, 40], table: [[0, 0], [0.3, 1], [0.6, 0], [1000, 0]]}
+"""
+
+
+class RoughInput(ProgramTest):
+    """What is rough is said, what cannot be followed is refused."""
+
+    ROUGH = ["--set", "gravity=5", "--set", "trim.method=shooting", "--set", "trim.steps=4"]
+
+    @staticmethod
+    def history(words, duration=0.1, step=0.01):
+        return ["--set", f"transient={{duration: {duration}, step: {step}, {words}, "
+                "output: {channels: [RootMxb1]}}"]
+
+    def test_every_command_says_that_a_steady_state_is_rough(self):
+        beam = SOURCE / "inputs/beam/rotating.yaml"
+        words = "the steady state is rough: loads are out of balance by"
+        run = self.succeed("trim", beam, *self.ROUGH, "-o", "trim.h5")
+        self.assertIn("rough        loads are out of balance by", run.stdout)
+        with h5py.File(self.folder / "trim.h5") as file:
+            self.assertGreater(file["trim/imbalance"][()], 1e-2)
+        for command, more in (("floquet", []), ("linearize", []),
+                              ("transient", self.history("start: trim")),
+                              ("transient", self.history("start: trim.h5"))):
+            run = self.succeed(command, beam, *self.ROUGH, "-o", "a.h5", *more)
+            self.assertIn(words, run.stderr, command)
+        run = self.succeed("loads", "trim.h5", "--set", "channels=[RootMxb1]", "-o", "l.h5")
+        self.assertIn("trim.h5: " + words, run.stderr)
+        run = self.succeed("floquet", beam, "--set", "gravity=5", "-o", "a.h5")
+        self.assertNotIn("rough", run.stderr)
+
+    def test_tolerances_without_sense_are_refused_with_their_range(self):
+        for key, words in (("trim.tolerance=0.99", "from 1e-14 to 1e-3"),
+                           ("trim.tolerance=1e-300", "from 1e-14 to 1e-3"),
+                           ("trim.auto_tolerance=0.1", "from 1e-14 to 1e-3"),
+                           ("static.tolerance=1e10", "from 1e-14 to 1e-3"),
+                           ("transient={duration: 1, step: 0.1, tolerance: 1}",
+                            "from 1e-14 to 1e-3"),
+                           ("transient={duration: 1, step: 0.1, step_tolerance: 1e-300}",
+                            "from 1e-12 to 0.1")):
+            run = self.samara("check", self.write("m.yaml", MINIMAL), "--set", key)
+            self.assertEqual(run.returncode, 2, key)
+            self.assertIn("expected a number " + words, run.stderr)
+
+    def test_motions_that_jump_are_refused_and_kinks_are_noted(self):
+        def run(motion, step=0.01):
+            return self.samara("transient", self.write("m.yaml", MINIMAL), "-o", "a.h5",
+                               *self.history(f"start: undeformed, {motion}", 1, step))
+        for motion, words in (
+                ('pitch_deg: {formula: "t<0.5 ? 0 : 20"}', "jumps, by 20 deg within less than a step, "
+                                                         "at t = 0.5 s"),
+                ("pitch_deg: {table: [[0, 0], [1e-9, 90], [1, 90]]}", "jumps, by 90 deg"),
+                ('pitch_deg: {formula: "sin(1e9*t)"}', "within less than a step"),
+                ('pitch_deg: {formula: "sin(300*t)"}', "changes too fast for the steps"),
+                ('speed: {formula: "t<0.5 ? 6 : 7"}', "jumps, by 1 rad/s")):
+            found = run(motion)
+            self.assertEqual(found.returncode, 2, motion)
+            self.assertIn(words, found.stderr)
+        bent = run('pitch_deg: {formula: "t<0.5 ? 0 : 3*(t-0.5)"}')
+        self.assertEqual(bent.returncode, 0, bent.stderr)
+        self.assertIn("transient.pitch_deg: the rate jumps at t = 0.5 s by 3 deg/s", bent.stderr)
+        before = run('pitch_deg: {formula: "t<0 ? 50 : t"}')  # nobody asks what was before 0
+        self.assertEqual(before.returncode, 0, before.stderr)
+        self.assertNotIn("jumps", before.stderr)
+
+    def test_few_steps_a_revolution_are_said(self):
+        path = self.write("m.yaml", MINIMAL)
+        run = self.succeed("transient", path, "-o", "a.h5", *self.history("start: trim", 1, 0.05))
+        self.assertIn("fewer than 40; motions faster than 1 Hz have fewer than 20 steps a cycle",
+                      run.stderr)
+        self.assertIn("resolved     motions up to 1 Hz, with 20 steps a cycle", run.stdout)
+        run = self.succeed("transient", path, "-o", "a.h5", *self.history("start: trim", 1, 0.01))
+        self.assertNotIn("steps a revolution", run.stderr)
+
+
 # A stiff rotor that a constant torque holds against a constant torque of the generator.
 ROTOR = """samara: 1
 gravity: 0
 shaft:
   speed: 6
-  generator: {joint: free, torque: 100, inertia: 50}
+  generator: {joint: free, torque: 100, own_inertia: 50}
   rotor: {torque: 100}
 blades:
   count: 2
@@ -315,7 +453,7 @@ class Operation(ProgramTest):
                       "with 2", run.stderr)
 
     def test_a_new_torque_law_takes_the_place_of_what_held_the_speed(self):
-        case = ROTOR.replace("torque: 100, inertia", "inertia")
+        case = ROTOR.replace("torque: 100, own_inertia", "own_inertia")
         path = self.write("rotor.yaml", case)
         self.succeed("trim", path, "-o", "trim.h5")
         for law, speed in ((["--set", "shaft.generator.torque=100"], 6),
@@ -367,6 +505,26 @@ class Operation(ProgramTest):
         self.assertIn("transient.events[0] at t = 1.003 s", run.stdout)
         self.assertIn(f"transient.events[1] at t = {braked:.3f}"[:-1], run.stdout)
 
+    def test_generator_and_brake_act_behind_the_gear(self):
+        # The rotor of ROTOR behind a gear of 50, in either sense: inertia 50^2, torques 50 times.
+        for ratio in ("50", "-50"):
+            case = ROTOR.replace("torque: 100, own_inertia: 50", "torque: 2, own_inertia: 0.02")
+            case = case.replace("  generator:", f"  gear_ratio: {ratio}\n  generator:")
+            _, times, values = self.run_rotor(
+                "duration: 4, step: 0.01, events: [{at: 1, generator_off: true}, "
+                "{at: 3, brake: 6}], output: {channels: [RotSpeed, GenSpeed, GenTq, HSSBrTq]}", case)
+            expected = numpy.where(
+                times < 1, 6, numpy.where(times < 3, 6 + 100 / INERTIA * (times - 1),
+                                          6 + 200 / INERTIA - 200 / INERTIA * (times - 3)))
+            speed = values["RotSpeed"] * numpy.pi / 30
+            numpy.testing.assert_allclose(speed, expected, rtol=2e-5)
+            numpy.testing.assert_allclose(values["GenSpeed"], 50 * values["RotSpeed"], rtol=1e-12)
+            # Torques in the middle of each part: by law, none, the brake.
+            for time, generator, brake in ((0.5, 2, 0), (2, 0, 0), (3.5, 0, 6)):
+                row = int(round(time / 0.01))
+                self.assertAlmostEqual(1e3 * values["GenTq"][row], generator, delta=1e-5)
+                self.assertAlmostEqual(1e3 * values["HSSBrTq"][row], brake, delta=1e-5)
+
     def test_events_survive_a_restart(self):
         keys = ("step: 0.01, checkpoint: 0.5, output: {channels: [RotSpeed, BldPitch1, RootMzb1]}, "
                 "events: [{at: 0.25, generator_off: true}, {when: {channel: RotSpeed, above: 58}, "
@@ -386,7 +544,7 @@ class Operation(ProgramTest):
         # A rotor at rest: the root carries I1 L times the angular acceleration, about -b1.
         case = ROTOR.replace("speed: 6", "speed: 0").replace("inertia: [2e-4, 1e-4, 1e-4]",
                                                              "inertia: [6, 3, 3]")
-        case = case.replace("generator: {joint: free, torque: 100, inertia: 50}",
+        case = case.replace("generator: {joint: free, torque: 100, own_inertia: 50}",
                             "generator: {joint: locked}").replace("  rotor: {torque: 100}\n", "")
         _, times, values = self.run_rotor(
             "duration: 3, step: 0.002, start: undeformed, output: {channels: [BldPitch1, "
@@ -402,7 +560,7 @@ class Operation(ProgramTest):
         numpy.testing.assert_allclose(values["RootMzb1"][calm], moment[calm], atol=2e-4)
 
     def test_prescribed_speed_turns_and_loads_the_shaft(self):
-        case = ROTOR.replace("generator: {joint: free, torque: 100, inertia: 50}",
+        case = ROTOR.replace("generator: {joint: free, torque: 100, own_inertia: 50}",
                              "generator: {joint: locked}").replace("  rotor: {torque: 100}\n", "")
         for speed in ("{table: [[0, 6], [4, 8]]}", "{formula: 6 + 0.5*t}"):
             _, times, values = self.run_rotor(

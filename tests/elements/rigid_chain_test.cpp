@@ -91,7 +91,8 @@ RigidChain random_chain(std::minstd_rand& random, const Joints& joints) {
   chain.torsion = {joints.torsion, 700.0, 40.0};
   chain.generator = {joints.generator, 0.0, 50.0};
   chain.generator_inertia = 6.0;
-  chain.generator_torque.torque = 70.0;
+  chain.gear_ratio = joints.torsion ? -2.3 : 3.1;
+  chain.generator_torque = {70.0, 3.0, 5.0, {}};
   chain.rotor_torque = {90.0, -25.0, 1.7, {}};
   chain.tower_top = random_body(random, 2.0);
   chain.nacelle = random_body(random, 7.0);
@@ -170,7 +171,7 @@ Vec3<T> in_N(const Vec3<T>& a) {
 template <class T>
 struct Configuration {
   Vec3<T> top, top_center, nacelle_center, shaft_center, hub_center, apex;
-  Mat3<T> R_T, R_Y, R_G, R_S, R_H;
+  Mat3<T> R_T, R_Y, R_L, R_G, R_S, R_H;  // L: low-speed end of the gear, G: the generator
 };
 
 template <class T>
@@ -189,7 +190,8 @@ Configuration<T> configuration_of(const RigidChain& chain, const Prescribed& pre
   c.R_Y = c.R_T * about_3<T>(angle_of(chain.yaw, at_yaw));
   T azimuth = T(prescribed.azimuth) + T(prescribed.speed) * t;
   azimuth += angle_of(chain.generator, at_generator);
-  c.R_G = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth);
+  c.R_L = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth);
+  c.R_G = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth * T(chain.gear_ratio));
   azimuth += angle_of(chain.torsion, at_torsion);
   c.R_S = c.R_Y * about_1<T>(T(chain.tilt)) * about_2<T>(azimuth);
   c.R_H = c.R_S * about<T>(chain.teeter_axis, angle_of(chain.teeter, at_teeter));
@@ -271,7 +273,7 @@ Speeds<T> speeds_of(const RigidChain& chain, const Prescribed& prescribed, const
   const Vec3<T> omega_H = spin_of<T>(c.R_H);
   Speeds<T> U;
   U << v_T(2), v_T(0), v_T(1), omega_T(2), omega_T(0), omega_T(1), spin_of<T>(c.R_Y)(2), T(0.0),
-      spin_of<T>(c.R_S)(1), spin_of<T>(c.R_G)(1);
+      spin_of<T>(c.R_S)(1), spin_of<T>(c.R_L)(1);
   for (int i = 0; i < 3; ++i) U(7) += omega_H(i) * T(chain.teeter_axis(i));
   return U;
 }
@@ -379,6 +381,14 @@ struct Balance {
   }
 };
 
+/// Against the turning of the generator, at the speed that it has in the nacelle.
+double generator_torque_of(const RigidChain& chain, const Instant& now) {
+  const double turning = now.prescribed.speed + now.q_dot(at_generator);
+  return chain.generator_torque.torque +
+         chain.generator_torque.slope *
+             (std::abs(chain.gear_ratio) * turning - chain.generator_torque.speed);
+}
+
 /// d/dt(dT/dq_dot) - dT/dq + dV/dq + dD/dq_dot - Q of coordinate i; 0 in motion.
 Balance lagrange(const RigidChain& chain, const Instant& now, int i) {
   Balance balance;
@@ -407,8 +417,9 @@ Balance lagrange(const RigidChain& chain, const Instant& now, int i) {
   balance.add(partial.segment<3>(3).dot(top_moment));
   balance.add(-partial.segment<3>(6).dot(now.hub_load.head<3>()));
   balance.add(-partial.segment<3>(9).dot(now.hub_load.tail<3>()));
-  // The torques: of the generator on its own angle, of the rotor along h2.
-  if (i == at_generator) balance.add(chain.generator_torque.torque);
+  // The torques: of the generator on its own angle, against its turning, of the rotor along h2.
+  if (i == at_generator)
+    balance.add(std::abs(chain.gear_ratio) * generator_torque_of(chain, now));
   const double spin = load_speeds<double>(chain, now.prescribed, now.q, now.q_dot, now.t)(10);
   balance.add(-partial(10) * (chain.rotor_torque.torque +
                               chain.rotor_torque.slope * (spin - chain.rotor_torque.speed)));

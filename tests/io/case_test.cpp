@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "samara/base/error.hpp"
+#include "samara/model/turbine.hpp"
 
 namespace {
 
@@ -230,15 +231,40 @@ BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
   const model::ShaftDefinition shaft =
       read_text(minimal +
                 "shaft:\n  torsion: {joint: free, stiffness: 8e8, damping: 6e6}\n"
-                "  generator: {joint: free, inertia: 5e6, torque_slope: -3}\n")
+                "  gear_ratio: -97\n"
+                "  generator: {joint: free, own_inertia: 534, torque_slope: -3}\n")
           .turbine.shaft;
   BOOST_TEST((shaft.torsion.kind == JointKind::free));
   BOOST_TEST(shaft.torsion.stiffness == 8e8);
   BOOST_TEST(shaft.torsion.damping == 6e6);
   BOOST_TEST((shaft.generator.kind == JointKind::free));
-  BOOST_TEST(shaft.generator.inertia == 5e6);
+  BOOST_TEST(shaft.generator.inertia == 534.0);
+  BOOST_TEST(shaft.gear_ratio == -97.0);
   BOOST_TEST(shaft.generator.law.slope == -3.0);
   BOOST_TEST(shaft.generator.law.torque == 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(an_inertia_at_the_speed_of_the_shaft_is_refused_with_the_new_keys) {
+  check_error(minimal + "shaft:\n  generator: {joint: locked, inertia: 5e6}\n",
+              "case.yaml:10:30: shaft.generator.inertia: was counted at the speed of the shaft, "
+              "gears included, and is no longer read; hint: own_inertia, of the generator about its "
+              "own axis, and shaft.gear_ratio (of an OpenFAST deck GenIner and GBRatio); without "
+              "gears own_inertia is the same number");
+  check_error(minimal + "shaft:\n  gear_ratio: 0\n",
+              "case.yaml:10:3: shaft.gear_ratio: expected a number other than 0");
+}
+
+BOOST_AUTO_TEST_CASE(a_generator_table_reaches_to_the_speed_behind_the_gear) {
+  const std::string shaft = minimal + "shaft:\n  speed: 2\n  gear_ratio: -10\n  generator:\n"
+                                      "    joint: free\n    torque_table: ";
+  const model::ShaftDefinition read = read_text(shaft + "[[10, 3], [30, 7]]\n").turbine.shaft;
+  BOOST_TEST(read.generator_speed() == 20.0);
+  BOOST_TEST(model::build_turbine(read_text(shaft + "[[10, 3], [30, 7]]\n").turbine)
+                 .chain.generator_torque.at(20.0) == 5.0);
+  check_error(shaft + "[[1, 3], [3, 7]]\n",
+              "case.yaml:14:5: shaft.generator.torque_table: the table reaches from 1 to 3 rad/s, "
+              "shaft.speed times gear_ratio is 20 rad/s; hint: entries up to there, or torque and "
+              "torque_slope at this speed");
 }
 
 BOOST_AUTO_TEST_CASE(damping_ratios_become_mu_per_strain) {
@@ -262,7 +288,7 @@ BOOST_AUTO_TEST_CASE(damping_ratios_need_modes) {
   const std::string rigid = replace(minimal, "GJ: 1e6", "GJ: rigid");
   check_error(rigid + "  damping: {flap: 0.02, torsion: 0.01}\n",
               "case.yaml:9:3: blades.damping: the beam has no mode of torsion: its strain is "
-              "rigid, or the mesh too coarse; leave this ratio out");
+              "rigid; hint: leave this ratio out");
   check_error(minimal + "  damping: {flap: 2}\n",
               "case.yaml:9:13: blades.damping.flap: expected a number from 0 to 1, got 2");
   check_error(minimal + "  damping: {fore_aft: 0.01}\n",
@@ -827,7 +853,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_negative_is_refused) {
   check("  tip_mass: -1\n", "blades.tip_mass", ">= 0");
   check("  damping: -1\n", "blades.damping", ">= 0, a list of 6 or damping ratios");
   check("  each: {1: {mass_factor: -1}}\n", "blades.each.1.mass_factor", "> 0");
-  check("trim: {tolerance: -1}\n", "trim.tolerance", "> 0");
+  check("trim: {tolerance: -1}\n", "trim.tolerance", "from 1e-14 to 1e-3");
   check_error(replace(minimal, "length: 10", "length: 0"),
               "case.yaml:4:3: blades.length: expected a number > 0, got 0");
 }

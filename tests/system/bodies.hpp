@@ -63,6 +63,7 @@ struct Bodies {
   std::vector<Vector3> roots;
   std::vector<Matrix3> axes;  ///< of the blades at their roots, in N
   double joint_energy = 0.0;
+  double gear_rate = 0.0;  ///< of the gear's low-speed end against the nacelle [rad/s]
 
   double mass() const {
     double sum = 0.0;
@@ -181,9 +182,11 @@ class BodyBuilder {
       }
       spin += along * rate;
     };
+    const Vector3 carried = spin;
     turn_on(shaft.generator.kind, layout_.generator(), shaft.speed);
+    bodies_.gear_rate = along.dot(spin - carried);
     add_body(0.0, Vector3::Zero(), Vector3(0.0, shaft.generator.inertia, 0.0), place, velocity,
-             bearing, spin);
+             bearing, carried + shaft.gear_ratio * bodies_.gear_rate * along);
     turn_on(shaft.torsion.kind, layout_.shaft_torsion(), 0.0);
     const double twist = z_(layout_.shaft_torsion());
     if (shaft.torsion.kind == model::JointKind::free)

@@ -127,6 +127,35 @@ Drift released(const model::TurbineDefinition& definition, int steps) {
   return drift;
 }
 
+/// T + V of a turbine with a free generator that starts undeformed, and what its generator has
+/// taken: the torque by its law times its speed, both behind the gear.
+Drift braked(const model::TurbineDefinition& definition, int steps) {
+  constexpr double duration = 0.4;
+  const system::TurbineSystem system = build(definition);
+  const double gear = std::abs(definition.shaft.gear_ratio);
+  const model::TorqueLaw& law = definition.shaft.generator.law;
+  double before = 0.0;
+  double taken = 0.0;
+  double last_power = 0.0;
+  bool begun = false;
+  Drift drift;
+  run_midpoint(system, duration, steps, [&](double t, const Eigen::VectorXd& z) {
+    const sample::Bodies bodies = sample::bodies_at(definition, system, t, z);
+    const double energy = bodies.kinetic() + bodies.strain() + bodies.potential(definition.gravity);
+    const double speed = gear * bodies.gear_rate;
+    const double power = (law.torque + law.slope * (speed - gear * definition.shaft.speed)) * speed;
+    if (begun)
+      taken += 0.5 * (last_power + power) * duration / steps;
+    else
+      before = energy;
+    begun = true;
+    last_power = power;
+    drift.largest = std::max(drift.largest, std::abs(energy + taken - before));
+    drift.exchanged = std::max(drift.exchanged, std::abs(taken));
+  });
+  return drift;
+}
+
 /// T - Omega L + V of a rotor on the ground without gravity, L its moment of momentum about the
 /// shaft (Jacobi's integral of steadily turning axes).
 Drift spun_up(const model::TurbineDefinition& definition, int steps) {
@@ -285,6 +314,16 @@ BOOST_AUTO_TEST_CASE(a_turbine_let_go_under_gravity_conserves_its_energy) {
     model::TurbineDefinition definition = soft_turbine({2, 2, true, joints, joints, false, false});
     definition.shaft.speed = 0.0;
     check_second_order(released(definition, 30), released(definition, 60));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_generator_behind_a_gear_takes_its_torque_times_its_speed) {
+  for (const double ratio : {6.0, -6.0}) {
+    model::TurbineDefinition definition = soft_turbine({2, 2, true, true, true, false, false});
+    definition.shaft.torsion = {model::JointKind::free, 250.0, 0.0};
+    definition.shaft.generator = {model::JointKind::free, 0.3, {4.0, 0.4, {}}};
+    definition.shaft.gear_ratio = ratio;
+    check_second_order(braked(definition, 40), braked(definition, 80));
   }
 }
 

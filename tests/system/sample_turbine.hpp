@@ -136,6 +136,8 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
     d.hub.point_masses = {{1.5, Vector3(0.3, -0.2, -0.6), Vector3(0.1, 0.2, 0.3)},
                           {0.4, Vector3(-0.5, 0.1, 0.2), Vector3(0.02, 0.01, 0.03)}};
   }
+  d.shaft.generator.inertia = 1.1;
+  d.shaft.gear_ratio = choice.blades == 2 ? -2.5 : 1.8;
   if (!choice.full) return d;
   // Two points make a line that leans from the root on.
   d.tower.reference_line = {Vector3::Zero(), Vector3(4.8, 0.9, -1.1)};

@@ -130,6 +130,7 @@ class Driven final : public system::PeriodicSystem {
   petsc::Handle<Vec> make_state() const override { return turbine_.make_state(); }
   petsc::Handle<Mat> make_jacobian() const override { return turbine_.make_jacobian(); }
   petsc::Handle<Mat> make_mass() const override { return turbine_.make_mass(); }
+  std::vector<std::vector<PetscInt>> pattern() const override { return turbine_.pattern(); }
   void residual(double t, Vec z, Vec z_dot, Vec r) const override {
     const auto plain = [this](Vec vector) {
       const petsc::ReadView view(vector);
@@ -221,7 +222,8 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
           {"blades.elements=2", "tower.elements=2", "gravity=9.81", "blades.pitch_deg=8",
            "blades.precone_deg=3", "shaft.tilt_deg=4", "nacelle.yaw.stiffness=1e6",
            "nacelle.yaw.damping=1e4", "blades.damping=2e-3", "tower.damping=2e-3",
-           "shaft.generator={joint: free, inertia: 2000, torque: 1e4, torque_slope: 3e3}",
+           "shaft.generator={joint: free, own_inertia: 20, torque: 1e3, torque_slope: 30}",
+           "shaft.gear_ratio=-10",
            "shaft.rotor={torque: 1e4, torque_slope: -1e3}"})
           .turbine;
   const std::vector<std::string> inputs{"generator_torque", "yaw_torque",   "top_force_n1",
@@ -232,7 +234,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
   const std::vector<std::string> channels{
       "RootMxb1", "RootMyb2",  "RootMzb1",  "RootMyc1", "TipDxb1",  "TTDspFA",
       "TTDspSS",  "TwrBsMyt",  "TwrBsMxt",  "NacYaw",   "RotSpeed", "TeetDefl",
-      "RotTorq",  "LSSTipMys", "YawBrTAxp", "TipALxb1", "YawBrMzp"};
+      "RotTorq",  "GenSpeed", "GenTq",    "LSSTipMys", "YawBrTAxp", "TipALxb1", "YawBrMzp"};
   const Linearized linear(definition, inputs, channels, 14);
   const auto outputs = static_cast<Eigen::Index>(channels.size());
   const auto n = static_cast<Eigen::Index>(linear.model.states().size());

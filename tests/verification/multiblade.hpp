@@ -16,7 +16,7 @@
 #include <Eigen/SparseLU>
 #include <boost/test/unit_test.hpp>
 
-#include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/sparse_parts.hpp"
 
 #include "cases.hpp"
 
@@ -67,14 +67,7 @@ class Multiblade {
 
   /// The system in multiblade coordinates at the time t of `solution`.
   MultibladeSystem at(double t, const analysis::PeriodicSolution& solution) const {
-    const petsc::Handle<Vec> z = system_.make_state();
-    const petsc::Handle<Vec> z_dot = system_.make_state();
-    const petsc::Handle<Mat> jacobian = system_.make_jacobian();
-    const petsc::Handle<Mat> mass = system_.make_mass();
-    solution.evaluate(t, z.get(), z_dot.get());
-    system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-    const Eigen::SparseMatrix<double> K = analysis::to_sparse(jacobian.get());
-    const Eigen::SparseMatrix<double> M = analysis::to_sparse(mass.get());
+    const auto [K, M] = analysis::tangents_on(system_, solution, t);
     const double psi = system_.turbine().turning_at(t).value;
     const auto functions = [](double angle) {
       return Eigen::Vector3d(1.0, std::cos(angle), std::sin(angle));

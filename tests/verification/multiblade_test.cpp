@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(floquet_exponents_are_those_of_multiblade_coordinates) {
   const auto nearest_exponent = [](const analysis::ModeSet& set, Complex wanted) {
     Complex best(1e9, 0.0);
     for (const analysis::Mode& mode : set.modes)
-      for (const Complex exponent : {mode.exponent, std::conj(mode.exponent)})
+      for (const Complex exponent : {mode.step_exponent, std::conj(mode.step_exponent)})
         for (const double k : {-1.0, 0.0, 1.0}) {
           const Complex candidate = exponent + Complex(0.0, k * set.rotor_speed);
           if (std::abs(candidate - wanted) < std::abs(best - wanted)) best = candidate;

@@ -262,8 +262,9 @@ BOOST_AUTO_TEST_CASE(nrel5mw_at_12_rpm_has_the_frequencies_of_openfast) {
   // OpenFAST with BeamDyn blades (one element of order 5) and ElastoDyn's tower (two shapes a
   // direction), the mean of 36 azimuths in multiblade coordinates (issue 3394, pull request 3400 of
   // OpenFAST): tower side-side and fore-aft; flap backward, collective; edge backward; flap
-  // forward; edge collective, forward; second flap backward. Hz, to be met within 2 %.
-  const std::vector<double> published{0.3222, 0.3250, 0.5429, 0.7575, 0.9001,
+  // forward; edge collective, forward; second flap backward. Hz, to be met within 2 %. Side-side is
+  // that of a rerun of the public code, the others were the same there to 2e-4.
+  const std::vector<double> published{0.3179, 0.3250, 0.5429, 0.7575, 0.9001,
                                       0.9389, 1.0455, 1.3049, 1.8562};
   const model::TurbineDefinition turbine = beam_blades({}).turbine;
   std::vector<double> sideways;
@@ -285,8 +286,7 @@ BOOST_AUTO_TEST_CASE(nrel5mw_at_12_rpm_has_the_frequencies_of_openfast) {
   // The reason: two shapes are too stiff for the tower, on which the locked rotor rolls
   // with its collective edge mode, and one element of order 5 for the second flap. Ritz's method in
   // the published code's shapes and in many, without a figure of this program, says by how much:
-  // then all but one agree to 0.3 %, and side-side, where ElastoDyn's tower alone is 0.6 % above
-  // Ritz's (above), to 1.9 %.
+  // then all agree to 0.5 %.
   const RitzBlade theirs(turbine, beamdyn_order, rpm12);
   const RitzBlade converged(turbine, many, rpm12);
   const auto stiffer = [&](int mode) {
@@ -308,7 +308,7 @@ BOOST_AUTO_TEST_CASE(nrel5mw_at_12_rpm_has_the_frequencies_of_openfast) {
       found[6] * roll_theirs[2] / roll[2],   (found[7] - turn) * stiffer(1) + turn,
       (found[8] + turn) * stiffer(2) - turn};
   for (std::size_t i = 0; i < published.size(); ++i)
-    page.check_relative(names[i] + ", in its shapes [Hz]", expected[i], published[i], 0.02);
+    page.check_relative(names[i] + ", in its shapes [Hz]", expected[i], published[i], 0.005);
 
   // The tower does not droop as the rotor turns.
   const std::vector<double> still =
@@ -323,15 +323,14 @@ BOOST_AUTO_TEST_CASE(frequencies_of_nrel5mw_at_12_rpm_converge_with_slope_two_s)
 }
 
 BOOST_AUTO_TEST_CASE(floquet_of_nrel5mw_under_gravity_is_near_the_mean_over_the_azimuth) {
-  // What the mean leaves out, three per revolution of the weight, changes frequencies by 1e-4; the
-  // warp of the step, up to 1e-3, is undone.
+  // What the mean leaves out, three per revolution of the weight, changes frequencies by 1e-4.
   const io::Case input = beam_blades(coarse());
   const std::vector<double> mean = mean_frequencies(input);
   const analysis::Floquet floquet =
       floquet_of(input.turbine, 450, analysis::FloquetPeriod::automatic, input.trim);
   std::vector<double> seen;
   for (const analysis::Mode& mode : floquet.set.modes) {
-    const double omega = 2.0 / floquet.step * std::tan(0.5 * mode.exponent.imag() * floquet.step);
+    const double omega = mode.exponent.imag();
     for (const double k : {-1.0, 0.0, 1.0})
       seen.push_back(std::abs(omega + k * floquet.set.rotor_speed) / (2.0 * pi));
   }

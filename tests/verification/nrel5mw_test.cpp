@@ -65,6 +65,22 @@ BOOST_AUTO_TEST_CASE(parked_nrel5mw_lies_between_fast_and_adams) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_generator_of_parked_nrel5mw_rolls_once_with_the_tower) {
+  // A locked generator does not turn against the nacelle, whatever its gear: 534 kg m^2 roll, which
+  // is nothing beside the rotor's 4e7. Its inertia at the shaft's speed, 97^2 as much, would take
+  // 0.31184 to 0.31113 Hz.
+  const auto side_side = [](const std::vector<std::string>& keys) {
+    const analysis::ModeSet set = constant_modes_of(land(with(keys, {"shaft.speed=0"})).turbine);
+    return nearest(frequencies(set, "tower lateral"), 0.6 * pi) / (2.0 * pi);
+  };
+  const double geared = side_side({});
+  BOOST_TEST(geared == 0.31184, boost::test_tools::tolerance(2e-5));
+  BOOST_TEST(geared == side_side({"shaft.gear_ratio=-1"}), boost::test_tools::tolerance(1e-9));
+  const std::string at_the_shaft = "shaft.generator.own_inertia=" + std::to_string(534.116 * 97 * 97);
+  BOOST_TEST(side_side({"shaft.gear_ratio=1", at_the_shaft}) == 0.31113,
+             boost::test_tools::tolerance(2e-5));
+}
+
 BOOST_AUTO_TEST_CASE(frequencies_of_parked_nrel5mw_converge_with_slope_two_s) {
   check_mesh_study(
       "N1", [](const std::vector<std::string>& mesh) { return mean_frequencies(parked(mesh)); });

@@ -295,9 +295,8 @@ BOOST_AUTO_TEST_CASE(r3_hinged_rotor_flaps_once_a_revolution) {
       page.check_relative("teeter, constant tangents" + what,
                           nearest(frequencies(set, "teeter"), 1.7), 1.7, 1e-9);
       const analysis::Floquet floquet = floquet_of(definition, 100);
-      const double warped = 2.0 / floquet.step * std::atan(0.5 * 1.7 * floquet.step);
       page.check_relative("teeter, Floquet, 100 steps" + what,
-                          nearest(frequencies(floquet.set, "teeter"), warped), warped, 1e-9);
+                          nearest(frequencies(floquet.set, "teeter"), 1.7), 1.7, 1e-9);
     }
   }
 }

@@ -39,6 +39,13 @@ class ConsistentSubspace {
   /// eta of the columns of z, scaled: d x columns.
   Eigen::MatrixXd coordinates_of(const Eigen::MatrixXd& z) const;
 
+  /// The consistent state next to each column of z at time t: eta, and below it the eta_dot that
+  /// impulses of the reactions alone would leave of its velocities (2 d x columns; size x columns).
+  /// Velocities that no rate of eta makes are orthogonal to the others in the metric of the kinetic
+  /// energy and vanish. `rate_step` [s]: as for basis().
+  /// @throws InternalError where velocities without inertia are left to the reactions
+  Eigen::MatrixXd state_of(double t, const Eigen::MatrixXd& z, double rate_step) const;
+
   /// Unknowns whose values at a step's ends belong to the state: x, and internal loads in eta.
   const std::vector<bool>& carried() const { return carried_; }
 
@@ -68,6 +75,8 @@ class ConsistentSubspace {
   std::vector<double> tied_scale_;     ///< of the last ones of these, which are internal loads
   std::vector<PetscInt> kinematic_;    ///< rows
   std::vector<PetscInt> velocities_;   ///< unknowns
+  std::vector<PetscInt> balance_;      ///< rows
+  std::vector<PetscInt> reactions_;    ///< internal loads that no constraint row contains
   bool fixed_constraints_ = false;
 };
 

@@ -48,6 +48,10 @@ class HarmonicEnergy {
   Eigen::MatrixXd energies_;
 };
 
+/// R with weight = R^T R of a group, without rows of nothing: R times the group's unknowns are the
+/// signals of which half the sum of squares is the energy.
+Eigen::MatrixXd energy_root(const system::EnergyGroup& group);
+
 /// From energies by harmonic and part to the mode's energy, its parts' shares (in the order of the
 /// names), the dominant harmonic of the part with most energy and `participation`, the share of
 /// every harmonic k = -floor(n/2) ...

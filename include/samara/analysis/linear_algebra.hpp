@@ -41,6 +41,20 @@ class SingularError : public ConvergenceError {
   using ConvergenceError::ConvergenceError;
 };
 
+/// Why there are no factors.
+struct FactorFailure {
+  PCFailedReason reason = PC_NOERROR;  ///< that, where there are
+  std::string words;                   ///< what the solver says
+  std::string hint;                    ///< empty where the matrix is singular
+  bool is_singular = false;            ///< the solver has established it
+  bool wants_room = false;             ///< a larger work array may do
+};
+
+/// Sets up a solver whose operators are new, which factors them. Where MUMPS needs a larger work
+/// array than it has estimated it gets one, unless an option sets its size.
+/// @throws InternalError where there is not enough memory.
+FactorFailure set_up(KSP solver);
+
 /// LU with fixed scaling. The scaling of the first matrix serves all later ones of its pattern.
 class DirectSolver {
  public:
@@ -48,7 +62,8 @@ class DirectSolver {
   DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale);
 
   /// Factors `matrix`, which is scaled in place.
-  /// @throws SingularError
+  /// @throws SingularError where that is established, ConvergenceError where there are no factors
+  /// for another reason.
   void factor(Mat matrix);
 
   /// Solves for all columns of `right`, which is overwritten by the solution.
@@ -58,7 +73,6 @@ class DirectSolver {
 
  private:
   double compute_residual(const Eigen::MatrixXd& right) const;
-  PCFailedReason failure() const;
   void take_pivoting_solver();
 
   std::string prefix_;
@@ -91,6 +105,14 @@ struct Eigenpairs {
   std::vector<double> residuals;  ///< |A v - lambda v| / |v|
 };
 
+/// @throws InputError naming an option that asks SLEPc for other eigenpairs than all.
+void require_whole_spectrum(const std::string& prefix);
+
+/// @throws InputError as above, ConvergenceError where eigenpairs are missing.
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& prefix);
+
+/// |y| |x| / |y.x| of left and right eigenvectors, by which errors of the matrix are in an
+/// eigenvalue at the most: 1 of a normal matrix, infinite where eigenvectors coincide.
+Eigen::VectorXd condition_numbers(const Eigenpairs& pairs);
 
 }  // namespace samara::analysis

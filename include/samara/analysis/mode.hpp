@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,19 @@ struct PartShare {
 struct Mode {
   std::complex<double> multiplier;  ///< over the full period; 0 where the analysis has no period
   std::complex<double> exponent;    ///< lambda + i k Omega with the dominant k [rad/s], Im >= 0
-  int harmonic = 0;                 ///< k, relative to the principal exponent
-  double damping_ratio = 0.0;       ///< -Re / |lambda|; 0 where |lambda| counts as zero
+  /// The same of the sequence of steps, which (2/dt) tanh(. dt/2) maps to `exponent`; where nothing
+  /// was integrated, the exponent itself.
+  std::complex<double> step_exponent;
+  int harmonic = 0;            ///< k, relative to the principal exponent
+  double damping_ratio = 0.0;  ///< -Re / |lambda|; 0 where |lambda| counts as zero
   std::string label;
-  bool resolved = true;  ///< omega dt / 2 <= 0.7 and the residual is small
+  bool resolved = true;  ///< |lambda| dt / 2 is small enough, and the residual
+  /// Estimated errors of the exponent, relative to its modulus (docs/theory.md, section 5.9).
+  double step_error = 0.0;
+  double mesh_error = 0.0;
+  double rounding_error = 0.0;
+  double growth_error = 0.0;  ///< of the real part [rad/s]: a growth below it is none
+  double mesh_growth_error = 0.0;  ///< of this, what the elements make
   /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
   /// tangents: relative difference of the exponent found with two shifts.
   double residual = 0.0;
@@ -29,12 +39,26 @@ struct Mode {
   double kinetic_energy = 0.0;   ///< mean, of the shape as it is scaled [J]
 };
 
+/// Error of an exponent, relative to its modulus.
+inline double total_error(const Mode& mode) {
+  return mode.step_error + mode.mesh_error + mode.rounding_error;
+}
+
 struct ModeSet {
   std::vector<Mode> modes;  ///< by identified frequency
   int degrees_of_freedom = 0;
   double rotor_speed = 0.0;   ///< Omega [rad/s]
   double step = 0.0;          ///< of time [s], of the integration; 0: nothing was integrated
   bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*
+  int states = 0;             ///< exponents there are, each of a pair counted
+  int found = 0;              ///< of these, those of `modes`
+  /// Of these, decays that end below rounding within the integration: their exponents are not
+  /// known and not among `modes`. All of them decay at `deflated_rate` [1/s] or faster.
+  int deflated = 0;
+  double deflated_rate = std::numeric_limits<double>::infinity();
+  /// The least modulus of an exponent that is not resolved [rad/s], at the most that which the time
+  /// step resolves: below it all modes are known, but for those that are deflated.
+  double reach = std::numeric_limits<double>::infinity();
   /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
   Eigen::MatrixXd participation;
   int first_harmonic = 0;

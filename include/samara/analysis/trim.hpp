@@ -1,6 +1,7 @@
 // The periodic steady state of r(t, z, z_dot) = 0 (docs/theory.md, section 4; eq. (15)).
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ struct Trim {
   double residual_between = 0.0;  ///< largest balance row between the samples [N, N m]
   double load_level = 0.0;        ///< largest internal load of the solution [N, N m]
   std::vector<HeldCoordinate> held = {};
+  /// The larger residual, relative to the largest load or 1 N, 1 N m.
+  double imbalance() const {
+    return std::max(residual, residual_between) / std::max(load_level, 1.0);
+  }
   /// Harmonics tried and the residual between the samples that each left (more than one: auto).
   std::vector<std::pair<int, double>> history = {};
 };

@@ -1,10 +1,11 @@
 // The rigid bodies between tower and blades by Kane's method (docs/theory.md, section 3; Lee,
 // Hodges & Patil (2002), eq. (8), (9)): tower top T, yaw q_y about t3, nacelle Y, tilted shaft
-// bearing, generator G turned by psi + q_g about s2, shaft S turned by q_s more (torsion), teeter
-// q_h about the hinge axis e of S and H, hub H. psi is the azimuth at constant speed.
+// bearing, low-speed end L of the generator's gear turned by psi + q_g about s2, shaft S turned by q_s
+// more (torsion), teeter q_h about the hinge axis e of S and H, hub H. psi is the azimuth at constant
+// speed. The generator turns n times as fast as L against the nacelle, n its gear ratio.
 //
 // Generalized speeds: U1 = omega_Y.y3, U2 = omega_H.e, U3..5 = omega_T in t1 t2 t3, U6..8 = v_T in
-// t1 t2 t3, U_g = omega_G.s2, U_s = omega_S.s2. "Speed of the outer body in the inertial frame"
+// t1 t2 t3, U_g = omega_L.s2, U_s = omega_S.s2. "Speed of the outer body in the inertial frame"
 // makes the partial velocities so sparse that Kane's sums are one walk inward: a joint passes on
 // the moment without its component about its own axis, and that component, with the joint's spring
 // and damper, is the joint's row.
@@ -45,15 +46,16 @@ inline constexpr double brake_speed = 1e-2;
 struct RigidChain {
   double gravity = 0.0;  ///< along -n3 [m/s^2]
   Hinge yaw;
-  Hinge generator;              ///< about psi
+  Hinge generator;              ///< of L, about psi
   TorqueLine generator_torque;  ///< against the turning, by the generator's speed in the nacelle
   double brake_torque = 0.0;    ///< on the generator against its turning, whichever way [N m]
+  double gear_ratio = 1.0;      ///< n: turns of the generator for one of L, < 0 the other way
   TorqueLine rotor_torque;      ///< on H along h2, by omega_H . h2
   Hinge torsion;
   Hinge teeter;
   RigidBody tower_top;                     ///< reference point: tower top; axes t1 t2 t3
   RigidBody nacelle;                       ///< reference point: tower top; axes y1 y2 y3
-  double generator_inertia = 0.0;          ///< about the shaft, at its speed [kg m^2]
+  double generator_inertia = 0.0;          ///< J_g, about its own axis, which is along s2 [kg m^2]
   RigidBody shaft;                         ///< reference: yaw axis on the shaft; axes s1 s2 s3
   RigidBody hub;                           ///< reference: teeter pin; axes h1 h2 h3
   double height = 0.0;                     ///< tower top to shaft axis, along y3 [m]
@@ -85,8 +87,8 @@ struct ChainState {
   Vec6<T> hub_load;         ///< sum of the blade-root loads: force, moment about the apex, in H
   double azimuth = 0.0;     ///< psi [rad]
   double speed = 0.0;       ///< psi_dot [rad/s]
-  double speed_dot = 0.0;   ///< of a generator that is not free [rad/s^2]
-  T generator_torque = T(0);  ///< beside the chain's, against the turning [N m]
+  double speed_dot = 0.0;   ///< of a generator that is not free, at L [rad/s^2]
+  T generator_torque = T(0);  ///< on the generator beside the chain's, against its turning [N m]
   T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
   Vec3<T> up = Vec3<T>::UnitX();  ///< n3, components in the tower's a
 };
@@ -112,8 +114,8 @@ template <class T>
 struct ChainRows {
   Vec6<T> top;  ///< Kane's rows of (U8, U6, U7, U5, U3, U4) [N, N m]
   JointRows<T> yaw, teeter, torsion;
-  JointRows<T> generator;  ///< its balance is that of its rate against the nacelle: a constant
-                           ///< torque that is added to it acts back on the nacelle
+  JointRows<T> generator;  ///< its balance is that of L's rate against the nacelle: a constant
+                           ///< torque that is added to it acts at L, and back on the nacelle
 };
 
 /// What is asked of the chain beside its rows. It is only given where torque tables reach.
@@ -122,7 +124,9 @@ struct ChainReport {
   T azimuth;           ///< of S against the bearing [rad]
   T yaw, teeter;       ///< angles [rad]
   T yaw_rate;          ///< [rad/s]
-  T generator_rate;    ///< of G against the nacelle [rad/s]
+  T generator_rate;    ///< of the generator against the nacelle, in the sense of its turning [rad/s]
+  T generator_torque;  ///< of the nacelle on it, against its turning, without the brake [N m]
+  T brake_torque;      ///< the same way [N m]
   T shaft_rate;        ///< of S against the nacelle [rad/s]
   T teeter_rate;       ///< [rad/s]
   Vec6<T> rotor_load;  ///< force and moment of the hub on the shaft at the teeter pin, in S [N, N m]
@@ -153,6 +157,16 @@ Motion<T> moved_to(const Vec3<T>& r, const Motion<T>& m) {
   return {m.omega, m.alpha, m.v + swept, m.a + turning + centripetal};
 }
 
+/// What a vector has across a unit vector. Along a base vector nothing is left of it, not even a
+/// dependence.
+template <class T>
+Vec3<T> across(const Vec3<T>& axis, const Vec3<T>& v) {
+  Mat3<T> projection;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) projection(i, j) = T(i == j ? 1.0 : 0.0) - axis(i) * axis(j);
+  return projection * v;
+}
+
 /// The frame behind a hinge about `axis` with the given relative rate. `inner` is the motion of
 /// the hinge point seen in the outer frame's components.
 template <class T>
@@ -171,9 +185,10 @@ template <class T>
 Motion<T> with_outer_speed(const Vec3<T>& axis, const T& speed, const T& speed_dot,
                            const Motion<T>& inner) {
   const T rate = speed - math::dot(axis, inner.omega);
-  Motion<T> outer = with_relative_rate<T>(axis, rate, inner);
-  const T lacking = speed_dot - math::dot(axis, outer.alpha);
-  for (int i = 0; i < 3; ++i) outer.alpha(i) += axis(i) * lacking;
+  Motion<T> outer = inner;
+  const Vec3<T> carried = math::cross(axis, inner.omega);
+  outer.omega = across<T>(axis, inner.omega) + axis * speed;
+  outer.alpha = across<T>(axis, inner.alpha) + axis * speed_dot - carried * rate;
   return outer;
 }
 
@@ -230,10 +245,10 @@ class JointWalk {
     rows.balance = T(0);
     rows.position = state_.angle - T(state_.prescribed.angle);
     if (!hinge_.free) return rows;
-    const T spring = -(state_.angle * hinge_.stiffness + own_rate_ * hinge_.damping);
-    rows.balance = math::dot(axis_, moment) + spring - stop_torque();
-    if (pass_all) return rows;
-    for (int i = 0; i < 3; ++i) moment(i) -= axis_(i) * rows.balance;
+    const T spring =
+        -(state_.angle * hinge_.stiffness + own_rate_ * hinge_.damping) - stop_torque();
+    rows.balance = math::dot(axis_, moment) + spring;
+    if (!pass_all) moment = (across<T>(axis_, moment) - axis_ * spring).eval();
     return rows;
   }
 
@@ -291,8 +306,8 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Matrix3 C_YD = math::turn_about<double>(Vector3::UnitX(), chain.tilt);
   const Mat3<T> C_DY = C_YD.transpose().cast<T>();
   const Vec3<T> bearing(T(0), T(0), T(chain.height));
-  const JointWalk<T> generator(chain.generator, Vector3::UnitY(), state.generator,
-                               detail::seen_from<T>(C_DY, detail::moved_to<T>(bearing, nacelle)),
+  const Motion<T> stator = detail::seen_from<T>(C_DY, detail::moved_to<T>(bearing, nacelle));
+  const JointWalk<T> generator(chain.generator, Vector3::UnitY(), state.generator, stator,
                                state.speed, state.speed_dot);
   const Vec3<T> g_D = C_DY * g_Y;
 
@@ -331,7 +346,6 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
     report->yaw = q_y;
     report->teeter = q_h;
     report->yaw_rate = yaw.relative_rate();
-    report->generator_rate = generator.relative_rate();
     report->shaft_rate = generator.relative_rate() + torsion.relative_rate();
     report->teeter_rate = teeter.relative_rate();
     report->rotor_load << C_HS.transpose() * w.force, C_HS.transpose() * w.moment;
@@ -349,18 +363,27 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Vec3<T> same_point(T(0), T(0), T(0));
   pass_to(detail::active_and_inertia<T>(chain.shaft, shaft, g_S), C_HS, pin);
   rows.torsion = torsion.take(w.moment);
-  RigidBody turning;
-  turning.inertia(1, 1) = chain.generator_inertia;
-  pass_to(detail::active_and_inertia<T>(turning, generator.outer(), g_D), C_SD, same_point);
+  pass_to(Wrench<T>{same_point, same_point}, C_SD, same_point);
   rows.generator = generator.take(w.moment, true);
+  // The generator's momentum J_g w along s2, w = omega_Y.s2 + n (U_g - omega_Y.s2): its own row
+  // knows n times the torque that turns it, what carries it the whole rate.
+  const T turning_rate = generator.relative_rate();
+  const T along = generator.outer().alpha(1) - stator.alpha(1);
+  const T momentum = (stator.omega(1) + turning_rate * chain.gear_ratio) * chain.generator_inertia;
+  const T momentum_dot = (stator.alpha(1) + along * chain.gear_ratio) * chain.generator_inertia;
+  // Its torques and its speed count in the sense of its turning, whichever way that is.
+  const double gear = std::abs(chain.gear_ratio);
+  const T held_back = (w.moment(1) - momentum_dot * chain.gear_ratio) / gear;
+  w.moment -= cross(stator.omega, Vec3<T>(T(0), momentum, T(0)));
+  w.moment(1) -= momentum_dot;
+  T braked(0);
   if (chain.generator.free) {
-    rows.generator.balance -= state.generator_torque;
-    const T turning_rate = generator.relative_rate();
+    T torque = state.generator_torque;
     if (!chain.generator_torque.is_zero())
-      rows.generator.balance -= chain.generator_torque.at(turning_rate);
+      torque += chain.generator_torque.at(T(turning_rate * gear));
     if (chain.brake_torque != 0.0)
-      rows.generator.balance -=
-          math::smooth_sign(T(turning_rate / brake_speed)) * chain.brake_torque;
+      braked = math::smooth_sign(T(turning_rate / brake_speed)) * chain.brake_torque;
+    rows.generator.balance -= momentum_dot * chain.gear_ratio + (torque + braked) * gear;
   }
   pass_to(detail::active_and_inertia<T>(chain.nacelle, nacelle, g_Y), C_DY, bearing);
   rows.yaw = yaw.take(w.moment);
@@ -372,8 +395,11 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   if (report != nullptr) {
     report->top_load << w.force, w.moment;
     chain.rotor_torque.require(math::plain_value(T(hub_motion.omega(1))));
+    report->generator_rate = turning_rate * gear;
+    report->generator_torque = held_back - braked;
+    report->brake_torque = braked;
     if (chain.generator.free)
-      chain.generator_torque.require(math::plain_value(generator.relative_rate()));
+      chain.generator_torque.require(math::plain_value(report->generator_rate));
   }
   const Vec3<T> F_hat = C_top * Vec3<T>(state.top_load.template head<3>());
   const Vec3<T> M_hat = C_top * Vec3<T>(state.top_load.template tail<3>());

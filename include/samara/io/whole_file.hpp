@@ -10,8 +10,8 @@
 
 namespace samara::io {
 
-/// True where both paths lead to the same place, whether there is a file or not.
-bool same_file(const std::string& a, const std::string& b);
+/// True where both paths lead to the same file, or will once there is one.
+bool is_same_file(const std::string& a, const std::string& b);
 
 /// A file that is written piece by piece: a temporary file in the folder of `path`, which takes
 /// that name in the end. Where anything fails it is removed, and what was at `path` stays.

@@ -7,6 +7,7 @@
 #include "samara/analysis/observer.hpp"
 #include "samara/linear/azimuth_series.hpp"
 #include "samara/linear/linear_model.hpp"
+#include "samara/linear/lyapunov_floquet.hpp"
 #include "samara/linear/model_reduction.hpp"
 
 namespace samara::linear {
@@ -22,8 +23,8 @@ struct LinearizeOptions {
   bool hill = false;
   int hill_harmonics = 4;
   bool lyapunov_floquet = false;
-  int lyapunov_floquet_steps = 512;  ///< a revolution, at the least
-  int lyapunov_floquet_states = 0;   ///< of the slowest modes; 0: all that are resolved
+  int lyapunov_floquet_steps = LyapunovFloquet::default_steps;  ///< a revolution, at the least
+  int lyapunov_floquet_states = 0;  ///< of the slowest modes; 0: all that are resolved
   std::vector<double> at;  ///< at which the matrices themselves are given [rad]; none: all of them
   int order = 0;           ///< of constant forms, reduced; 0: none
   ReductionMethod reduction = ReductionMethod::balanced;

@@ -29,9 +29,11 @@ class LyapunovFloquet {
   /// Why there are not all of the states; empty: there are, or as many as were asked for.
   const std::string& remark() const { return remark_; }
   /// {Lambda, Q B, C P, D with the static answer of the modes that are left out}.
-  StateSpace form(double psi) const;
+  StateSpace form(double psi) const { return form(psi, transformation(psi)); }
   /// {Lambda, Q, P, none}: inputs and outputs are x.
   StateSpace transformation(double psi) const;
+  /// The form where the transformation is known already.
+  StateSpace form(double psi, const StateSpace& map) const;
 
  private:
   /// A mode, or several whose multipliers cannot be told apart, with coordinates s:
@@ -56,6 +58,7 @@ class LyapunovFloquet {
   };
 
   Eigen::MatrixXd propagate(double from, double to, int steps) const;
+  Eigen::MatrixXd unscaled(const Eigen::MatrixXd& phi) const;
   void find_blocks(const Eigen::MatrixXd& monodromy, const Eigen::MatrixXd& coarse);
   void follow(Block& block) const;
   void choose_branch(Block& block) const;

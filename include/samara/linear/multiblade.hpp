@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -36,9 +37,12 @@ class Multiblade {
         -1;  ///< family of the quantity that this is a derivative of, itself where it is none
   };
 
+  using SignalKey = std::pair<std::string, int>;  ///< family, empty: of none; derivative
+
   void find_state_families();
-  void find_input_families();
-  void find_output_families();
+  void find_signal_families(const std::vector<SignalKey>& keys,
+                            std::vector<system::Signal>& signals,
+                            std::vector<Family>& families) const;
   static std::vector<std::string> words(int blades);
   /// The functions of all blades, Q x Q, differentiated by psi.
   Eigen::MatrixXd functions(double psi, int derivative) const;

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 
 #include "samara/math/autodiff.hpp"
+#include "samara/math/dependence.hpp"
 
 namespace samara::math {
 
@@ -14,6 +16,8 @@ template <class Derivatives>
 double plain_value(const Eigen::AutoDiffScalar<Derivatives>& value) {
   return value.value();
 }
+/// None: every comparison with it is false.
+inline double plain_value(const Dependence&) { return std::numeric_limits<double>::quiet_NaN(); }
 
 /// x / sqrt(1 + x^2): the sign of x but near zero.
 template <class T>

@@ -28,7 +28,7 @@ class TimeCurve {
   static TimeCurve along(const std::vector<Point>& points);
 
   /// A formula of t, e.g. "0.1*sin(2*_pi*t)" in the language of muParser. Rates by differences of
-  /// fourth order.
+  /// fourth order, near t = 0 from what is behind it; before it a straight line.
   /// @throws InputError with the place in the formula
   static TimeCurve formula(const std::string& text);
 

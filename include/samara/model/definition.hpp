@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -119,9 +120,9 @@ struct TorqueLaw {
 };
 
 struct GeneratorDefinition {
-  JointKind kind = JointKind::locked;  ///< locked: turns at shaft.speed; free: its angle varies
-  double inertia = 0.0;                ///< about the shaft, at the shaft's speed [kg m^2]
-  TorqueLaw law;                       ///< against the turning
+  JointKind kind = JointKind::locked;  ///< locked: the shaft turns at `speed`; free: its angle varies
+  double inertia = 0.0;                ///< about its own axis [kg m^2]
+  TorqueLaw law;                       ///< against its turning, by its own speed
 };
 
 struct NacelleDefinition {
@@ -143,7 +144,11 @@ struct ShaftDefinition {
   double inertia_lateral = 0.0;  ///< [kg m^2]
   JointDefinition torsion;       ///< between generator and rotor
   GeneratorDefinition generator;
-  TorqueLaw rotor;  ///< on the hub about h2
+  double gear_ratio = 1.0;  ///< turns of the generator for one of the shaft, < 0 the other way; not 0
+  TorqueLaw rotor;          ///< on the hub about h2
+
+  /// Mean speed of the generator against the nacelle, in the sense of its turning [rad/s].
+  double generator_speed() const { return std::abs(gear_ratio) * speed; }
 };
 
 /// A mass on the hub.

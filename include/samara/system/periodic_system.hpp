@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
 
@@ -49,6 +51,16 @@ struct EnergyGroup {
   std::vector<PetscInt> unknowns;
   std::vector<double> weight;  ///< row by row, unknowns x unknowns, symmetric
   double damping = 0.0;  ///< mu [s] of a strain: its load is the elastic one times 1 + mu d/dt
+};
+
+/// An element of a mesh. The motion z exp(lambda t) has half a sum of squares of the signals
+/// (constant + |lambda| rate) z as the energy of what the element's polynomials leave out, of which
+/// twice the kinetic energy of the whole motion is the relative error of lambda (docs/theory.md,
+/// section 5.9).
+struct MeshError {
+  std::vector<PetscInt> unknowns;
+  Eigen::MatrixXd constant;  ///< signals x unknowns
+  Eigen::MatrixXd rate;      ///< signals x unknowns, times |lambda| [rad/s]
 };
 
 /// A coordinate whose mean nothing restores, and the row of the load that would hold it.
@@ -96,6 +108,8 @@ class PeriodicSystem {
   virtual const RotorSymmetry& symmetry() const = 0;
   virtual const std::vector<EnergyGroup>& energy_groups() const = 0;
   virtual const std::vector<NeutralCoordinate>& neutral_coordinates() const = 0;
+  /// Of every element that has an error; none where nothing is discretized in space.
+  virtual std::vector<MeshError> mesh_errors() const { return {}; }
 
   /// The start of every trim: the undeformed system in its prescribed motion. It depends on t where
   /// constraints_are_autonomous() does not hold.
@@ -106,6 +120,9 @@ class PeriodicSystem {
   virtual petsc::Handle<Mat> make_jacobian() const = 0;
   /// Preallocated for M alone.
   virtual petsc::Handle<Mat> make_mass() const = 0;
+  /// Columns of each row, ascending, in which K or M may have an entry: elsewhere both are zero at
+  /// all states and times. All columns where a system does not know better.
+  virtual std::vector<std::vector<PetscInt>> pattern() const;
 
   /// The same system without gravity and prescribed loads. Both residuals are linear in the loads:
   /// (1 - f) times this one's plus f times the loaded one's is that of a load factor f.

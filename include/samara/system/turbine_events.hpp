@@ -30,7 +30,7 @@ struct TurbineEvent {
   EventTrigger trigger;
   std::optional<PitchAction> pitch;
   bool generator_off = false;  ///< its torque is gone
-  double brake = 0.0;          ///< torque of a brake on the generator's side [N m]
+  double brake = 0.0;          ///< torque of a brake on the generator, behind the gear [N m]
 };
 
 /// The turbine from the event at time t on.

@@ -140,6 +140,10 @@ class TurbineResidual {
                                       const std::vector<Value>& z_dot, Make make,
                                       const TurbineInputs<Value>& inputs = {}) const;
 
+  /// The unknown behind input i of the chain, or behind its rate; -1 where there is none: without a
+  /// tower, and for the sum of the blades' loads.
+  int chain_unknown(int i) const;
+
   /// The motion of a beam's root and the gravity there.
   template <class T>
   elements::Attachment<T> attachment(const PlacedBeam& placed, const elements::HubMotion<T>& hub,

@@ -37,10 +37,12 @@ class TurbineSystem final : public PeriodicSystem {
   const RotorSymmetry& symmetry() const override;
   const std::vector<EnergyGroup>& energy_groups() const override;
   const std::vector<NeutralCoordinate>& neutral_coordinates() const override;
+  std::vector<MeshError> mesh_errors() const override;
   void reference_state(double t, Vec z) const override;
   petsc::Handle<Vec> make_state() const override;
   petsc::Handle<Mat> make_jacobian() const override;
   petsc::Handle<Mat> make_mass() const override;
+  std::vector<std::vector<PetscInt>> pattern() const override;
   std::unique_ptr<PeriodicSystem> unloaded() const override;
   /// Of the blades; the tower top's rotation stays one below 170 degrees.
   std::unique_ptr<PeriodicSystem> counted_from(Vec z) const override;

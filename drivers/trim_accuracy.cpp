@@ -1,0 +1,33 @@
+#include "trim_accuracy.hpp"
+
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+/// Of the largest load: loads out of balance by more make a steady state rough.
+constexpr double rough_imbalance = 1e-4;
+
+}  // namespace
+
+std::string roughness(const analysis::Trim& trim) {
+  if (trim.imbalance() <= rough_imbalance) return "";
+  const std::string part = general(trim.imbalance(), 2) + " of the largest load";
+  const std::string bound = " (more than " + general(rough_imbalance, 1) + ")";
+  if (trim.method == analysis::TrimMethod::shooting)
+    return "loads are out of balance by " + part + bound + "; hint: more trim.steps";
+  // At the samples Newton's method balances the loads, between them the harmonics do.
+  const bool is_newton = trim.residual > 0.5 * trim.residual_between;
+  return "loads are out of balance by " + part + (is_newton ? " at" : " between") + " the samples" +
+         bound +
+         (is_newton ? "; hint: a smaller trim.tolerance, or more trim.harmonics"
+                    : "; hint: more trim.harmonics");
+}
+
+void note_roughness(const analysis::Trim& trim, analysis::Observer& observer,
+                    const std::string& source) {
+  const std::string words = roughness(trim);
+  if (!words.empty()) observer.note(source + ": the steady state is rough: " + words);
+}
+
+}  // namespace samara::drivers

@@ -1,0 +1,54 @@
+// Velocities that rates of consistent positions produce, and impulses of the reactions that lead to
+// them (docs/theory.md, section 9.1).
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::analysis {
+
+/// Jumps of the velocities with the impulses that make them: n x columns, with velocities in the
+/// places of velocities and impulses in those of reactions. What stands elsewhere means nothing.
+using Jumps = Eigen::MatrixXd;
+
+class AdmissibleVelocities {
+ public:
+  /// `dt` [s]: length of the steps; over a part of it changes of the constraints are differenced.
+  AdmissibleVelocities(const system::PeriodicSystem& system, double dt);
+
+  /// False where every velocity is admissible.
+  bool is_restricted() const { return is_restricted_; }
+
+  /// A load that no strain gives.
+  bool is_reaction(Eigen::Index unknown) const {
+    return columns_[static_cast<std::size_t>(unknown)] == Column::reaction;
+  }
+
+  /// Two jumps at time t in the state z, whose positions are consistent: the one that makes the
+  /// velocities of z admissible, and the one that does so with `jump`, a change of velocities.
+  /// @throws ConvergenceError where a motion has no inertia
+  Jumps correct(double t, Vec z, const Eigen::VectorXd& jump);
+
+ private:
+  enum class Column { position, velocity, elastic, reaction };
+
+  void classify(double t, Vec z);
+  void build();
+
+  const system::PeriodicSystem& system_;
+  double interval_;
+  bool is_restricted_ = false;
+  std::vector<Column> columns_;
+  petsc::Handle<Vec> rates_;  ///< none
+  petsc::Handle<Vec> r_;
+  petsc::Handle<Vec> jump_;
+  petsc::Handle<Mat> matrix_;
+  petsc::Handle<Mat> mass_;
+  DirectSolver solver_;
+};
+
+}  // namespace samara::analysis

@@ -1,0 +1,51 @@
+#include "energy_coordinates.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "samara/analysis/harmonic_energy.hpp"
+
+namespace samara::analysis {
+namespace {
+
+/// R with R^T R = metric; of a metric that does not count all coordinates, `fallback` alone.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& metric, double fallback) {
+  const Eigen::LLT<Eigen::MatrixXd> factors(metric);
+  if (factors.info() != Eigen::Success || !metric.allFinite())
+    return fallback * Eigen::MatrixXd::Identity(metric.rows(), metric.cols());
+  return factors.matrixU();
+}
+
+}  // namespace
+
+EnergyCoordinates::EnergyCoordinates(const system::PeriodicSystem& system,
+                                     const Eigen::MatrixXd& basis, double rate) {
+  const Eigen::Index d = basis.cols() / 2;
+  Eigen::MatrixXd kinetic = Eigen::MatrixXd::Zero(d, d);
+  Eigen::MatrixXd strain = Eigen::MatrixXd::Zero(d, d);
+  for (const system::EnergyGroup& group : system.energy_groups()) {
+    if (group.unknowns.empty()) continue;
+    const bool is_kinetic = group.kind == system::EnergyGroup::Kind::kinetic;
+    const Eigen::MatrixXd signals =
+        energy_root(group) * basis(group.unknowns, Eigen::seqN(is_kinetic ? d : 0, d));
+    (is_kinetic ? kinetic : strain).noalias() += signals.transpose() * signals;
+  }
+  strain += rate * rate * kinetic;
+  eta_ = root_of(strain, 1.0);
+  rate_ = root_of(kinetic, 1.0 / rate);
+}
+
+void EnergyCoordinates::divide(Eigen::MatrixXd& columns) const {
+  const Eigen::Index d = eta_.rows();
+  eta_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(columns.leftCols(d));
+  rate_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(columns.rightCols(d));
+}
+
+Eigen::MatrixXd EnergyCoordinates::of(const Eigen::MatrixXd& states) const {
+  const Eigen::Index d = eta_.rows();
+  Eigen::MatrixXd result(states.rows(), states.cols());
+  result.topRows(d) = eta_.triangularView<Eigen::Upper>() * states.topRows(d);
+  result.bottomRows(d) = rates(states.bottomRows(d));
+  return result;
+}
+
+}  // namespace samara::analysis

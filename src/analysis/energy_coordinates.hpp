@@ -1,0 +1,34 @@
+// Coordinates of reduced states in which energy is half a sum of squares (docs/theory.md, section
+// 5.2).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::analysis {
+
+/// (eta, eta_dot) in coordinates whose sum of squares is twice the energy; a motion with `rate`
+/// counts where nothing is restored. A map that keeps energy is orthogonal in them, so that each of
+/// its eigenvalues is as accurate as rounding allows, however stiff some strains are.
+class EnergyCoordinates {
+ public:
+  EnergyCoordinates() = default;
+  /// `basis`: size x 2 d, states of a unit of each eta and eta_dot; `rate` [rad/s].
+  EnergyCoordinates(const system::PeriodicSystem& system, const Eigen::MatrixXd& basis,
+                    double rate);
+
+  /// From columns per unit of (eta, eta_dot), in place, to columns per unit of these.
+  void divide(Eigen::MatrixXd& columns) const;
+  /// Of states (eta, eta_dot), 2 d x columns.
+  Eigen::MatrixXd of(const Eigen::MatrixXd& states) const;
+  /// Of eta_dot alone, d x columns.
+  Eigen::MatrixXd rates(const Eigen::MatrixXd& eta_dot) const {
+    return rate_.triangularView<Eigen::Upper>() * eta_dot;
+  }
+
+ private:
+  Eigen::MatrixXd eta_, rate_;  ///< upper triangles
+};
+
+}  // namespace samara::analysis

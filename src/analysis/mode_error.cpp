@@ -1,0 +1,70 @@
+#include "samara/analysis/mode_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace samara::analysis {
+namespace {
+
+/// Estimates are more than the first term of the error.
+constexpr double step_safety = 2.5;
+constexpr double mesh_safety = 2.0;
+/// Of an error of the exponent, the part that is growth: step and elements keep the symmetries that
+/// forbid it, or nearly so (docs/theory.md, section 5.8).
+constexpr double growing_part = 0.01;
+/// An exponent that is not this many times its error is not told from zero.
+constexpr double several = 10.0;
+constexpr double least_rounding = 1e-10;
+
+}  // namespace
+
+std::complex<double> unwarped(std::complex<double> s, double step) {
+  return 2.0 / step * std::tanh(0.5 * step * s);
+}
+
+WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVectorXd& shares,
+                             int first, int harmonic, double speed, double step) {
+  const auto change = [&](int k) {
+    const std::complex<double> s = principal + std::complex<double>(0.0, k * speed);
+    return unwarped(s, step) - s;
+  };
+  const std::complex<double> mapped = change(harmonic);
+  WarpingSpread spread;
+  for (Eigen::Index i = 0; i < shares.size(); ++i) {
+    if (shares(i) == 0.0) continue;
+    const std::complex<double> other = shares(i) * (change(first + static_cast<int>(i)) - mapped);
+    spread.modulus += step_safety * std::abs(other);
+    spread.growth += step_safety * std::abs(other.real());
+  }
+  return spread;
+}
+
+double find_mesh_error(const std::vector<system::MeshError>& elements,
+                       const Eigen::MatrixXcd& shape, std::complex<double> exponent,
+                       double kinetic_energy) {
+  if (!(kinetic_energy > 0.0)) return 0.0;
+  double energy = 0.0;
+  for (const system::MeshError& element : elements) {
+    const Eigen::MatrixXd signals = element.constant + std::abs(exponent) * element.rate;
+    energy += 0.5 * (signals * shape(element.unknowns, Eigen::all)).squaredNorm();
+  }
+  return mesh_safety * energy / (2.0 * kinetic_energy * static_cast<double>(shape.cols()));
+}
+
+void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal) {
+  const double size = std::abs(mode.exponent);
+  mode.growth_error = spread.growth + growing_part * spread.modulus +
+                      size * std::max(mode.rounding_error, least_rounding);
+  // A multiplier of one, of a motion that nothing restores or of the same a moment later: the step
+  // may split it in any direction.
+  if (std::abs(principal) < several * spread.modulus)
+    mode.growth_error = std::max(mode.growth_error, several * spread.modulus);
+}
+
+void add_mesh_error(Mode& mode, double relative) {
+  mode.mesh_error = relative;
+  mode.mesh_growth_error = growing_part * relative * std::abs(mode.exponent);
+  mode.growth_error += mode.mesh_growth_error;
+}
+
+}  // namespace samara::analysis

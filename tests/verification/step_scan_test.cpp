@@ -1,0 +1,125 @@
+// Floquet's modes are the same at every time step and damping, within their estimates: none is lost
+// where a step annihilates a decay (lambda dt / 2 = -1), none is invented.
+#include <boost/test/unit_test.hpp>
+
+#include "cases.hpp"
+
+using namespace samara;
+using namespace samara::test;
+
+namespace {
+
+constexpr double highest = 5.0;  // Hz, of the modes that are compared
+
+struct ScanCase {
+  std::string name;
+  std::string path;
+  std::vector<std::string> settings;
+};
+
+/// The turbines, on meshes that are coarse where the inputs have fine ones.
+const std::vector<ScanCase>& scan_cases() {
+  const std::string inputs = std::string(SAMARA_SOURCE_DIR) + "/inputs/";
+  static const std::vector<ScanCase> cases{
+      {"NREL 5 MW", inputs + "nrel5mw/land.yaml", {"blades.elements=3", "tower.elements=3"}},
+      {"AWT-27",
+       std::string(SAMARA_SOURCE_DIR) + "/tests/verification/files/awt27.yaml",
+       {"blades.elements=4", "tower.elements=3", "tower.order=3"}},
+      {"ratio 1000 with gravity", inputs + "lee2002/ratio1000.yaml", {"gravity=9.81"}},
+      {"two blades, teetering",
+       inputs + "two_bladed/teetering.yaml",
+       {"blades.elements=3", "tower.elements=3"}}};
+  return cases;
+}
+
+analysis::Floquet run(const ScanCase& scan, int steps, const std::vector<std::string>& more = {}) {
+  const io::Case input = io::read_case(scan.path, with(scan.settings, more));
+  return floquet_of(input.turbine, steps, input.floquet.period, input.trim);
+}
+
+/// Error of an exponent by step and rounding [rad/s]: the mesh is the same in all runs.
+double error_of(const analysis::Mode& mode) {
+  return std::max((mode.step_error + mode.rounding_error) * std::abs(mode.exponent),
+                  mode.growth_error);
+}
+
+/// Distance of two exponents; each is known modulo i Omega, and stands for its conjugate.
+double distance(Complex a, Complex b, double speed) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Complex other : {b, std::conj(b)})
+    nearest = std::min(
+        nearest, std::hypot(a.real() - other.real(), std::remainder((a - other).imag(), speed)));
+  return nearest;
+}
+
+/// Below `limit` [rad/s] each resolved mode of `from` is one of `to`, within the errors of both;
+/// returns how many were compared. Decays that rounding hides in one of them are left out.
+int compare(const analysis::ModeSet& from, const analysis::ModeSet& to, double limit) {
+  const double slowest = std::min(from.deflated_rate, to.deflated_rate);
+  int compared = 0;
+  for (const analysis::Mode& mode : from.modes) {
+    if (!mode.resolved || std::abs(mode.exponent) > limit || -mode.exponent.real() > slowest)
+      continue;
+    ++compared;
+    const analysis::Mode* best = nullptr;
+    for (const analysis::Mode& other : to.modes)
+      if (other.resolved &&
+          (best == nullptr || distance(mode.exponent, other.exponent, from.rotor_speed) <
+                                  distance(mode.exponent, best->exponent, from.rotor_speed)))
+        best = &other;
+    BOOST_REQUIRE(best != nullptr);
+    // A multiplier of one that rounding has split: 1e-6 of the rotor speed counts as zero.
+    BOOST_TEST(distance(mode.exponent, best->exponent, from.rotor_speed) <
+                   error_of(mode) + error_of(*best) + 2e-6 * from.rotor_speed,
+               mode.label << " " << mode.exponent << " and " << best->exponent << ", errors "
+                          << error_of(mode) << " and " << error_of(*best));
+  }
+  return compared;
+}
+
+/// All states are found or deflated, and the modes below the limit of both are the same.
+void require_same(const analysis::Floquet& found, const analysis::Floquet& fine) {
+  BOOST_TEST(found.set.found + found.set.deflated == 2 * found.set.degrees_of_freedom);
+  const double limit = 0.99 * std::min(2.0 * pi * highest, 1.4 / found.step);
+  BOOST_TEST(found.set.reach > limit);
+  BOOST_TEST(compare(found.set, fine.set, limit) >= 4);
+  BOOST_TEST(compare(fine.set, found.set, limit) >= 4);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(modes_are_the_same_at_every_time_step) {
+  for (const ScanCase& scan : scan_cases()) {
+    const analysis::Floquet fine = run(scan, 1500);
+    for (const int steps : {100, 251, 501, 726, 747, 774, 1000})
+      BOOST_TEST_CONTEXT(scan.name << ", " << steps << " steps") {
+        require_same(run(scan, steps), fine);
+      }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(modes_are_the_same_at_two_time_steps_with_any_damping) {
+  for (const ScanCase& scan : scan_cases())
+    for (const char* damping : {"0", "0.002", "0.005", "0.0055", "0.01", "0.02"})
+      BOOST_TEST_CONTEXT(scan.name << ", mu " << damping) {
+        const std::string setting = std::string("blades.damping=") + damping;
+        require_same(run(scan, 300, {setting}), run(scan, 800, {setting}));
+      }
+}
+
+BOOST_AUTO_TEST_CASE(velocities_that_constraints_forbid_make_no_multiplier) {
+  // Rigid strains and prescribed joints leave velocities that would change sign with every step,
+  // multipliers (-1)^steps. An odd number of steps tells them from a free motion's.
+  for (const char* joint :
+       {"nacelle.yaw={joint: prescribed, harmonic: {per_rev: 2, amplitude_deg: 5}}",
+        "hub.teeter={joint: prescribed, harmonic: {per_rev: 1, amplitude_deg: 3}}"})
+    for (const char* period : {"blade", "full"}) {
+      const analysis::Floquet floquet =
+          run(scan_cases().back(), 502, {joint, std::string("floquet.period=") + period});
+      int at_minus_one = 0;
+      for (const analysis::Mode& mode : floquet.set.modes)
+        for (const double sign : {1.0, -1.0})
+          if (mode.resolved && std::abs(mode.multiplier - sign) < 1e-4) ++at_minus_one;
+      BOOST_TEST(at_minus_one == 0, joint << " " << period);
+    }
+}
