@@ -38,6 +38,8 @@ constexpr double largest_rounding = 1e-2;
 /// Share of the kinetic energy of a resolved mode in harmonics beyond that phase, at the most: more
 /// is a mixture of modes so fast that they all look alike, with multipliers near -1 or 1.
 constexpr double largest_fast_share = 0.01;
+/// Of the energy of a state of length 1 in energy coordinates: less is rounding.
+constexpr double rest_energy = 1e-13;
 /// Numbers in the histories of the modes that are identified at a time, about.
 constexpr Eigen::Index batch_values = 1 << 24;
 /// Instants of the mode shapes a revolution, at the most.
@@ -290,8 +292,23 @@ class Analysis {
         describe_energy(energies.middleCols((mode - first) * parts, parts), energy.part_names(),
                         modes_[static_cast<std::size_t>(mode)], participation);
         participation_.row(mode) = participation;
+        if (rests(static_cast<std::size_t>(mode))) settle_rest(mode);
       }
     }
+  }
+
+  /// True for a displacement that nothing restores and that rests: its kinetic energy is rounding.
+  bool rests(std::size_t m) const {
+    return is_zero(exponents_[m]) && modes_[m].kinetic_energy < rest_energy;
+  }
+
+  /// What rests has no energy to be named after, and is in no harmonic but 0.
+  void settle_rest(Eigen::Index mode) {
+    Mode& at_rest = modes_[static_cast<std::size_t>(mode)];
+    at_rest.parts.clear();
+    at_rest.harmonic = 0;
+    participation_.row(mode).setZero();
+    participation_(mode, steps_ / 2) = 1.0;
   }
 
   /// P^-1 on chosen unknowns: (P y)_i = sign_i y_source(i).

@@ -5,6 +5,7 @@
 #include "mesh_study.hpp"
 #include "multiblade.hpp"
 #include "record.hpp"
+#include "ritz_turbine.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -58,11 +59,34 @@ BOOST_AUTO_TEST_CASE(parked_nrel5mw_lies_between_fast_and_adams) {
   }
   // The second tower modes share their energy with the blades, and their names with it.
   const std::vector<double> all = frequencies(set);
-  for (const Published& mode : {Published{"second tower fore-aft", 2.9003, 2.8590},
-                                Published{"second tower side-side", 2.9361, 2.9408}}) {
-    const double found = nearest(all, pi * (mode.fast + mode.adams)) / (2.0 * pi);
-    page.check_spread(mode.label + std::string(" [Hz]"), found, {mode.fast, mode.adams}, 0.02);
-  }
+  const double fore_aft = nearest(all, pi * (2.9003 + 2.8590)) / (2.0 * pi);
+  page.check_spread("second tower fore-aft [Hz]", fore_aft, {2.9003, 2.8590}, 0.02);
+}
+
+BOOST_AUTO_TEST_CASE(second_side_side_of_parked_nrel5mw_is_one_mode_in_the_published_shapes) {
+  // The second collective edge mode of the blades, on the shaft that twists, comes as near to the
+  // tower's second side-side mode as 0.3 Hz. FAST has one edge shape a blade, which leaves it out:
+  // Ritz's method in FAST's shapes meets FAST's figure, in many it has two modes beside it, which
+  // this program finds.
+  const model::TurbineDefinition turbine = parked({}).turbine;
+  const double shaft = turbine.shaft.torsion.stiffness;
+  const RitzBlade theirs(turbine, {{0.0, 0.0, 0.3627, 2.5337, -3.5772, 2.376, -0.6952}},
+                         {{0.0, 0.0, 0.0622, 1.7254, -3.2452, 4.7131, -2.2555},
+                          {0.0, 0.0, -0.5809, 1.2067, -15.5349, 29.7347, -13.8255}});
+  const RitzBlade converged(turbine, polynomials(2, 8), polynomials(2, 8));
+  const std::vector<double> in_their_shapes = tower_frequencies(
+      turbine, side_side_shapes(), top_of(turbine, false, &theirs), &theirs, 3, shaft);
+  const std::vector<double> in_many = tower_frequencies(
+      turbine, polynomials(2, 9), top_of(turbine, false, &converged), &converged, 8, shaft);
+  const Figures page{"N1", "FAST, Jonkman et al. (2009), table 9-1; Ritz's method",
+                     "4 elements of order 3 in tower and blades"};
+  page.check_relative("second tower side-side, Ritz in FAST's shapes [Hz]", in_their_shapes[4],
+                      2.9361, 0.01);
+  const std::vector<double> all = frequencies(constant_modes_of(turbine));
+  for (const auto& [name, mode] : {std::pair{"collective edge with tower side-side", 4u},
+                                   std::pair{"tower side-side with collective edge", 5u}})
+    page.check_relative(name + std::string(" [Hz]"),
+                        nearest(all, 2.0 * pi * in_many[mode]) / (2.0 * pi), in_many[mode], 5e-3);
 }
 
 BOOST_AUTO_TEST_CASE(the_generator_of_parked_nrel5mw_rolls_once_with_the_tower) {
@@ -76,7 +100,8 @@ BOOST_AUTO_TEST_CASE(the_generator_of_parked_nrel5mw_rolls_once_with_the_tower) 
   const double geared = side_side({});
   BOOST_TEST(geared == 0.31184, boost::test_tools::tolerance(2e-5));
   BOOST_TEST(geared == side_side({"shaft.gear_ratio=-1"}), boost::test_tools::tolerance(1e-9));
-  const std::string at_the_shaft = "shaft.generator.own_inertia=" + std::to_string(534.116 * 97 * 97);
+  const std::string at_the_shaft =
+      "shaft.generator.own_inertia=" + std::to_string(534.116 * 97 * 97);
   BOOST_TEST(side_side({"shaft.gear_ratio=1", at_the_shaft}) == 0.31113,
              boost::test_tools::tolerance(2e-5));
 }
