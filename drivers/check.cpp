@@ -22,6 +22,9 @@ constexpr double small_length = 1e-9;
 constexpr double balanced = 1e-9;
 /// A damping ratio below it is rounding.
 constexpr double no_damping = 1e-12;
+/// More has no turbine [m/s], [m].
+constexpr double usual_tip_speed = 120.0;
+constexpr double usual_tower = 300.0;
 
 std::string triple(const Vector3& v) {
   std::string text;
@@ -134,12 +137,31 @@ std::string support_words(const model::SupportDefinition& support) {
          ", with " + general(support.mass, 6) + " kg, which count with the beam";
 }
 
+double rotor_radius(const model::TurbineDefinition& definition) {
+  return (definition.hub.radius + definition.blades.beam.length) *
+         std::cos(definition.blades.precone);
+}
+
+/// Figures that no turbine has, a line each: mostly a unit that was mistaken.
+std::string unusual_figures(const model::TurbineDefinition& definition) {
+  std::string text;
+  const double tip_speed = std::abs(definition.shaft.speed) * rotor_radius(definition);
+  if (tip_speed > usual_tip_speed)
+    text += "unusual: tip speed " + general(tip_speed, 4) + " m/s, above " +
+            general(usual_tip_speed, 3) +
+            " m/s; hint: shaft.speed is in rad/s, shaft.speed_rpm in "
+            "revolutions per minute\n";
+  if (definition.has_tower && definition.tower.length > usual_tower)
+    text += "unusual: tower of " + general(definition.tower.length, 5) + " m, above " +
+            general(usual_tower, 3) + " m; hint: tower.length is in m\n";
+  return text.empty() ? text : "\n" + text;
+}
+
 std::string facts(const io::Case& input, const system::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
   const model::Turbine& turbine = system.turbine();
-  const double hub_to_tip = definition.hub.radius + definition.blades.beam.length;
-  const double radius = hub_to_tip * std::cos(definition.blades.precone);
+  const double radius = rotor_radius(definition);
   const double speed = definition.shaft.speed;
   std::string text;
   const auto line = [&text](const std::string& name, const std::string& words) {
@@ -168,13 +190,12 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
                      joint_words(turbine.chain.generator));
   const model::ShaftDefinition& shaft = definition.shaft;
   if (shaft.generator.inertia > 0.0 || shaft.gear_ratio != 1.0)
-    line("generator", "inertia " + general(shaft.generator.inertia, 5) +
-                          " kg m^2 about its own axis" +
-                          (shaft.gear_ratio == 1.0
-                               ? ""
-                               : ", gear ratio " + general(shaft.gear_ratio, 5) + ": " +
-                                     general(shaft.generator_speed() * 30.0 / std::numbers::pi, 5) +
-                                     " rpm"));
+    line("generator",
+         "inertia " + general(shaft.generator.inertia, 5) + " kg m^2 about its own axis" +
+             (shaft.gear_ratio == 1.0
+                  ? ""
+                  : ", gear ratio " + general(shaft.gear_ratio, 5) + ": " +
+                        general(shaft.generator_speed() * 30.0 / std::numbers::pi, 5) + " rpm"));
   const auto torque = [&](const std::string& name, const model::TorqueLaw& law,
                           const std::string& whose, double at) {
     const elements::TorqueLine at_speed = law.at(at);
@@ -224,7 +245,7 @@ void run_check(const Job& job) {
   deliver(
       job,
       (title.empty() ? job.input.path : title) + "\n\n" + mass_table(turbine, masses) + "\n" +
-          facts(job.input, system, masses),
+          facts(job.input, system, masses) + unusual_figures(job.input.turbine),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, masses);

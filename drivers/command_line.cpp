@@ -93,6 +93,11 @@ class Parser {
       line_.report = true;
     else if (word == "--all")
       line_.all_modes = true;
+    else if (word == "--parked")
+      line_.parked = true;
+    else if (name == "--first")
+      line_.first_modes =
+          number_of(name, value_of(name, "a number of modes, e.g. --first 10", value));
     else if (name == "--restart")
       set_once(line_.restart_path, name,
                value_of(name, "a result to go on from, e.g. --restart run.h5", value));
@@ -104,8 +109,8 @@ class Parser {
 
   static std::string unknown_option_words(const std::string& name) {
     const std::string suggestion =
-        suggest(name, {"--set", "--csv", "--all", "--restart", "--tower-only", "--report", "--help",
-                       "--version"});
+        suggest(name, {"--set", "--csv", "--all", "--first", "--parked", "--restart",
+                       "--tower-only", "--report", "--help", "--version"});
     return suggestion.empty() ? "; hint: samara --help; options of PETSc have one dash"
                               : suggestion;
   }
@@ -117,6 +122,17 @@ class Parser {
         is_option(arguments_[next_]))
       throw InputError(name + " needs " + expected);
     return arguments_[next_++];
+  }
+
+  static int number_of(const std::string& name, const std::string& word) {
+    constexpr std::size_t most_digits = 6;
+    const bool is_count =
+        word.size() <= most_digits &&
+        std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+    const int number = is_count ? std::stoi(word) : 0;
+    if (number < 1)
+      throw InputError(name + ": expected a whole number from 1 to 999999, got " + quote(word));
+    return number;
   }
 
   static void set_once(std::string& target, const std::string& name, const std::string& value) {
@@ -200,6 +216,11 @@ class Parser {
     }
     if (line_.all_modes && !line_.command->lists_modes)
       throw InputError("--all: samara " + name + " lists no modes; modes and floquet do");
+    if (line_.first_modes > 0 && !line_.command->lists_modes)
+      throw InputError("--first: samara " + name + " lists no modes; modes and floquet do");
+    if (line_.parked && name != "modes")
+      throw InputError("--parked: samara " + name +
+                       " has no use for it, samara modes has; hint: --set shaft.speed=0");
     if (!line_.restart_path.empty() && name != "transient")
       throw InputError("--restart: samara " + name + " has no use for it, samara transient has");
     if (!line_.csv_path.empty() && !line_.command->has_csv)
@@ -276,6 +297,8 @@ constexpr char option_lines[] =
                     Only a file that samara wrote is ever overwritten
   --csv FILE.csv    the table as comma-separated values, too
   --all             lists unresolved modes, too (modes, floquet)
+  --first N         lists the first N modes; the verdict counts all (modes, floquet)
+  --parked          the rotor stands still, as with --set shaft.speed=0 (modes)
   --restart FILE.h5 goes on from the last checkpoint of a result (transient)
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
@@ -325,7 +348,7 @@ exit codes
   0  done
   1  the environment failed, or samara has a defect
   2  something you can mend: the case, an option, a path
-  3  an iteration did not converge
+  3  an iteration did not converge, or too little is resolved for a verdict
   130 ended by Ctrl-C
 
 The keys of a case are explained in docs/case_file.md.

@@ -40,6 +40,8 @@ struct CommandLine {
   bool tower_only = false;
   bool report = false;  ///< is wanted, if need be without a case
   bool all_modes = false;
+  int first_modes = 0;  ///< rows of a table of modes; 0: all
+  bool parked = false;
   std::vector<std::string> settings;
   std::string result_path;   ///< of what is written; empty: not given
   std::string csv_path;      ///< empty: none wanted

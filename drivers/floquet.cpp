@@ -53,7 +53,8 @@ void run_floquet(const Job& job) {
   const Verdict verdict = find_verdict(floquet.set, job.all_modes);
   deliver(
       job,
-      headline(job.input, floquet) + mode_table(floquet.set, job.all_modes) + "\n" + verdict.text,
+      headline(job.input, floquet) + mode_table(floquet.set, {job.all_modes, job.first_modes}) +
+          "\n" + verdict.text,
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));

@@ -16,6 +16,7 @@ struct Job {
   std::string result_path;   ///< empty: no result is wanted
   std::string csv_path;      ///< empty: no table is wanted
   bool all_modes = false;    ///< also those that are not resolved are listed
+  int first_modes = 0;       ///< so many rows are listed; 0: all
   std::string restart_path;  ///< empty: the run starts at its beginning
   /// Of a command that reads results: these; `input` is the case of the first.
   std::vector<std::string> sources;

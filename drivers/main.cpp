@@ -178,7 +178,9 @@ Job prepare(const CommandLine& line) {
     job.settings = line.settings;
     require_other_path(line.result_path, job.sources);
   } else {
-    job.input = io::read_case(line.case_path, line.settings);
+    std::vector<std::string> settings = line.settings;
+    if (line.parked) settings.emplace_back("shaft.speed=0");
+    job.input = io::read_case(line.case_path, settings);
     if (Session::launch_rank() == 0)
       for (const std::string& note : job.input.notes) std::cerr << note << "\n";
   }
@@ -188,6 +190,7 @@ Job prepare(const CommandLine& line) {
   job.csv_path = line.csv_path;
   job.restart_path = line.restart_path;
   job.all_modes = line.all_modes;
+  job.first_modes = line.first_modes;
   if (job.result_path.empty() && line.command->writes_result)
     job.result_path = std::filesystem::path(line.case_path).stem().string() + ".h5";
   if (Session::launch_rank() != 0) return job;

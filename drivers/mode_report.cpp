@@ -18,7 +18,7 @@ using analysis::ModeSet;
 
 constexpr double visible_share = 0.05;
 constexpr std::size_t most_parts = 2;
-constexpr std::size_t most_harmonics = 2;
+constexpr std::size_t most_harmonics = 2;  // 1 beside an error
 constexpr std::size_t most_names = 4;
 /// Estimated errors beyond which a row is marked, and beyond which it counts for no verdict.
 constexpr double marked_error = 0.01;
@@ -42,7 +42,7 @@ std::string parts_of(const Mode& mode) {
 
 /// The harmonics beside the identified one, the largest first: "k-2:31% k+1:7%". Shares that print
 /// alike are ordered by distance, so that rounding does not decide.
-std::string other_harmonics(const ModeSet& set, std::size_t m) {
+std::string other_harmonics(const ModeSet& set, std::size_t m, std::size_t most) {
   struct Entry {
     int offset;
     long percent;
@@ -59,7 +59,7 @@ std::string other_harmonics(const ModeSet& set, std::size_t m) {
            std::tuple(-b.percent, std::abs(b.offset), b.offset);
   });
   std::string text;
-  for (std::size_t i = 0; i < std::min(entries.size(), most_harmonics); ++i)
+  for (std::size_t i = 0; i < std::min(entries.size(), most); ++i)
     text += (text.empty() ? "k" : " k") + std::string(entries[i].offset > 0 ? "+" : "") +
             std::to_string(entries[i].offset) + ":" + std::to_string(entries[i].percent) + "%";
   return text;
@@ -76,8 +76,10 @@ std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
   const Mode& mode = set.modes[m];
   if (!mode.resolved) return "unresolved*";
   if (motion == Motion::rigid_body) return "rigid-body";
-  const std::string harmonics = set.participation.size() > 0 ? other_harmonics(set, m) : "";
-  if (total_error(mode) <= marked_error) return harmonics;
+  const bool is_marked = total_error(mode) > marked_error;
+  const std::string harmonics =
+      set.participation.size() > 0 ? other_harmonics(set, m, is_marked ? 1 : most_harmonics) : "";
+  if (!is_marked) return harmonics;
   const double percents = 100.0 * total_error(mode);
   return (percents < 100.0 ? "error " + general(percents, 2) + " %" : "error above 100 %") +
          (harmonics.empty() ? "" : "; " + harmonics);
@@ -92,10 +94,13 @@ std::vector<std::string> row_of(const ModeSet& set, std::size_t m) {
   std::vector<std::string> row{std::to_string(m + 1), mode.label};
   if (set.rotor_speed > 0.0) row.push_back(fixed(frequency / set.rotor_speed, 4));
   row.push_back(fixed(frequency / (2.0 * std::numbers::pi), 4));
+  row.push_back(
+      frequency == 0.0 || !is_known ? "-" : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
   row.push_back(frequency == 0.0 || !is_known
                     ? "-"
-                    : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
-  row.push_back(!has_rate ? (is_known ? "0" : "-")
+                    : fixed(has_rate ? 100.0 * logarithmic_decrement(mode) : 0.0, 3));
+  row.push_back(!has_rate
+                    ? (is_known ? "0" : "-")
                     : (motion == Motion::growing ? "+" : "") + scientific(mode.exponent.real(), 2));
   if (set.participation.size() > 0) row.push_back(std::to_string(mode.harmonic));
   row.push_back(parts_of(mode));
@@ -219,21 +224,30 @@ Motion motion_of(const Mode& mode, double rotor_speed) {
   return mode.exponent.real() > 0.0 ? Motion::growing : Motion::decaying;
 }
 
-std::string mode_table(const ModeSet& set, bool all) {
+std::string mode_table(const ModeSet& set, const ModeListing& listing) {
   Table table;
   table.add_column("#", "");
   table.add_column("mode", "", Align::left);
   if (set.rotor_speed > 0.0) table.add_column("frequency", "per rev");
   table.add_column(set.rotor_speed > 0.0 ? "" : "frequency", "Hz");
   table.add_column("damping", "%");
+  table.add_column("log decr", "%");
   table.add_column("growth", "1/s");
-  if (set.participation.size() > 0) table.add_column("k", "");
+  if (set.participation.size() > 0) table.add_column("harmonic", "k");
   table.add_column("energy in", "%", Align::left);
   table.add_column(set.participation.size() > 0 ? "other k, remark" : "", "", Align::left);
+  std::vector<std::size_t> rows;
   for (const bool resolved : {true, false})
     for (std::size_t m = 0; m < set.modes.size(); ++m)
-      if (set.modes[m].resolved == resolved && (resolved || all)) table.add_row(row_of(set, m));
-  return table.text();
+      if (set.modes[m].resolved == resolved && (resolved || listing.all)) rows.push_back(m);
+  const std::size_t shown = listing.first > 0
+                                ? std::min(rows.size(), static_cast<std::size_t>(listing.first))
+                                : rows.size();
+  for (std::size_t i = 0; i < shown; ++i) table.add_row(row_of(set, rows[i]));
+  return table.text() + (shown < rows.size()
+                             ? "the first " + std::to_string(shown) + " of " +
+                                   count(static_cast<int>(rows.size()), "mode") + " (--first)\n"
+                             : "");
 }
 
 Verdict find_verdict(const ModeSet& set, bool all) {
@@ -282,12 +296,12 @@ Verdict find_verdict(const ModeSet& set, bool all) {
         count(static_cast<int>(result.growing_alone.size()), "mode") +
         (result.growing_alone.size() == 1 ? " grows alone: " : " grow alone: ") +
         name_growing(result.growing_alone) +
-        "; where nothing damps, growth and decay come in pairs, so this is an error of the mesh "
+        ";\nwhere nothing damps, growth and decay come in pairs, so this is an error of the mesh\n"
         "(hint: a higher order of blades and tower, or more elements)\n";
   if (result.rough > 0)
     text += count(result.rough, "mode") + (result.rough == 1 ? " has" : " have") +
             " too large an error and " + (result.rough == 1 ? "counts" : "count") +
-            " for no verdict (hint: a higher order of blades and tower, more elements" +
+            " for no verdict\n(hint: a higher order of blades and tower, more elements" +
             (is_periodic ? ", more floquet.steps" : "") + ")\n";
   if (result.unresolved > 0)
     text +=

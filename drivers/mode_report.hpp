@@ -13,9 +13,15 @@ enum class Motion { rigid_body, undamped, growing, decaying };
 /// count as zero.
 Motion motion_of(const analysis::Mode& mode, double rotor_speed);
 
-/// One line a mode, by its number in the result; those that are not resolved, where `all` are
-/// wanted, stand below the others. Harmonics stand there where the set has participations.
-std::string mode_table(const analysis::ModeSet& set, bool all);
+/// Which modes are listed.
+struct ModeListing {
+  bool all = false;  ///< also those that are not resolved
+  int first = 0;     ///< so many rows; 0: all
+};
+
+/// One line a mode, by its number in the result; those that are not resolved stand below the
+/// others. Harmonics stand there where the set has participations.
+std::string mode_table(const analysis::ModeSet& set, const ModeListing& listing);
 
 struct Verdict {
   /// "stable: ...", "neutral: ..." or "unstable: ...", the frequency up to which it holds and what

@@ -17,9 +17,10 @@ namespace samara::drivers {
 namespace {
 
 std::string headline(const io::Case& input, const analysis::ModeSet& set) {
-  const std::string rotor = set.rotor_speed > 0.0 ? "rotor speed " + general(set.rotor_speed, 6) +
-                                                        " rad/s, frequencies as the rotor sees them"
-                                                  : "parked rotor";
+  const std::string rotor = set.rotor_speed > 0.0
+                                ? "rotor speed " + general(set.rotor_speed, 6) +
+                                      " rad/s, frequencies in the rotor's axes (--parked: at rest)"
+                                : "parked rotor";
   return (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n" + rotor + "; " +
          count(set.degrees_of_freedom, "degree") + " of freedom\n\n";
 }
@@ -35,17 +36,20 @@ void run_modes(const Job& job) {
   analysis::TrimOptions options = job.input.trim;
   if (turbine.speed == 0.0) options.harmonics = 0;
   const analysis::Trim trim = analysis::find_trim(system, options, progress);
-  note_roughness(trim, progress);
   if (!trim.solution.is_constant())
-    throw InputError(job.input.path +
-                     ": the coefficients are periodic, the steady state changes with the "
-                     "azimuth; hint: use samara floquet");
+    throw InputError(
+        job.input.path +
+        ": the coefficients are periodic, the steady state changes with the "
+        "azimuth; hint: samara floquet, or samara modes --parked for the rotor at rest");
+  note_roughness(trim, progress);
   const analysis::ModeSet set = analysis::find_constant_modes(system, trim.solution);
   progress.finish();
   if (!is_first) return;
   const Verdict verdict = find_verdict(set, job.all_modes);
   deliver(
-      job, headline(job.input, set) + mode_table(set, job.all_modes) + "\n" + verdict.text,
+      job,
+      headline(job.input, set) + mode_table(set, {job.all_modes, job.first_modes}) + "\n" +
+          verdict.text,
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));

@@ -57,7 +57,8 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
     for (Eigen::Index i = 0; i < sizes.size(); ++i)
       if (changes(i) > constant_tolerance * std::max(sizes(i), 1.0))
         throw InputError(
-            "modes: the coefficients are periodic in the azimuth; hint: use samara floquet");
+            "modes: the coefficients are periodic in the azimuth; hint: samara floquet, or samara "
+            "modes --parked for the rotor at rest");
   }
 }
 

@@ -292,14 +292,26 @@ class Analysis {
         describe_energy(energies.middleCols((mode - first) * parts, parts), energy.part_names(),
                         modes_[static_cast<std::size_t>(mode)], participation);
         participation_.row(mode) = participation;
-        if (rests(static_cast<std::size_t>(mode))) settle_rest(mode);
       }
     }
+    find_displacements();
   }
 
-  /// True for a displacement that nothing restores and that rests: its kinetic energy is rounding.
-  bool rests(std::size_t m) const {
-    return is_zero(exponents_[m]) && modes_[m].kinetic_energy < rest_energy;
+  /// Displacements that nothing restores and that rest: their kinetic energy is rounding, and the
+  /// middle of the first step has them whole. (A decay or vibration too fast for the step has not.)
+  void find_displacements() {
+    std::vector<Eigen::Index> modes;
+    for (std::size_t m = 0; m < modes_.size(); ++m)
+      if (is_zero(exponents_[m]) && modes_[m].kinetic_energy < rest_energy)
+        modes.push_back(static_cast<Eigen::Index>(m));
+    if (modes.empty()) return;
+    Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), own_weights_of(modes));
+    ranks_.sum(first);
+    const Eigen::MatrixXd states = coordinates_.of(subspace_.state_of(0.5 * dt_, first, 0.5 * dt_));
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(2 * i);
+      if (states.middleCols<2>(column).squaredNorm() > 0.5) settle_rest(modes[i]);
+    }
   }
 
   /// What rests has no energy to be named after, and is in no harmonic but 0.

@@ -543,15 +543,15 @@ void write_mode_table(const std::string& path, const ModeSet& set) {
   const bool periodic = set.participation.size() > 0;
   std::ostringstream text = exact_text();
   text << mode_table_start << (turns ? "frequency_per_rev," : "")
-       << "frequency_hz,damping_ratio,exponent_re,exponent_im,"
+       << "frequency_hz,damping_ratio,logarithmic_decrement,exponent_re,exponent_im,"
        << (periodic ? "multiplier_re,multiplier_im,harmonic," : "")
        << "resolved,residual,error,error_growth\n";
   int number = 0;
   for (const Mode& mode : set.modes) {
     text << ++number << ',' << mode.label << ',';
     if (turns) text << per_rev(mode, set.rotor_speed) << ',';
-    text << hertz(mode) << ',' << mode.damping_ratio << ',' << mode.exponent.real() << ','
-         << mode.exponent.imag() << ',';
+    text << hertz(mode) << ',' << mode.damping_ratio << ',' << logarithmic_decrement(mode) << ','
+         << mode.exponent.real() << ',' << mode.exponent.imag() << ',';
     if (periodic)
       text << mode.multiplier.real() << ',' << mode.multiplier.imag() << ',' << mode.harmonic
            << ',';

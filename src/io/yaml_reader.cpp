@@ -14,6 +14,10 @@
 namespace samara::io {
 namespace {
 
+/// Sizes of numbers, in SI units: beyond them squares and products leave what a double holds.
+constexpr double largest_number = 1e30;
+constexpr double least_number = 1e-30;
+
 constexpr std::size_t max_errors_shown = 100;
 constexpr std::size_t max_text_shown = 40;
 
@@ -182,6 +186,11 @@ bool read_number(const YamlNode& node, const std::string& where, const NumberRul
     errors.add(
         node.place, where,
         std::string("expected ") + rule.words + ", " + describe(node) + suggest_number(node));
+    return false;
+  }
+  if (*number != 0.0 && (std::abs(*number) > largest_number || std::abs(*number) < least_number)) {
+    errors.add(node.place, where,
+               "expected 0 or a number from 1e-30 to 1e30 in size, " + describe(node));
     return false;
   }
   value = *number;

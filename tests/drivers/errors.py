@@ -124,7 +124,7 @@ class Physics(ProgramTest):
                     place=r"case\.yaml: ")
 
     def test_modes_need_constant_coefficients(self):
-        self.refuse("modes", BASELINE, words=["periodic", "use samara floquet"])
+        self.refuse("modes", BASELINE, words=["periodic", "samara floquet, or samara modes --parked"])
 
     def test_a_line_that_turns_back_and_masses_too_near(self):
         text = MINIMAL.replace("length: 10", "reference_line: [[0, 0, 0], [-10, 0, 0.3]]")

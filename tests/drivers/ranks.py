@@ -54,7 +54,7 @@ class Ranks(ProgramTest):
             (2, "no such file", ["floquet", "no.yaml"]),
             (2, "unknown command", ["floqet", BASELINE]),
             (2, "there is no folder", ["floquet", BASELINE, "-o", "missing/x.h5"]),
-            (2, "use samara floquet", ["modes", BASELINE]),
+            (2, "samara floquet, or samara modes --parked", ["modes", BASELINE]),
             (3, "trim: ", ["trim", BASELINE, "-trim_snes_max_it", "0"]),
         ):
             with self.subTest(words=words):

@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ struct Mode {
   double step_error = 0.0;
   double mesh_error = 0.0;
   double rounding_error = 0.0;
-  double growth_error = 0.0;  ///< of the real part [rad/s]: a growth below it is none
+  double growth_error = 0.0;       ///< of the real part [rad/s]: a growth below it is none
   double mesh_growth_error = 0.0;  ///< of this, what the elements make
   /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
   /// tangents: relative difference of the exponent found with two shifts.
@@ -42,6 +43,13 @@ struct Mode {
 /// Error of an exponent, relative to its modulus.
 inline double total_error(const Mode& mode) {
   return mode.step_error + mode.mesh_error + mode.rounding_error;
+}
+
+/// Logarithm of the ratio of two maxima one cycle apart; not a number for a real exponent.
+inline double logarithmic_decrement(const Mode& mode) {
+  return mode.exponent.imag() == 0.0
+             ? std::numeric_limits<double>::quiet_NaN()
+             : -2.0 * std::numbers::pi * mode.exponent.real() / mode.exponent.imag();
 }
 
 struct ModeSet {
