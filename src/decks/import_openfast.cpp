@@ -22,11 +22,6 @@ constexpr double straight_tolerance = 1e-9;
 /// Differences of blades beyond this are real.
 constexpr double same_blade = 1e-12;
 
-constexpr int blade_elements = 12;
-constexpr int tower_elements = 8;
-constexpr int blade_order = 3;
-constexpr int tower_order = 2;
-
 constexpr int integration_steps = 2000;
 
 /// The coefficients of a mode shape add up to 1 within this.
@@ -514,8 +509,7 @@ class Importer {
     draft_.tower.damping(5) = fit_damping(
         tower, {"TwSSM1Sh", "TwSSM2Sh"}, {"TwrSSDmp(1)", "TwrSSDmp(2)"},
         {"SSStTunr(1)", "SSStTunr(2)"}, mass, ss, no_twist, length, "tower.damping of bending 3");
-    draft_.tower.elements = tower_elements;
-    draft_.tower.order = tower_order;
+    set_mesh(draft_.tower, tower_mesh);
     note("tower.elements", "chosen by the importer");
     note("tower.damping", "from the first fore-aft and side-side mode, 2 zeta/omega");
     note("tower.sections",
@@ -610,8 +604,7 @@ class Importer {
     }
     if (!errors_.empty() || blades.empty()) return;
     draft_.blade = blades[0].beam;
-    draft_.blade.elements = blade_elements;
-    draft_.blade.order = blade_order;
+    set_mesh(draft_.blade, blade_mesh);
     note("blades.elements", "chosen by the importer");
     for (std::size_t k = 1; k < blades.size(); ++k) compare_blade(blades, k);
     const double flexible = tip_radius_ - draft_.hub_radius;

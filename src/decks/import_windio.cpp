@@ -25,10 +25,6 @@ constexpr double most_mass = 1e5;
 /// Of the hub, stated and found [m].
 constexpr double height_tolerance = 1e-3;
 
-constexpr int blade_elements = 12;
-constexpr int tower_elements = 8;
-constexpr int blade_order = 3;
-constexpr int tower_order = 2;
 constexpr double degrees = 180.0 / std::numbers::pi;
 
 constexpr std::size_t max_megabytes = 64;
@@ -621,8 +617,7 @@ class Importer {
     read_damping(elastic.empty() ? "" : choose({elastic + ".structural_damping"}), draft_.tower,
                  "tower.damping");
     if (!elastic.empty()) compare_tower(elastic);
-    draft_.tower.elements = tower_elements;
-    draft_.tower.order = tower_order;
+    set_mesh(draft_.tower, tower_mesh);
     note("tower.elements", "chosen by the importer");
     note("tower.sections",
          "rings of the layers of the wall; mass and inertia times "
@@ -782,8 +777,7 @@ class Importer {
     }
     read_blade_sections(elastic, twist);
     read_damping(choose({elastic + ".structural_damping"}), draft_.blade, "blades.damping");
-    draft_.blade.elements = blade_elements;
-    draft_.blade.order = blade_order;
+    set_mesh(draft_.blade, blade_mesh);
     note("blades.elements", "chosen by the importer");
     note("blades.sections", "matrices of windIO, turned to b1 = z, b2 = -y, b3 = x");
   }
