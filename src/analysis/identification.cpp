@@ -3,6 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 namespace samara::analysis {
 namespace {
@@ -13,10 +20,14 @@ using system::EnergyGroup;
 constexpr double elastic_share = 0.15;
 
 /// Relative distance of two exponents that do not split.
-constexpr double degenerate = 1e-8;
+constexpr double degenerate = 1e-7;
 
-/// Correlation of two blades beyond which they move alike or opposite.
-constexpr double clear_correlation = 0.8;
+/// Share of a multiblade component beyond which it names a mode.
+constexpr double clear_share = 0.7;
+
+/// Moduli closer than this, relative, are the same, and real parts closer than this, relative to
+/// the modulus, too.
+constexpr double same_size = 1e-6;
 
 Eigen::MatrixXd weight_of(const EnergyGroup& group) {
   const auto n = static_cast<Eigen::Index>(group.unknowns.size());
@@ -34,30 +45,6 @@ double mean_strain_energy(const EnergyGroup& group, const Eigen::MatrixXcd& shap
       energy += 0.5 * weight(a, b) * std::real(shape.row(row).dot(shape.row(column)));
     }
   return energy / static_cast<double>(shape.cols());
-}
-
-/// Correlation of the strains of one motion in blades 1 and 2: 1 alike, -1 opposite.
-double blade_correlation(const std::vector<EnergyGroup>& groups, const std::string& motion,
-                         const Eigen::MatrixXcd& shape) {
-  std::vector<const EnergyGroup*> first;
-  std::vector<const EnergyGroup*> second;
-  for (const EnergyGroup& group : groups) {
-    if (group.kind != EnergyGroup::Kind::strain || group.motion != motion) continue;
-    if (group.blade == 1) first.push_back(&group);
-    if (group.blade == 2) second.push_back(&group);
-  }
-  double both = 0.0;
-  double one = 0.0;
-  double other = 0.0;
-  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
-    const Eigen::RowVectorXcd a = shape.row(first[i]->unknowns[0]);
-    const Eigen::RowVectorXcd b = shape.row(second[i]->unknowns[0]);
-    both += first[i]->weight[0] * std::real(a.dot(b));
-    one += first[i]->weight[0] * a.squaredNorm();
-    other += first[i]->weight[0] * b.squaredNorm();
-  }
-  const double size = std::sqrt(one * other);
-  return size > 0.0 ? both / size : 0.0;
 }
 
 /// The joint that turns most: the free position of the largest mean square.
@@ -82,27 +69,6 @@ std::string moving_joint(const system::PeriodicSystem& system, const Eigen::Matr
   return name;
 }
 
-/// A stem without what it says of the blades' symmetry.
-std::string without_symmetry(const std::string& stem) {
-  for (const std::string& ending : {std::string(" antisymmetric"), std::string(" symmetric")})
-    if (stem.ends_with(ending)) return stem.substr(0, stem.size() - ending.size());
-  return stem;
-}
-
-/// Modes of equal exponents mix at will: they are symmetric or antisymmetric only where they split.
-/// Over a blade passage they do: half a revolution gives one the opposite sign, another harmonic.
-void unite_degenerate(const ModeSet& set, std::vector<std::string>& stems) {
-  for (std::size_t i = 0; i < stems.size(); ++i)
-    for (std::size_t j = i + 1; j < stems.size(); ++j) {
-      const std::complex<double> a = set.modes[i].exponent;
-      if (a == 0.0 || std::abs(a - set.modes[j].exponent) > degenerate * std::abs(a)) continue;
-      if (set.modes[i].harmonic != set.modes[j].harmonic) continue;
-      const std::string common = without_symmetry(stems[i]);
-      if (common != without_symmetry(stems[j])) continue;
-      stems[i] = stems[j] = common;
-    }
-}
-
 /// Mean strain energy by "part/motion".
 std::map<std::string, double> strain_energies(const system::PeriodicSystem& system,
                                               const Eigen::MatrixXcd& shape) {
@@ -113,29 +79,204 @@ std::map<std::string, double> strain_energies(const system::PeriodicSystem& syst
   return strain;
 }
 
-std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
-                    const Mode& mode) {
+/// Of a system that does not know its motions: by the strain energy.
+std::string strained_motion(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
+                            const Mode& mode, double zero) {
   const std::map<std::string, double> strain = strain_energies(system, shape);
   const auto largest_entry =
       std::max_element(strain.begin(), strain.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string joint = moving_joint(system, shape);
-  if (mode.resolved && !joint.empty() && is_rigid_body(system, shape, mode)) return joint;
+  if (!joint.empty() && (std::abs(mode.exponent) < zero ||
+                         (mode.resolved && is_rigid_body(system, shape, mode))))
+    return joint;
   if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
   const std::string& largest = largest_entry->first;
-  int blades = 0;
-  for (const EnergyGroup& group : system.energy_groups()) blades = std::max(blades, group.blade);
   const std::string part = largest.substr(0, largest.find('/'));
   const std::string motion = largest.substr(largest.find('/') + 1);
-  if (part == "joint" || part == "support") return motion;
-  if (part != "blade" || blades != 2) return part + " " + motion;
-  const double alike = blade_correlation(system.energy_groups(), motion, shape);
-  if (alike > clear_correlation) return "blade " + motion + " symmetric";
-  if (alike < -clear_correlation) return "blade " + motion + " antisymmetric";
-  return "blade " + motion;
+  return part == "joint" || part == "support" ? motion : part + " " + motion;
+}
+
+/// Instant of a column of a shape.
+double time_of(const ModeSet& set, const Eigen::MatrixXcd& shape, Eigen::Index column,
+               int sectors) {
+  const auto all = static_cast<Eigen::Index>(set.shape_times.size()) / sectors;
+  const Eigen::Index taken = std::max<Eigen::Index>(1, shape.cols() / sectors);
+  return set.shape_times[static_cast<std::size_t>(column / taken * all + column % taken)];
+}
+
+/// Mean kinetic energy of each motion at 1 rad/s, mode x motion.
+Eigen::MatrixXd motion_energies(const system::PeriodicSystem& system,
+                                const PeriodicSolution& solution, const ModeSet& set, int motions,
+                                int sectors) {
+  Eigen::MatrixXd energies =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(set.shapes.size()), motions);
+  std::map<double, std::vector<std::pair<std::size_t, Eigen::Index>>> columns;  // by time
+  for (std::size_t m = 0; m < set.shapes.size(); ++m)
+    for (Eigen::Index c = 0; c < set.shapes[m].cols(); ++c)
+      columns[time_of(set, set.shapes[m], c, sectors)].emplace_back(m, c);
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  for (const auto& [t, entries] : columns) {
+    solution.evaluate(t, z.get(), z_dot.get());
+    const std::unique_ptr<system::MotionEnergies> about = system.motion_energies(t, z.get());
+    for (const auto& [m, c] : entries)
+      energies.row(static_cast<Eigen::Index>(m)) +=
+          about->of(set.shapes[m].col(c)) / static_cast<double>(set.shapes[m].cols());
+  }
+  return energies;
+}
+
+/// The part with most energy, and of its motions that with most.
+std::size_t leading_motion(const std::vector<system::Motion>& motions,
+                           const Eigen::RowVectorXd& energies) {
+  std::map<std::string, double> by_part;
+  std::map<std::pair<std::string, std::string>, double> by_motion;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const double energy = energies(static_cast<Eigen::Index>(i));
+    by_part[motions[i].part] += energy;
+    by_motion[{motions[i].part, motions[i].name}] += energy;
+  }
+  const std::string part =
+      std::max_element(by_part.begin(), by_part.end(), [](const auto& a, const auto& b) {
+        return a.second < b.second;
+      })->first;
+  std::size_t leading = motions.size();
+  double most = 0.0;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (motions[i].part != part) continue;
+    const double energy = by_motion[{part, motions[i].name}];
+    if (leading < motions.size() && !(energy > most)) continue;
+    leading = i;
+    most = energy;
+  }
+  return leading;
+}
+
+/// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
+/// blade is 2 pi n / B ahead of the one behind it. Empty where nothing moves.
+Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int blades,
+                                  const std::string& name, const Eigen::MatrixXcd& shape) {
+  std::vector<const system::Motion*> alike;
+  for (const system::Motion& motion : motions)
+    if (motion.blade > 0 && motion.name == name) alike.push_back(&motion);
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(blades);
+  if (static_cast<int>(alike.size()) != blades) return {};
+  for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i)
+    for (int n = 0; n < blades; ++n) {
+      Eigen::RowVectorXcd component = Eigen::RowVectorXcd::Zero(shape.cols());
+      for (int k = 0; k < blades; ++k)
+        component += std::polar(1.0, -2.0 * std::numbers::pi * n * k / blades) *
+                     shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
+      shares(n) += alike.front()->weight[i] * component.squaredNorm();
+    }
+  const double total = shares.sum();
+  return total > 0.0 ? Eigen::VectorXd(shares / total) : Eigen::VectorXd();
+}
+
+const char* word_of(int n, int blades) {
+  if (blades == 2) return n == 0 ? " symmetric" : " antisymmetric";
+  if (n == 0) return " collective";
+  if (n == 1) return " regressive";
+  return n == blades - 1 ? " progressive" : " reactionless";
+}
+
+bool turns_with_rotor(const system::PeriodicSystem& system, const std::string& part) {
+  return std::any_of(system.energy_groups().begin(), system.energy_groups().end(),
+                     [&part](const EnergyGroup& group) {
+                       return group.kind == EnergyGroup::Kind::kinetic && group.part == part &&
+                              group.frame == system::Frame::rotating;
+                     });
+}
+
+/// What a mode is called, piece by piece.
+struct Name {
+  std::string part, motion;
+  std::string together;  ///< of the blades
+  std::string text() const { return part + (motion.empty() ? "" : " " + motion) + together; }
+};
+
+/// Two motions between which modes of equal exponents cannot choose.
+std::string common_motion(const std::string& a, const std::string& b) {
+  const auto bends = [](const std::string& motion) {
+    return motion == "flap" || motion == "lead-lag" || motion == "fore-aft" ||
+           motion == "lateral" || motion == "bending";
+  };
+  return a == b ? a : bends(a) && bends(b) ? "bending" : "";
+}
+
+/// Modes of equal exponents mix at will: what their names differ in says nothing. Other harmonics
+/// keep them apart over a blade passage, where half a turn, say, gives one the opposite sign.
+/// `canonical`: they have been chosen by how the blades move together.
+void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vector<Name>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = i + 1; j < names.size(); ++j) {
+      const Mode& a = set.modes[i];
+      const Mode& b = set.modes[j];
+      if (a.exponent == 0.0 || names[i].part != names[j].part) continue;
+      if (std::abs(a.exponent - b.exponent) > degenerate * std::abs(a.exponent)) continue;
+      if (sectors > 1 && a.harmonic != b.harmonic) continue;
+      const bool turned = canonical && names[i].together != names[j].together;
+      const std::string motion = common_motion(names[i].motion, names[j].motion);
+      if (motion.empty() || turned) continue;
+      names[i].motion = names[j].motion = motion;
+      names[i].together = names[j].together = "";
+    }
+}
+
+/// Places in ascending order of `values`, the same for those that are closer than `apart` to the
+/// next.
+std::vector<int> ranks_of(const std::vector<double>& values, double relative, double absolute) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&values](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<int> ranks(values.size(), 0);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const double gap = values[order[i]] - values[order[i - 1]];
+    const bool same = gap <= relative * std::abs(values[order[i]]) + absolute;
+    ranks[order[i]] = ranks[order[i - 1]] + (same ? 0 : 1);
+  }
+  return ranks;
 }
 
 }  // namespace
+
+bool has_canonical_shapes(const system::PeriodicSystem& system) {
+  return system.period() > 0.0 && system.symmetry().sectors > 2;
+}
+
+void choose_shapes(const system::PeriodicSystem& system,
+                   const std::vector<std::complex<double>>& exponents,
+                   std::vector<Eigen::MatrixXcd>& shapes) {
+  if (!has_canonical_shapes(system)) return;
+  const system::RotorSymmetry& symmetry = system.symmetry();
+  std::vector<bool> done(exponents.size(), false);
+  for (std::size_t i = 0; i < exponents.size(); ++i) {
+    std::vector<std::size_t> equal;
+    for (std::size_t j = i; j < exponents.size(); ++j)
+      if (!done[j] && exponents[i].imag() != 0.0 &&
+          std::abs(exponents[j] - exponents[i]) <= degenerate * std::abs(exponents[i]))
+        equal.push_back(j);
+    if (equal.size() < 2) continue;
+    Eigen::MatrixXcd all(system.size(), static_cast<Eigen::Index>(equal.size()));
+    for (std::size_t j = 0; j < equal.size(); ++j) {
+      done[equal[j]] = true;
+      all.col(static_cast<Eigen::Index>(j)) = shapes[equal[j]].col(0) / shapes[equal[j]].norm();
+    }
+    // P moves the blades' motions on by one blade: within the modes of one exponent it is a matrix.
+    Eigen::MatrixXcd turned(all.rows(), all.cols());
+    for (Eigen::Index row = 0; row < all.rows(); ++row) {
+      const auto at = static_cast<std::size_t>(row);
+      turned.row(row) = symmetry.sign[at] * all.row(symmetry.source[at]);
+    }
+    const Eigen::MatrixXcd within = all.colPivHouseholderQr().solve(turned);
+    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> turns(within);
+    if (turns.info() != Eigen::Success) continue;
+    for (std::size_t j = 0; j < equal.size(); ++j)
+      shapes[equal[j]] = all * turns.eigenvectors().col(static_cast<Eigen::Index>(j));
+  }
+}
 
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
                    const Mode& mode) {
@@ -145,11 +286,6 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
       strained +=
           (1.0 + group.damping * std::abs(mode.exponent)) * mean_strain_energy(group, shape);
   return strained < elastic_share * (strained + mode.kinetic_energy);
-}
-
-double sorting_frequency(std::complex<double> exponent, double rotor_speed) {
-  const double slow = rotor_speed > 0.0 ? rotor_speed : 1.0;
-  return exponent.imag() == 0.0 && std::abs(exponent) < slow ? 0.0 : std::abs(exponent);
 }
 
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
@@ -165,24 +301,99 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
   }
 }
 
-void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
-  std::map<std::string, int> count;
-  std::vector<std::string> stems;
+void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                ModeSet& set, int sectors) {
+  const std::vector<system::Motion> motions = system.motions();
+  for (const system::Motion& motion : motions) set.blades = std::max(set.blades, motion.blade);
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
-  for (std::size_t i = 0; i < set.shapes.size(); ++i) {
-    const std::string joint = moving_joint(system, set.shapes[i]);
-    const bool rests = std::abs(set.modes[i].exponent) < zero && !joint.empty();
-    stems.push_back(rests ? joint : stem_of(system, set.shapes[i], set.modes[i]));
+  Eigen::MatrixXd energies;
+  if (!motions.empty())
+    energies = motion_energies(system, solution, set, static_cast<int>(motions.size()), sectors);
+  const bool together = set.blades == 2 || (set.blades > 2 && set.rotor_speed > 0.0);
+  std::vector<Name> names;
+  std::vector<int> components;
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    const Mode& mode = set.modes[m];
+    Name name;
+    int component = -1;
+    if (motions.empty()) {
+      name.part = strained_motion(system, set.shapes[m], mode, zero);
+    } else {
+      const system::Motion& leading =
+          motions[leading_motion(motions, energies.row(static_cast<Eigen::Index>(m)))];
+      name.part = leading.part;
+      name.motion = leading.name;
+      if (leading.blade > 0 && together && mode.exponent.imag() > zero) {
+        Eigen::Index largest = 0;
+        const Eigen::VectorXd shares =
+            multiblade_shares(motions, set.blades, leading.name, set.shapes[m]);
+        if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share) {
+          component = static_cast<int>(largest);
+          name.together = word_of(component, set.blades);
+        }
+      }
+    }
+    names.push_back(name);
+    components.push_back(component);
   }
-  unite_degenerate(set, stems);
-  for (const std::string& stem : stems) ++count[stem];
+  const bool canonical = has_canonical_shapes(system) && set.shape_times.size() == 1;
+  unite_degenerate(set, sectors, canonical, names);
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    Mode& mode = set.modes[m];
+    mode.label = names[m].text();
+    const double frequency = mode.exponent.imag();
+    if (set.rotor_speed == 0.0 || mode.parts.empty() || !turns_with_rotor(system, mode.parts.front().part) ||
+        mode.parts.front().part == "drivetrain" || names[m].part == "shaft torsion" ||
+        names[m].part == "rotor rotation" || frequency <= zero)
+      mode.fixed_frame_frequency = frequency;
+    else if (set.blades > 2 && !names[m].together.empty())
+      mode.fixed_frame_frequency = std::abs(
+          frequency -
+          (2 * components[m] > set.blades ? components[m] - set.blades : components[m]) *
+              set.rotor_speed);
+  }
+}
+
+void arrange_modes(ModeSet& set) {
+  const std::size_t count = set.modes.size();
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  std::vector<double> sizes;
+  std::vector<double> decays;
+  for (const Mode& mode : set.modes) {
+    const double size = std::abs(mode.exponent);
+    sizes.push_back(size < zero ? 0.0 : size);
+    decays.push_back(size < zero ? 0.0 : -mode.exponent.real() / size);
+  }
+  const std::vector<int> by_size = ranks_of(sizes, same_size, 0.0);
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto harmonic_key = [&set](std::size_t m) {
+    return std::pair(std::abs(set.modes[m].harmonic), set.modes[m].harmonic);
+  };
+  const std::vector<int> by_growth = ranks_of(decays, 0.0, same_size);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const auto key = [&](std::size_t m) {
+      return std::tuple(!set.modes[m].resolved, by_size[m], by_growth[m], set.modes[m].label,
+                        harmonic_key(m));
+    };
+    return key(a) < key(b);
+  });
+  ModeSet sorted = set;
+  for (std::size_t i = 0; i < count; ++i) {
+    sorted.modes[i] = std::move(set.modes[order[i]]);
+    if (!set.shapes.empty()) sorted.shapes[i] = std::move(set.shapes[order[i]]);
+    if (set.participation.rows() > 0)
+      sorted.participation.row(static_cast<Eigen::Index>(i)) =
+          set.participation.row(static_cast<Eigen::Index>(order[i]));
+  }
+  set = std::move(sorted);
+  std::map<std::string, int> all;
   std::map<std::string, int> number;
-  // Modes beyond the step's reach come anywhere among the others, and do not use up their numbers.
-  for (const bool resolved : {true, false})
-    for (std::size_t i = 0; i < stems.size(); ++i) {
-      if (set.modes[i].resolved != resolved) continue;
-      const std::string& stem = stems[i];
-      set.modes[i].label = count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
+  for (const Mode& mode : set.modes) ++all[mode.label];
+  for (Mode& mode : set.modes)
+    if (!mode.label.empty() && all[mode.label] > 1) {
+      const std::string name = mode.label;
+      mode.label += " " + std::to_string(++number[name]);
     }
 }
 

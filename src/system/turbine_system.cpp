@@ -7,6 +7,7 @@
 
 #include "mesh_error.hpp"
 #include "turbine_description.hpp"
+#include "turbine_motions.hpp"
 #include "turbine_pattern.hpp"
 #include "turbine_tangents.hpp"
 
@@ -188,6 +189,14 @@ const std::vector<EnergyGroup>& TurbineSystem::energy_groups() const {
 }
 const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const {
   return assembly_->description.neutral;
+}
+
+std::vector<Motion> TurbineSystem::motions() const { return motions_of(turbine(), layout()); }
+
+std::unique_ptr<MotionEnergies> TurbineSystem::motion_energies(double t, Vec steady) const {
+  const std::vector<double> values = assembly_->gathered(steady);
+  return find_motion_energies(turbine(), layout(), t,
+                              Eigen::Map<const Eigen::VectorXd>(values.data(), layout().size()));
 }
 
 std::vector<MeshError> TurbineSystem::mesh_errors() const {
