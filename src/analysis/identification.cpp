@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <string_view>
 #include <tuple>
 
 #include <Eigen/Eigenvalues>
@@ -24,6 +25,9 @@ constexpr double degenerate = 1e-7;
 
 /// Share of a multiblade component beyond which it names a mode.
 constexpr double clear_share = 0.7;
+
+/// On each side of the identified harmonic, those whose rates make the kinetic energy.
+constexpr Eigen::Index fitted_harmonics = 8;
 
 /// Moduli closer than this, relative, are the same, and real parts closer than this, relative to
 /// the modulus, too.
@@ -69,13 +73,22 @@ std::string moving_joint(const system::PeriodicSystem& system, const Eigen::Matr
   return name;
 }
 
-/// Mean strain energy by "part/motion".
+std::string text_of(const system::Motion& motion) {
+  return motion.part + (motion.name.empty() ? "" : " " + motion.name);
+}
+
+/// Mean strain energy by name; shear belongs to the bending that it makes.
+constexpr std::string_view shear = " shear";
 std::map<std::string, double> strain_energies(const system::PeriodicSystem& system,
                                               const Eigen::MatrixXcd& shape) {
   std::map<std::string, double> strain;
   for (const EnergyGroup& group : system.energy_groups())
-    if (group.kind == EnergyGroup::Kind::strain)
-      strain[group.part + "/" + group.motion] += mean_strain_energy(group, shape);
+    if (group.kind == EnergyGroup::Kind::strain) {
+      std::string name = group.motion;
+      if (name.ends_with(shear)) name.resize(name.size() - shear.size());
+      if (group.part != "joint" && group.part != "support") name = group.part + " " + name;
+      strain[name] += mean_strain_energy(group, shape);
+    }
   return strain;
 }
 
@@ -91,10 +104,15 @@ std::string strained_motion(const system::PeriodicSystem& system, const Eigen::M
                          (mode.resolved && is_rigid_body(system, shape, mode))))
     return joint;
   if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
-  const std::string& largest = largest_entry->first;
-  const std::string part = largest.substr(0, largest.find('/'));
-  const std::string motion = largest.substr(largest.find('/') + 1);
-  return part == "joint" || part == "support" ? motion : part + " " + motion;
+  return largest_entry->first;
+}
+
+/// Whether an exponent is none but for rounding and the step.
+bool is_at_rest(const Mode& mode, const ModeSet& set) {
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const double unsure = mode.growth_error - mode.mesh_growth_error;
+  return std::abs(mode.exponent) < zero ||
+         (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure);
 }
 
 /// Instant of a column of a shape.
@@ -105,50 +123,78 @@ double time_of(const ModeSet& set, const Eigen::MatrixXcd& shape, Eigen::Index c
   return set.shape_times[static_cast<std::size_t>(column / taken * all + column % taken)];
 }
 
-/// Mean kinetic energy of each motion at 1 rad/s, mode x motion.
+/// (lambda + d/dt) of a shape where all its instants are known: harmonics about the identified one
+/// are fitted, for instants of several sectors are not equally spaced. A shape of fewer instants, or
+/// at rest, stands for its rate.
+Eigen::MatrixXcd rate_of(const ModeSet& set, std::size_t m) {
+  const Mode& mode = set.modes[m];
+  const Eigen::MatrixXcd& shape = set.shapes[m];
+  const Eigen::Index instants = shape.cols();
+  if (instants != static_cast<Eigen::Index>(set.shape_times.size()) || is_at_rest(mode, set))
+    return shape;
+  if (instants == 1) return mode.exponent * shape;
+  const Eigen::Index reach = std::min<Eigen::Index>(fitted_harmonics, (instants - 1) / 3);
+  Eigen::MatrixXcd waves(instants, 2 * reach + 1);
+  Eigen::VectorXcd rates(2 * reach + 1);
+  for (Eigen::Index h = -reach; h <= reach; ++h) {
+    const double k = static_cast<double>(h + mode.harmonic) * set.rotor_speed;
+    rates(h + reach) =
+        mode.exponent + std::complex<double>(0.0, static_cast<double>(h) * set.rotor_speed);
+    for (Eigen::Index i = 0; i < instants; ++i)
+      waves(i, h + reach) = std::polar(1.0, k * set.shape_times[static_cast<std::size_t>(i)]);
+  }
+  const Eigen::MatrixXcd fit =
+      waves.colPivHouseholderQr().solve(Eigen::MatrixXcd::Identity(instants, instants));
+  const Eigen::MatrixXcd derivative = waves * rates.asDiagonal() * fit;
+  return shape * derivative.transpose();
+}
+
+/// Mean kinetic energy of each motion, mode x motion, but for a factor of each mode.
 Eigen::MatrixXd motion_energies(const system::PeriodicSystem& system,
                                 const PeriodicSolution& solution, const ModeSet& set, int motions,
                                 int sectors) {
   Eigen::MatrixXd energies =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(set.shapes.size()), motions);
-  std::map<double, std::vector<std::pair<std::size_t, Eigen::Index>>> columns;  // by time
-  for (std::size_t m = 0; m < set.shapes.size(); ++m)
-    for (Eigen::Index c = 0; c < set.shapes[m].cols(); ++c)
-      columns[time_of(set, set.shapes[m], c, sectors)].emplace_back(m, c);
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
-  for (const auto& [t, entries] : columns) {
-    solution.evaluate(t, z.get(), z_dot.get());
-    const std::unique_ptr<system::MotionEnergies> about = system.motion_energies(t, z.get());
-    for (const auto& [m, c] : entries)
-      energies.row(static_cast<Eigen::Index>(m)) +=
-          about->of(set.shapes[m].col(c)) / static_cast<double>(set.shapes[m].cols());
+  std::map<double, std::unique_ptr<system::MotionEnergies>> at;
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    const Eigen::MatrixXcd rate = rate_of(set, m);
+    for (Eigen::Index c = 0; c < rate.cols(); ++c) {
+      const double t = time_of(set, rate, c, sectors);
+      std::unique_ptr<system::MotionEnergies>& about = at[t];
+      if (!about) {
+        solution.evaluate(t, z.get(), z_dot.get());
+        about = system.motion_energies(t, z.get());
+      }
+      energies.row(static_cast<Eigen::Index>(m)) += about->of(rate.col(c));
+    }
   }
   return energies;
 }
 
-/// The part with most energy, and of its motions that with most.
-std::size_t leading_motion(const std::vector<system::Motion>& motions,
-                           const Eigen::RowVectorXd& energies) {
-  std::map<std::string, double> by_part;
-  std::map<std::pair<std::string, std::string>, double> by_motion;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    const double energy = energies(static_cast<Eigen::Index>(i));
-    by_part[motions[i].part] += energy;
-    by_motion[{motions[i].part, motions[i].name}] += energy;
-  }
-  const std::string part =
-      std::max_element(by_part.begin(), by_part.end(), [](const auto& a, const auto& b) {
-        return a.second < b.second;
-      })->first;
-  std::size_t leading = motions.size();
+/// Name of the motion with the largest share of the kinetic energy and that of the strain energy
+/// together. Strain weighs as much as the kinetic energy where all that restores is strain, less
+/// where rotation stiffens, and more in overdamped motions, which hardly move. `kinetic_energy` 0: a
+/// motion at rest, whose strain is that of another one.
+std::size_t leading_motion(const system::PeriodicSystem& system,
+                           const std::vector<system::Motion>& motions,
+                           const Eigen::RowVectorXd& energies, const Eigen::MatrixXcd& shape,
+                           double kinetic_energy) {
+  const double total = energies.sum();
+  std::map<std::string, double> shares;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    if (total > 0.0)
+      shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / total;
+  for (const auto& [name, energy] : strain_energies(system, shape))
+    if (kinetic_energy > 0.0) shares[name] += energy / kinetic_energy;
+  std::size_t leading = 0;
   double most = 0.0;
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (motions[i].part != part) continue;
-    const double energy = by_motion[{part, motions[i].name}];
-    if (leading < motions.size() && !(energy > most)) continue;
+    const auto found = shares.find(text_of(motions[i]));
+    if (found == shares.end() || !(found->second > most)) continue;
     leading = i;
-    most = energy;
+    most = found->second;
   }
   return leading;
 }
@@ -320,7 +366,9 @@ void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& so
       name.part = strained_motion(system, set.shapes[m], mode, zero);
     } else {
       const system::Motion& leading =
-          motions[leading_motion(motions, energies.row(static_cast<Eigen::Index>(m)))];
+          motions[leading_motion(system, motions, energies.row(static_cast<Eigen::Index>(m)),
+                                 set.shapes[m],
+                                 is_at_rest(mode, set) ? 0.0 : mode.kinetic_energy)];
       name.part = leading.part;
       name.motion = leading.name;
       if (leading.blade > 0 && together && mode.exponent.imag() > zero) {

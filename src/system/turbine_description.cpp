@@ -41,6 +41,11 @@ constexpr std::array<NamedUnknown, block> point_unknowns{{{"u1", "m"},
                                                           {"M2", "N m"},
                                                           {"M3", "N m"}}};
 
+/// What the directions of a blade's root are called.
+constexpr std::array<const char*, 6> root_motions{"blade support",     "blade support",
+                                                  "blade support",     "blade pitch hinge",
+                                                  "blade flap hinge", "blade lag hinge"};
+
 UnknownRole role_at(int i) {
   return i < 6 ? UnknownRole::position : i < 12 ? UnknownRole::velocity : UnknownRole::internal;
 }
@@ -103,7 +108,7 @@ class Describer {
       if (beam.support.is_elastic(i))
         result_.groups.push_back({EnergyGroup::Kind::strain,
                                   "support",
-                                  blade == 0 ? "foundation" : "blade support",
+                                  blade == 0 ? "foundation" : root_motions[static_cast<std::size_t>(i)],
                                   blade,
                                   frame,
                                   {first + 12 + i},

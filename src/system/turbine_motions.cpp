@@ -12,12 +12,12 @@ using Complex = std::complex<double>;
 using Vector3c = Eigen::Matrix<Complex, 3, 1>;
 using Vector6c = Eigen::Matrix<Complex, 6, 1>;
 
-/// Of the six directions of a root, in its axes, the motion that each belongs to.
+/// Of the six directions of a section, or of a root, in its axes, the motion that each belongs to.
 struct Directions {
   std::array<const char*, 4> names;
   std::array<int, 6> motion;
 };
-/// About b2 a beam bends along b3, and about b3 along b2. A blade's b3 is out of its plane.
+/// About b2 a beam bends along b3, and about b3 along b2.
 constexpr std::array<int, 6> bending{0, 1, 2, 3, 2, 1};
 constexpr Directions blade_directions{{"axial", "lead-lag", "flap", "torsion"}, bending};
 /// The tower's b2 is lateral (n1), its b3 downwind (n2).
@@ -141,11 +141,11 @@ struct PlacedBeam {
   struct Point {
     Node node;
     Mass mass;
+    Matrix3 axes = Matrix3::Identity();  ///< of the section, undeformed on the root's support
   };
   std::vector<Point> points;
   bool has_support = false;
   Point support;
-  Matrix3 axes = Matrix3::Identity();  ///< of the root as it stands on its support
   Vector3 root = Vector3::Zero();
   Vector3 tip = Vector3::Zero();  ///< displaced
 };
@@ -155,34 +155,36 @@ PlacedBeam place(const model::Beam& beam, const Vector3& root, const Matrix3& C,
                  const std::vector<int>& masses, int tip) {
   PlacedBeam placed;
   placed.root = root;
-  placed.axes = C;
-  const auto put = [&](int first, const Vector3& x, const Matrix3& turned, const Matrix6& mass) {
+  Matrix3 axes = C;  // of the root as it stands on its support
+  if (beam.has_support)
+    axes *= math::direction_cosines<double>(Vector3(steady.segment<3>(masses[0] + 3))).transpose();
+  const auto put = [&](int first, const Vector3& x, const Matrix3& turned, const Matrix6& mass,
+                       const Matrix3& section) {
     const Vector3 theta = steady.segment<3>(first + 3);
     const Matrix3 back = math::direction_cosines<double>(theta).transpose();
     Matrix3 Q;
     for (int i = 0; i < 3; ++i) Q.col(i) = math::tangent_times<double>(theta, Vector3::Unit(i));
     const Vector3 at = root + C * (x + steady.segment<3>(first));
-    return PlacedBeam::Point{{first, C, C * back * Q}, mass_of(at, C * back * turned, mass)};
+    return PlacedBeam::Point{
+        {first, C, C * back * Q}, mass_of(at, C * back * turned, mass), axes * section};
   };
   for (int p = 0; p < beam.point_count(); ++p) {
     const auto at = static_cast<std::size_t>(p);
     const elements::BeamPoint& point = beam.points[at];
     placed.points.push_back(put(points[at], point.x, point.reference * point.C_ab,
-                                beam.point_length(p) * point.mass));
+                                beam.point_length(p) * point.mass, point.C_ab));
   }
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const model::MassNode& node = beam.mass_nodes[m];
-    const PlacedBeam::Point point =
-        put(masses[m], node.x, beam.reference_before(node.end), node.mass);
-    placed.points.push_back(point);
+    const auto next = static_cast<std::size_t>(node.end * beam.order);  // of the points
+    placed.points.push_back(put(masses[m], node.x, beam.reference_before(node.end), node.mass,
+                                beam.points[next].C_ab));
     if (node.end != 0) continue;
     placed.has_support = true;
-    placed.support = point;
-    const Vector3 theta = steady.segment<3>(masses[m] + 3);
-    placed.axes = C * math::direction_cosines<double>(theta).transpose();
+    placed.support = placed.points.back();
   }
-  placed.points.push_back(
-      put(tip, beam.tip, beam.reference(beam.elements - 1), beam.tip_mass));
+  placed.points.push_back(put(tip, beam.tip, beam.reference(beam.elements - 1), beam.tip_mass,
+                              beam.points.back().C_ab));
   placed.tip = placed.points.back().mass.place;
   return placed;
 }
@@ -307,8 +309,8 @@ class TurbineMotionEnergies final : public MotionEnergies {
       const Twist deformed = own - given.at(at - foot);
       // About its centre a mass has no momentum that a translation and a rotation share.
       const Vector3& center = point.mass.center;
-      add_products(deformed.at(center), momentum.from(-center), beam.axes, deformation.motion,
-                   first, energies);
+      add_products(deformed.at(center), momentum.from(-center), point.axes,
+                   deformation.motion, first, energies);
       total += momentum.from(at - beam.root);
     }
     if (beam.has_support)
@@ -332,13 +334,18 @@ class TurbineMotionEnergies final : public MotionEnergies {
   Vector3 teeter_axis_ = Vector3::UnitX();
 };
 
-/// Positions `i` of a root's six at all masses of a blade.
+/// Positions of all masses of a blade that belong to a motion: what bends moves along b2 and b3,
+/// whatever the twist.
 void add_positions(const model::Beam& beam, const model::Layout& layout, int blade, int i,
                    Motion& motion) {
+  const std::vector<int> positions =
+      i == 0 || i == 3 ? std::vector<int>{i} : std::vector<int>{1, 2};
   const auto add = [&](int first, const Matrix6& mass) {
-    if (!(mass(i, i) > 0.0)) return;
-    motion.unknowns.push_back(first + i);
-    motion.weight.push_back(mass(i, i));
+    for (const int position : positions) {
+      if (!(mass(position, position) > 0.0)) continue;
+      motion.unknowns.push_back(first + position);
+      motion.weight.push_back(mass(position, position));
+    }
   };
   for (int p = 0; p < beam.point_count(); ++p)
     add(layout.blade_point(blade, p),
