@@ -99,10 +99,10 @@ std::vector<std::string> row_of(const ModeSet& set, std::size_t m) {
     row.push_back(std::isfinite(mode.fixed_frame_frequency) && motion != Motion::rigid_body
                       ? fixed(mode.fixed_frame_frequency / (2.0 * std::numbers::pi), 4)
                       : "-");
-  row.push_back(frequency == 0.0 || !is_known
-                    ? "-"
-                    : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
-  row.push_back(!has_rate ? (is_known ? "0" : "-")
+  row.push_back(
+      frequency == 0.0 || !is_known ? "-" : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
+  row.push_back(!has_rate
+                    ? (is_known ? "0" : "-")
                     : (motion == Motion::growing ? "+" : "") + scientific(mode.exponent.real(), 2));
   if (set.participation.size() > 0) row.push_back(std::to_string(mode.harmonic));
   row.push_back(parts_of(mode));

@@ -227,7 +227,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
                     participation);
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
-    mode.exponent = found.exponent;
+    mode.exponent = exponents_found[i];
     if (std::abs(mode.exponent) < std::max(zero, zero_to_shift * found.spectrum->sigma))
       mode.exponent = 0.0;
     mode.residual =

@@ -563,7 +563,8 @@ class Analysis {
   void share_names(ModeSet& set) const {
     if (ranks_.size == 1) return;
     MPI_Bcast(&set.blades, 1, MPI_INT, 0, ranks_.comm);
-    for (Mode& mode : set.modes) MPI_Bcast(&mode.fixed_frame_frequency, 1, MPI_DOUBLE, 0, ranks_.comm);
+    for (Mode& mode : set.modes)
+      MPI_Bcast(&mode.fixed_frame_frequency, 1, MPI_DOUBLE, 0, ranks_.comm);
     std::string text;
     for (const Mode& mode : set.modes) text += mode.label + '\n';
     int length = static_cast<int>(text.size());

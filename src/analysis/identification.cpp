@@ -6,11 +6,13 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <string_view>
 #include <tuple>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 namespace samara::analysis {
 namespace {
@@ -20,18 +22,50 @@ using system::EnergyGroup;
 /// Share of the energy that must be strain for a mode to be called elastic.
 constexpr double elastic_share = 0.15;
 
-/// Relative distance of two exponents that do not split.
-constexpr double degenerate = 1e-7;
-
 /// Share of a multiblade component beyond which it names a mode.
 constexpr double clear_share = 0.7;
 
 /// On each side of the identified harmonic, those whose rates make the kinetic energy.
 constexpr Eigen::Index fitted_harmonics = 8;
 
-/// Moduli closer than this, relative, are the same, and real parts closer than this, relative to
-/// the modulus, too.
+/// Moduli, and real parts relative to the modulus, closer than this sort as the same.
 constexpr double same_size = 1e-6;
+/// Exponents closer than this, relative, or than so many of their errors by rounding, are the same.
+constexpr double degenerate = 1e-7;
+constexpr double many_errors = 4.0;
+
+/// Exponents that are the same, one chain of neighbours each, of two or more; zeros left out.
+/// `apart`: of each, how far the same one may be, relative. Those of different `classes` are not
+/// the same.
+std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::complex<double>>& exponents,
+                                                const std::vector<double>& apart,
+                                                const std::vector<int>& classes) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < exponents.size(); ++i)
+    if (exponents[i] != 0.0) order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(exponents[a]) < std::abs(exponents[b]);
+  });
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<bool> taken(order.size(), false);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (taken[i]) continue;
+    std::vector<std::size_t> group{order[i]};
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const std::size_t a = group.back();
+      const std::size_t b = order[j];
+      const double size = std::abs(exponents[b]);
+      if (size - std::abs(exponents[a]) > same_size * size) break;
+      if (taken[j] || classes[a] != classes[b] ||
+          std::abs(exponents[b] - exponents[a]) > std::max(apart[a], apart[b]) * size)
+        continue;
+      taken[j] = true;
+      group.push_back(b);
+    }
+    if (group.size() > 1) groups.push_back(group);
+  }
+  return groups;
+}
 
 Eigen::MatrixXd weight_of(const EnergyGroup& group) {
   const auto n = static_cast<Eigen::Index>(group.unknowns.size());
@@ -100,8 +134,8 @@ std::string strained_motion(const system::PeriodicSystem& system, const Eigen::M
       std::max_element(strain.begin(), strain.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string joint = moving_joint(system, shape);
-  if (!joint.empty() && (std::abs(mode.exponent) < zero ||
-                         (mode.resolved && is_rigid_body(system, shape, mode))))
+  if (!joint.empty() &&
+      (std::abs(mode.exponent) < zero || (mode.resolved && is_rigid_body(system, shape, mode))))
     return joint;
   if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
   return largest_entry->first;
@@ -123,16 +157,25 @@ double time_of(const ModeSet& set, const Eigen::MatrixXcd& shape, Eigen::Index c
   return set.shape_times[static_cast<std::size_t>(column / taken * all + column % taken)];
 }
 
-/// (lambda + d/dt) of a shape where all its instants are known: harmonics about the identified one
-/// are fitted, for instants of several sectors are not equally spaced. A shape of fewer instants, or
-/// at rest, stands for its rate.
-Eigen::MatrixXcd rate_of(const ModeSet& set, std::size_t m) {
+/// A mode as its name wants it: of its coordinates the identified harmonic alone, which is the one
+/// whose frequency is stated. Beside it a motion may have others, where exponents of two modes
+/// nearly coincide but for multiples of the rotor speed.
+struct NamedShape {
+  Eigen::MatrixXcd shape;       ///< positions and loads at the identified harmonic
+  Eigen::MatrixXcd shape_rate;  ///< (lambda + d/dt) of it
+  Eigen::MatrixXcd whole_rate;  ///< (lambda + d/dt) of all harmonics
+};
+
+/// Harmonics about the identified one are fitted, for instants of several sectors are not equally
+/// spaced. A shape of few instants, or at rest, stands for its rate, and so does each harmonic
+/// where none has been identified.
+NamedShape named_shape(const ModeSet& set, std::size_t m) {
   const Mode& mode = set.modes[m];
   const Eigen::MatrixXcd& shape = set.shapes[m];
   const Eigen::Index instants = shape.cols();
   if (instants != static_cast<Eigen::Index>(set.shape_times.size()) || is_at_rest(mode, set))
-    return shape;
-  if (instants == 1) return mode.exponent * shape;
+    return {shape, shape, shape};
+  if (instants == 1) return {shape, mode.exponent * shape, mode.exponent * shape};
   const Eigen::Index reach = std::min<Eigen::Index>(fitted_harmonics, (instants - 1) / 3);
   Eigen::MatrixXcd waves(instants, 2 * reach + 1);
   Eigen::VectorXcd rates(2 * reach + 1);
@@ -145,56 +188,71 @@ Eigen::MatrixXcd rate_of(const ModeSet& set, std::size_t m) {
   }
   const Eigen::MatrixXcd fit =
       waves.colPivHouseholderQr().solve(Eigen::MatrixXcd::Identity(instants, instants));
-  const Eigen::MatrixXcd derivative = waves * rates.asDiagonal() * fit;
-  return shape * derivative.transpose();
+  const Eigen::MatrixXcd coefficients = shape * fit.transpose();
+  NamedShape named;
+  named.whole_rate = coefficients * rates.asDiagonal() * waves.transpose();
+  if (mode.exponent.imag() == 0.0) return {shape, named.whole_rate, named.whole_rate};
+  named.shape = coefficients.col(reach) * waves.col(reach).transpose();
+  named.shape_rate = mode.exponent * named.shape;
+  return named;
 }
 
-/// Mean kinetic energy of each motion, mode x motion, but for a factor of each mode.
-Eigen::MatrixXd motion_energies(const system::PeriodicSystem& system,
-                                const PeriodicSolution& solution, const ModeSet& set, int motions,
-                                int sectors) {
-  Eigen::MatrixXd energies =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(set.shapes.size()), motions);
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  std::map<double, std::unique_ptr<system::MotionEnergies>> at;
-  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
-    const Eigen::MatrixXcd rate = rate_of(set, m);
-    for (Eigen::Index c = 0; c < rate.cols(); ++c) {
-      const double t = time_of(set, rate, c, sectors);
-      std::unique_ptr<system::MotionEnergies>& about = at[t];
-      if (!about) {
-        solution.evaluate(t, z.get(), z_dot.get());
-        about = system.motion_energies(t, z.get());
-      }
-      energies.row(static_cast<Eigen::Index>(m)) += about->of(rate.col(c));
+/// The motions about the steady states at all instants of the shapes.
+class MotionsInTime {
+ public:
+  MotionsInTime(const system::PeriodicSystem& system, const PeriodicSolution& solution)
+      : system_(system),
+        solution_(solution),
+        z_(system.make_state()),
+        z_dot_(system.make_state()) {}
+
+  const system::MotionEnergies& at(double t) {
+    std::unique_ptr<system::MotionEnergies>& about = about_[t];
+    if (!about) {
+      solution_.evaluate(t, z_.get(), z_dot_.get());
+      about = system_.motion_energies(t, z_.get());
     }
+    return *about;
   }
-  return energies;
-}
 
-/// Name of the motion with the largest share of the kinetic energy and that of the strain energy
-/// together. Strain weighs as much as the kinetic energy where all that restores is strain, less
-/// where rotation stiffens, and more in overdamped motions, which hardly move. `kinetic_energy` 0: a
-/// motion at rest, whose strain is that of another one.
+ private:
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  petsc::Handle<Vec> z_, z_dot_;
+  std::map<double, std::unique_ptr<system::MotionEnergies>> about_;
+};
+
+/// The motion with the largest share of the kinetic energy and that of the strain energy together.
+/// Strain weighs as much as the kinetic energy where all that restores is strain, less where
+/// rotation stiffens, and more in overdamped motions, which hardly move; it does not count at rest,
+/// where it is that of another motion.
 std::size_t leading_motion(const system::PeriodicSystem& system,
-                           const std::vector<system::Motion>& motions,
-                           const Eigen::RowVectorXd& energies, const Eigen::MatrixXcd& shape,
-                           double kinetic_energy) {
-  const double total = energies.sum();
+                           const std::vector<system::Motion>& motions, const ModeSet& set,
+                           std::size_t m, const NamedShape& named, int sectors,
+                           MotionsInTime& in_time) {
+  const Mode& mode = set.modes[m];
+  Eigen::VectorXd energies = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(motions.size()));
+  double whole = 0.0;
+  for (Eigen::Index c = 0; c < named.shape.cols(); ++c) {
+    const system::MotionEnergies& about = in_time.at(time_of(set, named.shape, c, sectors));
+    energies += about.of(named.shape_rate.col(c), named.whole_rate.col(c));
+    whole += about.of(named.whole_rate.col(c), named.whole_rate.col(c)).sum();
+  }
   std::map<std::string, double> shares;
+  const double part = whole > 0.0 ? energies.sum() / whole : 0.0;  // in the identified harmonic
+  if (!(part > 0.0)) return 0;
   for (std::size_t i = 0; i < motions.size(); ++i)
-    if (total > 0.0)
-      shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / total;
-  for (const auto& [name, energy] : strain_energies(system, shape))
-    if (kinetic_energy > 0.0) shares[name] += energy / kinetic_energy;
+    shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / (part * whole);
+  if (!is_at_rest(mode, set) && mode.kinetic_energy > 0.0)
+    for (const auto& [name, energy] : strain_energies(system, named.shape))
+      shares[name] += energy / (part * mode.kinetic_energy);
   std::size_t leading = 0;
   double most = 0.0;
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    const auto found = shares.find(text_of(motions[i]));
-    if (found == shares.end() || !(found->second > most)) continue;
+    const double share = shares[text_of(motions[i])];
+    if (!(share > most)) continue;
     leading = i;
-    most = found->second;
+    most = share;
   }
   return leading;
 }
@@ -242,32 +300,40 @@ struct Name {
   std::string text() const { return part + (motion.empty() ? "" : " " + motion) + together; }
 };
 
-/// Two motions between which modes of equal exponents cannot choose.
-std::string common_motion(const std::string& a, const std::string& b) {
-  const auto bends = [](const std::string& motion) {
-    return motion == "flap" || motion == "lead-lag" || motion == "fore-aft" ||
-           motion == "lateral" || motion == "bending";
-  };
-  return a == b ? a : bends(a) && bends(b) ? "bending" : "";
+/// Ways to bend, between which modes of equal exponents cannot choose.
+bool bends(const std::string& motion) {
+  return motion == "flap" || motion == "lead-lag" || motion == "fore-aft" || motion == "lateral";
 }
 
 /// Modes of equal exponents mix at will: what their names differ in says nothing. Other harmonics
 /// keep them apart over a blade passage, where half a turn, say, gives one the opposite sign.
 /// `canonical`: they have been chosen by how the blades move together.
 void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vector<Name>& names) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    for (std::size_t j = i + 1; j < names.size(); ++j) {
-      const Mode& a = set.modes[i];
-      const Mode& b = set.modes[j];
-      if (a.exponent == 0.0 || names[i].part != names[j].part) continue;
-      if (std::abs(a.exponent - b.exponent) > degenerate * std::abs(a.exponent)) continue;
-      if (sectors > 1 && a.harmonic != b.harmonic) continue;
-      const bool turned = canonical && names[i].together != names[j].together;
-      const std::string motion = common_motion(names[i].motion, names[j].motion);
-      if (motion.empty() || turned) continue;
-      names[i].motion = names[j].motion = motion;
-      names[i].together = names[j].together = "";
+  std::vector<std::complex<double>> exponents;
+  std::vector<double> apart;
+  std::vector<int> harmonics;
+  for (const Mode& mode : set.modes) {
+    exponents.push_back(mode.exponent);
+    apart.push_back(std::clamp(many_errors * mode.rounding_error, degenerate, same_size));
+    harmonics.push_back(sectors > 1 ? mode.harmonic : 0);
+  }
+  for (const std::vector<std::size_t>& equal : groups_of(exponents, apart, harmonics)) {
+    std::map<std::string, std::set<std::string>> motions;  // of each part
+    std::map<std::pair<std::string, bool>, int> count;
+    for (const std::size_t m : equal) {
+      if (bends(names[m].motion)) motions[names[m].part].insert(names[m].motion);
+      ++count[{names[m].part + names[m].motion, false}];
+      if (bends(names[m].motion)) ++count[{names[m].part, true}];
     }
+    for (const std::size_t m : equal) {
+      Name& name = names[m];
+      const bool bending = bends(name.motion);
+      const int alike =
+          bending ? count[{name.part, true}] : count[{name.part + name.motion, false}];
+      if (bending && motions[name.part].size() > 1) name.motion = "bending";
+      if (!canonical && alike > 1) name.together = "";
+    }
+  }
 }
 
 /// Places in ascending order of `values`, the same for those that are closer than `apart` to the
@@ -293,34 +359,58 @@ bool has_canonical_shapes(const system::PeriodicSystem& system) {
 }
 
 void choose_shapes(const system::PeriodicSystem& system,
-                   const std::vector<std::complex<double>>& exponents,
+                   std::vector<std::complex<double>>& exponents,
                    std::vector<Eigen::MatrixXcd>& shapes) {
   if (!has_canonical_shapes(system)) return;
   const system::RotorSymmetry& symmetry = system.symmetry();
-  std::vector<bool> done(exponents.size(), false);
-  for (std::size_t i = 0; i < exponents.size(); ++i) {
-    std::vector<std::size_t> equal;
-    for (std::size_t j = i; j < exponents.size(); ++j)
-      if (!done[j] && exponents[i].imag() != 0.0 &&
-          std::abs(exponents[j] - exponents[i]) <= degenerate * std::abs(exponents[i]))
-        equal.push_back(j);
-    if (equal.size() < 2) continue;
-    Eigen::MatrixXcd all(system.size(), static_cast<Eigen::Index>(equal.size()));
-    for (std::size_t j = 0; j < equal.size(); ++j) {
-      done[equal[j]] = true;
-      all.col(static_cast<Eigen::Index>(j)) = shapes[equal[j]].col(0) / shapes[equal[j]].norm();
+  for (const std::vector<std::size_t>& equal :
+       groups_of(exponents, std::vector<double>(exponents.size(), same_size),
+                 std::vector<int>(exponents.size(), 0))) {
+    if (exponents[equal.front()].imag() == 0.0) continue;
+    const auto count = static_cast<Eigen::Index>(equal.size());
+    Eigen::MatrixXcd all(system.size(), count);
+    Eigen::VectorXcd values(count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const std::size_t mode = equal[static_cast<std::size_t>(j)];
+      all.col(j) = shapes[mode].col(0) / shapes[mode].norm();
+      values(j) = exponents[mode];
     }
-    // P moves the blades' motions on by one blade: within the modes of one exponent it is a matrix.
-    Eigen::MatrixXcd turned(all.rows(), all.cols());
+    // P moves the blades' motions on by one blade: within these modes it is a matrix W, whose B-th
+    // power is one, and which does not mix exponents.
+    Eigen::MatrixXcd turned(all.rows(), count);
     for (Eigen::Index row = 0; row < all.rows(); ++row) {
       const auto at = static_cast<std::size_t>(row);
       turned.row(row) = symmetry.sign[at] * all.row(symmetry.source[at]);
     }
-    const Eigen::MatrixXcd within = all.colPivHouseholderQr().solve(turned);
-    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> turns(within);
-    if (turns.info() != Eigen::Success) continue;
-    for (std::size_t j = 0; j < equal.size(); ++j)
-      shapes[equal[j]] = all * turns.eigenvectors().col(static_cast<Eigen::Index>(j));
+    const Eigen::MatrixXcd W = all.colPivHouseholderQr().solve(turned);
+    Eigen::MatrixXcd chosen(count, count);
+    Eigen::VectorXcd chosen_values(count);
+    Eigen::Index found = 0;
+    for (int n = 0; n < symmetry.sectors; ++n) {
+      Eigen::MatrixXcd projector = Eigen::MatrixXcd::Zero(count, count);
+      Eigen::MatrixXcd power = Eigen::MatrixXcd::Identity(count, count);
+      for (int j = 0; j < symmetry.sectors; ++j) {
+        projector +=
+            std::polar(1.0 / symmetry.sectors, -2.0 * std::numbers::pi * n * j / symmetry.sectors) *
+            power;
+        power = (power * W).eval();
+      }
+      const auto rank = static_cast<Eigen::Index>(std::lround(projector.trace().real()));
+      if (rank < 1 || found + rank > count) continue;
+      const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(projector, Eigen::ComputeThinU);
+      const Eigen::MatrixXcd basis = svd.matrixU().leftCols(rank);
+      const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> within(basis.adjoint() *
+                                                               values.asDiagonal() * basis);
+      chosen.middleCols(found, rank) = basis * within.eigenvectors();
+      chosen_values.segment(found, rank) = within.eigenvalues();
+      found += rank;
+    }
+    if (found != count) continue;
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const std::size_t mode = equal[static_cast<std::size_t>(j)];
+      shapes[mode] = all * chosen.col(j);
+      exponents[mode] = chosen_values(j);
+    }
   }
 }
 
@@ -352,9 +442,7 @@ void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& so
   const std::vector<system::Motion> motions = system.motions();
   for (const system::Motion& motion : motions) set.blades = std::max(set.blades, motion.blade);
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
-  Eigen::MatrixXd energies;
-  if (!motions.empty())
-    energies = motion_energies(system, solution, set, static_cast<int>(motions.size()), sectors);
+  MotionsInTime in_time(system, solution);
   const bool together = set.blades == 2 || (set.blades > 2 && set.rotor_speed > 0.0);
   std::vector<Name> names;
   std::vector<int> components;
@@ -365,16 +453,15 @@ void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& so
     if (motions.empty()) {
       name.part = strained_motion(system, set.shapes[m], mode, zero);
     } else {
+      const NamedShape named = named_shape(set, m);
       const system::Motion& leading =
-          motions[leading_motion(system, motions, energies.row(static_cast<Eigen::Index>(m)),
-                                 set.shapes[m],
-                                 is_at_rest(mode, set) ? 0.0 : mode.kinetic_energy)];
+          motions[leading_motion(system, motions, set, m, named, sectors, in_time)];
       name.part = leading.part;
       name.motion = leading.name;
       if (leading.blade > 0 && together && mode.exponent.imag() > zero) {
         Eigen::Index largest = 0;
         const Eigen::VectorXd shares =
-            multiblade_shares(motions, set.blades, leading.name, set.shapes[m]);
+            multiblade_shares(motions, set.blades, leading.name, named.shape);
         if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share) {
           component = static_cast<int>(largest);
           name.together = word_of(component, set.blades);
@@ -390,15 +477,16 @@ void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& so
     Mode& mode = set.modes[m];
     mode.label = names[m].text();
     const double frequency = mode.exponent.imag();
-    if (set.rotor_speed == 0.0 || mode.parts.empty() || !turns_with_rotor(system, mode.parts.front().part) ||
+    if (set.rotor_speed == 0.0 || mode.parts.empty() ||
+        !turns_with_rotor(system, mode.parts.front().part) ||
         mode.parts.front().part == "drivetrain" || names[m].part == "shaft torsion" ||
         names[m].part == "rotor rotation" || frequency <= zero)
       mode.fixed_frame_frequency = frequency;
     else if (set.blades > 2 && !names[m].together.empty())
-      mode.fixed_frame_frequency = std::abs(
-          frequency -
-          (2 * components[m] > set.blades ? components[m] - set.blades : components[m]) *
-              set.rotor_speed);
+      mode.fixed_frame_frequency =
+          std::abs(frequency -
+                   (2 * components[m] > set.blades ? components[m] - set.blades : components[m]) *
+                       set.rotor_speed);
   }
 }
 
@@ -422,7 +510,7 @@ void arrange_modes(ModeSet& set) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto key = [&](std::size_t m) {
       return std::tuple(!set.modes[m].resolved, by_size[m], by_growth[m], set.modes[m].label,
-                        harmonic_key(m));
+                        harmonic_key(m), std::abs(set.modes[m].exponent));
     };
     return key(a) < key(b);
   });

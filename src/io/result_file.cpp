@@ -144,9 +144,9 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
                collect(set, [&](const Mode& m) { return per_rev(m, set.rotor_speed); }), {count},
                {"1/rev", mode_frame, "imaginary part of the exponent over the rotor speed"});
   if (has_fixed_frame(set))
-    file.write(group + "/fixed_frame_frequency_hz", collect(set, fixed_frame_hertz), {count},
-               {"Hz", "fixed",
-                "frequency as the ground sees it; not-a-number where that is not one"});
+    file.write(
+        group + "/fixed_frame_frequency_hz", collect(set, fixed_frame_hertz), {count},
+        {"Hz", "fixed", "frequency as the ground sees it; not-a-number where that is not one"});
   file.write(group + "/damping_ratio", collect(set, [](const Mode& m) { return m.damping_ratio; }),
              {count},
              {"1", no_frame, "- re / abs of the exponent; 0 where the exponent counts as zero"});

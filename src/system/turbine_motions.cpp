@@ -44,7 +44,8 @@ struct Numbering {
   int size;
 };
 
-// ---- linear maps ---------------------------------------------------------------------------------
+// ---- linear maps
+// ---------------------------------------------------------------------------------
 
 Vector3c cross(const Vector3& a, const Vector3c& b) { return math::skew<double>(a) * b; }
 
@@ -53,9 +54,7 @@ struct Twist {
   Vector3c translation = Vector3c::Zero();
   Vector3c rotation = Vector3c::Zero();
 
-  Twist at(const Vector3& arm) const {
-    return {translation - cross(arm, rotation), rotation};
-  }
+  Twist at(const Vector3& arm) const { return {translation - cross(arm, rotation), rotation}; }
   Twist operator+(const Twist& other) const {
     return {translation + other.translation, rotation + other.rotation};
   }
@@ -78,7 +77,9 @@ struct Momentum {
   }
 };
 
-double half_product(const Complex& q, const Complex& p) { return 0.5 * std::real(std::conj(q) * p); }
+double half_product(const Complex& q, const Complex& p) {
+  return 0.5 * std::real(std::conj(q) * p);
+}
 
 /// q* p / 2 of each direction of a twist, in the axes of the columns of C.
 void add_products(const Twist& twist, const Momentum& momentum, const Matrix3& C,
@@ -94,7 +95,8 @@ void add_products(const Twist& twist, const Momentum& momentum, const Matrix3& C
   }
 }
 
-// ---- bodies --------------------------------------------------------------------------------------
+// ---- bodies
+// --------------------------------------------------------------------------------------
 
 /// A mass at a place, ground axes.
 struct Mass {
@@ -177,8 +179,8 @@ PlacedBeam place(const model::Beam& beam, const Vector3& root, const Matrix3& C,
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const model::MassNode& node = beam.mass_nodes[m];
     const auto next = static_cast<std::size_t>(node.end * beam.order);  // of the points
-    placed.points.push_back(put(masses[m], node.x, beam.reference_before(node.end), node.mass,
-                                beam.points[next].C_ab));
+    placed.points.push_back(
+        put(masses[m], node.x, beam.reference_before(node.end), node.mass, beam.points[next].C_ab));
     if (node.end != 0) continue;
     placed.has_support = true;
     placed.support = placed.points.back();
@@ -189,7 +191,8 @@ PlacedBeam place(const model::Beam& beam, const Vector3& root, const Matrix3& C,
   return placed;
 }
 
-// ---- the walk ------------------------------------------------------------------------------------
+// ---- the walk
+// ------------------------------------------------------------------------------------
 
 class TurbineMotionEnergies final : public MotionEnergies {
  public:
@@ -205,9 +208,9 @@ class TurbineMotionEnergies final : public MotionEnergies {
     C *= math::turn_about<double>(Vector3::UnitX(), chain_.tilt);
     shaft_axis_ = C.col(1);
     pin_ = bearing_ + chain_.overhang * shaft_axis_;
-    C *= math::turn_about<double>(Vector3::UnitY(), turbine.turning_at(t).value +
-                                                        steady(layout.generator()) +
-                                                        steady(layout.shaft_torsion()));
+    C *= math::turn_about<double>(
+        Vector3::UnitY(),
+        turbine.turning_at(t).value + steady(layout.generator()) + steady(layout.shaft_torsion()));
     shaft_ = mass_of(bearing_, C, chain_.shaft);
     teeter_axis_ = C * chain_.teeter_axis;
     C *= math::turn_about<double>(chain_.teeter_axis, steady(layout.teeter()));
@@ -221,20 +224,20 @@ class TurbineMotionEnergies final : public MotionEnergies {
       for (int p = 0; p < beam.point_count(); ++p) points.push_back(layout.blade_point(blade, p));
       for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m)
         masses.push_back(layout.blade_mass(blade, static_cast<int>(m)));
-      blades_.push_back(place(beam, apex + C * turbine.roots[k].position,
-                              C * turbine.roots[k].C_Ha, steady, points, masses,
-                              layout.blade_tip(blade)));
+      blades_.push_back(place(beam, apex + C * turbine.roots[k].position, C * turbine.roots[k].C_Ha,
+                              steady, points, masses, layout.blade_tip(blade)));
     }
   }
 
-  Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z) const override {
+  Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                     const Eigen::Ref<const Eigen::VectorXcd>& z) const override {
     Eigen::VectorXd energies = Eigen::VectorXd::Zero(numbering_.size);
     const Complex q_y = z(layout_.yaw());
     const Complex q_h = z(layout_.teeter());
     const Complex q_s = z(layout_.shaft_torsion());
     const Complex q_g = z(layout_.generator());
-    const auto add_joint = [&](Joint joint, const Complex& q, const Complex& p) {
-      energies(numbering_.joints + joint) += half_product(q, p);
+    const auto add_joint = [&](Joint joint, int coordinate, const Complex& p) {
+      energies(numbering_.joints + joint) += half_product(z_dot(coordinate), p);
     };
     // Outward: how each body moves.
     const Twist top = has_tower_ ? tower_.points.back().node.twist_of(z) : Twist{};
@@ -246,23 +249,23 @@ class TurbineMotionEnergies final : public MotionEnergies {
     Momentum carried = hub_.momentum_of(hub);
     for (std::size_t k = 0; k < blades_.size(); ++k)
       carried += momentum_of(blades_[k], hub.at(blades_[k].root - pin_), blade_directions,
-                             root_directions, Numbering::blade(k), {}, z, energies)
+                             root_directions, Numbering::blade(k), {}, z_dot, z, energies)
                      .from(blades_[k].root - pin_);
-    add_joint(teeter, q_h, sum(teeter_axis_, carried.angular));
+    add_joint(teeter, layout_.teeter(), sum(teeter_axis_, carried.angular));
     carried = carried.from(pin_ - bearing_);
     carried += shaft_.momentum_of(shaft);
     const Complex turning = sum(shaft_axis_, carried.angular);
     const Complex rolling = sum(shaft_axis_, nacelle.rotation);
     const Complex spin = chain_.generator_inertia * (rolling + chain_.gear_ratio * q_g);
-    add_joint(torsion, q_s, turning);
-    add_joint(generator, q_g, turning + chain_.gear_ratio * spin);
+    add_joint(torsion, layout_.shaft_torsion(), turning);
+    add_joint(generator, layout_.generator(), turning + chain_.gear_ratio * spin);
     carried = carried.from(bearing_ - top_);
     carried += nacelle_.momentum_of(nacelle);
     carried.angular += shaft_axis_ * spin;
-    add_joint(yaw, q_y, sum(yaw_axis_, carried.angular));
+    add_joint(yaw, layout_.yaw(), sum(yaw_axis_, carried.angular));
     if (has_tower_)
-      momentum_of(tower_, {}, tower_directions, foundation_directions, numbering_.tower, carried, z,
-                  energies);
+      momentum_of(tower_, {}, tower_directions, foundation_directions, numbering_.tower, carried,
+                  z_dot, z, energies);
     return energies;
   }
 
@@ -291,26 +294,29 @@ class TurbineMotionEnergies final : public MotionEnergies {
   /// motion of the root's place; `carried`: the momentum of what the tip carries, about it.
   static Momentum momentum_of(const PlacedBeam& beam, const Twist& base,
                               const Directions& deformation, const Directions& root, int first,
-                              const Momentum& carried, const Eigen::Ref<const Eigen::VectorXcd>& z,
+                              const Momentum& carried,
+                              const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                              const Eigen::Ref<const Eigen::VectorXcd>& z,
                               Eigen::VectorXd& energies) {
     Twist given;
     Vector3 foot = beam.root;
     if (beam.has_support) {
-      given = beam.support.node.twist_of(z);
+      given = beam.support.node.twist_of(z_dot);
       foot = beam.support.mass.place;
     }
     Momentum total;
     for (std::size_t i = 0; i < beam.points.size(); ++i) {
       const PlacedBeam::Point& point = beam.points[i];
       const Twist own = point.node.twist_of(z);
+      const Twist rate = point.node.twist_of(z_dot);
       const Vector3& at = point.mass.place;
       Momentum momentum = point.mass.momentum_of(own + base.at(at - beam.root));
       if (i + 1 == beam.points.size()) momentum += carried;
-      const Twist deformed = own - given.at(at - foot);
+      const Twist deformed = rate - given.at(at - foot);
       // About its centre a mass has no momentum that a translation and a rotation share.
       const Vector3& center = point.mass.center;
-      add_products(deformed.at(center), momentum.from(-center), point.axes,
-                   deformation.motion, first, energies);
+      add_products(deformed.at(center), momentum.from(-center), point.axes, deformation.motion,
+                   first, energies);
       total += momentum.from(at - beam.root);
     }
     if (beam.has_support)
@@ -361,7 +367,8 @@ std::vector<Motion> motions_of(const model::Turbine& turbine, const model::Layou
     const model::Beam& beam = turbine.blades[k];
     const int blade = static_cast<int>(k);
     for (int i = 0; i < motions_a_beam; ++i) {
-      Motion motion{"blade", blade_directions.names[static_cast<std::size_t>(i)], blade + 1, {}, {}};
+      Motion motion{
+          "blade", blade_directions.names[static_cast<std::size_t>(i)], blade + 1, {}, {}};
       add_positions(beam, layout, blade, i, motion);
       motions.push_back(motion);
     }

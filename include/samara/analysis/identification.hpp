@@ -18,9 +18,9 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
 bool has_canonical_shapes(const system::PeriodicSystem& system);
 
 /// Among the combinations of constant modes of equal exponents those in which each blade is ahead
-/// of the one behind it by the same angle, where has_canonical_shapes.
+/// of the one behind it by the same angle, where has_canonical_shapes; exponents by rounding.
 void choose_shapes(const system::PeriodicSystem& system,
-                   const std::vector<std::complex<double>>& exponents,
+                   std::vector<std::complex<double>>& exponents,
                    std::vector<Eigen::MatrixXcd>& shapes);
 
 /// Scales every shape so that its largest position is 1, and its kinetic energy with it.

@@ -33,7 +33,7 @@ struct Mode {
   double step_error = 0.0;
   double mesh_error = 0.0;
   double rounding_error = 0.0;
-  double growth_error = 0.0;  ///< of the real part [rad/s]: a growth below it is none
+  double growth_error = 0.0;       ///< of the real part [rad/s]: a growth below it is none
   double mesh_growth_error = 0.0;  ///< of this, what the elements make
   /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
   /// tangents: relative difference of the exponent found with two shifts.

@@ -73,9 +73,10 @@ class MotionEnergies {
   MotionEnergies& operator=(const MotionEnergies&) = delete;
   virtual ~MotionEnergies() = default;
 
-  /// q* p / 2 of each motion where `z` moves at 1 rad/s, q its coordinates and p their momenta [J]:
-  /// the sum is the kinetic energy.
-  virtual Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z) const = 0;
+  /// q* p / 2 of each motion [J], q the rates of its coordinates in `z_dot` and p their momenta in
+  /// `whole`: with `z_dot` the rates of all positions as well, the sum is the kinetic energy.
+  virtual Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                             const Eigen::Ref<const Eigen::VectorXcd>& whole) const = 0;
 };
 
 /// An element of a mesh. The motion z exp(lambda t) has half a sum of squares of the signals
