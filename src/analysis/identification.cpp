@@ -523,14 +523,17 @@ void arrange_modes(ModeSet& set) {
           set.participation.row(static_cast<Eigen::Index>(order[i]));
   }
   set = std::move(sorted);
-  std::map<std::string, int> all;
+  // Modes beyond the step's reach come after the others, and do not use up their numbers.
+  std::map<std::string, int> alike;
+  for (const Mode& mode : set.modes)
+    if (mode.resolved) ++alike[mode.label];
   std::map<std::string, int> number;
-  for (const Mode& mode : set.modes) ++all[mode.label];
-  for (Mode& mode : set.modes)
-    if (!mode.label.empty() && all[mode.label] > 1) {
-      const std::string name = mode.label;
-      mode.label += " " + std::to_string(++number[name]);
-    }
+  for (Mode& mode : set.modes) {
+    if (mode.label.empty()) continue;
+    const std::string name = mode.label;
+    const int own = ++number[name];
+    if (own > 1 || alike[name] > 1) mode.label += " " + std::to_string(own);
+  }
 }
 
 }  // namespace samara::analysis
