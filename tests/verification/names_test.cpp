@@ -137,11 +137,11 @@ double flap_share(const Run& run, const Eigen::MatrixXcd& shape) {
 
 BOOST_AUTO_TEST_CASE(motion_energies_of_a_standing_turbine_sum_to_the_kinetic_energy) {
   // The one from positions, the other from inertial velocities, which at rest are lambda times
-  // them. Everything that can move does.
+  // them, and of a hub that teeters have its mass only. Everything that can move does.
   const std::string spring = "{joint: free, stiffness: 1e7, damping: 1e5}";
   for (const io::Case& turbine :
        {input("two_bladed/teetering",
-              {"shaft.speed_rpm=0", "gravity=0", "shaft.torsion=" + spring,
+              {"shaft.speed_rpm=0", "gravity=0", "hub.inertia=[0, 0, 0]", "shaft.torsion=" + spring,
                "shaft.generator={joint: free, own_inertia: 534.116}", "nacelle.yaw=" + spring,
                "blades.elements=2", "tower.elements=1"}),
         input("nrel5mw/beam_blades", {"shaft.speed_rpm=0", "blades.elements=2", "tower.elements=1",
@@ -269,7 +269,8 @@ BOOST_AUTO_TEST_CASE(a_rotor_that_turns_as_a_whole_is_rotor_rotation) {
   BOOST_TEST(labels(set, 2) == (std::vector<std::string>{"rotor rotation 1", "rotor rotation 2"}),
              boost::test_tools::per_element());
   BOOST_TEST(set.modes[0].exponent == 0.0);
-  BOOST_TEST(set.modes[1].exponent.real() == -65.0 / 1168.0, tolerance(1e-6));
+  // The sections have inertias of 1e-4 kg m, and the blades bend a little.
+  BOOST_TEST(set.modes[1].exponent.real() == -65.0 / 1168.0, tolerance(1e-5));
   BOOST_TEST(set.modes[1].exponent.imag() == 0.0);
   BOOST_TEST(set.modes[1].resolved);
 }
