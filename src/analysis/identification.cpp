@@ -30,6 +30,10 @@ constexpr Eigen::Index fitted_harmonics = 8;
 
 /// Moduli, and real parts relative to the modulus, closer than this sort as the same.
 constexpr double same_size = 1e-6;
+/// Share of the kinetic energy whose coordinates move at the identified harmonic, beyond which they
+/// alone name a mode.
+constexpr double dominant_part = 0.5;
+
 /// Exponents closer than this, relative, or than so many of their errors by rounding, are the same.
 constexpr double degenerate = 1e-7;
 constexpr double many_errors = 4.0;
@@ -222,36 +226,46 @@ class MotionsInTime {
   std::map<double, std::unique_ptr<system::MotionEnergies>> about_;
 };
 
+struct Leading {
+  std::size_t motion = 0;
+  bool at_identified = true;  ///< harmonic, by which it was found
+};
+
 /// The motion with the largest share of the kinetic energy and that of the strain energy together.
 /// Strain weighs as much as the kinetic energy where all that restores is strain, less where
 /// rotation stiffens, and more in overdamped motions, which hardly move; it does not count at rest,
 /// where it is that of another motion.
-std::size_t leading_motion(const system::PeriodicSystem& system,
-                           const std::vector<system::Motion>& motions, const ModeSet& set,
-                           std::size_t m, const NamedShape& named, int sectors,
-                           MotionsInTime& in_time) {
+Leading leading_motion(const system::PeriodicSystem& system,
+                       const std::vector<system::Motion>& motions, const ModeSet& set,
+                       std::size_t m, const NamedShape& named, int sectors,
+                       MotionsInTime& in_time) {
   const Mode& mode = set.modes[m];
-  Eigen::VectorXd energies = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(motions.size()));
-  double whole = 0.0;
+  const auto count = static_cast<Eigen::Index>(motions.size());
+  Eigen::VectorXd identified = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(count);
   for (Eigen::Index c = 0; c < named.shape.cols(); ++c) {
     const system::MotionEnergies& about = in_time.at(time_of(set, named.shape, c, sectors));
-    energies += about.of(named.shape_rate.col(c), named.whole_rate.col(c));
-    whole += about.of(named.whole_rate.col(c), named.whole_rate.col(c)).sum();
+    identified += about.of(named.shape_rate.col(c), named.whole_rate.col(c));
+    all += about.of(named.whole_rate.col(c), named.whole_rate.col(c));
   }
+  // Less where the mode was identified in blades that the tower carries: it is in another one.
+  const bool is_dominant = identified.sum() > dominant_part * all.sum();
+  const Eigen::VectorXd& energies = is_dominant ? identified : all;
+  const double part = is_dominant ? identified.sum() / all.sum() : 1.0;
   std::map<std::string, double> shares;
-  const double part = whole > 0.0 ? energies.sum() / whole : 0.0;  // in the identified harmonic
-  if (!(part > 0.0)) return 0;
-  for (std::size_t i = 0; i < motions.size(); ++i)
-    shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / (part * whole);
+  if (energies.sum() > 0.0)
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / energies.sum();
   if (!is_at_rest(mode, set) && mode.kinetic_energy > 0.0)
-    for (const auto& [name, energy] : strain_energies(system, named.shape))
+    for (const auto& [name, energy] :
+         strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
       shares[name] += energy / (part * mode.kinetic_energy);
-  std::size_t leading = 0;
+  Leading leading{0, is_dominant};
   double most = 0.0;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const double share = shares[text_of(motions[i])];
     if (!(share > most)) continue;
-    leading = i;
+    leading.motion = i;
     most = share;
   }
   return leading;
@@ -454,14 +468,14 @@ void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& so
       name.part = strained_motion(system, set.shapes[m], mode, zero);
     } else {
       const NamedShape named = named_shape(set, m);
-      const system::Motion& leading =
-          motions[leading_motion(system, motions, set, m, named, sectors, in_time)];
+      const Leading found = leading_motion(system, motions, set, m, named, sectors, in_time);
+      const system::Motion& leading = motions[found.motion];
       name.part = leading.part;
       name.motion = leading.name;
       if (leading.blade > 0 && together && mode.exponent.imag() > zero) {
         Eigen::Index largest = 0;
-        const Eigen::VectorXd shares =
-            multiblade_shares(motions, set.blades, leading.name, named.shape);
+        const Eigen::VectorXd shares = multiblade_shares(
+            motions, set.blades, leading.name, found.at_identified ? named.shape : set.shapes[m]);
         if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share) {
           component = static_cast<int>(largest);
           name.together = word_of(component, set.blades);
@@ -523,16 +537,13 @@ void arrange_modes(ModeSet& set) {
           set.participation.row(static_cast<Eigen::Index>(order[i]));
   }
   set = std::move(sorted);
-  // Modes beyond the step's reach come after the others, and do not use up their numbers.
+  // Modes beyond the step's reach come after the others, and take the last numbers.
   std::map<std::string, int> alike;
-  for (const Mode& mode : set.modes)
-    if (mode.resolved) ++alike[mode.label];
+  for (const Mode& mode : set.modes) ++alike[mode.label];
   std::map<std::string, int> number;
   for (Mode& mode : set.modes) {
-    if (mode.label.empty()) continue;
     const std::string name = mode.label;
-    const int own = ++number[name];
-    if (own > 1 || alike[name] > 1) mode.label += " " + std::to_string(own);
+    if (!name.empty() && alike[name] > 1) mode.label += " " + std::to_string(++number[name]);
   }
 }
 

@@ -310,8 +310,8 @@ BOOST_AUTO_TEST_CASE(the_order_of_modes_is_that_of_their_exponents_whatever_the_
                                            mode_of("blade lead-lag", Complex(-3.0, 4.0)),
                                            mode_of("tower lateral", Complex(0.0, 0.1), false)};
   const std::vector<std::string> names{
-      "yaw 1",          "yaw 2",      "rotor rotation", "teeter 1",         "teeter 2",
-      "tower lateral",  "blade flap", "tower fore-aft", "blade lead-lag 1", "blade lead-lag 2",
+      "yaw 1",           "yaw 2",      "rotor rotation", "teeter 1",         "teeter 2",
+      "tower lateral 1", "blade flap", "tower fore-aft", "blade lead-lag 1", "blade lead-lag 2",
       "tower lateral 2"};
   std::minstd_rand random(1);
   std::uniform_real_distribution<double> rounding(-1e-10, 1e-10);
