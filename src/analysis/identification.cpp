@@ -455,6 +455,7 @@ void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& so
                 ModeSet& set, int sectors) {
   const std::vector<system::Motion> motions = system.motions();
   for (const system::Motion& motion : motions) set.blades = std::max(set.blades, motion.blade);
+  if (set.shapes.empty()) return;  // another rank has them
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   MotionsInTime in_time(system, solution);
   const bool together = set.blades == 2 || (set.blades > 2 && set.rotor_speed > 0.0);
