@@ -330,8 +330,7 @@ void TurbineSystem::reference_state(double t, Vec z) const {
     return values[static_cast<std::size_t>(joint)];
   };
   angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_at(t).angle;
-  angle_at(assembly.layout.teeter()) =
-      assembly.turbine.teeter_at(t).angle;
+  angle_at(assembly.layout.teeter()) = assembly.turbine.teeter_at(t).angle;
   std::vector<double> r(n, 0.0);
   assembly.undo_references(values);
   for (int pass = 0; pass < 5; ++pass) {
