@@ -28,6 +28,9 @@ constexpr std::size_t first_modes = 10;
 
 double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
 
+/// Whether the ground sees other frequencies than the rotor, and each of one mode.
+bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.blades > 2; }
+
 std::string percent(double share) { return fixed(100.0 * share, 0); }
 
 std::string parts_of(const Mode& mode) {
@@ -94,6 +97,10 @@ std::vector<std::string> row_of(const ModeSet& set, std::size_t m) {
   std::vector<std::string> row{std::to_string(m + 1), mode.label};
   if (set.rotor_speed > 0.0) row.push_back(fixed(frequency / set.rotor_speed, 4));
   row.push_back(fixed(frequency / (2.0 * std::numbers::pi), 4));
+  if (has_fixed_frame(set))
+    row.push_back(std::isfinite(mode.fixed_frame_frequency) && motion != Motion::rigid_body
+                      ? fixed(mode.fixed_frame_frequency / (2.0 * std::numbers::pi), 4)
+                      : "-");
   row.push_back(
       frequency == 0.0 || !is_known ? "-" : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
   row.push_back(frequency == 0.0 || !is_known
@@ -230,6 +237,7 @@ std::string mode_table(const ModeSet& set, const ModeListing& listing) {
   table.add_column("mode", "", Align::left);
   if (set.rotor_speed > 0.0) table.add_column("frequency", "per rev");
   table.add_column(set.rotor_speed > 0.0 ? "" : "frequency", "Hz");
+  if (has_fixed_frame(set)) table.add_column("fixed frame", "Hz");
   table.add_column("damping", "%");
   table.add_column("log decr", "%");
   table.add_column("growth", "1/s");

@@ -199,9 +199,13 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   collect(border);
   // A mode at the border that the two shifts see on different sides is lost or found twice.
   if (exponents != 2 * subspace.degrees_of_freedom()) collect(-1.0);
-  std::stable_sort(order.begin(), order.end(), [speed](const Found& a, const Found& b) {
-    return sorting_frequency(a.exponent, speed) < sorting_frequency(b.exponent, speed);
-  });
+  std::vector<Complex> exponents_found;
+  std::vector<Eigen::MatrixXcd> shapes;
+  for (const Found& found : order) {
+    exponents_found.push_back(found.exponent);
+    shapes.emplace_back(found.spectrum->found.shapes.col(found.column));
+  }
+  choose_shapes(system, exponents_found, shapes);
   HarmonicEnergy energy(system);
   const Eigen::VectorXcd one = Eigen::VectorXcd::Ones(1);
   const std::vector<system::MeshError> elements = system.mesh_errors();
@@ -211,9 +215,10 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   set.rotor_speed = speed;
   set.conservative = system.is_conservative();
   set.shape_times = {0.0};
-  for (const Found& found : order) {
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Found& found = order[i];
+    const Eigen::MatrixXcd& shape = shapes[i];
     Mode mode;
-    const Eigen::MatrixXcd shape = found.spectrum->found.shapes.col(found.column);
     Eigen::MatrixXd real(energy.signals(), 1);
     Eigen::MatrixXd imaginary(energy.signals(), 1);
     Eigen::VectorXd participation;
@@ -223,7 +228,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
                     participation);
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
-    mode.exponent = found.exponent;
+    mode.exponent = exponents_found[i];
     if (std::abs(mode.exponent) < std::max(zero, zero_to_shift * found.spectrum->sigma))
       mode.exponent = 0.0;
     mode.residual =
@@ -241,7 +246,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     set.modes.push_back(mode);
     set.shapes.push_back(shape);
   }
-  label_modes(system, set);
+  name_modes(system, solution, set);
+  arrange_modes(set);
   scale_shapes(system, set);
   return set;
 }

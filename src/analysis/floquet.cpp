@@ -533,11 +533,6 @@ class Analysis {
         order.push_back(m);
       }
     }
-    std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
-      if (modes_[a].resolved != modes_[b].resolved) return modes_[a].resolved;
-      return sorting_frequency(modes_[a].exponent, speed_) <
-             sorting_frequency(modes_[b].exponent, speed_);
-    });
     Floquet result;
     result.steps = steps_;
     result.sectors = sectors_;
@@ -571,11 +566,12 @@ class Analysis {
         result.set.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) *
                                          dt_);
     find_mesh_errors(result.set);
-    label_modes(system_, result.set);
+    name_modes(system_, solution_, result.set, sectors_);
+    share_names(result.set);
+    arrange_modes(result.set);
     scale_shapes(system_, result.set);
     for (std::size_t m = 0; m < result.set.shapes.size(); ++m)
       if (!result.set.modes[m].resolved) result.set.shapes[m].resize(0, 0);
-    share_labels(result.set);
     return result;
   }
 
@@ -593,7 +589,11 @@ class Analysis {
   }
 
   /// Names come from the shapes, which only the first rank has.
-  void share_labels(ModeSet& set) const {
+  void share_names(ModeSet& set) const {
+    if (ranks_.size == 1) return;
+    MPI_Bcast(&set.blades, 1, MPI_INT, 0, ranks_.comm);
+    for (Mode& mode : set.modes)
+      MPI_Bcast(&mode.fixed_frame_frequency, 1, MPI_DOUBLE, 0, ranks_.comm);
     std::string text;
     for (const Mode& mode : set.modes) text += mode.label + '\n';
     int length = static_cast<int>(text.size());

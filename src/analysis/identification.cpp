@@ -3,6 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <set>
+#include <string_view>
+#include <tuple>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
 
 namespace samara::analysis {
 namespace {
@@ -12,11 +22,54 @@ using system::EnergyGroup;
 /// Share of the energy that must be strain for a mode to be called elastic.
 constexpr double elastic_share = 0.15;
 
-/// Relative distance of two exponents that do not split.
-constexpr double degenerate = 1e-8;
+/// Share of a multiblade component beyond which it names a mode.
+constexpr double clear_share = 0.7;
 
-/// Correlation of two blades beyond which they move alike or opposite.
-constexpr double clear_correlation = 0.8;
+/// On each side of the identified harmonic, those whose rates make the kinetic energy.
+constexpr Eigen::Index fitted_harmonics = 8;
+
+/// Moduli, and real parts relative to the modulus, closer than this sort as the same.
+constexpr double same_size = 1e-6;
+/// Share of the kinetic energy whose coordinates move at the identified harmonic, beyond which they
+/// alone name a mode.
+constexpr double dominant_part = 0.5;
+
+/// Exponents closer than this, relative, or than so many of their errors by rounding, are the same.
+constexpr double degenerate = 1e-7;
+constexpr double many_errors = 4.0;
+
+/// Exponents that are the same, one chain of neighbours each, of two or more; zeros left out.
+/// `apart`: of each, how far the same one may be, relative. Those of different `classes` are not
+/// the same.
+std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::complex<double>>& exponents,
+                                                const std::vector<double>& apart,
+                                                const std::vector<int>& classes) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < exponents.size(); ++i)
+    if (exponents[i] != 0.0) order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(exponents[a]) < std::abs(exponents[b]);
+  });
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<bool> taken(order.size(), false);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (taken[i]) continue;
+    std::vector<std::size_t> group{order[i]};
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const std::size_t a = group.back();
+      const std::size_t b = order[j];
+      const double size = std::abs(exponents[b]);
+      if (size - std::abs(exponents[a]) > same_size * size) break;
+      if (taken[j] || classes[a] != classes[b] ||
+          std::abs(exponents[b] - exponents[a]) > std::max(apart[a], apart[b]) * size)
+        continue;
+      taken[j] = true;
+      group.push_back(b);
+    }
+    if (group.size() > 1) groups.push_back(group);
+  }
+  return groups;
+}
 
 Eigen::MatrixXd weight_of(const EnergyGroup& group) {
   const auto n = static_cast<Eigen::Index>(group.unknowns.size());
@@ -34,30 +87,6 @@ double mean_strain_energy(const EnergyGroup& group, const Eigen::MatrixXcd& shap
       energy += 0.5 * weight(a, b) * std::real(shape.row(row).dot(shape.row(column)));
     }
   return energy / static_cast<double>(shape.cols());
-}
-
-/// Correlation of the strains of one motion in blades 1 and 2: 1 alike, -1 opposite.
-double blade_correlation(const std::vector<EnergyGroup>& groups, const std::string& motion,
-                         const Eigen::MatrixXcd& shape) {
-  std::vector<const EnergyGroup*> first;
-  std::vector<const EnergyGroup*> second;
-  for (const EnergyGroup& group : groups) {
-    if (group.kind != EnergyGroup::Kind::strain || group.motion != motion) continue;
-    if (group.blade == 1) first.push_back(&group);
-    if (group.blade == 2) second.push_back(&group);
-  }
-  double both = 0.0;
-  double one = 0.0;
-  double other = 0.0;
-  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
-    const Eigen::RowVectorXcd a = shape.row(first[i]->unknowns[0]);
-    const Eigen::RowVectorXcd b = shape.row(second[i]->unknowns[0]);
-    both += first[i]->weight[0] * std::real(a.dot(b));
-    one += first[i]->weight[0] * a.squaredNorm();
-    other += first[i]->weight[0] * b.squaredNorm();
-  }
-  const double size = std::sqrt(one * other);
-  return size > 0.0 ? both / size : 0.0;
 }
 
 /// The joint that turns most: the free position of the largest mean square.
@@ -82,60 +111,322 @@ std::string moving_joint(const system::PeriodicSystem& system, const Eigen::Matr
   return name;
 }
 
-/// A stem without what it says of the blades' symmetry.
-std::string without_symmetry(const std::string& stem) {
-  for (const std::string& ending : {std::string(" antisymmetric"), std::string(" symmetric")})
-    if (stem.ends_with(ending)) return stem.substr(0, stem.size() - ending.size());
-  return stem;
+std::string text_of(const system::Motion& motion) {
+  return motion.part + (motion.name.empty() ? "" : " " + motion.name);
 }
 
-/// Modes of equal exponents mix at will: they are symmetric or antisymmetric only where they split.
-/// Over a blade passage they do: half a revolution gives one the opposite sign, another harmonic.
-void unite_degenerate(const ModeSet& set, std::vector<std::string>& stems) {
-  for (std::size_t i = 0; i < stems.size(); ++i)
-    for (std::size_t j = i + 1; j < stems.size(); ++j) {
-      const std::complex<double> a = set.modes[i].exponent;
-      if (a == 0.0 || std::abs(a - set.modes[j].exponent) > degenerate * std::abs(a)) continue;
-      if (set.modes[i].harmonic != set.modes[j].harmonic) continue;
-      const std::string common = without_symmetry(stems[i]);
-      if (common != without_symmetry(stems[j])) continue;
-      stems[i] = stems[j] = common;
-    }
-}
-
-/// Mean strain energy by "part/motion".
+/// Mean strain energy by name; shear belongs to the bending that it makes.
+constexpr std::string_view shear = " shear";
 std::map<std::string, double> strain_energies(const system::PeriodicSystem& system,
                                               const Eigen::MatrixXcd& shape) {
   std::map<std::string, double> strain;
   for (const EnergyGroup& group : system.energy_groups())
-    if (group.kind == EnergyGroup::Kind::strain)
-      strain[group.part + "/" + group.motion] += mean_strain_energy(group, shape);
+    if (group.kind == EnergyGroup::Kind::strain) {
+      std::string name = group.motion;
+      if (name.ends_with(shear)) name.resize(name.size() - shear.size());
+      if (group.part != "joint" && group.part != "support") name = group.part + " " + name;
+      strain[name] += mean_strain_energy(group, shape);
+    }
   return strain;
 }
 
-std::string stem_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
-                    const Mode& mode) {
+/// Of a system that does not know its motions: by the strain energy.
+std::string strained_motion(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
+                            const Mode& mode, double zero) {
   const std::map<std::string, double> strain = strain_energies(system, shape);
   const auto largest_entry =
       std::max_element(strain.begin(), strain.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string joint = moving_joint(system, shape);
-  if (mode.resolved && !joint.empty() && is_rigid_body(system, shape, mode)) return joint;
+  if (!joint.empty() &&
+      (std::abs(mode.exponent) < zero || (mode.resolved && is_rigid_body(system, shape, mode))))
+    return joint;
   if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
-  const std::string& largest = largest_entry->first;
-  int blades = 0;
-  for (const EnergyGroup& group : system.energy_groups()) blades = std::max(blades, group.blade);
-  const std::string part = largest.substr(0, largest.find('/'));
-  const std::string motion = largest.substr(largest.find('/') + 1);
-  if (part == "joint" || part == "support") return motion;
-  if (part != "blade" || blades != 2) return part + " " + motion;
-  const double alike = blade_correlation(system.energy_groups(), motion, shape);
-  if (alike > clear_correlation) return "blade " + motion + " symmetric";
-  if (alike < -clear_correlation) return "blade " + motion + " antisymmetric";
-  return "blade " + motion;
+  return largest_entry->first;
+}
+
+/// Whether an exponent is none but for rounding and the step.
+bool is_at_rest(const Mode& mode, const ModeSet& set) {
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const double unsure = mode.growth_error - mode.mesh_growth_error;
+  return std::abs(mode.exponent) < zero ||
+         (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure);
+}
+
+/// Instant of a column of a shape.
+double time_of(const ModeSet& set, const Eigen::MatrixXcd& shape, Eigen::Index column,
+               int sectors) {
+  const auto all = static_cast<Eigen::Index>(set.shape_times.size()) / sectors;
+  const Eigen::Index taken = std::max<Eigen::Index>(1, shape.cols() / sectors);
+  return set.shape_times[static_cast<std::size_t>(column / taken * all + column % taken)];
+}
+
+/// A mode as its name wants it: of its coordinates the identified harmonic alone, which is the one
+/// whose frequency is stated. Beside it a motion may have others, where exponents of two modes
+/// nearly coincide but for multiples of the rotor speed.
+struct NamedShape {
+  Eigen::MatrixXcd shape;       ///< positions and loads at the identified harmonic
+  Eigen::MatrixXcd shape_rate;  ///< (lambda + d/dt) of it
+  Eigen::MatrixXcd whole_rate;  ///< (lambda + d/dt) of all harmonics
+};
+
+/// Harmonics about the identified one are fitted, for instants of several sectors are not equally
+/// spaced. A shape of few instants, or at rest, stands for its rate, and so does each harmonic
+/// where none has been identified.
+NamedShape named_shape(const ModeSet& set, std::size_t m) {
+  const Mode& mode = set.modes[m];
+  const Eigen::MatrixXcd& shape = set.shapes[m];
+  const Eigen::Index instants = shape.cols();
+  if (instants != static_cast<Eigen::Index>(set.shape_times.size()) || is_at_rest(mode, set))
+    return {shape, shape, shape};
+  if (instants == 1) return {shape, mode.exponent * shape, mode.exponent * shape};
+  const Eigen::Index reach = std::min<Eigen::Index>(fitted_harmonics, (instants - 1) / 3);
+  Eigen::MatrixXcd waves(instants, 2 * reach + 1);
+  Eigen::VectorXcd rates(2 * reach + 1);
+  for (Eigen::Index h = -reach; h <= reach; ++h) {
+    const double k = static_cast<double>(h + mode.harmonic) * set.rotor_speed;
+    rates(h + reach) =
+        mode.exponent + std::complex<double>(0.0, static_cast<double>(h) * set.rotor_speed);
+    for (Eigen::Index i = 0; i < instants; ++i)
+      waves(i, h + reach) = std::polar(1.0, k * set.shape_times[static_cast<std::size_t>(i)]);
+  }
+  const Eigen::MatrixXcd fit =
+      waves.colPivHouseholderQr().solve(Eigen::MatrixXcd::Identity(instants, instants));
+  const Eigen::MatrixXcd coefficients = shape * fit.transpose();
+  NamedShape named;
+  named.whole_rate = coefficients * rates.asDiagonal() * waves.transpose();
+  if (mode.exponent.imag() == 0.0) return {shape, named.whole_rate, named.whole_rate};
+  named.shape = coefficients.col(reach) * waves.col(reach).transpose();
+  named.shape_rate = mode.exponent * named.shape;
+  return named;
+}
+
+/// The motions about the steady states at all instants of the shapes.
+class MotionsInTime {
+ public:
+  MotionsInTime(const system::PeriodicSystem& system, const PeriodicSolution& solution)
+      : system_(system),
+        solution_(solution),
+        z_(system.make_state()),
+        z_dot_(system.make_state()) {}
+
+  const system::MotionEnergies& at(double t) {
+    std::unique_ptr<system::MotionEnergies>& about = about_[t];
+    if (!about) {
+      solution_.evaluate(t, z_.get(), z_dot_.get());
+      about = system_.motion_energies(t, z_.get());
+    }
+    return *about;
+  }
+
+ private:
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  petsc::Handle<Vec> z_, z_dot_;
+  std::map<double, std::unique_ptr<system::MotionEnergies>> about_;
+};
+
+struct Leading {
+  std::size_t motion = 0;
+  bool at_identified = true;  ///< harmonic, by which it was found
+};
+
+/// The motion with the largest share of the kinetic energy and that of the strain energy together.
+/// Strain weighs as much as the kinetic energy where all that restores is strain, less where
+/// rotation stiffens, and more in overdamped motions, which hardly move; it does not count at rest,
+/// where it is that of another motion.
+Leading leading_motion(const system::PeriodicSystem& system,
+                       const std::vector<system::Motion>& motions, const ModeSet& set,
+                       std::size_t m, const NamedShape& named, int sectors,
+                       MotionsInTime& in_time) {
+  const Mode& mode = set.modes[m];
+  const auto count = static_cast<Eigen::Index>(motions.size());
+  Eigen::VectorXd identified = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index c = 0; c < named.shape.cols(); ++c) {
+    const system::MotionEnergies& about = in_time.at(time_of(set, named.shape, c, sectors));
+    identified += about.of(named.shape_rate.col(c), named.whole_rate.col(c));
+    all += about.of(named.whole_rate.col(c), named.whole_rate.col(c));
+  }
+  // Less where the mode was identified in blades that the tower carries: it is in another one.
+  const bool is_dominant = identified.sum() > dominant_part * all.sum();
+  const Eigen::VectorXd& energies = is_dominant ? identified : all;
+  const double part = is_dominant ? identified.sum() / all.sum() : 1.0;
+  std::map<std::string, double> shares;
+  if (energies.sum() > 0.0)
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / energies.sum();
+  if (!is_at_rest(mode, set) && mode.kinetic_energy > 0.0)
+    for (const auto& [name, energy] :
+         strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
+      shares[name] += energy / (part * mode.kinetic_energy);
+  Leading leading{0, is_dominant};
+  double most = 0.0;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const double share = shares[text_of(motions[i])];
+    if (!(share > most)) continue;
+    leading.motion = i;
+    most = share;
+  }
+  return leading;
+}
+
+/// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
+/// blade is 2 pi n / B ahead of the one behind it. Empty where nothing moves.
+Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int blades,
+                                  const std::string& name, const Eigen::MatrixXcd& shape) {
+  std::vector<const system::Motion*> alike;
+  for (const system::Motion& motion : motions)
+    if (motion.blade > 0 && motion.name == name) alike.push_back(&motion);
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(blades);
+  if (static_cast<int>(alike.size()) != blades) return {};
+  for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i)
+    for (int n = 0; n < blades; ++n) {
+      Eigen::RowVectorXcd component = Eigen::RowVectorXcd::Zero(shape.cols());
+      for (int k = 0; k < blades; ++k)
+        component += std::polar(1.0, -2.0 * std::numbers::pi * n * k / blades) *
+                     shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
+      shares(n) += alike.front()->weight[i] * component.squaredNorm();
+    }
+  const double total = shares.sum();
+  return total > 0.0 ? Eigen::VectorXd(shares / total) : Eigen::VectorXd();
+}
+
+const char* word_of(int n, int blades) {
+  if (blades == 2) return n == 0 ? " symmetric" : " antisymmetric";
+  if (n == 0) return " collective";
+  if (n == 1) return " regressive";
+  return n == blades - 1 ? " progressive" : " reactionless";
+}
+
+bool turns_with_rotor(const system::PeriodicSystem& system, const std::string& part) {
+  return std::any_of(system.energy_groups().begin(), system.energy_groups().end(),
+                     [&part](const EnergyGroup& group) {
+                       return group.kind == EnergyGroup::Kind::kinetic && group.part == part &&
+                              group.frame == system::Frame::rotating;
+                     });
+}
+
+/// What a mode is called, piece by piece.
+struct Name {
+  std::string part, motion;
+  std::string together;  ///< of the blades
+  std::string text() const { return part + (motion.empty() ? "" : " " + motion) + together; }
+};
+
+/// Ways to bend, between which modes of equal exponents cannot choose.
+bool bends(const std::string& motion) {
+  return motion == "flap" || motion == "lead-lag" || motion == "fore-aft" || motion == "lateral";
+}
+
+/// Modes of equal exponents mix at will: what their names differ in says nothing. Other harmonics
+/// keep them apart over a blade passage, where half a turn, say, gives one the opposite sign.
+/// `canonical`: they have been chosen by how the blades move together.
+void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vector<Name>& names) {
+  std::vector<std::complex<double>> exponents;
+  std::vector<double> apart;
+  std::vector<int> harmonics;
+  for (const Mode& mode : set.modes) {
+    exponents.push_back(mode.exponent);
+    apart.push_back(std::clamp(many_errors * mode.rounding_error, degenerate, same_size));
+    harmonics.push_back(sectors > 1 ? mode.harmonic : 0);
+  }
+  for (const std::vector<std::size_t>& equal : groups_of(exponents, apart, harmonics)) {
+    std::map<std::string, std::set<std::string>> motions;  // of each part
+    std::map<std::pair<std::string, bool>, int> count;
+    for (const std::size_t m : equal) {
+      if (bends(names[m].motion)) motions[names[m].part].insert(names[m].motion);
+      ++count[{names[m].part + names[m].motion, false}];
+      if (bends(names[m].motion)) ++count[{names[m].part, true}];
+    }
+    for (const std::size_t m : equal) {
+      Name& name = names[m];
+      const bool bending = bends(name.motion);
+      const int alike =
+          bending ? count[{name.part, true}] : count[{name.part + name.motion, false}];
+      if (bending && motions[name.part].size() > 1) name.motion = "bending";
+      if (!canonical && alike > 1) name.together = "";
+    }
+  }
+}
+
+/// Places in ascending order of `values`, the same for those that are closer than `apart` to the
+/// next.
+std::vector<int> ranks_of(const std::vector<double>& values, double relative, double absolute) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&values](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<int> ranks(values.size(), 0);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const double gap = values[order[i]] - values[order[i - 1]];
+    const bool same = gap <= relative * std::abs(values[order[i]]) + absolute;
+    ranks[order[i]] = ranks[order[i - 1]] + (same ? 0 : 1);
+  }
+  return ranks;
 }
 
 }  // namespace
+
+bool has_canonical_shapes(const system::PeriodicSystem& system) {
+  return system.period() > 0.0 && system.symmetry().sectors > 2;
+}
+
+void choose_shapes(const system::PeriodicSystem& system,
+                   std::vector<std::complex<double>>& exponents,
+                   std::vector<Eigen::MatrixXcd>& shapes) {
+  if (!has_canonical_shapes(system)) return;
+  const system::RotorSymmetry& symmetry = system.symmetry();
+  for (const std::vector<std::size_t>& equal :
+       groups_of(exponents, std::vector<double>(exponents.size(), same_size),
+                 std::vector<int>(exponents.size(), 0))) {
+    if (exponents[equal.front()].imag() == 0.0) continue;
+    const auto count = static_cast<Eigen::Index>(equal.size());
+    Eigen::MatrixXcd all(system.size(), count);
+    Eigen::VectorXcd values(count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const std::size_t mode = equal[static_cast<std::size_t>(j)];
+      all.col(j) = shapes[mode].col(0) / shapes[mode].norm();
+      values(j) = exponents[mode];
+    }
+    // P moves the blades' motions on by one blade: within these modes it is a matrix W, whose B-th
+    // power is one, and which does not mix exponents.
+    Eigen::MatrixXcd turned(all.rows(), count);
+    for (Eigen::Index row = 0; row < all.rows(); ++row) {
+      const auto at = static_cast<std::size_t>(row);
+      turned.row(row) = symmetry.sign[at] * all.row(symmetry.source[at]);
+    }
+    const Eigen::MatrixXcd W = all.colPivHouseholderQr().solve(turned);
+    Eigen::MatrixXcd chosen(count, count);
+    Eigen::VectorXcd chosen_values(count);
+    Eigen::Index found = 0;
+    for (int n = 0; n < symmetry.sectors; ++n) {
+      Eigen::MatrixXcd projector = Eigen::MatrixXcd::Zero(count, count);
+      Eigen::MatrixXcd power = Eigen::MatrixXcd::Identity(count, count);
+      for (int j = 0; j < symmetry.sectors; ++j) {
+        projector +=
+            std::polar(1.0 / symmetry.sectors, -2.0 * std::numbers::pi * n * j / symmetry.sectors) *
+            power;
+        power = (power * W).eval();
+      }
+      const auto rank = static_cast<Eigen::Index>(std::lround(projector.trace().real()));
+      if (rank < 1 || found + rank > count) continue;
+      const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(projector, Eigen::ComputeThinU);
+      const Eigen::MatrixXcd basis = svd.matrixU().leftCols(rank);
+      const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> within(basis.adjoint() *
+                                                               values.asDiagonal() * basis);
+      chosen.middleCols(found, rank) = basis * within.eigenvectors();
+      chosen_values.segment(found, rank) = within.eigenvalues();
+      found += rank;
+    }
+    if (found != count) continue;
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const std::size_t mode = equal[static_cast<std::size_t>(j)];
+      shapes[mode] = all * chosen.col(j);
+      exponents[mode] = chosen_values(j);
+    }
+  }
+}
 
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
                    const Mode& mode) {
@@ -145,11 +436,6 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
       strained +=
           (1.0 + group.damping * std::abs(mode.exponent)) * mean_strain_energy(group, shape);
   return strained < elastic_share * (strained + mode.kinetic_energy);
-}
-
-double sorting_frequency(std::complex<double> exponent, double rotor_speed) {
-  const double slow = rotor_speed > 0.0 ? rotor_speed : 1.0;
-  return exponent.imag() == 0.0 && std::abs(exponent) < slow ? 0.0 : std::abs(exponent);
 }
 
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
@@ -165,25 +451,101 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
   }
 }
 
-void label_modes(const system::PeriodicSystem& system, ModeSet& set) {
-  std::map<std::string, int> count;
-  std::vector<std::string> stems;
+void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                ModeSet& set, int sectors) {
+  const std::vector<system::Motion> motions = system.motions();
+  for (const system::Motion& motion : motions) set.blades = std::max(set.blades, motion.blade);
+  if (set.shapes.empty()) return;  // another rank has them
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
-  for (std::size_t i = 0; i < set.shapes.size(); ++i) {
-    const std::string joint = moving_joint(system, set.shapes[i]);
-    const bool rests = std::abs(set.modes[i].exponent) < zero && !joint.empty();
-    stems.push_back(rests ? joint : stem_of(system, set.shapes[i], set.modes[i]));
-  }
-  unite_degenerate(set, stems);
-  for (const std::string& stem : stems) ++count[stem];
-  std::map<std::string, int> number;
-  // Modes beyond the step's reach come anywhere among the others, and do not use up their numbers.
-  for (const bool resolved : {true, false})
-    for (std::size_t i = 0; i < stems.size(); ++i) {
-      if (set.modes[i].resolved != resolved) continue;
-      const std::string& stem = stems[i];
-      set.modes[i].label = count[stem] > 1 ? stem + " " + std::to_string(++number[stem]) : stem;
+  MotionsInTime in_time(system, solution);
+  const bool together = set.blades == 2 || (set.blades > 2 && set.rotor_speed > 0.0);
+  std::vector<Name> names;
+  std::vector<int> components;
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    const Mode& mode = set.modes[m];
+    Name name;
+    int component = -1;
+    if (motions.empty()) {
+      name.part = strained_motion(system, set.shapes[m], mode, zero);
+    } else {
+      const NamedShape named = named_shape(set, m);
+      const Leading found = leading_motion(system, motions, set, m, named, sectors, in_time);
+      const system::Motion& leading = motions[found.motion];
+      name.part = leading.part;
+      name.motion = leading.name;
+      if (leading.blade > 0 && together && mode.exponent.imag() > zero) {
+        Eigen::Index largest = 0;
+        const Eigen::VectorXd shares = multiblade_shares(
+            motions, set.blades, leading.name, found.at_identified ? named.shape : set.shapes[m]);
+        if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share) {
+          component = static_cast<int>(largest);
+          name.together = word_of(component, set.blades);
+        }
+      }
     }
+    names.push_back(name);
+    components.push_back(component);
+  }
+  const bool canonical = has_canonical_shapes(system) && set.shape_times.size() == 1;
+  unite_degenerate(set, sectors, canonical, names);
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    Mode& mode = set.modes[m];
+    mode.label = names[m].text();
+    const double frequency = mode.exponent.imag();
+    if (set.rotor_speed == 0.0 || mode.parts.empty() ||
+        !turns_with_rotor(system, mode.parts.front().part) ||
+        mode.parts.front().part == "drivetrain" || names[m].part == "shaft torsion" ||
+        names[m].part == "rotor rotation" || frequency <= zero)
+      mode.fixed_frame_frequency = frequency;
+    else if (set.blades > 2 && !names[m].together.empty())
+      mode.fixed_frame_frequency =
+          std::abs(frequency -
+                   (2 * components[m] > set.blades ? components[m] - set.blades : components[m]) *
+                       set.rotor_speed);
+  }
+}
+
+void arrange_modes(ModeSet& set) {
+  const std::size_t count = set.modes.size();
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  std::vector<double> sizes;
+  std::vector<double> decays;
+  for (const Mode& mode : set.modes) {
+    const double size = std::abs(mode.exponent);
+    sizes.push_back(size < zero ? 0.0 : size);
+    decays.push_back(size < zero ? 0.0 : -mode.exponent.real() / size);
+  }
+  const std::vector<int> by_size = ranks_of(sizes, same_size, 0.0);
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto harmonic_key = [&set](std::size_t m) {
+    return std::pair(std::abs(set.modes[m].harmonic), set.modes[m].harmonic);
+  };
+  const std::vector<int> by_growth = ranks_of(decays, 0.0, same_size);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const auto key = [&](std::size_t m) {
+      return std::tuple(!set.modes[m].resolved, by_size[m], by_growth[m], set.modes[m].label,
+                        harmonic_key(m), std::abs(set.modes[m].exponent));
+    };
+    return key(a) < key(b);
+  });
+  ModeSet sorted = set;
+  for (std::size_t i = 0; i < count; ++i) {
+    sorted.modes[i] = std::move(set.modes[order[i]]);
+    if (!set.shapes.empty()) sorted.shapes[i] = std::move(set.shapes[order[i]]);
+    if (set.participation.rows() > 0)
+      sorted.participation.row(static_cast<Eigen::Index>(i)) =
+          set.participation.row(static_cast<Eigen::Index>(order[i]));
+  }
+  set = std::move(sorted);
+  // Modes beyond the step's reach come after the others, and take the last numbers.
+  std::map<std::string, int> alike;
+  for (const Mode& mode : set.modes) ++alike[mode.label];
+  std::map<std::string, int> number;
+  for (Mode& mode : set.modes) {
+    const std::string name = mode.label;
+    if (!name.empty() && alike[name] > 1) mode.label += " " + std::to_string(++number[name]);
+  }
 }
 
 }  // namespace samara::analysis

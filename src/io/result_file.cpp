@@ -74,6 +74,13 @@ double per_rev(const Mode& mode, double rotor_speed) { return mode.exponent.imag
 
 double hertz(const Mode& mode) { return mode.exponent.imag() / (2.0 * std::numbers::pi); }
 
+/// Whether the frequency in the fixed frame is another than that in the rotor's, and known.
+bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.blades > 2; }
+
+double fixed_frame_hertz(const Mode& mode) {
+  return mode.fixed_frame_frequency / (2.0 * std::numbers::pi);
+}
+
 template <class Value>
 std::vector<double> collect(const ModeSet& set, const Value& value) {
   std::vector<double> values;
@@ -136,6 +143,10 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
     file.write(group + "/frequency_per_rev",
                collect(set, [&](const Mode& m) { return per_rev(m, set.rotor_speed); }), {count},
                {"1/rev", mode_frame, "imaginary part of the exponent over the rotor speed"});
+  if (has_fixed_frame(set))
+    file.write(
+        group + "/fixed_frame_frequency_hz", collect(set, fixed_frame_hertz), {count},
+        {"Hz", "fixed", "frequency as the ground sees it; not-a-number where that is not one"});
   file.write(group + "/damping_ratio", collect(set, [](const Mode& m) { return m.damping_ratio; }),
              {count},
              {"1", no_frame, "- re / abs of the exponent; 0 where the exponent counts as zero"});
@@ -545,7 +556,8 @@ void write_mode_table(const std::string& path, const ModeSet& set) {
   text << mode_table_start << (turns ? "frequency_per_rev," : "")
        << "frequency_hz,damping_ratio,logarithmic_decrement,exponent_re,exponent_im,"
        << (periodic ? "multiplier_re,multiplier_im,harmonic," : "")
-       << "resolved,residual,error,error_growth\n";
+       << "resolved,residual,error,error_growth"
+       << (has_fixed_frame(set) ? ",fixed_frame_frequency_hz" : "") << '\n';
   int number = 0;
   for (const Mode& mode : set.modes) {
     text << ++number << ',' << mode.label << ',';
@@ -556,7 +568,9 @@ void write_mode_table(const std::string& path, const ModeSet& set) {
       text << mode.multiplier.real() << ',' << mode.multiplier.imag() << ',' << mode.harmonic
            << ',';
     text << (mode.resolved ? 1 : 0) << ',' << mode.residual << ',' << total_error(mode) << ','
-         << mode.growth_error << '\n';
+         << mode.growth_error;
+    if (has_fixed_frame(set)) text << ',' << fixed_frame_hertz(mode);
+    text << '\n';
   }
   write_whole_file(path, text.str());
 }

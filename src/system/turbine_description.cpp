@@ -41,6 +41,11 @@ constexpr std::array<NamedUnknown, block> point_unknowns{{{"u1", "m"},
                                                           {"M2", "N m"},
                                                           {"M3", "N m"}}};
 
+/// What the directions of a blade's root are called.
+constexpr std::array<const char*, 6> root_motions{"blade support",    "blade support",
+                                                  "blade support",    "blade pitch hinge",
+                                                  "blade flap hinge", "blade lag hinge"};
+
 UnknownRole role_at(int i) {
   return i < 6 ? UnknownRole::position : i < 12 ? UnknownRole::velocity : UnknownRole::internal;
 }
@@ -101,14 +106,15 @@ class Describer {
         result_.unknowns[static_cast<std::size_t>(first + i)].is_free = true;
       }
       if (beam.support.is_elastic(i))
-        result_.groups.push_back({EnergyGroup::Kind::strain,
-                                  "support",
-                                  blade == 0 ? "foundation" : "blade support",
-                                  blade,
-                                  frame,
-                                  {first + 12 + i},
-                                  {beam.support.compliance(i, i)},
-                                  beam.support.damping});
+        result_.groups.push_back(
+            {EnergyGroup::Kind::strain,
+             "support",
+             blade == 0 ? "foundation" : root_motions[static_cast<std::size_t>(i)],
+             blade,
+             frame,
+             {first + 12 + i},
+             {beam.support.compliance(i, i)},
+             beam.support.damping});
     }
   }
 
@@ -258,7 +264,8 @@ class Describer {
     if (turns_freely()) shaft.inertia(1, 1) = hub.inertia(1, 1) = 0.0;  // counted with their speed
     add_body(shaft, tilted, bearing);
     if (!chain.generator.free)
-      add(0.0, Vector3::Zero(), chain.generator_inertia * tilted.col(1) * tilted.col(1).transpose());
+      add(0.0, Vector3::Zero(),
+          chain.generator_inertia * tilted.col(1) * tilted.col(1).transpose());
     if (chain.teeter.free)
       add(chain.hub.mass, pin, Matrix3::Zero());
     else
@@ -317,8 +324,13 @@ class Describer {
   void add_generator() {
     const elements::RigidChain& chain = turbine_.chain;
     if (chain.generator_inertia == 0.0) return;
-    EnergyGroup group{
-        EnergyGroup::Kind::kinetic, "drivetrain", "", 0, Frame::rotating, {layout_.generator() + 1}, {}};
+    EnergyGroup group{EnergyGroup::Kind::kinetic,
+                      "drivetrain",
+                      "",
+                      0,
+                      Frame::rotating,
+                      {layout_.generator() + 1},
+                      {}};
     std::vector<double> shares{chain.gear_ratio};
     const Vector3 along = (1.0 - chain.gear_ratio) * bearing_axes().col(1);
     const auto add_share = [&](int unknown, double share) {

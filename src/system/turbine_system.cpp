@@ -7,6 +7,7 @@
 
 #include "mesh_error.hpp"
 #include "turbine_description.hpp"
+#include "turbine_motions.hpp"
 #include "turbine_pattern.hpp"
 #include "turbine_tangents.hpp"
 
@@ -190,6 +191,14 @@ const std::vector<NeutralCoordinate>& TurbineSystem::neutral_coordinates() const
   return assembly_->description.neutral;
 }
 
+std::vector<Motion> TurbineSystem::motions() const { return motions_of(turbine(), layout()); }
+
+std::unique_ptr<MotionEnergies> TurbineSystem::motion_energies(double t, Vec steady) const {
+  const std::vector<double> values = assembly_->gathered(steady);
+  return find_motion_energies(turbine(), layout(), t,
+                              Eigen::Map<const Eigen::VectorXd>(values.data(), layout().size()));
+}
+
 std::vector<MeshError> TurbineSystem::mesh_errors() const {
   return find_mesh_errors(turbine(), layout());
 }
@@ -321,8 +330,7 @@ void TurbineSystem::reference_state(double t, Vec z) const {
     return values[static_cast<std::size_t>(joint)];
   };
   angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_at(t).angle;
-  angle_at(assembly.layout.teeter()) =
-      assembly.turbine.teeter_at(t).angle;
+  angle_at(assembly.layout.teeter()) = assembly.turbine.teeter_at(t).angle;
   std::vector<double> r(n, 0.0);
   assembly.undo_references(values);
   for (int pass = 0; pass < 5; ++pass) {

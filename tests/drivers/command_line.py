@@ -114,7 +114,7 @@ class Tables(ProgramTest):
 
     def test_floquet_tells_what_grows(self):
         text = self.succeed("floquet", BASELINE, *QUICK).stdout
-        self.assertRegex(text, r"(?m)^unstable: 1 mode grows: yaw \d+ doubles in \d")
+        self.assertRegex(text, r"(?m)^unstable: 1 mode grows: teeter \d+ doubles in \d")
         self.assertNotRegex(text, r"-0\.0+\s")
         self.assertLessEqual(max(map(len, text.splitlines())), 140)
 

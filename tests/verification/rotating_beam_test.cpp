@@ -215,8 +215,12 @@ BOOST_AUTO_TEST_CASE(lead_lag_is_flap_less_the_speed) {
       const analysis::ModeSet set = constant_modes_of(definition_of(beam));
       const std::vector<double> out = frequencies(set, "blade flap");
       const std::vector<double> in = frequencies(set, "blade lead-lag");
+      // The fastest pairs differ by less than rounding, and bend any way.
+      const std::vector<double> any = frequencies(set, "blade bending");
       BOOST_REQUIRE(out.size() == in.size());
-      BOOST_REQUIRE(out.size() == static_cast<std::size_t>(order * elements));
+      BOOST_REQUIRE(out.size() >= 3U);
+      BOOST_TEST(out.size() + in.size() + any.size() ==
+                 2 * static_cast<std::size_t>(order * elements));
       for (std::size_t i = 0; i < 3; ++i)
         keep_worst(worst, std::abs(in[i] * in[i] / (out[i] * out[i] - speed * speed) - 1.0));
     }

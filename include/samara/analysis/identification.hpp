@@ -1,8 +1,9 @@
-// What a mode is called, from the shape and the strain energy of its parts (docs/theory.md,
-// section 5).
+// What a mode is called, from the kinetic energy of its motions, and where it stands among others
+// (docs/theory.md, section 5.6).
 #pragma once
 
 #include "samara/analysis/mode.hpp"
+#include "samara/analysis/periodic_solution.hpp"
 #include "samara/system/periodic_system.hpp"
 
 namespace samara::analysis {
@@ -12,16 +13,30 @@ namespace samara::analysis {
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
                    const Mode& mode);
 
-/// What modes are sorted by: |lambda| [rad/s], and 0 for real exponents slower than the rotor (or
-/// 1 rad/s), which come in pairs that rounding must not sort.
-double sorting_frequency(std::complex<double> exponent, double rotor_speed);
+/// Whether constant modes of equal exponents are told apart by how the blades move together: where
+/// three or more turn, and look alike.
+bool has_canonical_shapes(const system::PeriodicSystem& system);
+
+/// Among the combinations of constant modes of equal exponents those in which each blade is ahead
+/// of the one behind it by the same angle, where has_canonical_shapes; exponents by rounding.
+void choose_shapes(const system::PeriodicSystem& system,
+                   std::vector<std::complex<double>>& exponents,
+                   std::vector<Eigen::MatrixXcd>& shapes);
 
 /// Scales every shape so that its largest position is 1, and its kinetic energy with it.
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
 
-/// Names modes by where their strain energy is, or by the joint that moves where nothing strains,
-/// with symmetric or antisymmetric for two blades, numbered by frequency. Needs the shapes: where
-/// there are none, labels stay empty.
-void label_modes(const system::PeriodicSystem& system, ModeSet& set);
+/// Names modes, without numbers, by the motion with most kinetic energy, or by where their strain
+/// energy is in a system that does not know its motions; with words for how the blades move
+/// together, and the frequency in the fixed frame. Needs the shapes, each of a number of instants
+/// of every one of `sectors` parts of the period, of `set.shape_times` the first: where there are
+/// none, nothing is named.
+void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                ModeSet& set, int sectors = 1);
+
+/// Sorts modes and numbers those of one name: resolved ones first, then by |lambda|; where that is
+/// the same, by growth, name and harmonic. Neither depends on the order in which an eigensolver
+/// found them.
+void arrange_modes(ModeSet& set);
 
 }  // namespace samara::analysis

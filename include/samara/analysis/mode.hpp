@@ -26,6 +26,9 @@ struct Mode {
   int harmonic = 0;            ///< k, relative to the principal exponent
   double damping_ratio = 0.0;  ///< -Re / |lambda|; 0 where |lambda| counts as zero
   std::string label;
+  /// Im of the exponent as the ground sees it [rad/s]; not-a-number where that
+  /// is not one frequency (docs/theory.md, section 5.6).
+  double fixed_frame_frequency = std::numeric_limits<double>::quiet_NaN();
   bool resolved = true;  ///< |lambda| dt / 2 is small enough, and the residual
   /// Estimated errors of the exponent, relative to its modulus (docs/theory.md, section 5.9).
   double step_error = 0.0;
@@ -53,8 +56,9 @@ inline double logarithmic_decrement(const Mode& mode) {
 }
 
 struct ModeSet {
-  std::vector<Mode> modes;  ///< by identified frequency
+  std::vector<Mode> modes;  ///< in the order of arrange_modes (identification.hpp)
   int degrees_of_freedom = 0;
+  int blades = 0;
   double rotor_speed = 0.0;   ///< Omega [rad/s]
   double step = 0.0;          ///< of time [s], of the integration; 0: nothing was integrated
   bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*

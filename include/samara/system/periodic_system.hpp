@@ -53,6 +53,32 @@ struct EnergyGroup {
   double damping = 0.0;  ///< mu [s] of a strain: its load is the elastic one times 1 + mu d/dt
 };
 
+/// A way in which a system moves: a part deforms in a direction, or a joint or a support turns or
+/// gives way. The motions together make any position of the system.
+struct Motion {
+  std::string part;  ///< "blade", "tower", or the motion's own where a joint moves
+  std::string name;  ///< "flap", "fore-aft", "flap hinge"; empty where the part says it all
+  int blade = 0;     ///< from 1; 0 = no blade
+  /// Positions of a blade in this direction, in the order of every other blade, and their masses or
+  /// inertias.
+  std::vector<PetscInt> unknowns;
+  std::vector<double> weight;
+};
+
+/// Kinetic energy by motion, about one state (docs/theory.md, section 5.6).
+class MotionEnergies {
+ public:
+  MotionEnergies() = default;
+  MotionEnergies(const MotionEnergies&) = delete;
+  MotionEnergies& operator=(const MotionEnergies&) = delete;
+  virtual ~MotionEnergies() = default;
+
+  /// q* p / 2 of each motion [J], q the rates of its coordinates in `z_dot` and p their momenta in
+  /// `whole`: with `z_dot` the rates of all positions as well, the sum is the kinetic energy.
+  virtual Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                             const Eigen::Ref<const Eigen::VectorXcd>& whole) const = 0;
+};
+
 /// An element of a mesh. The motion z exp(lambda t) has half a sum of squares of the signals
 /// (constant + |lambda| rate) z as the energy of what the element's polynomials leave out, of which
 /// twice the kinetic energy of the whole motion is the relative error of lambda (docs/theory.md,
@@ -108,6 +134,10 @@ class PeriodicSystem {
   virtual const RotorSymmetry& symmetry() const = 0;
   virtual const std::vector<EnergyGroup>& energy_groups() const = 0;
   virtual const std::vector<NeutralCoordinate>& neutral_coordinates() const = 0;
+  /// None where a system does not know its motions.
+  virtual std::vector<Motion> motions() const { return {}; }
+  /// In the order of motions(), about the state `steady` at t; null where there are none.
+  virtual std::unique_ptr<MotionEnergies> motion_energies(double, Vec) const { return nullptr; }
   /// Of every element that has an error; none where nothing is discretized in space.
   virtual std::vector<MeshError> mesh_errors() const { return {}; }
 

@@ -37,6 +37,8 @@ class TurbineSystem final : public PeriodicSystem {
   const RotorSymmetry& symmetry() const override;
   const std::vector<EnergyGroup>& energy_groups() const override;
   const std::vector<NeutralCoordinate>& neutral_coordinates() const override;
+  std::vector<Motion> motions() const override;
+  std::unique_ptr<MotionEnergies> motion_energies(double t, Vec steady) const override;
   std::vector<MeshError> mesh_errors() const override;
   void reference_state(double t, Vec z) const override;
   petsc::Handle<Vec> make_state() const override;

@@ -1,0 +1,343 @@
+// What modes are called, against shares of kinetic energy that are computed here.
+#include <boost/test/unit_test.hpp>
+
+#include "cases.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using boost::test_tools::tolerance;
+
+namespace {
+
+io::Case input(const std::string& name, const std::vector<std::string>& settings) {
+  return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings);
+}
+
+io::Case parsed(const std::string& text, const std::vector<std::string>& settings = {}) {
+  return io::parse_case("test", text, settings);
+}
+
+struct Run {
+  explicit Run(const io::Case& input)
+      : turbine(model::build_turbine(input.turbine)),
+        system(turbine, PETSC_COMM_SELF),
+        trim(analysis::find_trim(system, input.trim, observer)) {}
+  analysis::ModeSet constant() const { return find_constant_modes(system, trim.solution); }
+  analysis::ModeSet floquet(int steps) {
+    return find_floquet_modes(system, trim.solution, {steps, analysis::FloquetPeriod::automatic},
+                              PETSC_COMM_SELF, observer)
+        .set;
+  }
+
+  analysis::Observer observer;
+  model::Turbine turbine;
+  system::TurbineSystem system;
+  analysis::Trim trim;
+};
+
+std::vector<std::string> labels(const analysis::ModeSet& set, std::size_t count) {
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < count; ++i) result.push_back(set.modes.at(i).label);
+  return result;
+}
+
+double part_share(const analysis::Mode& mode, const std::string& part) {
+  for (const analysis::PartShare& share : mode.parts)
+    if (share.part == part) return share.share;
+  return 0.0;
+}
+
+std::string without_number(std::string label) {
+  const auto space = label.rfind(' ');
+  if (space != std::string::npos &&
+      label.find_first_not_of("0123456789", space + 1) == std::string::npos)
+    label.resize(space);
+  return label;
+}
+
+constexpr const char* twisted = R"(
+samara: 1
+gravity: 0
+shaft: {speed: 6}
+hub: {radius: 1}
+blades:
+  length: 10
+  elements: 6
+  order: 3
+  sections:
+  - {at: 0, mass: 1, inertia: [2.0e-6, 1.0e-6, 1.0e-6], twist_deg: 0, stiffness: &s {EA: rigid, GA2: rigid, GA3: rigid, GJ: 1.0e+6, EI2: 1.0e+4, EI3: 4.0e+4}}
+  - {at: 1, mass: 1, inertia: [2.0e-6, 1.0e-6, 1.0e-6], twist_deg: 40, stiffness: *s}
+)";
+
+/// A rotor of three rigid blades on lag hinges with dampers, on a foundation with springs.
+constexpr const char* lagging = R"(
+samara: 1
+gravity: 0
+tower:
+  length: 0.1
+  elements: 1
+  order: 1
+  support:
+    stiffness: {u1: 1240481.8, u2: 1240481.8, u3: rigid, theta1: rigid, theta2: rigid, theta3: rigid}
+    mass: 3283.6
+    inertia: [1, 1, 1]
+    damping: 0.024184151673970547
+  sections:
+  - {mass: 1.0e-6, inertia: [2.0e-8, 1.0e-8, 1.0e-8], stiffness: &r {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}
+shaft: {speed_rpm: 120}
+hub: {radius: 0.3048}
+blades:
+  count: 3
+  length: 5.273414315577439
+  elements: 2
+  order: 3
+  support: {stiffness: {theta3: 1}, damping: 4067.5, mass: 1.0e-6, inertia: [1.0e-6, 1.0e-6, 1.0e-6]}
+  sections:
+  - {at: 0, mass: 9.608006364328515, inertia: [2.0e-6, 1.0e-6, 1.0e-6], stiffness: *r}
+  - {at: 1, mass: 26.383855575921856, inertia: [2.0e-6, 1.0e-6, 1.0e-6], stiffness: *r}
+)";
+
+/// A rotor of stiff blades whose generator turns freely, with torques that depend on the speed.
+constexpr const char* generating = R"(
+samara: 1
+gravity: 0
+shaft:
+  speed: 10
+  generator: {joint: free, own_inertia: 300, torque: 500, torque_slope: 40}
+  rotor: {torque: 500, torque_slope: -25}
+hub: {radius: 1, mass: 50, inertia: [5, 8, 5]}
+blades:
+  count: 3
+  length: 5
+  elements: 2
+  order: 3
+  sections:
+  - {mass: 4, inertia: [2.0e-4, 1.0e-4, 1.0e-4], stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: 1.0e+9, EI3: 1.0e+9}}
+)";
+
+/// Share of motion along b3 of the twisted sections in that along b2 and b3, of a blade of evenly
+/// spread mass.
+double flap_share(const Run& run, const Eigen::MatrixXcd& shape) {
+  const model::Beam& beam = run.turbine.blades[0];
+  double along = 0.0;
+  double across = 0.0;
+  for (int p = 0; p < beam.point_count(); ++p) {
+    const auto at = static_cast<std::size_t>(p);
+    const double twist = 40.0 * pi / 180.0 * beam.fractions[at];
+    const Vector3 b2(0.0, std::cos(twist), -std::sin(twist));  // turned about -b1
+    const Vector3 b3(0.0, std::sin(twist), std::cos(twist));
+    const Eigen::Vector3cd u = shape.block<3, 1>(run.system.layout().blade_point(0, p), 0);
+    along += beam.point_length(p) * std::norm(b3.cast<Complex>().dot(u));
+    across += beam.point_length(p) * std::norm(b2.cast<Complex>().dot(u));
+  }
+  return along / (along + across);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(motion_energies_of_a_standing_turbine_sum_to_the_kinetic_energy) {
+  // The one from positions, the other from inertial velocities, which at rest are lambda times
+  // them, and of a hub that teeters have its mass only. Everything that can move does.
+  const std::string spring = "{joint: free, stiffness: 1e7, damping: 1e5}";
+  for (const io::Case& turbine :
+       {input("two_bladed/teetering",
+              {"shaft.speed_rpm=0", "gravity=0", "hub.inertia=[0, 0, 0]", "shaft.torsion=" + spring,
+               "shaft.generator={joint: free, own_inertia: 534.116}", "nacelle.yaw=" + spring,
+               "blades.elements=2", "tower.elements=1"}),
+        input("nrel5mw/beam_blades", {"shaft.speed_rpm=0", "blades.elements=2", "tower.elements=1",
+                                      "nacelle.yaw=" + spring})}) {
+    Run run(turbine);
+    const analysis::ModeSet set = run.constant();
+    const petsc::Handle<Vec> z = run.system.make_state();
+    const petsc::Handle<Vec> z_dot = run.system.make_state();
+    run.trim.solution.evaluate(0.0, z.get(), z_dot.get());
+    const auto energies = run.system.motion_energies(0.0, z.get());
+    std::size_t tested = 0;
+    for (std::size_t m = 0; m < set.modes.size() && tested < 30; ++m) {
+      const analysis::Mode& mode = set.modes[m];
+      if (!mode.resolved || std::abs(mode.exponent) < 1e-3) continue;
+      const Eigen::VectorXcd rate = mode.exponent * set.shapes[m].col(0);
+      BOOST_TEST(energies->of(rate, rate).sum() == mode.kinetic_energy, tolerance(1e-6));
+      ++tested;
+    }
+    BOOST_TEST(tested == 30U);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_moves_out_of_its_chord_is_flap_at_any_speed) {
+  // Near 6 rad/s the frequencies of two modes nearly meet, and little of their energy is strain.
+  for (const double speed : {0.0, 3.0, 5.0, 6.0, 8.0, 12.0}) {
+    const Run run(parsed(twisted, {"shaft.speed=" + std::to_string(speed)}));
+    const analysis::ModeSet set = run.constant();
+    int clear = 0;
+    for (std::size_t m = 0; m < 5; ++m) {
+      const double share = flap_share(run, set.shapes[m]);
+      if (share > 0.8) BOOST_TEST(set.modes[m].label.starts_with("blade flap"), speed << " " << m);
+      if (share < 0.2) BOOST_TEST(set.modes[m].label.starts_with("blade lead"), speed << " " << m);
+      if (share > 0.8 || share < 0.2) ++clear;
+    }
+    BOOST_TEST(clear >= 3);
+    if (speed != 6.0) continue;
+    BOOST_TEST(flap_share(run, set.shapes[0]) == 0.94, tolerance(0.01));
+    BOOST_TEST(labels(set, 4) == (std::vector<std::string>{"blade flap 1", "blade lead-lag 1",
+                                                           "blade flap 2", "blade lead-lag 2"}),
+               boost::test_tools::per_element());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_motion_of_the_blades_is_not_the_foundations) {
+  const analysis::ModeSet set = Run(parsed(lagging)).floquet(400);
+  BOOST_REQUIRE(set.modes.size() == 5U);
+  for (const analysis::Mode& mode : set.modes) {
+    if (part_share(mode, "blade") > 0.9)
+      BOOST_TEST(mode.label.starts_with("blade lag hinge"), mode.label);
+    if (part_share(mode, "tower") > 0.7)
+      BOOST_TEST(mode.label.starts_with("foundation"), mode.label);
+  }
+  BOOST_TEST(part_share(set.modes[0], "blade") > 0.95);
+}
+
+BOOST_AUTO_TEST_CASE(hinges_of_a_blade_have_names_of_their_own) {
+  // On weak springs a blade of 1 kg/m moves about its hinge long before it bends.
+  for (const auto& [direction, name] :
+       {std::pair{"theta2", "blade flap hinge"}, std::pair{"theta3", "blade lag hinge"}}) {
+    std::string text = twisted;
+    const auto place = text.find("  length");
+    text.insert(place, "  support: {stiffness: {" + std::string(direction) +
+                           ": 1.0e+3}, mass: 1.0e-3, inertia: [1.0e-3, 1.0e-3, 1.0e-3]}\n");
+    const analysis::ModeSet set = Run(parsed(text)).constant();
+    BOOST_TEST(set.modes[0].label == name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(torsion_of_blades_is_not_that_of_the_shaft) {
+  const std::string torsion = "shaft.torsion={joint: free, stiffness: 867637000, damping: 6215000}";
+  const analysis::ModeSet set =
+      Run(input("nrel5mw/beam_blades", {torsion, "blades.elements=4", "tower.elements=1"}))
+          .floquet(300);
+  int shaft = 0;
+  int blades = 0;
+  for (const analysis::Mode& mode : set.modes) {
+    if (!mode.resolved) continue;
+    if (mode.label.starts_with("shaft torsion")) {
+      ++shaft;
+      BOOST_TEST(mode.exponent.imag() / (2.0 * pi) == 0.62, tolerance(0.02));
+    }
+    // The blades' first torsion, at rest 5.57 Hz.
+    const double hertz = mode.exponent.imag() / (2.0 * pi);
+    if (hertz > 5.4 && hertz < 5.7) {
+      ++blades;
+      BOOST_TEST(mode.label.starts_with("blade torsion"), mode.label);
+    }
+  }
+  BOOST_TEST(shaft == 1);
+  BOOST_TEST(blades == 3);
+}
+
+BOOST_AUTO_TEST_CASE(the_mode_of_the_shaft_keeps_its_name_at_any_speed) {
+  // At 4 rpm the blades' regressive flap is one revolution away from it, and takes half its energy.
+  for (const int rpm : {4, 6, 8, 10, 12}) {
+    const analysis::ModeSet set =
+        Run(input("nrel5mw/land", {"shaft.speed_rpm=" + std::to_string(rpm)})).floquet(300);
+    int found = 0;
+    for (const analysis::Mode& mode : set.modes) {
+      if (!mode.resolved || !mode.label.starts_with("shaft torsion")) continue;
+      ++found;
+      BOOST_TEST(mode.exponent.imag() / (2.0 * pi) == 0.617, tolerance(0.01));
+    }
+    BOOST_TEST(found == 1, rpm << " rpm");
+  }
+}
+
+BOOST_AUTO_TEST_CASE(teeter_is_teeter_where_the_yaw_is_free) {
+  // Two exponents belong to the yaw, which nothing restores, and two to the teeter, which turns at
+  // the rotor's speed about the hinge.
+  const analysis::ModeSet set =
+      Run(input("two_bladed/teetering",
+                {"nacelle.yaw={joint: free}", "blades.elements=3", "tower.elements=1"}))
+          .floquet(300);
+  BOOST_TEST(labels(set, 4) == (std::vector<std::string>{"yaw 1", "yaw 2", "teeter 1", "teeter 2"}),
+             boost::test_tools::per_element());
+  BOOST_TEST(set.modes[2].exponent.real() > 0.0);
+  BOOST_TEST(set.modes[3].exponent.real() < 0.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_rotor_that_turns_as_a_whole_is_rotor_rotation) {
+  // Exponents 0 and (slope of the rotor - slope of the generator) / inertia = -65/1168, the inertia
+  // 300 + 8 + 3 x 4 (6^3 - 1)/3 = 1168 kg m^2.
+  const analysis::ModeSet set = Run(parsed(generating)).constant();
+  BOOST_TEST(labels(set, 2) == (std::vector<std::string>{"rotor rotation 1", "rotor rotation 2"}),
+             boost::test_tools::per_element());
+  BOOST_TEST(set.modes[0].exponent == 0.0);
+  // The sections have inertias of 1e-4 kg m, and the blades bend a little.
+  BOOST_TEST(set.modes[1].exponent.real() == -65.0 / 1168.0, tolerance(1e-5));
+  BOOST_TEST(set.modes[1].exponent.imag() == 0.0);
+  BOOST_TEST(set.modes[1].resolved);
+}
+
+BOOST_AUTO_TEST_CASE(blades_together_move_in_multiblade_components) {
+  // Of three blades that do not know of each other each component has the frequency of one blade,
+  // which the ground sees at omega, omega + Omega and |omega - Omega|.
+  std::string text = twisted;
+  text.insert(text.find("  length"), "  count: 3\n");
+  const Run one(parsed(twisted));
+  const Run three(parsed(text));
+  const analysis::ModeSet set = three.constant();
+  const double omega = one.constant().modes[0].exponent.imag();
+  const double speed = 6.0;
+  std::vector<std::string> found;
+  for (std::size_t m = 0; m < 3; ++m) {
+    const analysis::Mode& mode = set.modes[m];
+    BOOST_TEST(mode.exponent.imag() == omega, tolerance(1e-8));
+    found.push_back(mode.label);
+    // From blade 1 to blade 2, in the sense of the turning, the phase is 0, -120 or 120 degrees.
+    const Eigen::VectorXcd shape = set.shapes[m].col(0);
+    const Complex ratio = shape(three.system.layout().blade_tip(1) + 2) /
+                          shape(three.system.layout().blade_tip(0) + 2);
+    const double phase = mode.label.starts_with("blade flap collective")    ? 0.0
+                         : mode.label.starts_with("blade flap progressive") ? -2.0 * pi / 3.0
+                                                                            : 2.0 * pi / 3.0;
+    BOOST_TEST(std::abs(ratio - std::polar(1.0, phase)) < 1e-5, mode.label << " " << ratio);
+    const double fixed = phase == 0.0 ? omega : phase < 0.0 ? omega + speed : omega - speed;
+    BOOST_TEST(mode.fixed_frame_frequency == std::abs(fixed), tolerance(1e-8));
+  }
+  BOOST_TEST(
+      found == (std::vector<std::string>{"blade flap collective 1", "blade flap progressive 1",
+                                         "blade flap regressive 1"}),
+      boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(whirl_of_a_turbine_is_seen_in_the_fixed_frame) {
+  const analysis::ModeSet set = Run(input("nrel5mw/land", {"shaft.speed_rpm=12"})).floquet(300);
+  const double speed = set.rotor_speed;
+  int whirls = 0;
+  for (const analysis::Mode& mode : set.modes) {
+    if (!mode.resolved) continue;
+    const std::string name = without_number(mode.label);
+    const double omega = mode.exponent.imag();
+    if (name.ends_with("regressive")) {
+      BOOST_TEST(mode.fixed_frame_frequency == std::abs(omega - speed), tolerance(1e-12));
+      ++whirls;
+    } else if (name.ends_with("progressive")) {
+      BOOST_TEST(mode.fixed_frame_frequency == omega + speed, tolerance(1e-12));
+      ++whirls;
+    } else if (name.ends_with("collective") || name.starts_with("shaft") ||
+               (name.starts_with("tower") && part_share(mode, "blade") < 0.5)) {
+      BOOST_TEST(mode.fixed_frame_frequency == omega, tolerance(1e-12));
+    }
+  }
+  BOOST_TEST(whirls >= 8);
+}
+
+BOOST_AUTO_TEST_CASE(modes_that_mix_at_will_have_no_words_for_it) {
+  // A round beam bends any way, and blades at rest that do not know of each other in any mixture.
+  BeamCase round;
+  const analysis::ModeSet set = constant_modes_of(definition_of(round));
+  for (std::size_t m = 0; m < 6; ++m)
+    BOOST_TEST(without_number(set.modes[m].label) == "blade bending", set.modes[m].label);
+  std::string text = twisted;
+  text.insert(text.find("  length"), "  count: 3\n");
+  const analysis::ModeSet rest = Run(parsed(text, {"shaft.speed=0"})).constant();
+  for (std::size_t m = 0; m < 6; ++m)
+    BOOST_TEST(without_number(rest.modes[m].label) == (m < 3 ? "blade flap" : "blade lead-lag"));
+}
