@@ -84,7 +84,7 @@ std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
       set.participation.size() > 0 ? other_harmonics(set, m, is_marked ? 1 : most_harmonics) : "";
   if (!is_marked) return harmonics;
   const double percents = 100.0 * total_error(mode);
-  return (percents < 100.0 ? "error " + general(percents, 2) + " %" : "error above 100 %") +
+  return (percents < 100.0 ? "error " + general(percents, 2) + " %" : "error > 100 %") +
          (harmonics.empty() ? "" : "; " + harmonics);
 }
 

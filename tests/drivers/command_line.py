@@ -141,7 +141,7 @@ class Tables(ProgramTest):
         # The generator turns freely and gravity makes it swing: its whole motion a moment later is
         # a motion again, with a multiplier of one.
         text = self.succeed("floquet", SOURCE / "inputs/nrel5mw/land.yaml", "--set",
-                            "blades.elements=3", "--set", "tower.elements=3", "--set",
+                            "blades.order=3", "--set", "tower.order=3", "--set",
                             "shaft.generator.joint=free").stdout
         self.assertRegex(text, r"(?m)^neutral: ")
 

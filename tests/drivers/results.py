@@ -39,7 +39,7 @@ class Floquet(ProgramTest):
         super().setUp()
         self.succeed("floquet", BASELINE, "--set", "gravity=9.81", "--csv", "modes.csv",
                      "-floquet_eps_type", "lapack")
-        self.file = h5py.File(self.folder / "baseline.h5", "r")
+        self.file = h5py.File(self.folder / "article_mesh.h5", "r")
         self.addCleanup(self.file.close)
 
     def test_all_names_are_there_with_their_attributes(self):
@@ -146,7 +146,7 @@ class Floquet(ProgramTest):
 class Others(ProgramTest):
     def test_modes_have_the_names_that_make_sense(self):
         self.succeed("modes", BASELINE, "--set", "shaft.speed=0", "--csv", "modes.csv")
-        with h5py.File(self.folder / "baseline.h5") as file:
+        with h5py.File(self.folder / "article_mesh.h5") as file:
             group = file["/modes"]
             for name in ("exponents", "frequency_hz", "damping_ratio", "label", "modes"):
                 self.assertIn(name, group)

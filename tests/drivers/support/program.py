@@ -9,7 +9,7 @@ import unittest
 SOURCE = pathlib.Path(os.environ["SAMARA_SOURCE_DIR"])
 PROGRAM = os.environ["SAMARA_PROGRAM"]
 MPIEXEC = os.environ.get("SAMARA_MPIEXEC", "mpiexec")
-BASELINE = SOURCE / "inputs/lee2002/baseline.yaml"
+BASELINE = SOURCE / "inputs/lee2002/article_mesh.yaml"
 
 LONGEST_RUN = 120  # seconds: only a run that hangs takes longer
 
