@@ -201,7 +201,7 @@ void check_names(const model::TurbineDefinition& definition, const analysis::Mod
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(rotors_at_random_have_the_modes_that_they_ought_to_have) {
-  const int count = from_environment("SAMARA_ROTORS", 30);
+  const int count = from_environment("SAMARA_ROTORS", 20);
   const auto seed = static_cast<unsigned>(from_environment("SAMARA_SEED", 11));
   BOOST_TEST_MESSAGE(count << " rotors, seed " << seed);
   int failed = 0;

@@ -1,0 +1,139 @@
+// Estimated errors of modes against true ones: three meshes and three time steps of each turbine,
+// and a reference whose own refinements agree to a tenth of the estimate.
+//
+// SAMARA_ALL_INPUTS=1 in the environment takes all inputs, some minutes (scripts/verify does).
+#include <cstdlib>
+
+#include <boost/test/unit_test.hpp>
+
+#include "cases.hpp"
+
+using namespace samara;
+using namespace samara::test;
+
+namespace {
+
+struct Mesh {
+  int elements, order;
+};
+
+/// A turbine, its meshes (the same in blades and tower), and two references.
+struct Input {
+  const char* name;
+  bool has_tower;
+  bool is_large;  ///< not part of every run
+  std::array<Mesh, 3> meshes;
+  std::array<Mesh, 2> references;
+};
+
+const std::vector<Input>& all_inputs() {
+  static const std::vector<Input> inputs{
+      {"lee2002/baseline", true, false, {{{1, 3}, {1, 4}, {2, 3}}}, {{{2, 5}, {3, 5}}}},
+      {"lee2002/ratio10", true, true, {{{1, 3}, {1, 4}, {2, 3}}}, {{{2, 5}, {3, 5}}}},
+      {"lee2002/ratio1000", true, true, {{{1, 3}, {1, 4}, {2, 3}}}, {{{2, 5}, {3, 5}}}},
+      {"lee2002/rigid_tower", false, false, {{{1, 3}, {1, 4}, {2, 3}}}, {{{2, 5}, {3, 5}}}},
+      {"beam/rotating", false, false, {{{2, 3}, {4, 2}, {4, 3}}}, {{{4, 5}, {6, 5}}}},
+      {"two_bladed/teetering", true, true, {{{2, 3}, {3, 2}, {3, 3}}}, {{{4, 5}, {5, 5}}}},
+      {"nrel5mw/land", true, false, {{{2, 3}, {3, 2}, {3, 3}}}, {{{4, 5}, {5, 5}}}},
+      {"nrel5mw/beam_blades", true, true, {{{2, 3}, {3, 2}, {3, 3}}}, {{{4, 4}, {4, 5}}}},
+      {"iea15mw/land", true, true, {{{2, 3}, {3, 2}, {3, 3}}}, {{{4, 4}, {4, 5}}}}};
+  return inputs;
+}
+
+constexpr std::array<int, 3> steps{120, 240, 480};
+constexpr std::array<int, 2> reference_steps{1200, 1500};
+/// Estimates beyond it count for no verdict.
+constexpr double largest_estimate = 0.1;
+/// True errors below it are rounding.
+constexpr double rounding = 1e-8;
+/// Modes of a run that are compared: those of the first verdicts, and half as many again.
+constexpr std::size_t compared = 15;
+
+analysis::ModeSet modes_of(const Input& input, Mesh used, int count) {
+  const io::Case found =
+      io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + input.name + ".yaml",
+                    mesh(input.has_tower, used.elements, used.order));
+  return floquet_of(found.turbine, count, found.floquet.period, found.trim).set;
+}
+
+std::string stem_of(std::string label) {
+  const std::size_t end = label.find_last_not_of("0123456789");
+  label.resize(end == std::string::npos ? 0 : end + 1);
+  while (label.ends_with(' ')) label.pop_back();
+  return label;
+}
+
+/// Distance to the nearest mode of the same name; each is known modulo i Omega, and stands for its
+/// conjugate.
+double distance(const analysis::Mode& mode, const analysis::ModeSet& set) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const analysis::Mode& other : set.modes) {
+    if (!other.resolved || stem_of(other.label) != stem_of(mode.label)) continue;
+    for (const Complex exponent : {other.exponent, std::conj(other.exponent)}) {
+      const Complex off = mode.exponent - exponent;
+      nearest =
+          std::min(nearest, std::hypot(off.real(), std::remainder(off.imag(), set.rotor_speed)));
+    }
+  }
+  return nearest / std::abs(mode.exponent);
+}
+
+struct Figures {
+  int counted = 0;
+  int honest = 0;                ///< true error below three estimates
+  std::vector<double> generous;  ///< estimate over true error
+};
+
+void compare(const analysis::ModeSet& set, const std::array<analysis::ModeSet, 2>& references,
+             Figures& figures) {
+  std::size_t seen = 0;
+  for (const analysis::Mode& mode : set.modes) {
+    const double estimate = total_error(mode);
+    if (!mode.resolved || std::abs(mode.exponent) < 1e-3 * set.rotor_speed) continue;
+    if (++seen > compared) break;
+    const double error = distance(mode, references[1]);
+    const double before = distance(mode, references[0]);
+    if (estimate > largest_estimate || std::abs(error - before) > 0.1 * estimate) continue;
+    ++figures.counted;
+    const bool is_honest = error < 3.0 * estimate + rounding;
+    if (is_honest) ++figures.honest;
+    BOOST_TEST_MESSAGE((is_honest ? "" : "DISHONEST ")
+                       << mode.label << " " << mode.exponent << " estimate " << estimate << " ("
+                       << mode.step_error << " " << mode.mesh_error << " " << mode.rounding_error
+                       << ") error " << error);
+    if (error > rounding) figures.generous.push_back(estimate / error);
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(estimated_errors_are_honest_and_useful) {
+  const bool all = std::getenv("SAMARA_ALL_INPUTS") != nullptr;
+  Figures figures;
+  for (const Input& input : all_inputs()) {
+    if (input.is_large && !all) continue;
+    BOOST_TEST_CONTEXT(input.name) {
+      const std::array<analysis::ModeSet, 2> references{
+          modes_of(input, input.references[0], reference_steps[0]),
+          modes_of(input, input.references[1], reference_steps[1])};
+      for (const Mesh& used : input.meshes)
+        for (const int count : steps) {
+          Figures own;
+          BOOST_TEST_MESSAGE(input.name << " " << used.elements << " x " << used.order << ", "
+                                        << count << " steps");
+          compare(modes_of(input, used, count), references, own);
+          figures.counted += own.counted;
+          figures.honest += own.honest;
+          figures.generous.insert(figures.generous.end(), own.generous.begin(), own.generous.end());
+        }
+    }
+  }
+  BOOST_REQUIRE(figures.counted > 100);
+  const auto middle =
+      figures.generous.begin() + static_cast<std::ptrdiff_t>(figures.generous.size() / 2);
+  std::nth_element(figures.generous.begin(), middle, figures.generous.end());
+  BOOST_TEST_MESSAGE(figures.honest << " of " << figures.counted << " honest, median of estimate "
+                                    << "over error " << *middle);
+  BOOST_TEST(figures.honest >= 0.95 * figures.counted);
+  BOOST_TEST(*middle < 10.0);
+}
