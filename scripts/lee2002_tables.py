@@ -53,7 +53,7 @@ BY_SHAPE = {
         "tower lateral 1": "blade lead-lag antisymmetric 1",
         "tower lateral 2": "tower lateral",
         "blade lead-lag antisymmetric 1": "blade lead-lag antisymmetric 2",
-        "blade lead-lag antisymmetric 2": "blade lead-lag antisymmetric 3",
+        "blade lead-lag antisymmetric 2": "blade lead-lag",
     },
     "ratio 10": {
         "blade lead-lag symmetric 1": "tower lateral 2",
@@ -115,10 +115,13 @@ class Run:
         mark = "" if self.label(wanted) == wanted else "†"
         return f"{frequency:.3f}" + ("" if resolved else "*") + mark
 
-    def unwarped_text(self, wanted):
-        """What the step makes (2/dt) atan(omega dt/2), set right."""
+    def stepped(self, wanted):
+        """The frequency of the sequence of steps, (2/dt) atan(omega dt/2): what the article has."""
         half = math.pi / self.steps
-        frequency = math.tan(self.frequency(wanted) * half) / half
+        return math.atan(self.frequency(wanted) * half) / half
+
+    def fine_text(self, wanted):
+        frequency = self.frequency(wanted)
         return f"{frequency:.1f}" if frequency > 100 else f"{frequency:.3f}"
 
 
@@ -131,7 +134,7 @@ def cells(printed, run, label):
     return [
         f"{printed:.3f}",
         run.text(label),
-        f"{fold_distance(printed, run.frequency(label)):.3f}",
+        f"{fold_distance(printed, run.stepped(label)):.3f}",
     ]
 
 
@@ -144,7 +147,7 @@ def table_2(runs, fine):
         row = [name]
         for value, run in zip(printed, runs):
             row += cells(value, run, label)
-        rows.append(row + [fine.unwarped_text(label)])
+        rows.append(row + [fine.fine_text(label)])
     return table(heads + ["converged"], rows)
 
 
@@ -160,7 +163,7 @@ def table_3(runs, fines, columns):
                 row += [""] * 4
             else:
                 row += cells(printed[column], runs[column], label)
-                row.append(fines[column].unwarped_text(label))
+                row.append(fines[column].fine_text(label))
         rows.append(row)
     return table(heads, rows)
 
@@ -186,12 +189,12 @@ def make_blocks(program):
     stiffness = [Run(program, n, c, {**COARSE, "elements": 4}) for n, c in zip(names, cases)]
     fines = [Run(program, f"{n}, fine", c, FINE) for n, c in zip(names, cases)]
     pairs = [
-        (value, run.frequency(label))
+        (value, run.stepped(label))
         for _, label, printed, _ in PRINT
         for value, run in zip(printed, coarse)
     ]
     pairs += [
-        (printed[i], stiffness[i].frequency(label))
+        (printed[i], stiffness[i].stepped(label))
         for _, label, _, printed in PRINT
         for i in (0, 2, 3)
         if printed[i] is not None

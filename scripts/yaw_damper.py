@@ -24,7 +24,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CASE = ROOT / "inputs/lee2002/baseline.yaml"
+CASE = ROOT / "inputs/lee2002/article_mesh.yaml"
 MODEL = ("linearize={azimuths: 25, harmonics: 10, inputs: [yaw_torque, top_force_n1], "
          "outputs: [NacYaw, NacYawV]}")
 SETTINGS = ["blades.elements=2", "tower.elements=2", "blades.damping=2e-3", "tower.damping=5e-3",
