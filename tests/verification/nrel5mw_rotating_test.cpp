@@ -23,7 +23,9 @@ std::vector<std::string> coarse() {
 }
 
 /// Converged to 0.1 % in the first modes of the blades.
-std::vector<std::string> fine() { return {"blades.elements=12", "blades.order=3"}; }
+std::vector<std::string> fine() {
+  return {"blades.elements=12", "blades.order=3", "tower.elements=4", "tower.order=3"};
+}
 
 constexpr double rpm12 = 12.0 * pi / 30.0;
 /// Polynomials of the whole blade and tower that are as good as converged, to 0.3 %.
