@@ -33,7 +33,7 @@ endfunction()
 function(samara_add_ctest name label)
   add_test(NAME ${name} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   set_tests_properties(${name} PROPERTIES LABELS ${label}
-                                          ENVIRONMENT "${samara_test_environment}" TIMEOUT 600)
+                                          ENVIRONMENT "${samara_test_environment}" TIMEOUT 5000)
 endfunction()
 
 function(samara_add_tests folder label libraries)

@@ -12,6 +12,7 @@ constexpr double mesh_safety = 2.0;
 /// Of an error of the exponent, the part that is growth: step and elements keep the symmetries that
 /// forbid it, or nearly so (docs/theory.md, section 5.8).
 constexpr double growing_part = 0.01;
+constexpr double growing_part_of_mesh = 0.05;
 /// An exponent that is not this many times its error is not told from zero.
 constexpr double several = 10.0;
 constexpr double least_rounding = 1e-10;
@@ -44,11 +45,15 @@ double find_mesh_error(const std::vector<system::MeshError>& elements,
                        double kinetic_energy) {
   if (!(kinetic_energy > 0.0)) return 0.0;
   double energy = 0.0;
+  double between = 0.0;
   for (const system::MeshError& element : elements) {
     const Eigen::MatrixXd signals = element.constant + std::abs(exponent) * element.rate;
-    energy += 0.5 * (signals * shape(element.unknowns, Eigen::all)).squaredNorm();
+    const Eigen::MatrixXcd values = shape(element.unknowns, Eigen::all);
+    energy += 0.5 * (signals * values).squaredNorm();
+    between += 0.5 * values.conjugate().cwiseProduct(element.remainder * values).sum().real();
   }
-  return mesh_safety * energy / (2.0 * kinetic_energy * static_cast<double>(shape.cols()));
+  return mesh_safety * (energy + std::abs(between)) /
+         (2.0 * kinetic_energy * static_cast<double>(shape.cols()));
 }
 
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal) {
@@ -63,7 +68,7 @@ void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<doub
 
 void add_mesh_error(Mode& mode, double relative) {
   mode.mesh_error = relative;
-  mode.mesh_growth_error = growing_part * relative * std::abs(mode.exponent);
+  mode.mesh_growth_error = growing_part_of_mesh * relative * std::abs(mode.exponent);
   mode.growth_error += mode.mesh_growth_error;
 }
 

@@ -89,6 +89,15 @@ bool is_semi_definite(const Matrix6& matrix) {
   return pivots.minCoeff() >= -semi_definite * pivots.cwiseAbs().maxCoeff();
 }
 
+/// The ends of an element and the stations between them.
+std::vector<double> cuts_of(const BeamDefinition& definition, double start, double span) {
+  std::vector<double> cuts{start};
+  for (const SectionDefinition& section : definition.sections)
+    if (section.at > start && section.at < start + span) cuts.push_back(section.at);
+  cuts.push_back(start + span);
+  return cuts;
+}
+
 /// Where stations lie inside an element, points would miss what stands between them: the integrals
 /// (1 / w_j) int l_j(xi) m(xi) dxi, with the polynomials l_j through the points, keep its moments.
 /// Between stations they are the values at the points, which are taken then (none is returned), as
@@ -96,11 +105,8 @@ bool is_semi_definite(const Matrix6& matrix) {
 std::vector<MeanSection> mean_sections(const BeamDefinition& definition,
                                        const math::QuadratureRule& rule, const ReferenceLine& line,
                                        double start, double span) {
-  std::vector<double> cuts{start};
-  for (const SectionDefinition& section : definition.sections)
-    if (section.at > start && section.at < start + span) cuts.push_back(section.at);
-  if (cuts.size() == 1) return {};
-  cuts.push_back(start + span);
+  const std::vector<double> cuts = cuts_of(definition, start, span);
+  if (cuts.size() == 2) return {};
   const math::QuadratureRule fine = math::gauss_rule(fine_points);
   std::vector<MeanSection> means(rule.points.size());
   const auto axes_at = [&](double at) {
@@ -137,6 +143,53 @@ std::vector<MeanSection> mean_sections(const BeamDefinition& definition,
     if (!compliances) means[j].compliance = compliance_of(section);
   }
   return means;
+}
+
+/// Of the element that ends with the last points of `beam`.
+SectionRemainder section_remainder(const BeamDefinition& definition, const ReferenceLine& line,
+                                   const math::QuadratureRule& rule, const Beam& beam, double start,
+                                   double span, double mass_factor, double stiffness_factor) {
+  const auto s = static_cast<Eigen::Index>(rule.points.size());
+  const std::size_t first = beam.points.size() - rule.points.size();
+  const double length = span * definition.length;
+  SectionRemainder remainder{Eigen::MatrixXd::Zero(6 * s, 6 * s),
+                             Eigen::MatrixXd::Zero(6 * s, 6 * s)};
+  const std::vector<double> cuts = cuts_of(definition, start, span);
+  const math::QuadratureRule fine = math::gauss_rule(fine_points + static_cast<int>(s));
+  std::vector<Matrix6> turns(rule.points.size(), Matrix6::Zero());  // from the axes of a place
+  std::vector<double> values(rule.points.size());
+  for (std::size_t c = 0; c + 1 < cuts.size(); ++c)
+    for (std::size_t q = 0; q < fine.points.size(); ++q) {
+      const double at = cuts[c] + (cuts[c + 1] - cuts[c]) * fine.points[q];
+      const double share = (cuts[c + 1] - cuts[c]) * definition.length * fine.weights[q];
+      const SectionDefinition section = interpolate_section(definition, at);
+      const Matrix3 axes = line.at(at, section.twist).C_ab;
+      const Matrix6 compliance = share / stiffness_factor * compliance_of(section);
+      const Matrix6 mass = share * mass_factor * section.mass;
+      for (std::size_t j = 0; j < turns.size(); ++j) {
+        values[j] = math::lagrange(rule.points, static_cast<int>(j), (at - start) / span);
+        const Matrix3 turn = beam.points[first + j].C_ab.transpose() * axes;
+        turns[j].topLeftCorner<3, 3>() = turn;
+        turns[j].bottomRightCorner<3, 3>() = turn;
+      }
+      for (Eigen::Index j = 0; j < s; ++j)
+        for (Eigen::Index k = 0; k < s; ++k) {
+          const auto a = static_cast<std::size_t>(j);
+          const auto b = static_cast<std::size_t>(k);
+          const double weight = values[a] * values[b];
+          remainder.compliance.block<6, 6>(6 * j, 6 * k) +=
+              weight * turns[a] * compliance * turns[b].transpose();
+          remainder.mass.block<6, 6>(6 * j, 6 * k) +=
+              weight * turns[a] * mass * turns[b].transpose();
+        }
+    }
+  for (Eigen::Index j = 0; j < s; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const double weight = rule.weights[at] * length;
+    remainder.compliance.block<6, 6>(6 * j, 6 * j) -= weight * beam.points[first + at].compliance;
+    remainder.mass.block<6, 6>(6 * j, 6 * j) -= weight * beam.points[first + at].mass;
+  }
+  return remainder;
 }
 
 void add_supports(const BeamDefinition& definition, Beam& beam) {
@@ -209,6 +262,8 @@ Beam build_beam(const std::string& name, const BeamDefinition& definition, doubl
       beam.points.push_back(point);
       beam.fractions.push_back(fraction);
     }
+    beam.remainders.push_back(section_remainder(definition, line, rule, beam, start, span,
+                                                mass_factor, stiffness_factor));
   }
   add_supports(definition, beam);
   for (const PointMassDefinition& lump : definition.point_masses) {

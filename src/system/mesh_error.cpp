@@ -68,6 +68,14 @@ MeshError error_of(const model::Beam& beam, int e, PointPlace place) {
     error.constant.block<3, 3>(6, velocity + 3) = weight * along;
     error.rate.block<6, 6>(6, load) = weight * turn * point.compliance;
   }
+  error.remainder.setZero(12 * s, 12 * s);
+  const model::SectionRemainder& left = beam.remainders[static_cast<std::size_t>(e)];
+  for (int j = 0; j < s; ++j)
+    for (int k = 0; k < s; ++k) {
+      error.remainder.block<6, 6>(12 * j, 12 * k) = left.mass.block<6, 6>(6 * j, 6 * k);
+      error.remainder.block<6, 6>(12 * j + 6, 12 * k + 6) =
+          left.compliance.block<6, 6>(6 * j, 6 * k);
+    }
   const double scale = std::sqrt(leading_constant(s) * std::pow(L, 2 * s + 1));
   for (Eigen::MatrixXd* part : {&error.constant, &error.rate}) {
     part->topRows<6>() = scale * square_root(compliance) * part->topRows<6>();

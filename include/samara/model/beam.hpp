@@ -26,6 +26,13 @@ struct MassNode {
   Matrix6 mass = Matrix6::Zero();  ///< about x, momenta from velocities, axes a
 };
 
+/// Energy of the sections of an element that its points leave out: sum_jk p_j^T R_jk p_k / 2 of
+/// loads or velocities p_j at the points, in the axes of their sections, interpolated between them.
+struct SectionRemainder {
+  Eigen::MatrixXd compliance;  ///< 6 s x 6 s
+  Eigen::MatrixXd mass;        ///< 6 s x 6 s
+};
+
 struct Beam {
   std::string name;  ///< "tower", "blade 1"
   int elements = 0;
@@ -33,12 +40,13 @@ struct Beam {
   double length = 0.0;       ///< of the arc [m]
   std::vector<double> ends;  ///< of the elements, fractions of the length, from 0
   TestFunctions functions;
-  std::vector<elements::BeamPoint> points;  ///< elements * order, root to tip
-  std::vector<double> fractions;            ///< of the length, of each point
-  Vector3 tip = Vector3::Zero();            ///< undeformed tip, components in a [m]
-  Matrix6 tip_mass = Matrix6::Zero();       ///< at the tip, as MassNode::mass
-  std::vector<MassNode> mass_nodes;         ///< root to tip, without the tip
-  bool has_support = false;                 ///< the first mass node is the root, on springs
+  std::vector<elements::BeamPoint> points;   ///< elements * order, root to tip
+  std::vector<double> fractions;             ///< of the length, of each point
+  std::vector<SectionRemainder> remainders;  ///< of each element
+  Vector3 tip = Vector3::Zero();             ///< undeformed tip, components in a [m]
+  Matrix6 tip_mass = Matrix6::Zero();        ///< at the tip, as MassNode::mass
+  std::vector<MassNode> mass_nodes;          ///< root to tip, without the tip
+  bool has_support = false;                  ///< the first mass node is the root, on springs
   elements::RootSupport support;
   elements::EndSupport end_support;
   std::vector<BeamLoad> loads;

@@ -87,6 +87,9 @@ struct MeshError {
   std::vector<PetscInt> unknowns;
   Eigen::MatrixXd constant;  ///< signals x unknowns
   Eigen::MatrixXd rate;      ///< signals x unknowns, times |lambda| [rad/s]
+  /// unknowns x unknowns, symmetric: half of z* remainder z is the energy of sections between the
+  /// element's points that these leave out, of either sign.
+  Eigen::MatrixXd remainder;
 };
 
 /// A coordinate whose mean nothing restores, and the row of the load that would hold it.
