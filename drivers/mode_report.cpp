@@ -182,22 +182,22 @@ Tally tally(const ModeSet& set) {
   return result;
 }
 
-/// Highest modulus among the first modes of the set that are resolved [rad/s]; 0: there are none.
-double highest_of_first(const ModeSet& set) {
-  double highest = 0.0;
-  std::size_t count = 0;
+/// Whether all of the first modes are known: none that is not resolved can be among them.
+bool knows_first_modes(const ModeSet& set) {
+  std::size_t below = 0;
+  std::size_t others = 0;
   for (const Mode& mode : set.modes)
-    if (mode.resolved && count++ < first_modes)
-      highest = std::max(highest, std::abs(mode.exponent));
-  return highest;
+    ++(mode.resolved && std::abs(mode.exponent) <= set.reach ? below : others);
+  return below >= first_modes || others == 0;
 }
 
 std::string decay_words(const Tally& result) {
   const auto least = std::min_element(
       result.decaying.begin(), result.decaying.end(),
       [](const Mode* a, const Mode* b) { return a->damping_ratio < b->damping_ratio; });
-  return "all " + count(static_cast<int>(result.decaying.size()), "mode") +
-         " decay; the least damped is " + (*least)->label + ", " +
+  const int decaying = static_cast<int>(result.decaying.size());
+  return (decaying == 1 ? "the mode decays" : "all " + count(decaying, "mode") + " decay") +
+         "; the least damped is " + (*least)->label + ", " +
          general(100.0 * (*least)->damping_ratio, 3) + " %";
 }
 
@@ -262,13 +262,12 @@ Verdict find_verdict(const ModeSet& set, bool all) {
   const Tally result = tally(set);
   const std::string rest = rest_words(result);
   const bool is_periodic = set.participation.size() > 0;
-  const double highest = highest_of_first(set);
   const auto hertz = [](double rate) {
     return general(rate / (2.0 * std::numbers::pi), 3) + " Hz";
   };
   Verdict verdict;
   std::string& text = verdict.text;
-  if (set.reach < highest || (highest == 0.0 && result.unresolved > 0)) {
+  if (!knows_first_modes(set)) {
     verdict.is_given = false;
     text = "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
            (is_periodic ? "; hint: more floquet.steps" : "");
@@ -293,8 +292,9 @@ Verdict find_verdict(const ModeSet& set, bool all) {
   const std::string hidden = set.deflated == 0
                                  ? ""
                                  : ", but for " + count(set.deflated, "exponent") + " of " +
-                                       std::to_string(set.states) + " that decay faster than " +
-                                       general(set.deflated_rate, 3) + " 1/s";
+                                       std::to_string(set.states) +
+                                       (set.deflated == 1 ? " that decays" : " that decay") +
+                                       " faster than " + general(set.deflated_rate, 3) + " 1/s";
   if (verdict.is_given)
     text += (std::isfinite(set.reach) ? "all modes below " + hertz(set.reach) + " are resolved"
                                       : "all modes are resolved") +

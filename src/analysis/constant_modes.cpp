@@ -238,7 +238,9 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     mode.rounding_error = mode.residual;
     set_growth_error(mode, {}, mode.exponent);
     if (mode.resolved && mode.exponent != 0.0)
-      add_mesh_error(mode, find_mesh_error(elements, shape, mode.exponent, mode.kinetic_energy));
+      add_mesh_error(
+          mode, find_mesh_error(elements, shape, mode.exponent,
+                                std::max(mode.kinetic_energy, strain_energy_of(system, shape))));
     if (!mode.resolved) set.reach = std::min(set.reach, std::abs(mode.exponent));
     set.found += found.exponent.imag() != 0.0 ? 2 : 1;
     const double size = std::abs(mode.exponent);

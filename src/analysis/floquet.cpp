@@ -38,6 +38,10 @@ constexpr double largest_rounding = 1e-2;
 /// Share of the kinetic energy of a resolved mode in harmonics beyond that phase, at the most: more
 /// is a mixture of modes so fast that they all look alike, with multipliers near -1 or 1.
 constexpr double largest_fast_share = 0.01;
+/// Of an exponent and the harmonic's frequency: a smaller imaginary part is rounding.
+constexpr double least_imaginary = 1e-6;
+/// Of an exponent that is none of a free motion.
+constexpr double far_from_zero = std::numeric_limits<double>::infinity();
 /// Of the energy of a state of length 1 in energy coordinates: less is rounding.
 constexpr double rest_energy = 1e-13;
 /// Numbers in the histories of the modes that are identified at a time, about.
@@ -506,10 +510,26 @@ class Analysis {
       mode.rounding_error = conditions_[m] * relative_residual(m) /
                             (size * system_.period() / static_cast<double>(sectors_));
     }
-    set_growth_error(mode, spread, exponents_[m]);
+    const double noise = std::max(least_imaginary * (size + std::abs(mode.harmonic) * speed_),
+                                  mode.rounding_error * size);
+    if (std::abs(mode.exponent.imag()) < noise) {  // real, as the parts that k belongs to see it
+      mode.exponent.imag(0.0);
+      mode.step_exponent.imag(0.0);
+    }
+    set_growth_error(mode, spread, may_be_free(m) ? exponents_[m] : far_from_zero);
     mode.resolved = slow && in_reach(mode.exponent) && mode.residual <= largest_residual;
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
+  }
+
+  /// Whether a mode is among the multipliers next to one of the motions that nothing restores, two
+  /// of each.
+  bool may_be_free(std::size_t m) const {
+    const std::size_t most = 2 * system_.neutral_coordinates().size();
+    const auto nearer = std::count_if(exponents_.begin(), exponents_.end(), [&](Complex other) {
+      return std::abs(other) < std::abs(exponents_[m]);
+    });
+    return static_cast<std::size_t>(nearer) < most;
   }
 
   double relative_residual(std::size_t m) const {
@@ -582,7 +602,8 @@ class Analysis {
     for (std::size_t m = 0; m < set.shapes.size(); ++m)
       if (set.modes[m].resolved && !is_zero(set.modes[m].exponent))
         errors(static_cast<Eigen::Index>(m)) = find_mesh_error(
-            elements, set.shapes[m], set.modes[m].exponent, set.modes[m].kinetic_energy);
+            elements, set.shapes[m], set.modes[m].exponent,
+            std::max(set.modes[m].kinetic_energy, strain_energy_of(system_, set.shapes[m])));
     ranks_.sum(errors);
     for (std::size_t m = 0; m < set.modes.size(); ++m)
       add_mesh_error(set.modes[m], errors(static_cast<Eigen::Index>(m)));

@@ -234,7 +234,7 @@ struct Leading {
 /// The motion with the largest share of the kinetic energy and that of the strain energy together.
 /// Strain weighs as much as the kinetic energy where all that restores is strain, less where
 /// rotation stiffens, and more in overdamped motions, which hardly move; it does not count at rest,
-/// where it is that of another motion.
+/// where it is that of another motion, and beside a joint that drifts.
 Leading leading_motion(const system::PeriodicSystem& system,
                        const std::vector<system::Motion>& motions, const ModeSet& set,
                        std::size_t m, const NamedShape& named, int sectors,
@@ -256,19 +256,25 @@ Leading leading_motion(const system::PeriodicSystem& system,
   if (energies.sum() > 0.0)
     for (std::size_t i = 0; i < motions.size(); ++i)
       shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / energies.sum();
-  if (!is_at_rest(mode, set) && mode.kinetic_energy > 0.0)
-    for (const auto& [name, energy] :
-         strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
-      shares[name] += energy / (part * mode.kinetic_energy);
-  Leading leading{0, is_dominant};
-  double most = 0.0;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    const double share = shares[text_of(motions[i])];
-    if (!(share > most)) continue;
-    leading.motion = i;
-    most = share;
-  }
-  return leading;
+  const auto leading = [&] {
+    Leading found{0, is_dominant};
+    double most = 0.0;
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const double share = shares[text_of(motions[i])];
+      if (!(share > most)) continue;
+      found.motion = i;
+      most = share;
+    }
+    return found;
+  };
+  if (is_at_rest(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
+  // A joint that drifts: what bends with it has little of the motion, however much it strains.
+  const std::string& mover = motions[leading().motion].part;
+  if (mode.exponent.imag() == 0.0 && mover != "blade" && mover != "tower") return leading();
+  for (const auto& [name, energy] :
+       strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
+    shares[name] += energy / (part * mode.kinetic_energy);
+  return leading();
 }
 
 /// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
@@ -426,6 +432,13 @@ void choose_shapes(const system::PeriodicSystem& system,
       exponents[mode] = chosen_values(j);
     }
   }
+}
+
+double strain_energy_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
+  double energy = 0.0;
+  for (const EnergyGroup& group : system.energy_groups())
+    if (group.kind == EnergyGroup::Kind::strain) energy += mean_strain_energy(group, shape);
+  return energy;
 }
 
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,

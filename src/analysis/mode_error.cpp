@@ -42,8 +42,8 @@ WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVec
 
 double find_mesh_error(const std::vector<system::MeshError>& elements,
                        const Eigen::MatrixXcd& shape, std::complex<double> exponent,
-                       double kinetic_energy) {
-  if (!(kinetic_energy > 0.0)) return 0.0;
+                       double energy_of_mode) {
+  if (!(energy_of_mode > 0.0)) return 0.0;
   double energy = 0.0;
   double between = 0.0;
   for (const system::MeshError& element : elements) {
@@ -53,7 +53,7 @@ double find_mesh_error(const std::vector<system::MeshError>& elements,
     between += 0.5 * values.conjugate().cwiseProduct(element.remainder * values).sum().real();
   }
   return mesh_safety * (energy + std::abs(between)) /
-         (2.0 * kinetic_energy * static_cast<double>(shape.cols()));
+         (2.0 * energy_of_mode * static_cast<double>(shape.cols()));
 }
 
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal) {

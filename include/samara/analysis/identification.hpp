@@ -8,6 +8,9 @@
 
 namespace samara::analysis {
 
+/// Mean strain energy of a shape, in its scale.
+double strain_energy_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape);
+
 /// True where almost nothing strains: a rigid-body motion of the free joints. A strain's damping
 /// counts with it: an overdamped motion of a beam is none of its joints.
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,

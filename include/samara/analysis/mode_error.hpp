@@ -27,10 +27,12 @@ WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVec
                              int first, int harmonic, double speed, double step);
 
 /// Relative error of the exponent by the mesh: twice the first term of the elements' errors.
-/// `shape`: size x samples; `kinetic_energy`: its mean, in the same scale.
+/// `shape`: size x samples; `energy_of_mode`: the larger of its mean kinetic and strain energy, in
+/// the same scale: alike in vibrations, where rotation does not stiffen, and the latter in
+/// overdamped motions.
 double find_mesh_error(const std::vector<system::MeshError>& elements,
                        const Eigen::MatrixXcd& shape, std::complex<double> exponent,
-                       double kinetic_energy);
+                       double energy_of_mode);
 
 /// Error of the growth by step and rounding. `spread`: of the step; `principal`: the exponent
 /// without multiples of the rotor speed, which the step must tell from zero.
