@@ -182,9 +182,10 @@ Tally tally(const ModeSet& set) {
   return result;
 }
 
-/// Whether all of the first modes are known: none that is not resolved can be among them.
+/// Whether all of the first modes are known: none that is not resolved can be among them. Deflated
+/// decays are known to decay.
 bool knows_first_modes(const ModeSet& set) {
-  std::size_t below = 0;
+  std::size_t below = static_cast<std::size_t>(set.deflated) / 2;
   std::size_t others = 0;
   for (const Mode& mode : set.modes)
     ++(mode.resolved && std::abs(mode.exponent) <= set.reach ? below : others);

@@ -598,15 +598,15 @@ class Analysis {
   /// From the shapes, which only the first rank has.
   void find_mesh_errors(ModeSet& set) const {
     const std::vector<system::MeshError> elements = system_.mesh_errors();
-    Eigen::VectorXd errors = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.modes.size()));
+    Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(2, static_cast<Eigen::Index>(set.modes.size()));
     for (std::size_t m = 0; m < set.shapes.size(); ++m)
       if (set.modes[m].resolved && !is_zero(set.modes[m].exponent))
-        errors(static_cast<Eigen::Index>(m)) = find_mesh_error(
+        errors.col(static_cast<Eigen::Index>(m)) = find_mesh_error(
             elements, set.shapes[m], set.modes[m].exponent,
             std::max(set.modes[m].kinetic_energy, strain_energy_of(system_, set.shapes[m])));
     ranks_.sum(errors);
     for (std::size_t m = 0; m < set.modes.size(); ++m)
-      add_mesh_error(set.modes[m], errors(static_cast<Eigen::Index>(m)));
+      add_mesh_error(set.modes[m], errors.col(static_cast<Eigen::Index>(m)));
   }
 
   /// Names come from the shapes, which only the first rank has.

@@ -12,7 +12,7 @@ constexpr double mesh_safety = 2.0;
 /// Of an error of the exponent, the part that is growth: step and elements keep the symmetries that
 /// forbid it, or nearly so (docs/theory.md, section 5.8).
 constexpr double growing_part = 0.01;
-constexpr double growing_part_of_mesh = 0.05;
+constexpr double growing_part_of_tables = 0.05;
 /// An exponent that is not this many times its error is not told from zero.
 constexpr double several = 10.0;
 constexpr double least_rounding = 1e-10;
@@ -40,10 +40,10 @@ WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVec
   return spread;
 }
 
-double find_mesh_error(const std::vector<system::MeshError>& elements,
-                       const Eigen::MatrixXcd& shape, std::complex<double> exponent,
-                       double energy_of_mode) {
-  if (!(energy_of_mode > 0.0)) return 0.0;
+Eigen::Vector2d find_mesh_error(const std::vector<system::MeshError>& elements,
+                                const Eigen::MatrixXcd& shape, std::complex<double> exponent,
+                                double energy_of_mode) {
+  if (!(energy_of_mode > 0.0)) return Eigen::Vector2d::Zero();
   double energy = 0.0;
   double between = 0.0;
   for (const system::MeshError& element : elements) {
@@ -52,8 +52,10 @@ double find_mesh_error(const std::vector<system::MeshError>& elements,
     energy += 0.5 * (signals * values).squaredNorm();
     between += 0.5 * values.conjugate().cwiseProduct(element.remainder * values).sum().real();
   }
-  return mesh_safety * (energy + std::abs(between)) /
-         (2.0 * energy_of_mode * static_cast<double>(shape.cols()));
+  between = std::abs(between);
+  return mesh_safety / (2.0 * energy_of_mode * static_cast<double>(shape.cols())) *
+         Eigen::Vector2d(energy + between,
+                         growing_part * energy + growing_part_of_tables * between);
 }
 
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal) {
@@ -66,9 +68,9 @@ void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<doub
     mode.growth_error = std::max(mode.growth_error, several * spread.modulus);
 }
 
-void add_mesh_error(Mode& mode, double relative) {
-  mode.mesh_error = relative;
-  mode.mesh_growth_error = growing_part_of_mesh * relative * std::abs(mode.exponent);
+void add_mesh_error(Mode& mode, const Eigen::Vector2d& relative) {
+  mode.mesh_error = relative(0);
+  mode.mesh_growth_error = relative(1) * std::abs(mode.exponent);
   mode.growth_error += mode.mesh_growth_error;
 }
 

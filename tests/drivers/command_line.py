@@ -120,8 +120,20 @@ class Tables(ProgramTest):
 
     def test_a_clamped_rotor_is_neutral(self):
         self.write("case.yaml", MINIMAL)
-        text = self.succeed("floquet", "case.yaml").stdout
+        text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=2000").stdout
         self.assertRegex(text, r"(?m)^neutral: no mode grows; \d+ are undamped, neither growing")
+
+    def test_too_few_resolved_modes_are_no_verdict(self):
+        # Of the first ten modes these steps resolve some, and what they resolve neither grows nor
+        # decays: nothing is known of the others.
+        self.write("case.yaml", MINIMAL)
+        for steps in ("12", "100", "500"):
+            run = self.samara("floquet", "case.yaml", "--set", f"floquet.steps={steps}", "-o", "a.h5")
+            self.assertEqual(run.returncode, 3, run.stdout)
+            self.assertRegex(run.stdout, r"(?m)^no verdict: modes from \S+ Hz on are not resolved; "
+                             r"hint: more floquet\.steps$")
+            self.assertIn("no verdict", run.stderr)
+            self.assertIn("result: a.h5", run.stdout)
 
     def test_a_growth_of_the_mesh_is_none_of_the_turbine(self):
         # Pitch, unequal bending and a steady deflection break the mirror symmetry; a yaw that is
@@ -195,11 +207,11 @@ class Tables(ProgramTest):
 
     def test_unresolved_modes_are_explained(self):
         self.write("case.yaml", MINIMAL)
-        text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
+        text = self.samara("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
         hidden = int(re.search(r"(?m)^(\d+) unresolved, not listed \(--all lists them\) and left out "
                                "of the verdict:$", text).group(1))
         self.assertNotIn("unresolved*", text)
-        whole = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=50", "--all").stdout
+        whole = self.samara("floquet", "case.yaml", "--set", "floquet.steps=50", "--all").stdout
         self.assertRegex(whole, rf"(?m)^\* {hidden} unresolved, left out of the verdict: ")
         rows = [re.findall(r"(?m)^ *(\d+)  \w+ .*?(unresolved\*)?$", each) for each in (text, whole)]
         self.assertEqual(rows[0], rows[1][:-hidden])  # the resolved ones stand first

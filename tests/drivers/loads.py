@@ -265,7 +265,8 @@ class SteadyStates(ProgramTest):
         # A case that begins with a comment like ours keeps it.
         text = "# --set nothing, it says\n" + MINIMAL
         self.write("case.yaml", text)
-        settings = ["gravity=9.81", "shaft.speed=5", "blades.sections.0.stiffness.EI3=1e9"]
+        settings = ["gravity=9.81", "shaft.speed=5", "blades.sections.0.stiffness.EI3=1e9",
+                    "floquet.steps=8000"]
         self.succeed("floquet", "case.yaml", *(f"--set={setting}" for setting in settings), "-o",
                      "f.h5")
         (self.folder / "case.yaml").unlink()

@@ -214,7 +214,7 @@ class Others(ProgramTest):
 
     def test_the_default_path_is_in_the_current_folder(self):
         self.write("sub/my case.yaml", MINIMAL)
-        run = self.succeed("floquet", "sub/my case.yaml")
+        run = self.succeed("floquet", "sub/my case.yaml", "--set", "floquet.steps=2000")
         self.assertIn("result: my case.h5", run.stdout)
         self.assertEqual(sorted(self.files()), ["my case.h5", "sub/my case.yaml"])
 

@@ -26,19 +26,19 @@ struct WarpingSpread {
 WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVectorXd& shares,
                              int first, int harmonic, double speed, double step);
 
-/// Relative error of the exponent by the mesh: twice the first term of the elements' errors.
-/// `shape`: size x samples; `energy_of_mode`: the larger of its mean kinetic and strain energy, in
-/// the same scale: alike in vibrations, where rotation does not stiffen, and the latter in
-/// overdamped motions.
-double find_mesh_error(const std::vector<system::MeshError>& elements,
-                       const Eigen::MatrixXcd& shape, std::complex<double> exponent,
-                       double energy_of_mode);
+/// Relative errors of the exponent by the mesh, of its modulus and of its real part: twice the
+/// first term of the elements' errors. `shape`: size x samples; `energy_of_mode`: the larger of its
+/// mean kinetic and strain energy, in the same scale: alike in vibrations, where rotation does not
+/// stiffen, and the latter in overdamped motions.
+Eigen::Vector2d find_mesh_error(const std::vector<system::MeshError>& elements,
+                                const Eigen::MatrixXcd& shape, std::complex<double> exponent,
+                                double energy_of_mode);
 
 /// Error of the growth by step and rounding. `spread`: of the step; `principal`: the exponent
 /// without multiples of the rotor speed, which the step must tell from zero.
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal);
 
 /// Adds the relative error of the mesh to a mode, and to the error of its growth.
-void add_mesh_error(Mode& mode, double relative);
+void add_mesh_error(Mode& mode, const Eigen::Vector2d& relative);
 
 }  // namespace samara::analysis
