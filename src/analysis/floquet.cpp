@@ -510,8 +510,7 @@ class Analysis {
       mode.rounding_error = conditions_[m] * relative_residual(m) /
                             (size * system_.period() / static_cast<double>(sectors_));
     }
-    const double noise = std::max(least_imaginary * (size + std::abs(mode.harmonic) * speed_),
-                                  mode.rounding_error * size);
+    const double noise = least_imaginary * (size + std::abs(mode.harmonic) * speed_);
     if (std::abs(mode.exponent.imag()) < noise) {  // real, as the parts that k belongs to see it
       mode.exponent.imag(0.0);
       mode.step_exponent.imag(0.0);
