@@ -219,6 +219,27 @@ std::string rest_words(const Tally& result) {
   return text;
 }
 
+std::string hertz(double rate) { return general(rate / (2.0 * std::numbers::pi), 3) + " Hz"; }
+
+/// Below which frequency all modes are resolved, and below which their errors are small.
+std::string resolved_words(const ModeSet& set, const std::string& hidden) {
+  double accurate = std::numeric_limits<double>::infinity();
+  for (const Mode& mode : set.modes)
+    if (mode.resolved && total_error(mode) > marked_error &&
+        motion_of(mode, set.rotor_speed) != Motion::rigid_body)
+      accurate = std::min(accurate, std::abs(mode.exponent));
+  std::string text = std::isfinite(set.reach)
+                         ? "all modes below " + hertz(set.reach) + " are resolved"
+                         : "all modes are resolved";
+  text += hidden;
+  const std::string percents = general(100.0 * marked_error, 2) + " %";
+  if (accurate < set.reach)
+    text += "; those below " + hertz(accurate) + " have errors below " + percents;
+  else
+    text += "; their errors are below " + percents;
+  return text;
+}
+
 }  // namespace
 
 Motion motion_of(const Mode& mode, double rotor_speed) {
@@ -263,9 +284,6 @@ Verdict find_verdict(const ModeSet& set, bool all) {
   const Tally result = tally(set);
   const std::string rest = rest_words(result);
   const bool is_periodic = set.participation.size() > 0;
-  const auto hertz = [](double rate) {
-    return general(rate / (2.0 * std::numbers::pi), 3) + " Hz";
-  };
   Verdict verdict;
   std::string& text = verdict.text;
   if (!knows_first_modes(set)) {
@@ -296,10 +314,7 @@ Verdict find_verdict(const ModeSet& set, bool all) {
                                        std::to_string(set.states) +
                                        (set.deflated == 1 ? " that decays" : " that decay") +
                                        " faster than " + general(set.deflated_rate, 3) + " 1/s";
-  if (verdict.is_given)
-    text += (std::isfinite(set.reach) ? "all modes below " + hertz(set.reach) + " are resolved"
-                                      : "all modes are resolved") +
-            hidden + "\n";
+  if (verdict.is_given) text += resolved_words(set, hidden) + "\n";
   if (!result.growing_alone.empty())
     text +=
         count(static_cast<int>(result.growing_alone.size()), "mode") +

@@ -479,8 +479,8 @@ class Analysis {
     return share;
   }
 
-  /// Moves the dominant harmonic into the exponent, maps the step back and chooses the conjugate
-  /// with Im >= 0.
+  /// Moves the harmonic of mode m into the exponent, maps the step back and chooses the conjugate
+  /// with Im >= 0. May be called again with another harmonic.
   void settle(std::size_t m) {
     Mode& mode = modes_[m];
     const bool slow = fast_share(m) <= largest_fast_share;
@@ -489,20 +489,7 @@ class Analysis {
                        -static_cast<int>(steps_ / 2), mode.harmonic, speed_, dt_);
     mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
     mode.exponent = unwarped(mode.step_exponent, dt_);
-    if (mode.exponent.imag() < -zero_exponent * speed_) {
-      mode.exponent = std::conj(mode.exponent);
-      mode.step_exponent = std::conj(mode.step_exponent);
-      mode.harmonic = -mode.harmonic;
-      mode.multiplier = std::conj(mode.multiplier);
-      const auto row = static_cast<Eigen::Index>(m);
-      const Eigen::RowVectorXd shares = participation_.row(row);
-      const Eigen::Index half = steps_ / 2;
-      for (Eigen::Index i = 0; i < steps_; ++i) {
-        const Eigen::Index mirrored = half - (i - half);
-        participation_(row, i) = mirrored >= 0 && mirrored < steps_ ? shares(mirrored) : 0.0;
-      }
-      if (!mode_shapes_.empty()) mode_shapes_[m] = mode_shapes_[m].conjugate().eval();
-    }
+    if (mode.exponent.imag() < -zero_exponent * speed_) conjugate(m);
     const double size = std::abs(mode.exponent);
     mode.damping_ratio = is_zero(mode.exponent) ? 0.0 : -mode.exponent.real() / size;
     if (!is_zero(mode.exponent)) {
@@ -519,6 +506,24 @@ class Analysis {
     mode.resolved = slow && in_reach(mode.exponent) && mode.residual <= largest_residual;
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
+  }
+
+  /// The other one of the pair stands for both.
+  void conjugate(std::size_t m) {
+    Mode& mode = modes_[m];
+    exponents_[m] = std::conj(exponents_[m]);
+    mode.exponent = std::conj(mode.exponent);
+    mode.step_exponent = std::conj(mode.step_exponent);
+    mode.harmonic = -mode.harmonic;
+    mode.multiplier = std::conj(mode.multiplier);
+    const auto row = static_cast<Eigen::Index>(m);
+    const Eigen::RowVectorXd shares = participation_.row(row);
+    const Eigen::Index half = steps_ / 2;
+    for (Eigen::Index i = 0; i < steps_; ++i) {
+      const Eigen::Index mirrored = half - (i - half);
+      participation_(row, i) = mirrored >= 0 && mirrored < steps_ ? shares(mirrored) : 0.0;
+    }
+    if (!mode_shapes_.empty()) mode_shapes_[m] = mode_shapes_[m].conjugate().eval();
   }
 
   /// Whether a mode is among the multipliers next to one of the motions that nothing restores, two
@@ -541,57 +546,90 @@ class Analysis {
            modes_[m].rounding_error > largest_rounding;
   }
 
-  Floquet finish() {
-    for (std::size_t m = 0; m < modes_.size(); ++m) settle(m);
-    std::vector<std::size_t> order;
+  /// Modes that rounding has made become deflated ones.
+  void drop_rounding() {
+    std::vector<Eigen::Index> kept;
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       if (is_rounding(m)) {
         deflated_ += multipliers_[m].imag() == 0.0 ? 1 : 2;
         deflated_rate_ = std::min(deflated_rate_, decay_of(std::abs(multipliers_[m])));
-      } else {
-        order.push_back(m);
+        continue;
       }
+      const std::size_t at = kept.size();
+      multipliers_[at] = multipliers_[m];
+      exponents_[at] = exponents_[m];
+      conditions_[at] = conditions_[m];
+      if (at != m) modes_[at] = std::move(modes_[m]);
+      if (at != m && !mode_shapes_.empty()) mode_shapes_[at] = std::move(mode_shapes_[m]);
+      kept.push_back(static_cast<Eigen::Index>(m));
     }
+    multipliers_.resize(kept.size());
+    exponents_.resize(kept.size());
+    conditions_.resize(kept.size());
+    modes_.resize(kept.size());
+    if (!mode_shapes_.empty()) mode_shapes_.resize(kept.size());
+    participation_ = participation_(kept, Eigen::all).eval();
+  }
+
+  Floquet finish() {
+    for (std::size_t m = 0; m < modes_.size(); ++m) settle(m);
+    drop_rounding();
     Floquet result;
     result.steps = steps_;
     result.sectors = sectors_;
     result.step = dt_;
-    result.set.degrees_of_freedom = subspace_.degrees_of_freedom();
-    result.set.rotor_speed = speed_;
-    result.set.step = dt_;
-    result.set.conservative = system_.is_conservative();
-    result.set.first_harmonic = -steps_ / 2;
-    result.set.states = static_cast<int>(states_);
-    result.set.deflated = deflated_;
-    for (const std::size_t m : order) result.set.found += multipliers_[m].imag() == 0.0 ? 1 : 2;
-    if (result.set.found + deflated_ != result.set.states)
-      throw InternalError("floquet: " + std::to_string(result.set.found) + " exponents found and " +
-                          std::to_string(deflated_) + " deflated of " +
-                          std::to_string(result.set.states));
-    result.set.deflated_rate = deflated_rate_;
-    result.set.reach = 2.0 * largest_half_phase / dt_;
-    result.set.participation.resize(static_cast<Eigen::Index>(order.size()), participation_.cols());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const Mode& mode = modes_[order[i]];
-      result.set.modes.push_back(mode);
-      if (!mode.resolved) result.set.reach = std::min(result.set.reach, std::abs(mode.exponent));
-      result.set.participation.row(static_cast<Eigen::Index>(i)) =
-          participation_.row(static_cast<Eigen::Index>(order[i]));
-      if (!mode_shapes_.empty()) result.set.shapes.push_back(std::move(mode_shapes_[order[i]]));
-    }
+    ModeSet& set = result.set;
+    set.degrees_of_freedom = subspace_.degrees_of_freedom();
+    set.rotor_speed = speed_;
+    set.step = dt_;
+    set.conservative = system_.is_conservative();
+    set.first_harmonic = -steps_ / 2;
+    set.states = static_cast<int>(states_);
+    set.deflated = deflated_;
+    for (const Complex multiplier : multipliers_) set.found += multiplier.imag() == 0.0 ? 1 : 2;
+    if (set.found + deflated_ != set.states)
+      throw InternalError("floquet: " + std::to_string(set.found) + " exponents found and " +
+                          std::to_string(deflated_) + " deflated of " + std::to_string(set.states));
+    set.deflated_rate = deflated_rate_;
     const Eigen::Index columns = shapes_.rows() / system_.size();
     for (int q = 0; q < sectors_; ++q)
       for (Eigen::Index k = 0; k < columns; ++k)
-        result.set.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) *
-                                         dt_);
-    find_mesh_errors(result.set);
-    name_modes(system_, solution_, result.set, sectors_);
-    share_names(result.set);
-    arrange_modes(result.set);
-    scale_shapes(system_, result.set);
-    for (std::size_t m = 0; m < result.set.shapes.size(); ++m)
-      if (!result.set.modes[m].resolved) result.set.shapes[m].resize(0, 0);
+        set.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
+    set.modes = modes_;
+    set.shapes = std::move(mode_shapes_);
+    const std::vector<LeadingMotion> leading =
+        find_leading_motions(system_, solution_, set, sectors_);
+    mode_shapes_ = std::move(set.shapes);
+    move_to_leading(leading);
+    set.modes = modes_;
+    set.shapes = std::move(mode_shapes_);
+    set.participation = participation_;
+    set.reach = 2.0 * largest_half_phase / dt_;
+    for (const Mode& mode : set.modes)
+      if (!mode.resolved) set.reach = std::min(set.reach, std::abs(mode.exponent));
+    find_mesh_errors(set);
+    name_modes(system_, leading, set, sectors_);
+    share_names(set);
+    arrange_modes(set);
+    scale_shapes(system_, set);
+    for (std::size_t m = 0; m < set.shapes.size(); ++m)
+      if (!set.modes[m].resolved) set.shapes[m].resize(0, 0);
     return result;
+  }
+
+  /// The frequency of a mode is that of the motion it is named after, which may be at another
+  /// harmonic than the part with most kinetic energy. Only the first rank knows these motions.
+  void move_to_leading(const std::vector<LeadingMotion>& leading) {
+    Eigen::VectorXd shifts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
+    for (std::size_t m = 0; m < leading.size(); ++m)
+      shifts(static_cast<Eigen::Index>(m)) = leading[m].harmonic - modes_[m].harmonic;
+    ranks_.sum(shifts);
+    for (std::size_t m = 0; m < modes_.size(); ++m) {
+      const auto shift = static_cast<int>(std::lround(shifts(static_cast<Eigen::Index>(m))));
+      if (shift == 0) continue;
+      modes_[m].harmonic += shift;
+      settle(m);
+    }
   }
 
   /// From the shapes, which only the first rank has.

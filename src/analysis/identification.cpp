@@ -168,6 +168,17 @@ struct NamedShape {
   Eigen::MatrixXcd shape;       ///< positions and loads at the identified harmonic
   Eigen::MatrixXcd shape_rate;  ///< (lambda + d/dt) of it
   Eigen::MatrixXcd whole_rate;  ///< (lambda + d/dt) of all harmonics
+  /// The fit: shape = coefficients waves^T, rates of lambda; empty where nothing was fitted.
+  Eigen::MatrixXcd coefficients;
+  Eigen::MatrixXcd waves;
+  Eigen::VectorXcd rates;
+
+  /// Harmonics on each side of the identified one.
+  Eigen::Index reach() const { return waves.cols() / 2; }
+  Eigen::MatrixXcd at(Eigen::Index h) const {
+    return coefficients.col(reach() + h) * waves.col(reach() + h).transpose();
+  }
+  std::complex<double> rate_at(Eigen::Index h) const { return rates(reach() + h); }
 };
 
 /// Harmonics about the identified one are fitted, for instants of several sectors are not equally
@@ -177,26 +188,34 @@ NamedShape named_shape(const ModeSet& set, std::size_t m) {
   const Mode& mode = set.modes[m];
   const Eigen::MatrixXcd& shape = set.shapes[m];
   const Eigen::Index instants = shape.cols();
-  if (instants != static_cast<Eigen::Index>(set.shape_times.size()) || is_at_rest(mode, set))
-    return {shape, shape, shape};
-  if (instants == 1) return {shape, mode.exponent * shape, mode.exponent * shape};
+  NamedShape named;
+  const bool is_short = instants != static_cast<Eigen::Index>(set.shape_times.size());
+  if (is_short || instants == 1 || is_at_rest(mode, set)) {
+    named.shape = shape;
+    named.whole_rate = is_short || is_at_rest(mode, set) ? shape : mode.exponent * shape;
+    named.shape_rate = named.whole_rate;
+    return named;
+  }
   const Eigen::Index reach = std::min<Eigen::Index>(fitted_harmonics, (instants - 1) / 3);
-  Eigen::MatrixXcd waves(instants, 2 * reach + 1);
-  Eigen::VectorXcd rates(2 * reach + 1);
+  named.waves.resize(instants, 2 * reach + 1);
+  named.rates.resize(2 * reach + 1);
   for (Eigen::Index h = -reach; h <= reach; ++h) {
     const double k = static_cast<double>(h + mode.harmonic) * set.rotor_speed;
-    rates(h + reach) =
+    named.rates(h + reach) =
         mode.exponent + std::complex<double>(0.0, static_cast<double>(h) * set.rotor_speed);
     for (Eigen::Index i = 0; i < instants; ++i)
-      waves(i, h + reach) = std::polar(1.0, k * set.shape_times[static_cast<std::size_t>(i)]);
+      named.waves(i, h + reach) = std::polar(1.0, k * set.shape_times[static_cast<std::size_t>(i)]);
   }
   const Eigen::MatrixXcd fit =
-      waves.colPivHouseholderQr().solve(Eigen::MatrixXcd::Identity(instants, instants));
-  const Eigen::MatrixXcd coefficients = shape * fit.transpose();
-  NamedShape named;
-  named.whole_rate = coefficients * rates.asDiagonal() * waves.transpose();
-  if (mode.exponent.imag() == 0.0) return {shape, named.whole_rate, named.whole_rate};
-  named.shape = coefficients.col(reach) * waves.col(reach).transpose();
+      named.waves.colPivHouseholderQr().solve(Eigen::MatrixXcd::Identity(instants, instants));
+  named.coefficients = shape * fit.transpose();
+  named.whole_rate = named.coefficients * named.rates.asDiagonal() * named.waves.transpose();
+  if (mode.exponent.imag() == 0.0) {
+    named.shape = shape;
+    named.shape_rate = named.whole_rate;
+    return named;
+  }
+  named.shape = named.at(0);
   named.shape_rate = mode.exponent * named.shape;
   return named;
 }
@@ -229,16 +248,39 @@ class MotionsInTime {
 struct Leading {
   std::size_t motion = 0;
   bool at_identified = true;  ///< harmonic, by which it was found
+  int shift = 0;              ///< its own harmonic, from the identified one
 };
+
+/// The harmonic, counted from the identified one, in which a motion and those of its name have most
+/// kinetic energy.
+int own_shift(const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t motion,
+              const NamedShape& named, int sectors, MotionsInTime& in_time) {
+  int shift = 0;
+  double most = 0.0;
+  for (Eigen::Index h = -named.reach(); h <= named.reach(); ++h) {
+    const Eigen::MatrixXcd rates = named.rate_at(h) * named.at(h);
+    double energy = 0.0;
+    for (Eigen::Index c = 0; c < rates.cols(); ++c) {
+      const Eigen::VectorXd energies =
+          in_time.at(time_of(set, named.shape, c, sectors)).of(rates.col(c), rates.col(c));
+      for (std::size_t i = 0; i < motions.size(); ++i)
+        if (text_of(motions[i]) == text_of(motions[motion]))
+          energy += energies(static_cast<Eigen::Index>(i));
+    }
+    if (!(energy > most)) continue;
+    shift = static_cast<int>(h);
+    most = energy;
+  }
+  return shift;
+}
 
 /// The motion with the largest share of the kinetic energy and that of the strain energy together.
 /// Strain weighs as much as the kinetic energy where all that restores is strain, less where
 /// rotation stiffens, and more in overdamped motions, which hardly move; it does not count at rest,
 /// where it is that of another motion, and beside a joint that drifts.
-Leading leading_motion(const system::PeriodicSystem& system,
-                       const std::vector<system::Motion>& motions, const ModeSet& set,
-                       std::size_t m, const NamedShape& named, int sectors,
-                       MotionsInTime& in_time) {
+Leading find_leading(const system::PeriodicSystem& system,
+                     const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t m,
+                     const NamedShape& named, int sectors, MotionsInTime& in_time) {
   const Mode& mode = set.modes[m];
   const auto count = static_cast<Eigen::Index>(motions.size());
   Eigen::VectorXd identified = Eigen::VectorXd::Zero(count);
@@ -274,7 +316,18 @@ Leading leading_motion(const system::PeriodicSystem& system,
   for (const auto& [name, energy] :
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
     shares[name] += energy / (part * mode.kinetic_energy);
-  return leading();
+  Leading found = leading();
+  // Where most of this motion is at another harmonic, that one has its frequency.
+  double own = 0.0;
+  double own_identified = 0.0;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    if (text_of(motions[i]) == text_of(motions[found.motion])) {
+      own += all(static_cast<Eigen::Index>(i));
+      own_identified += identified(static_cast<Eigen::Index>(i));
+    }
+  if (mode.exponent.imag() > 0.0 && own_identified < dominant_part * own)
+    found.shift = own_shift(motions, set, found.motion, named, sectors, in_time);
+  return found;
 }
 
 /// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
@@ -305,12 +358,10 @@ const char* word_of(int n, int blades) {
   return n == blades - 1 ? " progressive" : " reactionless";
 }
 
-bool turns_with_rotor(const system::PeriodicSystem& system, const std::string& part) {
-  return std::any_of(system.energy_groups().begin(), system.energy_groups().end(),
-                     [&part](const EnergyGroup& group) {
-                       return group.kind == EnergyGroup::Kind::kinetic && group.part == part &&
-                              group.frame == system::Frame::rotating;
-                     });
+int blades_of(const std::vector<system::Motion>& motions) {
+  int blades = 0;
+  for (const system::Motion& motion : motions) blades = std::max(blades, motion.blade);
+  return blades;
 }
 
 /// What a mode is called, piece by piece.
@@ -464,40 +515,53 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
   }
 }
 
-void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                ModeSet& set, int sectors) {
+std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& system,
+                                                const PeriodicSolution& solution,
+                                                const ModeSet& set, int sectors) {
   const std::vector<system::Motion> motions = system.motions();
-  for (const system::Motion& motion : motions) set.blades = std::max(set.blades, motion.blade);
-  if (set.shapes.empty()) return;  // another rank has them
+  std::vector<LeadingMotion> leading;
+  if (set.shapes.empty() || motions.empty()) return leading;
+  const int blades = blades_of(motions);
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const bool together = blades == 2 || (blades > 2 && set.rotor_speed > 0.0);
   MotionsInTime in_time(system, solution);
-  const bool together = set.blades == 2 || (set.blades > 2 && set.rotor_speed > 0.0);
-  std::vector<Name> names;
-  std::vector<int> components;
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     const Mode& mode = set.modes[m];
-    Name name;
-    int component = -1;
-    if (motions.empty()) {
-      name.part = strained_motion(system, set.shapes[m], mode, zero);
-    } else {
-      const NamedShape named = named_shape(set, m);
-      const Leading found = leading_motion(system, motions, set, m, named, sectors, in_time);
-      const system::Motion& leading = motions[found.motion];
-      name.part = leading.part;
-      name.motion = leading.name;
-      if (leading.blade > 0 && together && mode.exponent.imag() > zero) {
-        Eigen::Index largest = 0;
-        const Eigen::VectorXd shares = multiblade_shares(
-            motions, set.blades, leading.name, found.at_identified ? named.shape : set.shapes[m]);
-        if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share) {
-          component = static_cast<int>(largest);
-          name.together = word_of(component, set.blades);
-        }
-      }
+    const NamedShape named = named_shape(set, m);
+    const Leading found = find_leading(system, motions, set, m, named, sectors, in_time);
+    const system::Motion& motion = motions[found.motion];
+    LeadingMotion one{motion.part, motion.name, -1, mode.harmonic + found.shift};
+    if (motion.blade > 0 && together && mode.exponent.imag() > zero) {
+      Eigen::Index largest = 0;
+      const Eigen::VectorXd shares =
+          multiblade_shares(motions, blades, motion.name,
+                            found.shift != 0 ? named.at(found.shift)
+                                             : (found.at_identified ? named.shape : set.shapes[m]));
+      if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share)
+        one.component = static_cast<int>(largest);
+      // The mode will be its conjugate, in which the blades follow each other the other way.
+      if (one.component > 0 && mode.exponent.imag() + found.shift * set.rotor_speed < 0.0)
+        one.component = blades - one.component;
     }
-    names.push_back(name);
-    components.push_back(component);
+    leading.push_back(one);
+  }
+  return leading;
+}
+
+void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingMotion>& leading,
+                ModeSet& set, int sectors) {
+  set.blades = blades_of(system.motions());
+  if (set.shapes.empty()) return;  // another rank has them
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  std::vector<Name> names;
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    if (leading.empty()) {
+      names.push_back({strained_motion(system, set.shapes[m], set.modes[m], zero), "", ""});
+      continue;
+    }
+    const int component = leading[m].component;
+    names.push_back(
+        {leading[m].part, leading[m].name, component < 0 ? "" : word_of(component, set.blades)});
   }
   const bool canonical = has_canonical_shapes(system) && set.shape_times.size() == 1;
   unite_degenerate(set, sectors, canonical, names);
@@ -505,16 +569,14 @@ void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& so
     Mode& mode = set.modes[m];
     mode.label = names[m].text();
     const double frequency = mode.exponent.imag();
-    if (set.rotor_speed == 0.0 || mode.parts.empty() ||
-        !turns_with_rotor(system, mode.parts.front().part) ||
-        mode.parts.front().part == "drivetrain" || names[m].part == "shaft torsion" ||
-        names[m].part == "rotor rotation" || frequency <= zero)
+    const bool in_blades = names[m].part.starts_with("blade");
+    if (set.rotor_speed == 0.0 || !in_blades || frequency <= zero)
       mode.fixed_frame_frequency = frequency;
-    else if (set.blades > 2 && !names[m].together.empty())
+    else if (set.blades > 2 && !names[m].together.empty()) {
+      const int n = leading[m].component;
       mode.fixed_frame_frequency =
-          std::abs(frequency -
-                   (2 * components[m] > set.blades ? components[m] - set.blades : components[m]) *
-                       set.rotor_speed);
+          std::abs(frequency - (2 * n > set.blades ? n - set.blades : n) * set.rotor_speed);
+    }
   }
 }
 
@@ -551,13 +613,16 @@ void arrange_modes(ModeSet& set) {
           set.participation.row(static_cast<Eigen::Index>(order[i]));
   }
   set = std::move(sorted);
-  // Modes beyond the step's reach come after the others, and take the last numbers.
+  // Modes that are not resolved come after the others, take the last numbers, and change no name of
+  // a mode that is.
   std::map<std::string, int> alike;
-  for (const Mode& mode : set.modes) ++alike[mode.label];
+  for (const Mode& mode : set.modes)
+    if (mode.resolved) ++alike[mode.label];
   std::map<std::string, int> number;
   for (Mode& mode : set.modes) {
     const std::string name = mode.label;
-    if (!name.empty() && alike[name] > 1) mode.label += " " + std::to_string(++number[name]);
+    const int own = ++number[name];
+    if (!name.empty() && (alike[name] > 1 || own > 1)) mode.label += " " + std::to_string(own);
   }
 }
 

@@ -29,12 +29,27 @@ void choose_shapes(const system::PeriodicSystem& system,
 /// Scales every shape so that its largest position is 1, and its kinetic energy with it.
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
 
-/// Names modes, without numbers, by the motion with most kinetic energy, or by where their strain
-/// energy is in a system that does not know its motions; with words for how the blades move
-/// together, and the frequency in the fixed frame. Needs the shapes, each of a number of instants
-/// of every one of `sectors` parts of the period, of `set.shape_times` the first: where there are
-/// none, nothing is named.
-void name_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+/// The motion that a mode is named after: that with most kinetic and strain energy.
+struct LeadingMotion {
+  std::string part, name;
+  /// How the blades do it together: in n each is 2 pi n / B ahead of the one behind it, -1: none of
+  /// them clearly.
+  int component = -1;
+  int harmonic = 0;  ///< in which it has its energy, as Mode::harmonic
+};
+
+/// One for each mode; none where the system does not know its motions. Needs the shapes, each of a
+/// number of instants of every one of `sectors` parts of the period, of `set.shape_times` the
+/// first: empty where there are none.
+std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& system,
+                                                const PeriodicSolution& solution,
+                                                const ModeSet& set, int sectors = 1);
+
+/// Names modes, without numbers, by their leading motion, or by where their strain energy is where
+/// there is no `leading`; with words for how the blades move together, and the frequency in the
+/// fixed frame. A mode is at the harmonic of its leading motion by now. Where there are no shapes,
+/// nothing is named.
+void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingMotion>& leading,
                 ModeSet& set, int sectors = 1);
 
 /// Sorts modes and numbers those of one name: resolved ones first, then by |lambda|; where that is
