@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <sstream>
@@ -107,11 +108,20 @@ class Analysis {
     Eigen::MatrixXd z = start(Eigen::all, own_);
     const Eigen::Index shapes = (span_ + stride_ - 1) / stride_;
     shapes_.resize(z.rows() * shapes, z.cols());
-    smooth_velocities(start.rightCols(d), z);
-    StepPropagator propagator(system_, solution_, subspace_.carried(), dt_);
+    const auto propagator = [this] {
+      return std::make_unique<StepPropagator>(system_, solution_, subspace_.carried(), dt_);
+    };
+    FirstSteps first;
+    for (auto& step : first) step = propagator();
+    smooth_velocities(start.rightCols(d), first, z);
+    const std::unique_ptr<StepPropagator> others = propagator();
     for (long k = 0; k <= span_; ++k) {
       if (k == span_) take_states(z);
-      const Eigen::MatrixXd& middle = propagator.advance(k, z);
+      const auto at = static_cast<std::size_t>(k);
+      if (at == first.size())
+        for (auto& step : first) step.reset();
+      const Eigen::MatrixXd& middle =
+          at < first.size() ? first[at]->repeat(z) : others->advance(k, z);
       if (k == span_) end_ = middle;
       if (k < span_) {
         history_.append(middle);
@@ -120,6 +130,9 @@ class Analysis {
       observer_.progress("floquet", k + 1, span_ + 1);
     }
   }
+
+  /// Those that smooth the velocities.
+  using FirstSteps = std::array<std::unique_ptr<StepPropagator>, alternating_weights.size() - 1>;
 
   /// The map over a sector, P (eta, eta_dot) in the coordinates of the start: its columns.
   void take_states(const Eigen::MatrixXd& z) {
@@ -134,18 +147,19 @@ class Analysis {
   /// the steps' ends is this part and, of a motion of frequency omega, sin^8(omega dt / 2). Steps
   /// go forward only: a step back multiplies a decay with lambda dt / 2 = -1 by infinity. Only what
   /// no rate of eta makes, `admissible`, is corrected: fast modes are not smooth at all, and keep
-  /// their velocities.
-  void smooth_velocities(const Eigen::MatrixXd& admissible, Eigen::MatrixXd& z) const {
+  /// their velocities. `steps` keep the factors of the first steps.
+  void smooth_velocities(const Eigen::MatrixXd& admissible, FirstSteps& steps,
+                         Eigen::MatrixXd& z) const {
     std::vector<PetscInt> velocities;
     for (Eigen::Index i = 0; i < z.rows(); ++i)
       if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::velocity)
         velocities.push_back(static_cast<PetscInt>(i));
-    StepPropagator propagator(system_, solution_, subspace_.carried(), dt_);
     for (int pass = 0; pass < smoothing_passes; ++pass) {
       Eigen::MatrixXd moved = z;
       Eigen::MatrixXd change = Eigen::MatrixXd::Zero(z.rows(), z.cols());
       for (std::size_t m = 0; m < alternating_weights.size(); ++m) {
-        if (m > 0) propagator.advance(static_cast<long>(m) - 1, moved);
+        if (m > 0 && pass == 0) steps[m - 1]->advance(static_cast<long>(m) - 1, moved);
+        if (m > 0 && pass > 0) steps[m - 1]->repeat(moved);
         change(velocities, Eigen::all) -= alternating_weights[m] * moved(velocities, Eigen::all);
       }
       const Eigen::MatrixXd rates =
@@ -596,6 +610,7 @@ class Analysis {
       for (Eigen::Index k = 0; k < columns; ++k)
         set.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
     set.modes = modes_;
+    set.participation = participation_;
     set.shapes = std::move(mode_shapes_);
     const std::vector<LeadingMotion> leading =
         find_leading_motions(system_, solution_, set, sectors_);

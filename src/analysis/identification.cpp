@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -33,6 +34,9 @@ constexpr double same_size = 1e-6;
 /// Share of the kinetic energy whose coordinates move at the identified harmonic, beyond which they
 /// alone name a mode.
 constexpr double dominant_part = 0.5;
+
+/// Share of the kinetic energy at a harmonic, from which on it may be that of the mode.
+constexpr double clear_part = 0.2;
 
 /// Exponents closer than this, relative, or than so many of their errors by rounding, are the same.
 constexpr double degenerate = 1e-7;
@@ -248,30 +252,38 @@ class MotionsInTime {
 struct Leading {
   std::size_t motion = 0;
   bool at_identified = true;  ///< harmonic, by which it was found
-  int shift = 0;              ///< its own harmonic, from the identified one
+  /// Its own harmonic, from the identified one, or nothing where it has several.
+  std::optional<int> shift = 0;
 };
 
-/// The harmonic, counted from the identified one, in which a motion and those of its name have most
-/// kinetic energy.
-int own_shift(const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t motion,
-              const NamedShape& named, int sectors, MotionsInTime& in_time) {
-  int shift = 0;
-  double most = 0.0;
+/// Share of the kinetic energy of mode m in the harmonic `h` beyond the identified one.
+double share_at(const ModeSet& set, std::size_t m, Eigen::Index h) {
+  const Eigen::Index column = set.modes[m].harmonic + h - set.first_harmonic;
+  return column >= 0 && column < set.participation.cols()
+             ? set.participation(static_cast<Eigen::Index>(m), column)
+             : 0.0;
+}
+
+/// The harmonic, counted from the identified one, that has most of the kinetic energy of a motion
+/// and of those of its name, `own` over all, and no small part of that of the mode; nothing where
+/// none has.
+std::optional<int> own_shift(const std::vector<system::Motion>& motions, const ModeSet& set,
+                             std::size_t m, std::size_t motion, double own, const NamedShape& named,
+                             int sectors, MotionsInTime& in_time) {
   for (Eigen::Index h = -named.reach(); h <= named.reach(); ++h) {
     const Eigen::MatrixXcd rates = named.rate_at(h) * named.at(h);
     double energy = 0.0;
     for (Eigen::Index c = 0; c < rates.cols(); ++c) {
-      const Eigen::VectorXd energies =
-          in_time.at(time_of(set, named.shape, c, sectors)).of(rates.col(c), rates.col(c));
+      const Eigen::VectorXd energies = in_time.at(time_of(set, named.shape, c, sectors))
+                                           .of(rates.col(c), named.whole_rate.col(c));
       for (std::size_t i = 0; i < motions.size(); ++i)
         if (text_of(motions[i]) == text_of(motions[motion]))
           energy += energies(static_cast<Eigen::Index>(i));
     }
-    if (!(energy > most)) continue;
-    shift = static_cast<int>(h);
-    most = energy;
+    if (energy > dominant_part * own && share_at(set, m, h) > clear_part)
+      return static_cast<int>(h);
   }
-  return shift;
+  return std::nullopt;
 }
 
 /// The motion with the largest share of the kinetic energy and that of the strain energy together.
@@ -317,7 +329,7 @@ Leading find_leading(const system::PeriodicSystem& system,
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
     shares[name] += energy / (part * mode.kinetic_energy);
   Leading found = leading();
-  // Where most of this motion is at another harmonic, that one has its frequency.
+  // Where most of this motion is at another harmonic, its frequency is there.
   double own = 0.0;
   double own_identified = 0.0;
   for (std::size_t i = 0; i < motions.size(); ++i)
@@ -325,8 +337,8 @@ Leading find_leading(const system::PeriodicSystem& system,
       own += all(static_cast<Eigen::Index>(i));
       own_identified += identified(static_cast<Eigen::Index>(i));
     }
-  if (mode.exponent.imag() > 0.0 && own_identified < dominant_part * own)
-    found.shift = own_shift(motions, set, found.motion, named, sectors, in_time);
+  if (named.waves.size() > 0 && mode.exponent.imag() > 0.0 && own_identified < dominant_part * own)
+    found.shift = own_shift(motions, set, m, found.motion, own, named, sectors, in_time);
   return found;
 }
 
@@ -530,17 +542,17 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
     const NamedShape named = named_shape(set, m);
     const Leading found = find_leading(system, motions, set, m, named, sectors, in_time);
     const system::Motion& motion = motions[found.motion];
-    LeadingMotion one{motion.part, motion.name, -1, mode.harmonic + found.shift};
+    const int shift = found.shift.value_or(0);
+    LeadingMotion one{motion.part, motion.name, -1, mode.harmonic + shift, found.shift.has_value()};
     if (motion.blade > 0 && together && mode.exponent.imag() > zero) {
       Eigen::Index largest = 0;
-      const Eigen::VectorXd shares =
-          multiblade_shares(motions, blades, motion.name,
-                            found.shift != 0 ? named.at(found.shift)
-                                             : (found.at_identified ? named.shape : set.shapes[m]));
+      const Eigen::VectorXd shares = multiblade_shares(
+          motions, blades, motion.name,
+          shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]));
       if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share)
         one.component = static_cast<int>(largest);
       // The mode will be its conjugate, in which the blades follow each other the other way.
-      if (one.component > 0 && mode.exponent.imag() + found.shift * set.rotor_speed < 0.0)
+      if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
         one.component = blades - one.component;
     }
     leading.push_back(one);
@@ -570,9 +582,10 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
     mode.label = names[m].text();
     const double frequency = mode.exponent.imag();
     const bool in_blades = names[m].part.starts_with("blade");
-    if (set.rotor_speed == 0.0 || !in_blades || frequency <= zero)
+    const bool is_clear = leading.empty() || leading[m].is_clear;
+    if (set.rotor_speed == 0.0 || frequency <= zero || (!in_blades && is_clear))
       mode.fixed_frame_frequency = frequency;
-    else if (set.blades > 2 && !names[m].together.empty()) {
+    else if (set.blades > 2 && is_clear && !names[m].together.empty()) {
       const int n = leading[m].component;
       mode.fixed_frame_frequency =
           std::abs(frequency - (2 * n > set.blades ? n - set.blades : n) * set.rotor_speed);

@@ -35,7 +35,8 @@ struct LeadingMotion {
   /// How the blades do it together: in n each is 2 pi n / B ahead of the one behind it, -1: none of
   /// them clearly.
   int component = -1;
-  int harmonic = 0;  ///< in which it has its energy, as Mode::harmonic
+  int harmonic = 0;      ///< in which it has its energy, as Mode::harmonic
+  bool is_clear = true;  ///< most of its energy is in this harmonic
 };
 
 /// One for each mode; none where the system does not know its motions. Needs the shapes, each of a

@@ -69,6 +69,9 @@ class StepPropagator {
   /// stand until the next call.
   const Eigen::MatrixXd& advance(long k, Eigen::MatrixXd& z);
 
+  /// The same step with other columns.
+  const Eigen::MatrixXd& repeat(Eigen::MatrixXd& z) { return linearized_.advance(z); }
+
  private:
   const PeriodicSolution& solution_;
   double step_;
