@@ -18,7 +18,6 @@ import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASE = ROOT / "inputs/lee2002/baseline.yaml"
-MESH = ["tower.order=3", "blades.order=3"]
 TOWER, OVERHANG, RADIUS, BLADE = 27.0, 2.388, 1.8, 8.42  # of the case [m]
 LARGEST = 3.2  # drawn, of the largest displacement [m]
 
@@ -60,10 +59,8 @@ class Result:
     def stations(self, beam):
         """Names of the points of a beam from root to tip, and their fractions of the length."""
         count = sum(name.startswith(f"{beam} point") and name.endswith(" u1") for name in self.place)
-        nodes, _ = np.polynomial.legendre.leggauss(3)
-        elements = count // 3
-        at = [(e + 0.5 * (1 + x)) / elements for e in range(elements) for x in nodes]
-        return [f"{beam} point {p + 1}" for p in range(count)], at
+        nodes, _ = np.polynomial.legendre.leggauss(count)  # of one element
+        return [f"{beam} point {p + 1}" for p in range(count)], 0.5 * (1 + nodes)
 
 
 def displacements(result, shape):
@@ -141,8 +138,6 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "modes.h5"
         command = [options.program, "floquet", CASE, "-o", path]
-        for setting in MESH:
-            command += ["--set", setting]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         figure = draw(Result(path))
     figure.savefig(ROOT / "docs/modes.svg", metadata={"Date": None})

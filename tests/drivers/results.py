@@ -16,6 +16,7 @@ from program import (  # noqa: E402
     MINIMAL,
     PROGRAM,
     QUICK,
+    SOURCE,
     ProgramTest,
 )
 
@@ -170,6 +171,28 @@ class Others(ProgramTest):
             expected = beta**2 * numpy.sqrt(rigidity / 1.0 / 10.0**4)
             # Shear and rotary inertia of this slender blade take off less than 0.2 %.
             numpy.testing.assert_allclose(found, expected, rtol=2e-3)
+
+    def test_frequencies_in_the_fixed_frame_are_those_of_the_names(self):
+        self.succeed("floquet", SOURCE / "inputs/nrel5mw/land.yaml", *QUICK, "-o", "x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            group = file["/floquet"]
+            rotating = group["frequency_hz"][:]
+            fixed = group["fixed_frame_frequency_hz"][:]
+            labels = group["label"].asstr()[:]
+            speed = numpy.median((group["frequency_hz"][:] / group["frequency_per_rev"][:])[:5])
+        words = {"collective": 0.0, "regressive": -1.0, "progressive": 1.0}
+        seen = set()
+        for label, f, ground in zip(labels, rotating, fixed):
+            for word, shift in words.items():
+                if word in label and numpy.isfinite(ground):
+                    self.assertAlmostEqual(ground, abs(f + shift * speed), places=9)
+                    seen.add(word)
+            if label.startswith("tower") and numpy.isfinite(ground):
+                self.assertEqual(ground, f)
+        self.assertEqual(seen, set(words))
+        self.succeed("floquet", BASELINE, *QUICK, "-o", "two.h5")
+        with h5py.File(self.folder / "two.h5") as file:
+            self.assertNotIn("fixed_frame_frequency_hz", file["/floquet"])
 
     def test_trim_and_check_write_what_they_know(self):
         self.succeed("trim", BASELINE, *QUICK, "-o", "trim.h5", "--csv", "trim.csv")

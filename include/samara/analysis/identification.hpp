@@ -2,8 +2,8 @@
 // (docs/theory.md, section 5.6).
 #pragma once
 
+#include "samara/analysis/leading_motion.hpp"
 #include "samara/analysis/mode.hpp"
-#include "samara/analysis/periodic_solution.hpp"
 #include "samara/system/periodic_system.hpp"
 
 namespace samara::analysis {
@@ -28,23 +28,6 @@ void choose_shapes(const system::PeriodicSystem& system,
 
 /// Scales every shape so that its largest position is 1, and its kinetic energy with it.
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
-
-/// The motion that a mode is named after: that with most kinetic and strain energy.
-struct LeadingMotion {
-  std::string part, name;
-  /// How the blades do it together: in n each is 2 pi n / B ahead of the one behind it, -1: none of
-  /// them clearly.
-  int component = -1;
-  int harmonic = 0;      ///< in which it has its energy, as Mode::harmonic
-  bool is_clear = true;  ///< most of its energy is in this harmonic
-};
-
-/// One for each mode; none where the system does not know its motions. Needs the shapes, each of a
-/// number of instants of every one of `sectors` parts of the period, of `set.shape_times` the
-/// first: empty where there are none.
-std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& system,
-                                                const PeriodicSolution& solution,
-                                                const ModeSet& set, int sectors = 1);
 
 /// Names modes, without numbers, by their leading motion, or by where their strain energy is where
 /// there is no `leading`; with words for how the blades move together, and the frequency in the

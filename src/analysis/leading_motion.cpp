@@ -1,0 +1,288 @@
+#include "samara/analysis/leading_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include <Eigen/QR>
+
+#include "strain_energy.hpp"
+
+namespace samara::analysis {
+namespace {
+
+/// Share of a multiblade component beyond which it names a mode.
+constexpr double clear_share = 0.7;
+
+/// On each side of the identified harmonic, those whose rates make the kinetic energy.
+constexpr Eigen::Index fitted_harmonics = 8;
+
+/// Share of the kinetic energy whose coordinates move at the identified harmonic, beyond which they
+/// alone name a mode.
+constexpr double dominant_part = 0.5;
+
+/// Share of the kinetic energy at a harmonic, from which on it may be that of the mode.
+constexpr double clear_part = 0.2;
+
+std::string text_of(const system::Motion& motion) {
+  return motion.part + (motion.name.empty() ? "" : " " + motion.name);
+}
+
+/// Whether an exponent is none but for rounding and the step.
+bool is_at_rest(const Mode& mode, const ModeSet& set) {
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const double unsure = mode.growth_error - mode.mesh_growth_error;
+  return std::abs(mode.exponent) < zero ||
+         (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure);
+}
+
+/// Instant of a column of a shape.
+double time_of(const ModeSet& set, const Eigen::MatrixXcd& shape, Eigen::Index column,
+               int sectors) {
+  const auto all = static_cast<Eigen::Index>(set.shape_times.size()) / sectors;
+  const Eigen::Index taken = std::max<Eigen::Index>(1, shape.cols() / sectors);
+  return set.shape_times[static_cast<std::size_t>(column / taken * all + column % taken)];
+}
+
+/// A mode as its name wants it: of its coordinates the identified harmonic alone, which is the one
+/// whose frequency is stated. Beside it a motion may have others, where exponents of two modes
+/// nearly coincide but for multiples of the rotor speed.
+struct NamedShape {
+  Eigen::MatrixXcd shape;       ///< positions and loads at the identified harmonic
+  Eigen::MatrixXcd shape_rate;  ///< (lambda + d/dt) of it
+  Eigen::MatrixXcd whole_rate;  ///< (lambda + d/dt) of all harmonics
+  /// The fit: shape = coefficients waves^T, rates of lambda; empty where nothing was fitted.
+  Eigen::MatrixXcd coefficients;
+  Eigen::MatrixXcd waves;
+  Eigen::VectorXcd rates;
+
+  /// Harmonics on each side of the identified one.
+  Eigen::Index reach() const { return waves.cols() / 2; }
+  Eigen::MatrixXcd at(Eigen::Index h) const {
+    return coefficients.col(reach() + h) * waves.col(reach() + h).transpose();
+  }
+  std::complex<double> rate_at(Eigen::Index h) const { return rates(reach() + h); }
+};
+
+/// Harmonics about the identified one are fitted, for instants of several sectors are not equally
+/// spaced. A shape of few instants, or at rest, stands for its rate, and so does each harmonic
+/// where none has been identified.
+NamedShape named_shape(const ModeSet& set, std::size_t m) {
+  const Mode& mode = set.modes[m];
+  const Eigen::MatrixXcd& shape = set.shapes[m];
+  const Eigen::Index instants = shape.cols();
+  NamedShape named;
+  const bool is_short = instants != static_cast<Eigen::Index>(set.shape_times.size());
+  if (is_short || instants == 1 || is_at_rest(mode, set)) {
+    named.shape = shape;
+    named.whole_rate = is_short || is_at_rest(mode, set) ? shape : mode.exponent * shape;
+    named.shape_rate = named.whole_rate;
+    return named;
+  }
+  const Eigen::Index reach = std::min<Eigen::Index>(fitted_harmonics, (instants - 1) / 3);
+  named.waves.resize(instants, 2 * reach + 1);
+  named.rates.resize(2 * reach + 1);
+  for (Eigen::Index h = -reach; h <= reach; ++h) {
+    const double k = static_cast<double>(h + mode.harmonic) * set.rotor_speed;
+    named.rates(h + reach) =
+        mode.exponent + std::complex<double>(0.0, static_cast<double>(h) * set.rotor_speed);
+    for (Eigen::Index i = 0; i < instants; ++i)
+      named.waves(i, h + reach) = std::polar(1.0, k * set.shape_times[static_cast<std::size_t>(i)]);
+  }
+  const Eigen::MatrixXcd fit =
+      named.waves.colPivHouseholderQr().solve(Eigen::MatrixXcd::Identity(instants, instants));
+  named.coefficients = shape * fit.transpose();
+  named.whole_rate = named.coefficients * named.rates.asDiagonal() * named.waves.transpose();
+  if (mode.exponent.imag() == 0.0) {
+    named.shape = shape;
+    named.shape_rate = named.whole_rate;
+    return named;
+  }
+  named.shape = named.at(0);
+  named.shape_rate = mode.exponent * named.shape;
+  return named;
+}
+
+/// The motions about the steady states at all instants of the shapes.
+class MotionsInTime {
+ public:
+  MotionsInTime(const system::PeriodicSystem& system, const PeriodicSolution& solution)
+      : system_(system),
+        solution_(solution),
+        z_(system.make_state()),
+        z_dot_(system.make_state()) {}
+
+  const system::MotionEnergies& at(double t) {
+    std::unique_ptr<system::MotionEnergies>& about = about_[t];
+    if (!about) {
+      solution_.evaluate(t, z_.get(), z_dot_.get());
+      about = system_.motion_energies(t, z_.get());
+    }
+    return *about;
+  }
+
+ private:
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  petsc::Handle<Vec> z_, z_dot_;
+  std::map<double, std::unique_ptr<system::MotionEnergies>> about_;
+};
+
+struct Leading {
+  std::size_t motion = 0;
+  bool at_identified = true;  ///< harmonic, by which it was found
+  /// Its own harmonic, from the identified one, or nothing where it has several.
+  std::optional<int> shift = 0;
+};
+
+/// Share of the kinetic energy of mode m in the harmonic `h` beyond the identified one.
+double share_at(const ModeSet& set, std::size_t m, Eigen::Index h) {
+  const Eigen::Index column = set.modes[m].harmonic + h - set.first_harmonic;
+  return column >= 0 && column < set.participation.cols()
+             ? set.participation(static_cast<Eigen::Index>(m), column)
+             : 0.0;
+}
+
+/// The harmonic, counted from the identified one, that has most of the kinetic energy of a motion
+/// and of those of its name, `own` over all, and no small part of that of the mode; nothing where
+/// none has.
+std::optional<int> own_shift(const std::vector<system::Motion>& motions, const ModeSet& set,
+                             std::size_t m, std::size_t motion, double own, const NamedShape& named,
+                             int sectors, MotionsInTime& in_time) {
+  for (Eigen::Index h = -named.reach(); h <= named.reach(); ++h) {
+    const Eigen::MatrixXcd rates = named.rate_at(h) * named.at(h);
+    double energy = 0.0;
+    for (Eigen::Index c = 0; c < rates.cols(); ++c) {
+      const Eigen::VectorXd energies = in_time.at(time_of(set, named.shape, c, sectors))
+                                           .of(rates.col(c), named.whole_rate.col(c));
+      for (std::size_t i = 0; i < motions.size(); ++i)
+        if (text_of(motions[i]) == text_of(motions[motion]))
+          energy += energies(static_cast<Eigen::Index>(i));
+    }
+    if (energy > dominant_part * own && share_at(set, m, h) > clear_part)
+      return static_cast<int>(h);
+  }
+  return std::nullopt;
+}
+
+/// The motion with the largest share of the kinetic energy and that of the strain energy together.
+/// Strain weighs as much as the kinetic energy where all that restores is strain, less where
+/// rotation stiffens, and more in overdamped motions, which hardly move; it does not count at rest,
+/// where it is that of another motion, and beside a joint that drifts.
+Leading find_leading(const system::PeriodicSystem& system,
+                     const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t m,
+                     const NamedShape& named, int sectors, MotionsInTime& in_time) {
+  const Mode& mode = set.modes[m];
+  const auto count = static_cast<Eigen::Index>(motions.size());
+  Eigen::VectorXd identified = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index c = 0; c < named.shape.cols(); ++c) {
+    const system::MotionEnergies& about = in_time.at(time_of(set, named.shape, c, sectors));
+    identified += about.of(named.shape_rate.col(c), named.whole_rate.col(c));
+    all += about.of(named.whole_rate.col(c), named.whole_rate.col(c));
+  }
+  // Less where the mode was identified in blades that the tower carries: it is in another one.
+  const bool is_dominant = identified.sum() > dominant_part * all.sum();
+  const Eigen::VectorXd& energies = is_dominant ? identified : all;
+  const double part = is_dominant ? identified.sum() / all.sum() : 1.0;
+  std::map<std::string, double> shares;
+  if (energies.sum() > 0.0)
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / energies.sum();
+  const auto leading = [&] {
+    Leading found{0, is_dominant};
+    double most = 0.0;
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const double share = shares[text_of(motions[i])];
+      if (!(share > most)) continue;
+      found.motion = i;
+      most = share;
+    }
+    return found;
+  };
+  if (is_at_rest(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
+  // A joint that drifts: what bends with it has little of the motion, however much it strains.
+  const std::string& mover = motions[leading().motion].part;
+  if (mode.exponent.imag() == 0.0 && mover != "blade" && mover != "tower") return leading();
+  for (const auto& [name, energy] :
+       strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
+    shares[name] += energy / (part * mode.kinetic_energy);
+  Leading found = leading();
+  // Where most of this motion is at another harmonic, its frequency is there.
+  double own = 0.0;
+  double own_identified = 0.0;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    if (text_of(motions[i]) == text_of(motions[found.motion])) {
+      own += all(static_cast<Eigen::Index>(i));
+      own_identified += identified(static_cast<Eigen::Index>(i));
+    }
+  if (named.waves.size() > 0 && mode.exponent.imag() > 0.0 && own_identified < dominant_part * own)
+    found.shift = own_shift(motions, set, m, found.motion, own, named, sectors, in_time);
+  return found;
+}
+
+/// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
+/// blade is 2 pi n / B ahead of the one behind it. Empty where nothing moves.
+Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int blades,
+                                  const std::string& name, const Eigen::MatrixXcd& shape) {
+  std::vector<const system::Motion*> alike;
+  for (const system::Motion& motion : motions)
+    if (motion.blade > 0 && motion.name == name) alike.push_back(&motion);
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(blades);
+  if (static_cast<int>(alike.size()) != blades) return {};
+  for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i)
+    for (int n = 0; n < blades; ++n) {
+      Eigen::RowVectorXcd component = Eigen::RowVectorXcd::Zero(shape.cols());
+      for (int k = 0; k < blades; ++k)
+        component += std::polar(1.0, -2.0 * std::numbers::pi * n * k / blades) *
+                     shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
+      shares(n) += alike.front()->weight[i] * component.squaredNorm();
+    }
+  const double total = shares.sum();
+  return total > 0.0 ? Eigen::VectorXd(shares / total) : Eigen::VectorXd();
+}
+
+}  // namespace
+
+int blades_of(const std::vector<system::Motion>& motions) {
+  int blades = 0;
+  for (const system::Motion& motion : motions) blades = std::max(blades, motion.blade);
+  return blades;
+}
+
+std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& system,
+                                                const PeriodicSolution& solution,
+                                                const ModeSet& set, int sectors) {
+  const std::vector<system::Motion> motions = system.motions();
+  std::vector<LeadingMotion> leading;
+  if (set.shapes.empty() || motions.empty()) return leading;
+  const int blades = blades_of(motions);
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const bool together = blades == 2 || (blades > 2 && set.rotor_speed > 0.0);
+  MotionsInTime in_time(system, solution);
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    const Mode& mode = set.modes[m];
+    const NamedShape named = named_shape(set, m);
+    const Leading found = find_leading(system, motions, set, m, named, sectors, in_time);
+    const system::Motion& motion = motions[found.motion];
+    const int shift = found.shift.value_or(0);
+    LeadingMotion one{motion.part, motion.name, -1, mode.harmonic + shift, found.shift.has_value()};
+    if (motion.blade > 0 && together && mode.exponent.imag() > zero) {
+      Eigen::Index largest = 0;
+      const Eigen::VectorXd shares = multiblade_shares(
+          motions, blades, motion.name,
+          shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]));
+      if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share)
+        one.component = static_cast<int>(largest);
+      // The mode will be its conjugate, in which the blades follow each other the other way.
+      if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
+        one.component = blades - one.component;
+    }
+    leading.push_back(one);
+  }
+  return leading;
+}
+
+}  // namespace samara::analysis

@@ -1,0 +1,20 @@
+// Strain energy of mode shapes.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::analysis {
+
+/// Mean over the instants of a shape, in its scale.
+double mean_strain_energy(const system::EnergyGroup& group, const Eigen::MatrixXcd& shape);
+
+/// Mean strain energy by name; shear belongs to the bending that it makes.
+std::map<std::string, double> strain_energies(const system::PeriodicSystem& system,
+                                              const Eigen::MatrixXcd& shape);
+
+}  // namespace samara::analysis
