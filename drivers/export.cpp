@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "samara/base/error.hpp"
+#include "samara/io/file_lock.hpp"
 #include "samara/io/history_export.hpp"
 #include "samara/io/result_reader.hpp"
 
@@ -17,7 +18,9 @@ void run_export(const CommandLine& line) {
   if (io::find_result_kind(source) != io::ResultKind::history)
     throw InputError(source + ": has no time history; hint: samara transient makes one");
   const io::HistoryReader history(source);
+  if (!history.damage().empty()) std::cerr << "note: " << history.damage() << "\n";
   io::require_export_path(path, source);
+  const io::FileLock lock(path);
   io::export_history(source, history, path);
   std::cout << "history " << history.rows() << " rows of "
             << count(static_cast<int>(history.content().channels.size()), "channel");

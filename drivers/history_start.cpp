@@ -89,21 +89,28 @@ void set_azimuth(model::Turbine& turbine, double azimuth) {
     for (model::BeamLoad& load : blade.loads) turn(load.history);
 }
 
-TransientStart checkpoint_of(const std::string& path, const io::HistoryContent& content,
-                             const system::TurbineSystem& system) {
-  if (!content.checkpoint)
-    throw InputError(path + ": has no checkpoint; hint: transient.checkpoint sets their distance");
-  if (content.checkpoint->z.size() != system.size())
-    throw InputError(path + ": its state has " + std::to_string(content.checkpoint->z.size()) +
+io::HistoryCheckpoint checkpoint_of(const std::string& path, const io::HistoryReader& history,
+                                    const system::TurbineSystem& system, Progress& progress) {
+  if (!history.damage().empty()) progress.note(history.damage());
+  if (history.content().checkpoints.empty())
+    throw InputError(path + (history.damage().empty()
+                                 ? ": has no checkpoint; hint: transient.checkpoint sets their "
+                                   "distance"
+                                 : ": no checkpoint is left before the damage"));
+  const io::HistoryCheckpoint& last = history.content().checkpoints.back();
+  if (last.point.z.size() != system.size())
+    throw InputError(path + ": its state has " + std::to_string(last.point.z.size()) +
                      " unknowns, the model " + std::to_string(system.size()));
-  return *content.checkpoint;
+  return last;
 }
 
-HistoryStart restart(const Job& job, const system::TurbineSystem& system) {
+HistoryStart restart(const Job& job, const system::TurbineSystem& system, Progress& progress) {
   const io::HistoryReader history(job.restart_path);
   const io::HistoryContent& content = history.content();
   require_same_model(job.restart_path, content.model, job.input.model_text, false);
-  const TransientStart point = checkpoint_of(job.restart_path, content, system);
+  const io::HistoryCheckpoint checkpoint =
+      checkpoint_of(job.restart_path, history, system, progress);
+  const TransientStart& point = checkpoint.point;
   const analysis::TransientOptions& options = job.input.transient.options;
   const double grid = point.origin + static_cast<double>(point.step) * options.step;
   if (std::abs(grid - point.time) > 1e-9 * options.step)
@@ -120,11 +127,11 @@ HistoryStart restart(const Job& job, const system::TurbineSystem& system) {
   if (point.time >= point.origin + options.duration * (1.0 - 1e-12))
     throw InputError(job.restart_path + ": reaches to t = " + general(point.time, 6) +
                      " s already; hint: a longer transient.duration");
-  if (content.checkpoint_events.size() != job.input.transient.events.size())
+  if (checkpoint.events.size() != job.input.transient.events.size())
     throw InputError(job.restart_path +
                      ": was run with other transient.events; hint: transient.start: " +
                      job.restart_path + " takes new ones");
-  HistoryStart start{point, content.checkpoint_events, system.turbine(), content.is_generator_lost};
+  HistoryStart start{point, checkpoint.events, system.turbine(), content.is_generator_lost};
   set_azimuth(start.turbine, content.azimuth.value_or(system.turbine().azimuth));
   start.turbine.chain.brake_torque = content.brake_torque;
   if (start.is_generator_lost) start.turbine.chain.generator_torque = {};
@@ -175,8 +182,13 @@ HistoryStart start_behind(const std::string& path, const io::Case& before, const
   model::Turbine there = operated_turbine(before);
   set_azimuth(there, content.azimuth.value_or(there.azimuth));
   there.chain.brake_torque = content.brake_torque;
-  const model::Turbine last = turbine_after(before.transient, there, content.checkpoint_events);
-  HistoryStart start{checkpoint_of(path, content, system), {}, system.turbine()};
+  const io::HistoryCheckpoint checkpoint = checkpoint_of(path, history, system, progress);
+  if (checkpoint.events.size() != before.transient.events.size())
+    throw InputError(path + ": /transient/checkpoint/event_time has " +
+                     std::to_string(checkpoint.events.size()) + " times, its case has " +
+                     std::to_string(before.transient.events.size()) + " events");
+  const model::Turbine last = turbine_after(before.transient, there, checkpoint.events);
+  HistoryStart start{checkpoint.point, {}, system.turbine()};
   TransientStart& point = start.point;
   set_azimuth(start.turbine, last.turning_at(point.time).value);
   require_same_motion(path, last, point.time, start.turbine);
@@ -184,7 +196,7 @@ HistoryStart start_behind(const std::string& path, const io::Case& before, const
   const bool is_braked = last.chain.brake_torque > 0.0;
   start.turbine.chain.brake_torque = last.chain.brake_torque;
   start.is_generator_lost =
-      content.is_generator_lost || is_generator_lost(before.transient, content.checkpoint_events);
+      content.is_generator_lost || is_generator_lost(before.transient, checkpoint.events);
   if (start.is_generator_lost) start.turbine.chain.generator_torque = {};
   if (start.is_generator_lost || is_braked)
     progress.note(path + " left " + (start.is_generator_lost ? "its generator lost" : "") +
@@ -240,7 +252,7 @@ HistoryStart start_from(const std::string& path, const io::Case& input,
 HistoryStart find_history_start(const Job& job, const system::TurbineSystem& system,
                                 Progress& progress) {
   const io::TransientCase& transient = job.input.transient;
-  if (!job.restart_path.empty()) return restart(job, system);
+  if (!job.restart_path.empty()) return restart(job, system, progress);
   switch (transient.start) {
     case io::TransientOrigin::undeformed:
       return {analysis::start_undeformed(system, 0.0), {}, system.turbine()};

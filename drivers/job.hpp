@@ -2,22 +2,25 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "samara/io/case.hpp"
+#include "samara/io/file_lock.hpp"
 #include "samara/io/result_file.hpp"
 
 namespace samara::drivers {
 
 struct Job {
   io::Case input;
-  std::string command_line;  ///< as typed
-  std::string result_path;   ///< empty: no result is wanted
-  std::string csv_path;      ///< empty: no table is wanted
-  bool all_modes = false;    ///< also those that are not resolved are listed
-  int first_modes = 0;       ///< so many rows are listed; 0: all
-  std::string restart_path;  ///< empty: the run starts at its beginning
+  std::string command_line;            ///< as typed
+  std::string result_path;             ///< empty: no result is wanted
+  std::string csv_path;                ///< empty: no table is wanted
+  std::shared_ptr<io::FileLock> lock;  ///< on the result; only the first rank has it
+  bool all_modes = false;              ///< also those that are not resolved are listed
+  int first_modes = 0;                 ///< so many rows are listed; 0: all
+  std::string restart_path;            ///< empty: the run starts at its beginning
   /// Of a command that reads results: these; `input` is the case of the first.
   std::vector<std::string> sources;
   std::vector<std::string> settings;  ///< its own --set arguments, which are no keys of the case

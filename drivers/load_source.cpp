@@ -113,6 +113,7 @@ LoadSource read_history(const std::string& path, const io::LoadOptions& options)
   const io::HistoryReader history(path);
   if (history.content().status != "complete")
     std::cerr << "note: " << path << ": " << history.content().status << "\n";
+  if (!history.damage().empty()) std::cerr << "note: " << history.damage() << "\n";
   const std::vector<Channel>& all = history.content().channels;
   const Columns columns = choose_columns(path, all, options);
   LoadSource source = make_source(path, all, columns);

@@ -5,12 +5,14 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <sstream>
 
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
 #include "samara/io/case.hpp"
+#include "samara/io/file_lock.hpp"
 #include "samara/io/result_file.hpp"
 #include "samara/io/result_reader.hpp"
 #include "samara/petsc/session.hpp"
@@ -199,6 +201,16 @@ Job prepare(const CommandLine& line) {
   return job;
 }
 
+/// From here on no other run writes the result.
+void lock_result(Job& job) {
+  if (Session::rank() != 0 || job.result_path.empty()) return;
+  job.lock = std::make_shared<io::FileLock>(job.result_path);
+  if (!job.lock->is_held())
+    std::cerr << "note: " << job.result_path
+              << ": its folder knows no locks; another run into the same result would not be "
+                 "noticed\n";
+}
+
 void report_unused_options() {
   const std::string unused = Session::unused_options();
   if (!unused.empty())
@@ -237,6 +249,8 @@ int run(const std::vector<std::string>& arguments) {
   const Session session(line.petsc_options);
   if (const int code = session.agree(outcome.code, outcome.message)) return code;
   if (converts) return 0;
+  outcome = attempt(line.case_path, [&] { lock_result(job); });
+  if (const int code = session.agree(outcome.code, outcome.message)) return code;
   outcome = attempt(line.case_path, [&] { line.command->run(job); });
   const int code = session.agree(outcome.code, outcome.message);
   if (code == 0 && Session::rank() == 0) report_unused_options();

@@ -196,8 +196,11 @@ void run_transient(const Job& job) {
   } catch (const std::exception& error) {
     progress.finish();
     if (recorder.has_rows()) {
-      file.finish(std::string("failed: ") + error.what(), nullptr);
-      std::cerr << "samara: what was computed is in " << job.result_path << "\n";
+      const bool is_written = file.finish_failed(std::string("failed: ") + error.what());
+      std::cerr << "samara: "
+                << (is_written ? "what was computed is in "
+                               : "the last rows are lost; others may be in ")
+                << job.result_path << "\n";
     }
     throw;
   }

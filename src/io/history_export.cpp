@@ -221,6 +221,12 @@ std::vector<char> joined_result(const std::string& source, const HistoryReader& 
   });
   file.write(history_segment_file, std::vector<std::string>{}, meaning_of_segment_file());
   file.write(history_segment_rows, std::vector<int>{}, meaning_of_segment_rows());
+  if (!history.damage().empty()) {  // checkpoints that the rows do not reach go
+    const Hdf5Reader before(source);
+    for (const std::string group : history_checkpoints)
+      if (before.has(group)) file.remove(group);
+    write_checkpoints(file, history.content().checkpoints);
+  }
   return file.image();
 }
 

@@ -6,7 +6,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <random>
+#include <regex>
 #include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "samara/base/error.hpp"
 #include "samara/io/whole_file.hpp"
@@ -25,6 +29,16 @@ constexpr std::chrono::seconds segment_time{2};
 /// Values that are gathered at the most (64 MB).
 constexpr std::size_t segment_values = std::size_t{8} << 20;
 
+/// Of the file that keeps room, behind the run's name.
+constexpr const char* room_ending = ".room";
+constexpr std::uintmax_t least_room = std::uintmax_t{1} << 20;
+
+/// RUN-000001.h5, RUN of eight hexadecimal digits.
+bool is_segment_name(const std::string& name) {
+  static const std::regex pattern("[0-9a-f]{8}-[0-9]{6,}\\.h5");
+  return std::regex_match(name, pattern);
+}
+
 std::string new_run_name() {
   std::random_device random;
   std::array<char, 16> text{};
@@ -36,7 +50,7 @@ std::string new_run_name() {
 
 HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
                          HistoryContent content, std::function<void(ResultFile&)> write_rest)
-    : path_(std::move(path)),
+    : path_(resolved_path(path)),
       input_(input),
       record_(std::move(record)),
       write_rest_(std::move(write_rest)),
@@ -45,7 +59,10 @@ HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
       due_(std::chrono::steady_clock::now() + segment_time) {
   content_.model = input.model_text;
   content_.status = "running";
+  note_replaced();
 }
+
+HistoryFile::~HistoryFile() { give_room(); }
 
 void HistoryFile::resume() {
   const HistoryReader before(path_);
@@ -54,22 +71,21 @@ void HistoryFile::resume() {
   if (!std::ranges::equal(old.channels, content_.channels, {}, name_of, name_of))
     throw InputError(path_ +
                      ": has other channels than this run; hint: -o gives the result another name");
-  content_.checkpoint = old.checkpoint;
-  content_.checkpoint_rows = old.checkpoint_rows;
-  content_.checkpoint_events = old.checkpoint_events;
+  if (old.checkpoints.empty()) throw InternalError(path_ + ": has no checkpoint to resume from");
+  content_.checkpoints = old.checkpoints;
+  const std::size_t reached = old.checkpoints.back().rows;
   if (old.segments.empty()) {
-    content_.time = before.read_time(0, old.checkpoint_rows);
-    content_.values = before.read_values(0, old.checkpoint_rows);
-    rows_ = old.checkpoint_rows;
+    content_.time = before.read_time(0, reached);
+    content_.values = before.read_values(0, reached);
+    rows_ = reached;
     return;
   }
   for (const HistorySegment& segment : old.segments) {
-    if (rows_ + segment.rows > old.checkpoint_rows) break;
+    if (rows_ + segment.rows > reached) break;
     content_.segments.push_back(segment);
     rows_ += segment.rows;
   }
-  if (rows_ != old.checkpoint_rows)
-    throw InputError(path_ + ": its segments do not end at its checkpoint");
+  if (rows_ != reached) throw InputError(path_ + ": its segments do not end at its checkpoint");
 }
 
 void HistoryFile::append(double t, std::span<const double> values) {
@@ -83,43 +99,62 @@ void HistoryFile::append(double t, std::span<const double> values) {
 
 void HistoryFile::write_checkpoint(const analysis::TransientStart& point) {
   close_segment();
-  content_.checkpoint = point;
-  content_.checkpoint_rows = rows_;
-  content_.checkpoint_events = events_;
+  add_checkpoint(point);
   publish();
+}
+
+void HistoryFile::add_checkpoint(const analysis::TransientStart& point) {
+  std::vector<HistoryCheckpoint>& kept = content_.checkpoints;
+  if (!kept.empty() && kept.back().rows == rows_) kept.pop_back();
+  kept.push_back({point, rows_, events_});
+  if (kept.size() > kept_checkpoints) kept.erase(kept.begin());
 }
 
 void HistoryFile::finish(const std::string& status, const analysis::TransientStart* end) {
+  give_room();
   if (!content_.segments.empty()) close_segment();
   content_.status = status;
-  if (end != nullptr) {
-    content_.checkpoint = *end;
-    content_.checkpoint_rows = rows_;
-    content_.checkpoint_events = events_;
-  }
+  if (end != nullptr) add_checkpoint(*end);
   publish();
-  remove_strangers();
 }
 
-std::string HistoryFile::folder_name() const { return fs::path(path_).stem().string() + ".parts"; }
+bool HistoryFile::finish_failed(const std::string& status) noexcept {
+  give_room();
+  try {
+    content_.status = status;
+    if (!content_.segments.empty()) {
+      publish();
+      close_segment();
+    }
+    publish();
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+std::string HistoryFile::folder_name() const {
+  return fs::path(path_).filename().string() + ".parts";
+}
+
+fs::path HistoryFile::folder() const { return fs::path(path_).parent_path() / folder_name(); }
 
 void HistoryFile::close_segment() {
   due_ = std::chrono::steady_clock::now() + segment_time;
   if (content_.time.empty()) return;
-  const fs::path folder = fs::path(path_).parent_path() / folder_name();
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InternalError(folder.string() + ": cannot be made: " + error.message());
+  fs::create_directories(folder(), error);
+  if (error) throw InternalError(folder().string() + ": cannot be made: " + error.message());
   std::array<char, 32> number{};
   std::snprintf(number.data(), number.size(), "-%06d.h5", next_segment_++);
-  const std::string name = folder_name() + "/" + run_ + number.data();
+  const std::string name = run_ + number.data();
   Hdf5File file;
   const hsize_t rows = content_.time.size();
   file.write(history_time, content_.time, {rows}, meaning_of_history_time());
   file.write(history_values, content_.values, {rows, content_.channels.size()},
              {"see the result", "see the result", "[row, channel]"});
-  write_whole_file((fs::path(path_).parent_path() / name).string(), file.image());
-  content_.segments.push_back({name, content_.time.size()});
+  write_whole_file((folder() / name).string(), file.image());
+  content_.segments.push_back({folder_name() + "/" + name, content_.time.size()});
   content_.time.clear();
   content_.values.clear();
 }
@@ -129,21 +164,77 @@ void HistoryFile::publish() {
   write_rest_(file);
   file.write_history(content_);
   file.publish();
+  if (content_.status == "running") keep_room();
+  remove_replaced();
 }
 
-/// Segments that no result names: of runs that this one has taken the place of.
-void HistoryFile::remove_strangers() const {
-  const fs::path folder = fs::path(path_).parent_path() / folder_name();
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = folder_name() + "/" + entry.path().filename().string();
-    const bool is_named = std::ranges::any_of(
-        content_.segments, [&name](const HistorySegment& one) { return one.file == name; });
-    std::error_code ignored;
-    if (!is_named && entry.path().extension() == ".h5") fs::remove(entry.path(), ignored);
+/// Runs of which the result that stands at the path now has segments.
+void HistoryFile::note_replaced() {
+  if (!is_result(path_)) return;
+  try {
+    const Hdf5Reader file(path_);
+    if (!file.has(history_segment_file)) return;
+    for (const std::string& segment : file.texts(history_segment_file))
+      if (const fs::path name(segment);
+          name.parent_path() == folder_name() && is_segment_name(name.filename().string()))
+        replaced_.insert(name.filename().string().substr(0, run_.size()));
+  } catch (const InputError&) {
+    // A damaged result has no segments that could be told from others.
   }
-  fs::remove(folder, error);  // only where it is empty
 }
+
+/// Segments that this result does not name any more, of runs that the result at its path named
+/// before. Nothing else in the folder is touched.
+void HistoryFile::remove_replaced() {
+  if (replaced_.empty()) return;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder(), error)) {
+    const std::string name = entry.path().filename().string();
+    const std::string run = name.substr(0, run_.size());
+    if (!replaced_.contains(run) || !(is_segment_name(name) || name == run + room_ending)) continue;
+    const std::string listed = folder_name() + "/" + name;
+    const bool is_named = std::ranges::any_of(
+        content_.segments, [&listed](const HistorySegment& one) { return one.file == listed; });
+    std::error_code ignored;
+    if (!is_named) fs::remove(entry.path(), ignored);
+  }
+  replaced_.clear();
+  fs::remove(folder(), error);  // only where it is empty
+}
+
+/// Keeps room on the disk for a last version of the result, which says how the run ended.
+void HistoryFile::keep_room() {
+  if (content_.segments.empty()) return;
+  std::error_code error;
+  const auto size = static_cast<off_t>(std::max<std::uintmax_t>(
+      least_room, 2 * (fs::file_size(path_, error) + fs::file_size(path_, error) / 4)));
+  if (error || size <= room_) return;
+  const std::string place = (folder() / (run_ + room_ending)).string();
+  const int file = ::open(place.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) return;
+  if (::posix_fallocate(file, 0, size) == 0) room_ = size;
+  ::close(file);
+}
+
+void HistoryFile::give_room() noexcept {
+  if (room_ > 0) ::unlink((folder() / (run_ + room_ending)).c_str());
+  room_ = 0;
+}
+
+namespace {
+
+bool is_whole_segment(const std::string& path, std::size_t rows, std::size_t channels) {
+  if (!fs::exists(path)) return false;
+  try {
+    const Hdf5Reader file(path);
+    return file.shape(history_time) == std::vector<hsize_t>{rows} &&
+           file.shape(history_values) == std::vector<hsize_t>{rows, channels};
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
 
 class HistoryReader::Storage {
  public:
@@ -171,39 +262,60 @@ HistoryReader::HistoryReader(const std::string& path) {
     content_.brake_torque = file.number_attribute("/transient", "brake_torque");
   if (file.has_attribute("/transient", "generator_lost"))
     content_.is_generator_lost = file.number_attribute("/transient", "generator_lost") != 0.0;
-  const std::vector<std::string> segments = file.texts("/transient/segment_file");
-  const std::vector<double> counts = file.numbers("/transient/segment_rows");
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    content_.segments.push_back({segments[i], static_cast<std::size_t>(counts.at(i))});
-    const fs::path place = fs::path(path).parent_path() / segments[i];
-    const bool is_whole =
-        fs::exists(place) && Hdf5Reader(place.string()).has(history_values) &&
-        Hdf5Reader(place.string()).shape(history_values).at(0) == content_.segments.back().rows;
-    if (!is_whole)
-      throw InputError(path + ": its segment " + place.string() +
-                       " is missing or damaged; hint: the folder " +
-                       fs::path(segments[i]).parent_path().string() +
-                       " belongs to the file, samara export makes one of both");
-  }
+  read_segments(path);
+  read_checkpoints();
+}
+
+/// Of the segments those before the first that is missing or damaged.
+void HistoryReader::read_segments(const std::string& path) {
+  const Hdf5Reader& file = storage_->file;
   rows_ = file.shape(history_time).at(0);
-  if (!file.has("/transient/checkpoint/state")) return;
-  analysis::TransientStart point;
-  point.time = file.number_attribute("/transient/checkpoint", "time");
-  point.origin = file.number_attribute("/transient/checkpoint", "origin");
-  point.step = std::lround(file.number_attribute("/transient/checkpoint", "step"));
-  const std::vector<double> state = file.numbers("/transient/checkpoint/state");
-  point.z =
-      Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
-  if (file.has("/transient/checkpoint/rate")) {
-    const std::vector<double> rate = file.numbers("/transient/checkpoint/rate");
-    point.z_dot =
-        Eigen::Map<const Eigen::VectorXd>(rate.data(), static_cast<Eigen::Index>(rate.size()));
+  const std::vector<std::string> segments = file.texts(history_segment_file);
+  const std::vector<double> counts = file.numbers(history_segment_rows);
+  if (segments.empty()) return;
+  const fs::path folder = fs::path(resolved_path(path)).parent_path();
+  rows_ = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const auto rows = static_cast<std::size_t>(counts.at(i));
+    const fs::path place = folder / segments[i];
+    if (!is_whole_segment(place.string(), rows, content_.channels.size())) {
+      damage_ = path + ": its segment " + place.string() +
+                " is missing or damaged: " + std::to_string(rows_) + " of " +
+                std::to_string(file.shape(history_time).at(0)) +
+                " rows are left; hint: the folder " + fs::path(segments[i]).parent_path().string() +
+                " belongs to the file, samara export makes one of both";
+      if (rows_ == 0) throw InputError(damage_);
+      return;
+    }
+    content_.segments.push_back({segments[i], rows});
+    rows_ += rows;
   }
-  point.held = read_held_loads(file, "/transient/checkpoint");
-  content_.checkpoint = point;
-  content_.checkpoint_events = file.numbers("/transient/checkpoint/event_time");
-  content_.checkpoint_rows =
-      static_cast<std::size_t>(file.number_attribute("/transient/checkpoint", "rows"));
+}
+
+/// Those that the rows reach, the oldest first.
+void HistoryReader::read_checkpoints() {
+  const Hdf5Reader& file = storage_->file;
+  for (const std::string group : history_checkpoints) {
+    if (!file.has(group + "/state")) continue;
+    HistoryCheckpoint checkpoint;
+    analysis::TransientStart& point = checkpoint.point;
+    point.time = file.number_attribute(group, "time");
+    point.origin = file.number_attribute(group, "origin");
+    point.step = std::lround(file.number_attribute(group, "step"));
+    const std::vector<double> state = file.numbers(group + "/state");
+    point.z =
+        Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
+    if (file.has(group + "/rate")) {
+      const std::vector<double> rate = file.numbers(group + "/rate");
+      point.z_dot =
+          Eigen::Map<const Eigen::VectorXd>(rate.data(), static_cast<Eigen::Index>(rate.size()));
+    }
+    point.held = read_held_loads(file, group);
+    checkpoint.events = file.numbers(group + "/event_time");
+    checkpoint.rows = static_cast<std::size_t>(file.number_attribute(group, "rows"));
+    if (checkpoint.rows <= rows_)
+      content_.checkpoints.insert(content_.checkpoints.begin(), checkpoint);
+  }
 }
 
 HistoryReader::~HistoryReader() = default;

@@ -456,22 +456,31 @@ void ResultFile::write_history(const HistoryContent& history) {
   if (history.azimuth) file.set_attribute("/transient", "azimuth", *history.azimuth);
   file.set_attribute("/transient", "brake_torque", history.brake_torque);
   file.set_attribute("/transient", "generator_lost", history.is_generator_lost ? 1 : 0);
-  if (!history.checkpoint) return;
-  const analysis::TransientStart& point = *history.checkpoint;
-  const std::vector<double> state(point.z.data(), point.z.data() + point.z.size());
-  write_values("/transient/checkpoint/state", state,
+  write_checkpoints(file, history.checkpoints);
+}
+
+void write_checkpoints(Hdf5File& file, const std::vector<HistoryCheckpoint>& checkpoints) {
+  const std::size_t count = std::min(checkpoints.size(), history_checkpoints.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string group = history_checkpoints.at(i);
+    const HistoryCheckpoint& checkpoint = checkpoints[checkpoints.size() - 1 - i];
+    const analysis::TransientStart& point = checkpoint.point;
+    const std::span<const double> state(point.z.data(), static_cast<std::size_t>(point.z.size()));
+    file.write(group + "/state", state, {state.size()},
                {"of /model/unknowns/unit", unknown_frame, "from which the run can go on"});
-  if (point.z_dot.size() > 0)
-    write_values("/transient/checkpoint/rate", {point.z_dot.begin(), point.z_dot.end()},
+    const std::span<const double> rate(point.z_dot.data(),
+                                       static_cast<std::size_t>(point.z_dot.size()));
+    if (!rate.empty())
+      file.write(group + "/rate", rate, {rate.size()},
                  {"of /model/unknowns/unit, /s", unknown_frame, "of the state"});
-  write_values("/transient/checkpoint/event_time", history.checkpoint_events,
+    file.write(group + "/event_time", checkpoint.events, {checkpoint.events.size()},
                {"s", no_frame, "when each of transient.events came; not-a-number: not yet"});
-  write_held_loads(file, "/transient/checkpoint", point.held,
-                   "coordinates on which a constant load acts");
-  file.set_attribute("/transient/checkpoint", "time", point.time);
-  file.set_attribute("/transient/checkpoint", "origin", point.origin);
-  file.set_attribute("/transient/checkpoint", "step", static_cast<double>(point.step));
-  file.set_attribute("/transient/checkpoint", "rows", static_cast<double>(history.checkpoint_rows));
+    write_held_loads(file, group, point.held, "coordinates on which a constant load acts");
+    file.set_attribute(group, "time", point.time);
+    file.set_attribute(group, "origin", point.origin);
+    file.set_attribute(group, "step", static_cast<double>(point.step));
+    file.set_attribute(group, "rows", static_cast<double>(checkpoint.rows));
+  }
 }
 
 void ResultFile::write_floquet(const analysis::Floquet& floquet) {

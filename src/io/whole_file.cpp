@@ -2,7 +2,13 @@
 
 #include <array>
 #include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <utility>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "samara/base/error.hpp"
@@ -19,36 +25,71 @@ fs::path folder_of(const std::string& path) {
   return parent.empty() ? fs::path(".") : parent;
 }
 
+/// Of a new file, before the process's mask takes some away.
+constexpr mode_t readable_by_all = 0666;
+
+/// Waits until what was written is on the disk. Some file systems cannot, and say so.
+bool synchronize(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
+
+/// The same of the names in a folder: without it a crash of the machine may take a new name back,
+/// which loses nothing that was there before.
+void synchronize_folder(const fs::path& folder) {
+  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened < 0) return;
+  ::fsync(opened);
+  ::close(opened);
+}
+
 }  // namespace
 
-WholeFile::WholeFile(const std::string& path) : path_(path) {
-  const fs::path target(path);
-  const std::string name = "." + target.filename().string() + "." + std::to_string(::getpid());
-  temporary_ = target.parent_path() / (name + ".tmp");
-  errno = 0;
-  stream_.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!stream_) fail(std::error_code(errno, std::generic_category()));
+std::string resolved_path(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path target = fs::canonical(path, error);
+  return error ? path : target.string();
+}
+
+WholeFile::WholeFile(const std::string& path) : path_(path), target_(resolved_path(path)) {
+  // A name of its own, and no longer than others: `path` may be as long as names can be.
+  std::random_device random;
+  std::array<char, 32> name{};
+  for (int attempt = 0; file_ < 0; ++attempt) {
+    std::snprintf(name.data(), name.size(), ".samara-%08x%08x.tmp", static_cast<unsigned>(random()),
+                  static_cast<unsigned>(random()));
+    temporary_ = folder_of(target_) / name.data();
+    file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, readable_by_all);
+    if (file_ < 0 && (errno != EEXIST || attempt == 8)) {
+      const std::error_code error(errno, std::generic_category());
+      temporary_.clear();
+      fail(error);
+    }
+  }
 }
 
 WholeFile::~WholeFile() {
-  stream_.close();
+  if (file_ >= 0) ::close(file_);
   std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);
 }
 
 void WholeFile::write(std::span<const char> piece) {
-  errno = 0;
-  stream_.write(piece.data(), static_cast<std::streamsize>(piece.size()));
-  if (!stream_) fail(std::error_code(errno, std::generic_category()));
+  while (!piece.empty()) {
+    const ssize_t written = ::write(file_, piece.data(), piece.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(std::error_code(errno, std::generic_category()));
+    piece = piece.subspan(static_cast<std::size_t>(written));
+  }
 }
 
 void WholeFile::publish() {
-  errno = 0;
-  stream_.close();
-  if (!stream_) fail(std::error_code(errno, std::generic_category()));
-  std::error_code error;
-  fs::rename(temporary_, path_, error);
-  if (error) fail(error);
+  if (!synchronize(file_)) fail(std::error_code(errno, std::generic_category()));
+  const int closing = std::exchange(file_, -1);
+  if (::close(closing) != 0 && errno != EINTR)
+    fail(std::error_code(errno, std::generic_category()));
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0)
+    fail(std::error_code(errno, std::generic_category()));
+  temporary_.clear();
+  synchronize_folder(folder_of(target_));
 }
 
 void WholeFile::fail(const std::error_code& error) const {
@@ -72,6 +113,11 @@ bool require_writable(const std::string& path) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     throw InputError(path + ": no permission to write in " + folder.string() +
                      "; hint: -o names another place");
+  const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  const std::size_t length = fs::path(path).filename().string().size();
+  if (longest > 0 && length > static_cast<std::size_t>(longest))
+    throw InputError(path + ": the name has " + std::to_string(length) + " bytes, and " +
+                     folder.string() + " takes " + std::to_string(longest));
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status))
     throw InputError(path + ": a folder; hint: give the name of a file in it");
@@ -88,6 +134,8 @@ std::string read_whole_file(const std::string& path, std::size_t megabytes,
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) throw InputError(path + ": no such file");
   if (fs::is_directory(status)) throw InputError(path + ": a directory, expected a " + kind);
+  if (!fs::is_regular_file(status) && status.type() != fs::file_type::unknown)
+    throw InputError(path + ": not a plain file, expected a " + kind);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path + ": cannot be opened for reading");
   std::string text;

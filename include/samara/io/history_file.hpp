@@ -1,17 +1,24 @@
 // Time histories on disk while they grow.
 //
 // Rows are gathered and every few seconds closed away as a segment, a complete HDF5 file of its own
-// in the folder RESULT.parts beside RESULT.h5. The result is then written anew: it names the
+// in the folder RESULT.h5.parts beside RESULT.h5. The result is then written anew: it names the
 // segments and shows them as one (virtual) dataset, so that at any moment, whatever happens to the
 // run, it is a complete file of all rows but the last seconds'. A run that is over before the first
 // segment is due leaves one file.
 //
-// Serial: one rank writes.
+// Segments and results are on the disk (fsync) before anything names them. Of the folder only
+// segments of runs that the result named before are ever removed.
+//
+// Serial: one rank writes, and holds a FileLock on the result.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +35,16 @@ struct HistorySegment {
   std::size_t rows = 0;
 };
 
+/// A result that has lost its last rows can still go on from the one before.
+inline constexpr std::size_t kept_checkpoints = 2;
+
+/// From where a history can go on.
+struct HistoryCheckpoint {
+  analysis::TransientStart point;
+  std::size_t rows = 0;        ///< of the history up to it
+  std::vector<double> events;  ///< when each event came [s]; not-a-number: not yet
+};
+
 /// What the result says of a history.
 struct HistoryContent {
   std::vector<system::Channel> channels;
@@ -38,10 +55,8 @@ struct HistoryContent {
   std::optional<double> azimuth;   ///< of blade 1 at t = 0 [rad]; none: that of the case
   double brake_torque = 0.0;       ///< that acts from the start [N m]
   bool is_generator_lost = false;  ///< from the start
-  std::optional<analysis::TransientStart> checkpoint;
-  std::size_t checkpoint_rows = 0;        ///< rows up to the checkpoint
-  std::vector<double> checkpoint_events;  ///< when each event came [s]; not-a-number: not yet
-  std::string status;                     ///< "running", "complete", "interrupted", "failed: ..."
+  std::vector<HistoryCheckpoint> checkpoints;  ///< the last ones, `kept_checkpoints` at the most
+  std::string status;  ///< "running", "complete", "interrupted", "failed: ..."
 };
 
 class HistoryFile {
@@ -50,13 +65,16 @@ class HistoryFile {
   /// version of the result what else belongs in it.
   HistoryFile(std::string path, const Case& input, RunRecord record, HistoryContent content,
               std::function<void(ResultFile&)> write_rest);
+  ~HistoryFile();
+  HistoryFile(const HistoryFile&) = delete;
+  HistoryFile& operator=(const HistoryFile&) = delete;
 
   /// Goes on with the history that is in the result already, up to its checkpoint.
   void resume();
 
   void append(double t, std::span<const double> values);
 
-  /// All rows so far and the point to go on from are safe when it returns.
+  /// All rows so far and the point to go on from are on the disk when it returns.
   void write_checkpoint(const analysis::TransientStart& point);
 
   /// When the events came, for the checkpoints from now on.
@@ -65,11 +83,20 @@ class HistoryFile {
   /// Writes what is left. `end`: from which the history can go on, where there is such a point.
   void finish(const std::string& status, const analysis::TransientStart* end);
 
+  /// The same after a failure, which may be that nothing can be written any more: first the status,
+  /// in room that was kept for it, then the rows. Returns whether all is written.
+  bool finish_failed(const std::string& status) noexcept;
+
  private:
+  void add_checkpoint(const analysis::TransientStart& point);
+  void note_replaced();
+  void keep_room();
+  void give_room() noexcept;
   void close_segment();
   void publish();
-  void remove_strangers() const;
+  void remove_replaced();
   std::string folder_name() const;
+  std::filesystem::path folder() const;
 
   std::string path_;
   const Case& input_;
@@ -79,14 +106,18 @@ class HistoryFile {
   std::size_t rows_ = 0;
   std::vector<double> events_;
   std::string run_;  ///< starts the names of the segments of this run
+  std::set<std::string>
+      replaced_;  ///< the same of runs whose result this one has taken the place of
   int next_segment_ = 1;
   std::chrono::steady_clock::time_point due_;
+  std::int64_t room_ = 0;  ///< bytes that are kept on the disk for the end
 };
 
-/// Reads the history of a result.
+/// Reads the history of a result: where a segment is missing or damaged, up to that one, and with
+/// the checkpoints that its rows reach.
 class HistoryReader {
  public:
-  /// @throws InputError where there is none, or a segment is missing, damaged or from another run
+  /// @throws InputError where there is none
   explicit HistoryReader(const std::string& path);
   ~HistoryReader();
   HistoryReader(const HistoryReader&) = delete;
@@ -94,15 +125,22 @@ class HistoryReader {
 
   const HistoryContent& content() const { return content_; }
   std::size_t rows() const { return rows_; }
+  /// What is missing, in words for a note; empty where all is there.
+  const std::string& damage() const { return damage_; }
   /// Rows first to first + count of the times, and of the values row by row.
   std::vector<double> read_time(std::size_t first, std::size_t count) const;
   std::vector<double> read_values(std::size_t first, std::size_t count) const;
 
  private:
   class Storage;
+
+  void read_segments(const std::string& path);
+  void read_checkpoints();
+
   std::unique_ptr<Storage> storage_;
   HistoryContent content_;
   std::size_t rows_ = 0;
+  std::string damage_;
 };
 
 }  // namespace samara::io

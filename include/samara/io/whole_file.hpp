@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <system_error>
@@ -13,8 +12,12 @@ namespace samara::io {
 /// True where both paths lead to the same file, or will once there is one.
 bool is_same_file(const std::string& a, const std::string& b);
 
+/// Where a file goes that is written at `path`: the target of a symbolic link, which stays.
+std::string resolved_path(const std::string& path);
+
 /// A file that is written piece by piece: a temporary file in the folder of `path`, which takes
-/// that name in the end. Where anything fails it is removed, and what was at `path` stays.
+/// that name in the end, when all of it is on the disk (fsync). Where anything fails it is removed,
+/// and what was at `path` stays.
 class WholeFile {
  public:
   /// @throws InternalError as all members do
@@ -31,8 +34,9 @@ class WholeFile {
   void fail(const std::error_code& error) const;
 
   std::string path_;
-  std::filesystem::path temporary_;
-  std::ofstream stream_;
+  std::string target_;
+  std::filesystem::path temporary_;  ///< empty once it has its name
+  int file_ = -1;
 };
 
 /// The same at once.
