@@ -91,12 +91,12 @@ void set_azimuth(model::Turbine& turbine, double azimuth) {
 
 io::HistoryCheckpoint checkpoint_of(const std::string& path, const io::HistoryReader& history,
                                     const system::TurbineSystem& system, Progress& progress) {
-  if (!history.damage().empty()) progress.note(history.damage());
   if (history.content().checkpoints.empty())
-    throw InputError(path + (history.damage().empty()
-                                 ? ": has no checkpoint; hint: transient.checkpoint sets their "
-                                   "distance"
-                                 : ": no checkpoint is left before the damage"));
+    throw InputError(history.damage().empty()
+                         ? path +
+                               ": has no checkpoint; hint: transient.checkpoint sets their distance"
+                         : history.damage() + ", and no checkpoint");
+  if (!history.damage().empty()) progress.note(history.damage());
   const io::HistoryCheckpoint& last = history.content().checkpoints.back();
   if (last.point.z.size() != system.size())
     throw InputError(path + ": its state has " + std::to_string(last.point.z.size()) +

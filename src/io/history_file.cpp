@@ -59,6 +59,12 @@ HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
       due_(std::chrono::steady_clock::now() + segment_time) {
   content_.model = input.model_text;
   content_.status = "running";
+  const long longest = ::pathconf(
+      folder().parent_path().empty() ? "." : folder().parent_path().c_str(), _PC_NAME_MAX);
+  if (longest > 0 && folder_name().size() > static_cast<std::size_t>(longest))
+    throw InputError(path_ + ": the name of its folder " + folder_name() + " would have " +
+                     std::to_string(folder_name().size()) + " bytes of " + std::to_string(longest) +
+                     "; hint: -o gives the result a shorter name");
   note_replaced();
 }
 
@@ -143,7 +149,7 @@ void HistoryFile::close_segment() {
   due_ = std::chrono::steady_clock::now() + segment_time;
   if (content_.time.empty()) return;
   std::error_code error;
-  fs::create_directories(folder(), error);
+  fs::create_directory(folder(), error);
   if (error) throw InternalError(folder().string() + ": cannot be made: " + error.message());
   std::array<char, 32> number{};
   std::snprintf(number.data(), number.size(), "-%06d.h5", next_segment_++);
@@ -266,30 +272,36 @@ HistoryReader::HistoryReader(const std::string& path) {
   read_checkpoints();
 }
 
-/// Of the segments those before the first that is missing or damaged.
+/// Of the segments those before the last ones that are missing or damaged, as a machine that goes
+/// down may leave them.
 void HistoryReader::read_segments(const std::string& path) {
   const Hdf5Reader& file = storage_->file;
   rows_ = file.shape(history_time).at(0);
   const std::vector<std::string> segments = file.texts(history_segment_file);
   const std::vector<double> counts = file.numbers(history_segment_rows);
   if (segments.empty()) return;
+  const std::size_t all = rows_;
   const fs::path folder = fs::path(resolved_path(path)).parent_path();
   rows_ = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const auto rows = static_cast<std::size_t>(counts.at(i));
     const fs::path place = folder / segments[i];
-    if (!is_whole_segment(place.string(), rows, content_.channels.size())) {
-      damage_ = path + ": its segment " + place.string() +
-                " is missing or damaged: " + std::to_string(rows_) + " of " +
-                std::to_string(file.shape(history_time).at(0)) +
-                " rows are left; hint: the folder " + fs::path(segments[i]).parent_path().string() +
-                " belongs to the file, samara export makes one of both";
-      if (rows_ == 0) throw InputError(damage_);
-      return;
+    const bool is_whole = is_whole_segment(place.string(), rows, content_.channels.size());
+    if (is_whole && damage_.empty()) {
+      content_.segments.push_back({segments[i], rows});
+      rows_ += rows;
+    } else if (damage_.empty()) {
+      damage_ = path + ": its segment " + place.string() + " is missing or damaged";
+    } else if (is_whole) {
+      rows_ = 0;  // a gap
     }
-    content_.segments.push_back({segments[i], rows});
-    rows_ += rows;
+    if (!damage_.empty() && rows_ == 0)
+      throw InputError(damage_ + "; hint: the folder " +
+                       fs::path(segments[i]).parent_path().string() +
+                       " belongs to the file, samara export makes one of both");
   }
+  if (!damage_.empty())
+    damage_ += ": " + std::to_string(rows_) + " of " + std::to_string(all) + " rows are left";
 }
 
 /// Those that the rows reach, the oldest first.

@@ -25,6 +25,16 @@ fs::path folder_of(const std::string& path) {
   return parent.empty() ? fs::path(".") : parent;
 }
 
+/// No longer than others: the file itself may have as long a name as names can be.
+std::string temporary_name() {
+  std::random_device random;
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), ".samara-%08x%08x.tmp", static_cast<unsigned>(random()),
+                static_cast<unsigned>(random()));
+  return name.data();
+}
+constexpr int most_attempts = 8;
+
 /// Of a new file, before the process's mask takes some away.
 constexpr mode_t readable_by_all = 0666;
 
@@ -50,19 +60,17 @@ std::string resolved_path(const std::string& path) {
 }
 
 WholeFile::WholeFile(const std::string& path) : path_(path), target_(resolved_path(path)) {
-  // A name of its own, and no longer than others: `path` may be as long as names can be.
-  std::random_device random;
-  std::array<char, 32> name{};
+  const fs::path folder = folder_of(target_);
+  // Without a name, so that nothing is left of it whatever ends the process.
+  if (::access("/proc/self/fd", X_OK) == 0)  // where it will get its name from
+    file_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, readable_by_all);
   for (int attempt = 0; file_ < 0; ++attempt) {
-    std::snprintf(name.data(), name.size(), ".samara-%08x%08x.tmp", static_cast<unsigned>(random()),
-                  static_cast<unsigned>(random()));
-    temporary_ = folder_of(target_) / name.data();
+    temporary_ = folder / temporary_name();
     file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, readable_by_all);
-    if (file_ < 0 && (errno != EEXIST || attempt == 8)) {
-      const std::error_code error(errno, std::generic_category());
-      temporary_.clear();
-      fail(error);
-    }
+    if (file_ >= 0 || (errno == EEXIST && attempt < most_attempts)) continue;
+    const std::error_code error(errno, std::generic_category());
+    temporary_.clear();
+    fail(error);
   }
 }
 
@@ -82,12 +90,23 @@ void WholeFile::write(std::span<const char> piece) {
 }
 
 void WholeFile::publish() {
-  if (!synchronize(file_)) fail(std::error_code(errno, std::generic_category()));
+  const auto require = [this](bool done) {
+    if (!done) fail(std::error_code(errno, std::generic_category()));
+  };
+  require(synchronize(file_));
+  if (temporary_.empty()) {
+    const std::string unnamed = "/proc/self/fd/" + std::to_string(file_);
+    for (int attempt = 0; temporary_.empty(); ++attempt) {
+      const fs::path name = folder_of(target_) / temporary_name();
+      if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+        temporary_ = name;
+      else
+        require(errno == EEXIST && attempt < most_attempts);
+    }
+  }
   const int closing = std::exchange(file_, -1);
-  if (::close(closing) != 0 && errno != EINTR)
-    fail(std::error_code(errno, std::generic_category()));
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0)
-    fail(std::error_code(errno, std::generic_category()));
+  require(::close(closing) == 0 || errno == EINTR);
+  require(::rename(temporary_.c_str(), target_.c_str()) == 0);
   temporary_.clear();
   synchronize_folder(folder_of(target_));
 }

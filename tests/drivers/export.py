@@ -50,14 +50,14 @@ class Formats(ExportTest):
 
     def test_the_joined_result_is_the_same_without_its_parts(self):
         self.run_transient("a.h5")
-        self.assertGreater(len(list((self.folder / "a.parts").iterdir())), 2)
+        self.assertGreater(len(list((self.folder / "a.h5.parts").iterdir())), 2)
         self.succeed("export", "a.h5", "-o", "b.h5")
         expected = {}
         with h5py.File(self.folder / "a.h5") as file:
             file.visititems(lambda name, item: expected.update({name: (
                 item[()] if isinstance(item, h5py.Dataset) else None, dict(item.attrs))}))
             root = dict(file.attrs)
-        shutil.rmtree(self.folder / "a.parts")
+        shutil.rmtree(self.folder / "a.h5.parts")
         found = []
         with h5py.File(self.folder / "b.h5") as file:
             self.assertEqual({**root}, dict(file.attrs))
@@ -78,7 +78,7 @@ class Formats(ExportTest):
         self.run_transient("whole.h5", duration=3)
         self.run_transient("a.h5")
         self.succeed("export", "a.h5", "-o", "b.h5")
-        shutil.rmtree(self.folder / "a.parts")
+        shutil.rmtree(self.folder / "a.h5.parts")
         (self.folder / "a.h5").unlink()
         self.run_transient("b.h5", "--restart", "b.h5", duration=3)
         for a, b in zip(read_rows(self.folder / "b.h5"), read_rows(self.folder / "whole.h5")):
@@ -86,7 +86,7 @@ class Formats(ExportTest):
 
     def test_a_result_without_segments_is_copied(self):
         self.run_transient("a.h5", duration=0.1, checkpoint="none")
-        self.assertFalse((self.folder / "a.parts").exists())
+        self.assertFalse((self.folder / "a.h5.parts").exists())
         self.succeed("export", "a.h5", "-o", "b.h5")
         self.assertEqual(self.files()["a.h5"], self.files()["b.h5"])
 
@@ -122,7 +122,7 @@ class Formats(ExportTest):
 class Refusals(ExportTest):
     def test_missing_and_damaged_segments(self):
         self.run_transient("a.h5")
-        segment = sorted((self.folder / "a.parts").iterdir())[1]
+        segment = sorted((self.folder / "a.h5.parts").iterdir())[1]
         content = segment.read_bytes()
         for damage, word in ((segment.unlink, "missing or damaged"),
                              (lambda: segment.write_bytes(content[:100]), segment.name)):

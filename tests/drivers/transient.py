@@ -160,7 +160,7 @@ class Restarts(ProgramTest):
     def test_segments_are_found_from_any_folder_and_missed_by_name(self):
         self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
                      *block(duration=2, step=0.01, checkpoint=0.5))
-        segments = sorted((self.folder / "a.parts").iterdir())
+        segments = sorted((self.folder / "a.h5.parts").iterdir())
         self.assertGreater(len(segments), 2)
         here = os.getcwd()
         os.chdir("/")

@@ -15,9 +15,9 @@ bool is_same_file(const std::string& a, const std::string& b);
 /// Where a file goes that is written at `path`: the target of a symbolic link, which stays.
 std::string resolved_path(const std::string& path);
 
-/// A file that is written piece by piece: a temporary file in the folder of `path`, which takes
-/// that name in the end, when all of it is on the disk (fsync). Where anything fails it is removed,
-/// and what was at `path` stays.
+/// A file that is written piece by piece: one without a name in the folder of `path` (a temporary
+/// file where the file system has none), which takes that name in the end, when all of it is on the
+/// disk (fsync). Where anything fails it is removed, and what was at `path` stays.
 class WholeFile {
  public:
   /// @throws InternalError as all members do
@@ -35,7 +35,7 @@ class WholeFile {
 
   std::string path_;
   std::string target_;
-  std::filesystem::path temporary_;  ///< empty once it has its name
+  std::filesystem::path temporary_;  ///< its name meanwhile, or empty
   int file_ = -1;
 };
 

@@ -1,0 +1,215 @@
+"""Faults of disks, machines and users: nothing that was promised is lost, nothing foreign touched."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import pathlib
+import time
+import unittest
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import LONGEST_RUN, MINIMAL, PROGRAM, ProgramTest  # noqa: E402
+
+
+def block(duration, checkpoint=0.5, channels="RotSpeed, RootMxb1"):
+    return ["--set", f"transient={{duration: {duration}, step: 0.01, start: undeformed, checkpoint: "
+                     f"{checkpoint}, output: {{channels: [{channels}]}}}}"]
+
+
+def history(path):
+    with h5py.File(path) as file:
+        group = file["transient"]
+        return group["time"][:], group["values"][:], group.attrs["status"]
+
+
+class FaultTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("case.yaml", MINIMAL)
+
+    def start(self, *arguments):
+        run = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(lambda: (run.kill(), run.wait(), run.stderr.close()))
+        return run
+
+    def wait_for(self, name):
+        end = time.monotonic() + LONGEST_RUN
+        while not (self.folder / name).exists():
+            self.assertLess(time.monotonic(), end, name)
+            time.sleep(0.02)
+
+    def names(self):
+        return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*"))
+
+
+class Locks(FaultTest):
+    def test_one_run_at_a_time_writes_a_result(self):
+        first = self.start("transient", "case.yaml", "-o", "r.h5", *block(1e5))
+        self.wait_for("r.h5")
+        before = (self.folder / "r.h5").stat().st_size
+        for command in ("transient", "modes", "trim"):
+            parked = ["--parked"] if command == "modes" else []
+            run = self.samara(command, "case.yaml", "-o", "r.h5", *parked, *block(1))
+            self.assertEqual(run.returncode, 2, run.stderr)
+            for word in ("r.h5: is being written by process", str(first.pid), "-o"):
+                self.assertIn(word, run.stderr)
+            self.assertNotIn("result:", run.stdout)
+        self.succeed("trim", "case.yaml", "-o", "other.h5")
+        self.assertGreaterEqual((self.folder / "r.h5").stat().st_size, before)
+        # A lock dies with its process, whatever is left of its file.
+        first.kill()
+        first.communicate()
+        self.assertIn(".r.h5.lock", self.names())
+        self.assertEqual(history(self.folder / "r.h5")[2], "running")
+        self.succeed("transient", "case.yaml", "-o", "r.h5", *block(1))
+        self.assertEqual(self.names(), ["case.yaml", "other.h5", "r.h5", "r.h5.parts",
+                                        *self.parts("r.h5")])
+        self.assertEqual(history(self.folder / "r.h5")[2], "complete")
+
+    def parts(self, name):
+        return [f"{name}.parts/{path.name}"
+                for path in sorted((self.folder / f"{name}.parts").iterdir())]
+
+    def test_a_symbolic_link_stays_and_its_target_is_locked(self):
+        (self.folder / "deep").mkdir()
+        self.succeed("trim", "case.yaml", "-o", "deep/r.h5")
+        (self.folder / "link.h5").symlink_to("deep/r.h5")
+        first = self.start("transient", "case.yaml", "-o", "deep/r.h5", *block(1e5))
+        self.wait_for("deep/r.h5.parts")
+        run = self.samara("trim", "case.yaml", "-o", "link.h5")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("is being written by", run.stderr)
+        first.kill()
+        first.communicate()
+        self.succeed("transient", "case.yaml", "-o", "link.h5", *block(1))
+        self.assertTrue((self.folder / "link.h5").is_symlink())
+        self.assertEqual(len(history(self.folder / "deep/r.h5")[0]), 101)
+        self.succeed("transient", "case.yaml", "-o", "link.h5", "--restart", "deep/r.h5", *block(2))
+        self.assertEqual(len(history(self.folder / "deep/r.h5")[0]), 201)
+        self.succeed("export", "link.h5", "-o", "x.csv")
+
+
+class Folders(FaultTest):
+    def test_results_of_one_stem_have_folders_of_their_own(self):
+        self.succeed("transient", "case.yaml", "-o", "wind12.5", *block(2))
+        before = history(self.folder / "wind12.5")
+        self.assertGreater(len(list((self.folder / "wind12.5.parts").iterdir())), 1)
+        self.succeed("transient", "case.yaml", "-o", "wind12.7", *block(1))
+        for a, b in zip(history(self.folder / "wind12.5"), before):
+            numpy.testing.assert_array_equal(a, b)
+
+    def test_foreign_files_in_the_folder_stay(self):
+        foreign = {"measured.h5": b"mine", "0123abcd-000001.h5": b"of another result", "a.txt": b""}
+        for name, content in foreign.items():
+            self.write(f"r.h5.parts/{name}", content)
+        for duration in (2, 0.1):
+            self.succeed("transient", "case.yaml", "-o", "r.h5", *block(duration, 0.5))
+        for name, content in foreign.items():
+            self.assertEqual((self.folder / "r.h5.parts" / name).read_bytes(), content)
+        # Of the run that was replaced nothing is left.
+        self.succeed("transient", "case.yaml", "-o", "r.h5", *block(0.1, "none"))
+        self.assertEqual(sorted(path.name for path in (self.folder / "r.h5.parts").iterdir()),
+                         sorted(foreign))
+
+    def test_names_may_be_as_long_as_names_can_be(self):
+        name = "a" * 252 + ".h5"
+        self.succeed("trim", "case.yaml", "-o", name)
+        self.assertEqual(self.names(), sorted([name, "case.yaml"]))
+        self.refuse("trim", "case.yaml", "-o", "a" + name, words=["256 bytes", "takes 255"])
+        self.refuse("transient", "case.yaml", "-o", name, *block(1), words=["shorter name"])
+        self.succeed("transient", "case.yaml", "-o", name[6:], *block(1))
+
+    def test_a_folder_that_goes_is_an_error_of_the_environment(self):
+        (self.folder / "out").mkdir()
+        run = self.start("transient", "case.yaml", "-o", "out/r.h5", *block(1e5))
+        self.wait_for("out/r.h5")
+        while (self.folder / "out").exists():  # it writes there meanwhile
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+        error = run.communicate(timeout=LONGEST_RUN)[1]
+        self.assertEqual(run.returncode, 1, error)
+        self.assertIn("out/r.h5", error)
+        self.assertNotIn("unexpected", error)
+
+
+class Damage(FaultTest):
+    """What a machine that goes down may leave of the last segments."""
+
+    def test_a_damaged_end_costs_no_more_than_its_rows(self):
+        self.succeed("transient", "case.yaml", "-o", "whole.h5", *block(4))
+        whole = history(self.folder / "whole.h5")
+        for lost in (1, 2):
+            for damage in ("truncated", "gone"):
+                with self.subTest(lost=lost, damage=damage):
+                    self.damage(lost, damage, whole)
+
+    def damage(self, lost, damage, whole):
+        shutil.rmtree(self.folder / "r.h5.parts", ignore_errors=True)
+        self.succeed("transient", "case.yaml", "-o", "r.h5", *block(2))
+        for segment in sorted((self.folder / "r.h5.parts").iterdir())[-lost:]:
+            if damage == "gone":
+                segment.unlink()
+            else:
+                segment.write_bytes(segment.read_bytes()[:500])
+        left = 201 - 50 * lost  # checkpoints every 50 rows end segments
+        run = self.succeed("export", "r.h5", "-o", "x.csv")
+        self.assertIn("is missing or damaged", run.stderr)
+        self.assertIn(f"{left} of 201 rows are left", run.stderr)
+        self.assertIn(f"{left} rows of 2 channels", run.stdout)
+        self.assertIn("is missing or damaged", self.succeed("loads", "r.h5").stderr)
+        self.succeed("export", "r.h5", "-o", "joined.h5")
+        for name in ("r.h5", "joined.h5"):
+            again = ["transient", "case.yaml", "-o", name, "--restart", name, *block(4)]
+            if lost > 1:  # the checkpoints are those of 1.5 and 2 s
+                self.refuse(*again, words=["no checkpoint"])
+                continue
+            self.succeed(*again)
+            for a, b in zip(history(self.folder / name), whole):
+                numpy.testing.assert_array_equal(a, b)
+
+    def test_a_gap_is_refused(self):
+        self.succeed("transient", "case.yaml", "-o", "r.h5", *block(2))
+        sorted((self.folder / "r.h5.parts").iterdir())[1].unlink()
+        self.refuse("export", "r.h5", "-o", "x.csv", words=["missing or damaged"])
+        shutil.rmtree(self.folder / "r.h5.parts")
+        self.refuse("loads", "r.h5", words=["missing or damaged", "belongs to the file"])
+
+
+class FullDisk(FaultTest):
+    def test_a_full_disk_leaves_a_result_that_says_so(self):
+        # A file system of its own, 4 MB; a user name space lets anyone mount it.
+        keys = block(2000, 5, "RotSpeed, RootMxb1, RootMyb1, RootMzb1, RootFxb1, RootFyb1")
+        script = ('mount -t tmpfs -o size=4m none small && cd small && '
+                  '"$@" ; code=$?; cp -a . ../kept; exit $code')
+        (self.folder / "small").mkdir()
+        command = ["unshare", "-rm", "bash", "-c", script, "-", PROGRAM, "transient",
+                   "../case.yaml", "-o", "r.h5", *keys]
+        if subprocess.run(["unshare", "-rm", "true"], check=False,
+                          capture_output=True).returncode:
+            self.skipTest("user name spaces are forbidden here")
+        run = subprocess.run(command, cwd=self.folder, capture_output=True, text=True,
+                             timeout=LONGEST_RUN, check=False)
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertIn("No space left on device", run.stderr)
+        times, values, status = history(self.folder / "kept/r.h5")
+        self.assertRegex(status, "^failed: .*No space left on device")
+        self.assertGreater(len(times), 1000)
+        self.assertTrue(numpy.isfinite(values).all())
+        names = [path.name for path in (self.folder / "kept").rglob("*")]
+        self.assertFalse([name for name in names if name.endswith((".tmp", ".room", ".lock"))], names)
+        # With room again it goes on.
+        end = int(times[-1]) + 20
+        self.succeed("transient", "case.yaml", "-o", "kept/r.h5", "--restart", "kept/r.h5",
+                     "--set", keys[1].replace("2000", str(end)))
+        times, values, status = history(self.folder / "kept/r.h5")
+        self.assertEqual(status, "complete")
+        self.assertEqual(len(times), 100 * end + 1)
+        self.assertTrue(numpy.isfinite(values).all())
+
+
+unittest.main()
