@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <sstream>
 #include <string_view>
 
 #include "samara/base/error.hpp"
@@ -13,6 +11,7 @@
 #include "samara/io/result_reader.hpp"
 
 #include "history_legs.hpp"
+#include "same_model.hpp"
 #include "table.hpp"
 #include "trim_accuracy.hpp"
 
@@ -23,55 +22,15 @@ using analysis::TransientStart;
 
 /// Keys in which a history may differ from the result that it starts from: what acts on the
 /// turbine, and motions, which are compared as they are at that instant.
-constexpr std::array<std::string_view, 7> free_keys{
+constexpr std::array<std::string_view, 8> acting_keys{
     "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator.torque",
-    "shaft.rotor", "shaft.speed", "blades.pitch_deg"};
+    "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each.*.pitch_deg"};
 /// Of motions at the start: rates relative to the largest, angles [rad].
 constexpr double motion_tolerance = 2e-6;
 
-/// Values by key, as lines `key: value` state them.
-using Keys = std::map<std::string, std::string>;
-
-Keys keys_of(const std::string& text) {
-  Keys keys;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) {
-    const std::size_t end = line.find(": ");
-    keys[line.substr(0, end)] = end == std::string::npos ? "" : line.substr(end + 2);
-  }
-  return keys;
-}
-
-bool is_free_key(const std::string& key) {
-  if (key.starts_with("blades.each") && key.ends_with(".pitch_deg")) return true;
-  return std::ranges::any_of(free_keys, [&key](std::string_view free) {
-    return key.starts_with(free) &&
-           (key.size() == free.size() ||
-            std::string_view("._[").find(key[free.size()]) != std::string_view::npos);
-  });
-}
-
-/// Refuses a result whose model differs in another key than the free ones, or in any.
-void require_same_model(const std::string& path, const std::string& there, const std::string& here,
-                        bool may_differ) {
-  const Keys a = keys_of(there);
-  const Keys b = keys_of(here);
-  const auto value_of = [](const Keys& keys, const std::string& key) {
-    const auto found = keys.find(key);
-    return found == keys.end() ? std::string("absent") : found->second;
-  };
-  Keys all = a;
-  all.insert(b.begin(), b.end());
-  for (const auto& [key, value] : all) {
-    if (value_of(a, key) == value_of(b, key) || (may_differ && is_free_key(key))) continue;
-    throw InputError(path + ": is of another model (" + key + ": " + value_of(a, key) + " there, " +
-                     value_of(b, key) + " here)");
-  }
-}
-
 /// The torque law of the generator.
-Keys law_of(const std::string& text) {
-  Keys keys = keys_of(text);
+ModelKeys law_of(const std::string& text) {
+  ModelKeys keys = model_keys(text);
   std::erase_if(keys,
                 [](const auto& one) { return !one.first.starts_with("shaft.generator.torque"); });
   return keys;
@@ -107,7 +66,7 @@ io::HistoryCheckpoint checkpoint_of(const std::string& path, const io::HistoryRe
 HistoryStart restart(const Job& job, const system::TurbineSystem& system, Progress& progress) {
   const io::HistoryReader history(job.restart_path);
   const io::HistoryContent& content = history.content();
-  require_same_model(job.restart_path, content.model, job.input.model_text, false);
+  require_same_model(job.restart_path, content.model, job.input.model_text);
   const io::HistoryCheckpoint checkpoint =
       checkpoint_of(job.restart_path, history, system, progress);
   const TransientStart& point = checkpoint.point;
@@ -232,7 +191,7 @@ HistoryStart start_on_steady_state(const std::string& path, const io::Case& befo
 HistoryStart start_from(const std::string& path, const io::Case& input,
                         const system::TurbineSystem& system, Progress& progress) {
   const io::Case before = io::read_result_case(path);
-  require_same_model(path, before.model_text, input.model_text, true);
+  require_same_model(path, before.model_text, input.model_text, acting_keys);
   const io::ResultKind kind = io::find_result_kind(path);
   if (kind == io::ResultKind::other)
     throw InputError(

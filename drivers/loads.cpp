@@ -1,15 +1,19 @@
 // samara loads: statistics, extreme events, harmonics, cycles and equivalent loads of results.
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "samara/base/error.hpp"
 #include "samara/base/words.hpp"
 #include "samara/io/load_result.hpp"
+#include "samara/io/result_reader.hpp"
 #include "samara/petsc/session.hpp"
 
 #include "commands.hpp"
 #include "load_source.hpp"
 #include "load_tables.hpp"
 #include "progress.hpp"
+#include "same_model.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -20,6 +24,21 @@ void check_hours(const std::vector<std::string>& sources, const io::LoadOptions&
                    std::to_string(options.hours.size()) +
                    " numbers; hint: hours=[...] says how long of the lifetime each result stands "
                    "for");
+}
+
+/// Keys in which the results of one lifetime may differ: what acts on the turbine, how it is
+/// operated, and what differs between blades.
+constexpr std::array<std::string_view, 10> operation_keys{
+    "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator",
+    "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each",
+    "nacelle.yaw", "hub.teeter"};
+
+/// The lifetime is that of one turbine.
+void require_one_turbine(const std::vector<std::string>& sources) {
+  const std::string first = io::read_result_case(sources.front()).model_text;
+  for (std::size_t i = 1; i < sources.size(); ++i)
+    require_same_model(sources[i], io::read_result_case(sources[i]).model_text, first,
+                       operation_keys);
 }
 
 /// The options of the evaluation, with Goodman's corrections by channel.
@@ -75,6 +94,7 @@ void run_loads(const Job& job) {
   if (petsc::Session::rank() != 0) return;
   const io::LoadOptions options = io::read_load_options(job.settings);
   check_hours(job.sources, options);
+  if (!options.hours.empty()) require_one_turbine(job.sources);
   std::vector<io::LoadReport> reports;
   Progress progress(true);
   for (const std::string& path : job.sources) reports.push_back(evaluate(path, options, progress));

@@ -190,10 +190,11 @@ void read_generator(const YamlNode& node, const std::string& where, model::Shaft
   map.read("joint", generator.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
   map.read("own_inertia", generator.inertia, non_negative);
   if (const YamlNode* old = map.find("inertia"))
-    map.refuse(*old, "inertia",
-               "was counted at the speed of the shaft, gears included, and is no longer read; hint: "
-               "own_inertia, of the generator about its own axis, and shaft.gear_ratio (of an "
-               "OpenFAST deck GenIner and GBRatio); without gears own_inertia is the same number");
+    map.refuse(
+        *old, "inertia",
+        "was counted at the speed of the shaft, gears included, and is no longer read; hint: "
+        "own_inertia, of the generator about its own axis, and shaft.gear_ratio (of an "
+        "OpenFAST deck GenIner and GBRatio); without gears own_inertia is the same number");
   const MeanSpeed speed{shaft.gear_ratio == 1.0 ? "shaft.speed" : "shaft.speed times gear_ratio",
                         shaft.generator_speed()};
   read_torque(map, speed, generator.kind == JointKind::free, generator.law);

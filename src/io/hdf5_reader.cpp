@@ -1,10 +1,26 @@
 #include "hdf5_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "samara/base/error.hpp"
 
 namespace samara::io {
+namespace {
+
+/// Bytes of one read at the most (2 GB): larger data are read slice by slice.
+constexpr std::size_t most_bytes = std::size_t{1} << 31;
+
+constexpr unsigned most_rank = 32;
+
+std::string words_of(const std::vector<hsize_t>& extents) {
+  if (extents.empty()) return "a scalar";
+  std::string text;
+  for (const hsize_t extent : extents) text += (text.empty() ? "" : " x ") + std::to_string(extent);
+  return text + " entries";
+}
+
+}  // namespace
 
 Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
   silence_hdf5();
@@ -12,8 +28,12 @@ Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
   if (!file_) throw InputError(path + ": cannot be opened as HDF5");
 }
 
-hid_t Hdf5Reader::check(hid_t id, const std::string& name) const {
-  if (id < 0) throw InputError(path_ + ": " + name + " is missing or cannot be read");
+void Hdf5Reader::refuse(const std::string& place, const std::string& why) const {
+  throw InputError(path_ + ": " + place + " " + why);
+}
+
+hid_t Hdf5Reader::check(hid_t id, const std::string& place) const {
+  if (id < 0) refuse(place, "is missing or cannot be read");
   return id;
 }
 
@@ -24,78 +44,191 @@ bool Hdf5Reader::has(const std::string& name) const {
   return H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
-Hdf5Id Hdf5Reader::open(const std::string& name) const {
-  return {check(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT), name), H5Dclose};
+Hdf5Reader::Item Hdf5Reader::open(const std::string& name) const {
+  return {{check(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT), name), H5Dclose}, false, name};
 }
 
-std::vector<hsize_t> Hdf5Reader::shape(const std::string& name) const {
-  const Hdf5Id dataset = open(name);
-  const Hdf5Id space(check(H5Dget_space(dataset.get()), name), H5Sclose);
-  std::vector<hsize_t> extents(
-      static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()), name)));
-  H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr);
+Hdf5Reader::Item Hdf5Reader::open_attribute(const std::string& object,
+                                            const std::string& name) const {
+  const std::string place = object + ":" + name;
+  return {
+      {check(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+             place),
+       H5Aclose},
+      true,
+      place};
+}
+
+Hdf5Id Hdf5Reader::type_of(const Item& item) const {
+  const hid_t id = item.id.get();
+  return {check(item.is_attribute ? H5Aget_type(id) : H5Dget_type(id), item.place), H5Tclose};
+}
+
+std::vector<hsize_t> Hdf5Reader::extents_of(const Item& item) const {
+  const hid_t id = item.id.get();
+  const Hdf5Id space(check(item.is_attribute ? H5Aget_space(id) : H5Dget_space(id), item.place),
+                     H5Sclose);
+  if (H5Sget_simple_extent_type(space.get()) == H5S_NULL) refuse(item.place, "is empty");
+  const auto rank =
+      static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()), item.place));
+  if (rank > most_rank) refuse(item.place, "has too many dimensions");
+  std::vector<hsize_t> extents(rank);
+  if (rank > 0) check(H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr), item.place);
   return extents;
 }
 
-std::vector<double> Hdf5Reader::numbers(const std::string& name) const {
-  std::size_t count = 1;
-  for (const hsize_t extent : shape(name)) count *= extent;
+/// Entries, as long as they can be read at once.
+std::size_t Hdf5Reader::size_of(const Item& item, const std::vector<hsize_t>& extents) const {
+  hsize_t count = 1;
+  for (const hsize_t extent : extents) {
+    if (extent > most_bytes || count * extent > most_bytes / sizeof(double))
+      refuse(item.place, "has " + words_of(extents) + ", more than can be read");
+    count *= extent;
+  }
+  return count;
+}
+
+void Hdf5Reader::require_numbers(const Item& item) const {
+  const H5T_class_t kind = H5Tget_class(type_of(item).get());
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT) refuse(item.place, "does not hold numbers");
+}
+
+std::vector<double> Hdf5Reader::read_numbers(const Item& item, std::size_t count) const {
+  require_numbers(item);
   std::vector<double> values(count);
   if (count == 0) return values;
-  const Hdf5Id dataset = open(name);
-  check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-        name);
+  const hid_t id = item.id.get();
+  check(item.is_attribute
+            ? H5Aread(id, H5T_NATIVE_DOUBLE, values.data())
+            : H5Dread(id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        item.place);
   return values;
 }
 
-std::vector<double> Hdf5Reader::slice(const std::string& name, std::size_t first,
-                                      std::size_t count) const {
-  std::vector<hsize_t> extents = shape(name);
-  std::vector<hsize_t> start(extents.size(), 0);
-  start.at(0) = first;
-  extents.at(0) = count;
-  hsize_t size = 1;
-  for (const hsize_t extent : extents) size *= extent;
-  std::vector<double> values(size);
-  if (size == 0) return values;
-  const Hdf5Id dataset = open(name);
-  const Hdf5Id space(check(H5Dget_space(dataset.get()), name), H5Sclose);
-  check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extents.data(),
-                            nullptr),
-        name);
-  const Hdf5Id memory(check(H5Screate_simple(1, &size, nullptr), name), H5Sclose);
-  check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
-                values.data()),
-        name);
-  return values;
-}
-
-std::vector<std::string> Hdf5Reader::texts(const std::string& name) const {
-  const std::vector<hsize_t> extents = shape(name);
-  const std::size_t count = extents.empty() ? 1 : extents[0];
+std::vector<std::string> Hdf5Reader::read_texts(const Item& item, std::size_t count) const {
+  const Hdf5Id type = type_of(item);
+  if (H5Tget_class(type.get()) != H5T_STRING) refuse(item.place, "does not hold text");
   std::vector<std::string> words(count);
   if (count == 0) return words;
-  const Hdf5Id dataset = open(name);
-  const Hdf5Id type(check(H5Dget_type(dataset.get()), name), H5Tclose);
+  const auto read = [&](void* target) {
+    const hid_t id = item.id.get();
+    check(item.is_attribute ? H5Aread(id, type.get(), target)
+                            : H5Dread(id, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, target),
+          item.place);
+  };
+  if (H5Tis_variable_str(type.get()) > 0) {
+    std::vector<char*> pieces(count, nullptr);
+    read(pieces.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (pieces[i] != nullptr) words[i] = pieces[i];
+      H5free_memory(pieces[i]);
+    }
+    return words;
+  }
   const std::size_t width = H5Tget_size(type.get());
+  if (width == 0 || width > most_bytes / count) refuse(item.place, "has texts of too many bytes");
   std::string table(count * width, '\0');
-  check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, table.data()), name);
+  read(table.data());
+  const bool is_padded_by_blanks = H5Tget_strpad(type.get()) == H5T_STR_SPACEPAD;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::string padded = table.substr(i * width, width);
-    words[i] = padded.substr(0, padded.find('\0'));
+    std::string& word = words[i];
+    word = table.substr(i * width, width);
+    word.resize(std::min(word.size(), word.find('\0')));
+    if (is_padded_by_blanks) word.resize(word.find_last_not_of(' ') + 1);
   }
   return words;
 }
 
+std::vector<hsize_t> Hdf5Reader::shape(const std::string& name) const {
+  return extents_of(open(name));
+}
+
+std::vector<double> Hdf5Reader::numbers(const std::string& name) const {
+  const Item item = open(name);
+  const std::vector<hsize_t> extents = extents_of(item);
+  if (extents.size() != 1) refuse(name, "has " + words_of(extents) + ", expected a list");
+  return read_numbers(item, size_of(item, extents));
+}
+
+double Hdf5Reader::number(const std::string& name) const {
+  const Item item = open(name);
+  const std::vector<hsize_t> extents = extents_of(item);
+  if (size_of(item, extents) != 1) refuse(name, "has " + words_of(extents) + ", expected one");
+  return read_numbers(item, 1).front();
+}
+
+std::vector<double> Hdf5Reader::table(const std::string& name, hsize_t& rows,
+                                      hsize_t& columns) const {
+  const Item item = open(name);
+  const std::vector<hsize_t> extents = extents_of(item);
+  if (extents.size() != 2) refuse(name, "has " + words_of(extents) + ", expected rows and columns");
+  rows = extents[0];
+  columns = extents[1];
+  return read_numbers(item, size_of(item, extents));
+}
+
+std::size_t Hdf5Reader::to_count(double value, const std::string& place) const {
+  if (!(value >= 0.0) || value > 9e15 || value != std::floor(value))
+    refuse(place, "is no number of entries");
+  return static_cast<std::size_t>(value);
+}
+
+std::vector<std::size_t> Hdf5Reader::counts(const std::string& name) const {
+  std::vector<std::size_t> values;
+  for (const double value : numbers(name)) values.push_back(to_count(value, name));
+  return values;
+}
+
+std::vector<std::string> Hdf5Reader::texts(const std::string& name) const {
+  const Item item = open(name);
+  const std::vector<hsize_t> extents = extents_of(item);
+  if (extents.size() != 1) refuse(name, "has " + words_of(extents) + ", expected a list");
+  return read_texts(item, size_of(item, extents));
+}
+
 std::string Hdf5Reader::text(const std::string& name) const {
-  const Hdf5Id dataset = open(name);
-  const Hdf5Id type(check(H5Dget_type(dataset.get()), name), H5Tclose);
-  if (H5Tis_variable_str(type.get()) <= 0) return texts(name).front();
-  char* data = nullptr;
-  check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &data), name);
-  const std::string words = data == nullptr ? "" : data;
-  H5free_memory(data);
-  return words;
+  const Item item = open(name);
+  const std::vector<hsize_t> extents = extents_of(item);
+  if (size_of(item, extents) != 1) refuse(name, "has " + words_of(extents) + ", expected one text");
+  return read_texts(item, 1).front();
+}
+
+std::vector<double> Hdf5Reader::slice(const std::string& name, std::size_t first,
+                                      std::size_t count) const {
+  const std::vector<hsize_t> extents = shape(name);
+  if (extents.size() != 1) refuse(name, "has " + words_of(extents) + ", expected a list");
+  return read_slice(name, extents, first, count);
+}
+
+std::vector<double> Hdf5Reader::slice(const std::string& name, std::size_t first, std::size_t count,
+                                      std::size_t width) const {
+  const std::vector<hsize_t> extents = shape(name);
+  if (extents.size() != 2 || extents[1] != width)
+    refuse(name, "has " + words_of(extents) + ", expected rows of " + std::to_string(width));
+  return read_slice(name, extents, first, count);
+}
+
+std::vector<double> Hdf5Reader::read_slice(const std::string& name, std::vector<hsize_t> extents,
+                                           std::size_t first, std::size_t count) const {
+  const Item item = open(name);
+  require_numbers(item);
+  if (first > extents[0] || count > extents[0] - first)
+    refuse(name, "has " + words_of(extents) + ", fewer than are asked for");
+  std::vector<hsize_t> start(extents.size(), 0);
+  start[0] = first;
+  extents[0] = count;
+  const hsize_t size = size_of(item, extents);
+  std::vector<double> values(size);
+  if (size == 0) return values;
+  const Hdf5Id space(check(H5Dget_space(item.id.get()), name), H5Sclose);
+  check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extents.data(),
+                            nullptr),
+        name);
+  const Hdf5Id memory(check(H5Screate_simple(1, &size, nullptr), name), H5Sclose);
+  check(H5Dread(item.id.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
+                values.data()),
+        name);
+  return values;
 }
 
 bool Hdf5Reader::has_attribute(const std::string& object, const std::string& name) const {
@@ -103,28 +236,21 @@ bool Hdf5Reader::has_attribute(const std::string& object, const std::string& nam
 }
 
 double Hdf5Reader::number_attribute(const std::string& object, const std::string& name) const {
-  const std::string place = object + ":" + name;
-  const Hdf5Id attribute(
-      check(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-            place),
-      H5Aclose);
-  double value = 0.0;
-  check(H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value), place);
-  return value;
+  const Item item = open_attribute(object, name);
+  const std::vector<hsize_t> extents = extents_of(item);
+  if (size_of(item, extents) != 1) refuse(item.place, "is not one number");
+  return read_numbers(item, 1).front();
+}
+
+std::size_t Hdf5Reader::count_attribute(const std::string& object, const std::string& name) const {
+  return to_count(number_attribute(object, name), object + ":" + name);
 }
 
 std::string Hdf5Reader::text_attribute(const std::string& object, const std::string& name) const {
-  const std::string place = object + ":" + name;
-  const Hdf5Id attribute(
-      check(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-            place),
-      H5Aclose);
-  const Hdf5Id type(check(H5Aget_type(attribute.get()), place), H5Tclose);
-  char* data = nullptr;
-  check(H5Aread(attribute.get(), type.get(), &data), place);
-  const std::string words = data == nullptr ? "" : data;
-  H5free_memory(data);
-  return words;
+  const Item item = open_attribute(object, name);
+  const std::vector<hsize_t> extents = extents_of(item);
+  if (size_of(item, extents) != 1) refuse(item.place, "is not one text");
+  return read_texts(item, 1).front();
 }
 
 }  // namespace samara::io

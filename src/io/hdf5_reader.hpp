@@ -1,4 +1,7 @@
 // Reads an HDF5 file: as much of the C API as results need.
+//
+// A file may have been changed by other programs: class, rank and size of what stands there are
+// compared with what is expected before anything is read.
 #pragma once
 
 #include <string>
@@ -15,24 +18,53 @@ class Hdf5Reader {
 
   bool has(const std::string& name) const;
 
-  /// Extents of a dataset.
+  /// Extents of a dataset. @throws InputError as all members do
   std::vector<hsize_t> shape(const std::string& name) const;
 
-  /// All of a dataset. @throws InputError as all members do
+  /// A list of numbers.
   std::vector<double> numbers(const std::string& name) const;
+  /// The only number of a dataset.
+  double number(const std::string& name) const;
+  /// Numbers in `rows` and `columns`, row by row.
+  std::vector<double> table(const std::string& name, hsize_t& rows, hsize_t& columns) const;
+  /// Numbers that count something, as a list.
+  std::vector<std::size_t> counts(const std::string& name) const;
+  /// A list of texts, of fixed or variable length.
   std::vector<std::string> texts(const std::string& name) const;
+  /// The only text of a dataset.
   std::string text(const std::string& name) const;
 
-  /// Entries first to first + count along the first axis.
+  /// Entries first to first + count along the first axis, of a list or of rows of `width` numbers.
   std::vector<double> slice(const std::string& name, std::size_t first, std::size_t count) const;
+  std::vector<double> slice(const std::string& name, std::size_t first, std::size_t count,
+                            std::size_t width) const;
 
   bool has_attribute(const std::string& object, const std::string& name) const;
   double number_attribute(const std::string& object, const std::string& name) const;
+  std::size_t count_attribute(const std::string& object, const std::string& name) const;
   std::string text_attribute(const std::string& object, const std::string& name) const;
 
  private:
-  Hdf5Id open(const std::string& name) const;
-  hid_t check(hid_t id, const std::string& name) const;
+  /// What is read: a dataset or an attribute.
+  struct Item {
+    Hdf5Id id;
+    bool is_attribute = false;
+    std::string place;  ///< for messages
+  };
+
+  Item open(const std::string& name) const;
+  Item open_attribute(const std::string& object, const std::string& name) const;
+  std::vector<hsize_t> extents_of(const Item& item) const;
+  Hdf5Id type_of(const Item& item) const;
+  void require_numbers(const Item& item) const;
+  std::size_t size_of(const Item& item, const std::vector<hsize_t>& extents) const;
+  std::vector<double> read_numbers(const Item& item, std::size_t count) const;
+  std::vector<std::string> read_texts(const Item& item, std::size_t count) const;
+  std::vector<double> read_slice(const std::string& name, std::vector<hsize_t> extents,
+                                 std::size_t first, std::size_t count) const;
+  std::size_t to_count(double value, const std::string& place) const;
+  [[noreturn]] void refuse(const std::string& place, const std::string& why) const;
+  hid_t check(hid_t id, const std::string& place) const;
 
   std::string path_;
   Hdf5Id file_;

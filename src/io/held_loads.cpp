@@ -1,5 +1,7 @@
 #include "held_loads.hpp"
 
+#include "samara/base/error.hpp"
+
 namespace samara::io {
 namespace {
 
@@ -28,8 +30,10 @@ std::vector<analysis::HeldCoordinate> read_held_loads(const Hdf5Reader& file,
                                                       const std::string& group) {
   std::vector<analysis::HeldCoordinate> held;
   const std::vector<double> values = file.numbers(group + loads);
-  for (const std::string& name : file.texts(group + names))
-    held.push_back({name, unit, values.at(held.size())});
+  const std::vector<std::string> words = file.texts(group + names);
+  if (values.size() != words.size())
+    throw InputError(group + names + " and " + group + loads + " differ in length");
+  for (std::size_t i = 0; i < words.size(); ++i) held.push_back({words[i], unit, values[i]});
   return held;
 }
 

@@ -248,18 +248,19 @@ class HistoryReader::Storage {
   Hdf5Reader file;
 };
 
-HistoryReader::HistoryReader(const std::string& path) {
-  if (!fs::exists(path)) throw InputError(path + ": no such file");
-  if (!is_result(path)) throw InputError(path + ": is no result of samara");
-  storage_ = std::make_unique<Storage>(path);
+HistoryReader::HistoryReader(const std::string& path) : path_(path) {
+  storage_ = std::make_unique<Storage>(require_result(path));
   const Hdf5Reader& file = storage_->file;
   if (!file.has(history_time)) throw InputError(path + ": has no time history");
   const std::vector<std::string> names = file.texts("/transient/channel_name");
   const std::vector<std::string> units = file.texts("/transient/channel_unit");
   const std::vector<std::string> frames = file.texts("/transient/channel_frame");
   const std::vector<std::string> words = file.texts("/transient/channel_description");
-  for (std::size_t i = 0; i < names.size(); ++i)
-    content_.channels.push_back({names[i], units.at(i), frames.at(i), words.at(i)});
+  const std::size_t count = names.size();
+  if (count == 0 || units.size() != count || frames.size() != count || words.size() != count)
+    throw InputError(path + ": /transient/channel_name, _unit, _frame and _description differ");
+  for (std::size_t i = 0; i < count; ++i)
+    content_.channels.push_back({names[i], units[i], frames[i], words[i]});
   content_.status = file.text_attribute("/transient", "status");
   content_.model = file.text("/transient/model");
   if (file.has_attribute("/transient", "azimuth"))
@@ -268,23 +269,32 @@ HistoryReader::HistoryReader(const std::string& path) {
     content_.brake_torque = file.number_attribute("/transient", "brake_torque");
   if (file.has_attribute("/transient", "generator_lost"))
     content_.is_generator_lost = file.number_attribute("/transient", "generator_lost") != 0.0;
-  read_segments(path);
+  read_segments();
   read_checkpoints();
 }
 
 /// Of the segments those before the last ones that are missing or damaged, as a machine that goes
 /// down may leave them.
-void HistoryReader::read_segments(const std::string& path) {
+void HistoryReader::read_segments() {
+  const std::string& path = path_;
   const Hdf5Reader& file = storage_->file;
-  rows_ = file.shape(history_time).at(0);
+  const std::vector<hsize_t> times = file.shape(history_time);
+  if (times.size() != 1 ||
+      file.shape(history_values) != std::vector<hsize_t>{times[0], content_.channels.size()})
+    throw InputError(path + ": " + history_values + " has not a row for each of " + history_time +
+                     " with a value of each channel");
+  rows_ = times[0];
   const std::vector<std::string> segments = file.texts(history_segment_file);
-  const std::vector<double> counts = file.numbers(history_segment_rows);
+  const std::vector<std::size_t> counts = file.counts(history_segment_rows);
+  if (counts.size() != segments.size())
+    throw InputError(path + ": " + history_segment_file + " and " + history_segment_rows +
+                     " differ in length");
   if (segments.empty()) return;
   const std::size_t all = rows_;
   const fs::path folder = fs::path(resolved_path(path)).parent_path();
   rows_ = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const auto rows = static_cast<std::size_t>(counts.at(i));
+    const std::size_t rows = counts[i];
     const fs::path place = folder / segments[i];
     const bool is_whole = is_whole_segment(place.string(), rows, content_.channels.size());
     if (is_whole && damage_.empty()) {
@@ -300,6 +310,7 @@ void HistoryReader::read_segments(const std::string& path) {
                        fs::path(segments[i]).parent_path().string() +
                        " belongs to the file, samara export makes one of both");
   }
+  if (rows_ > all) throw InputError(path + ": its segments have more rows than it has itself");
   if (!damage_.empty())
     damage_ += ": " + std::to_string(rows_) + " of " + std::to_string(all) + " rows are left";
 }
@@ -313,7 +324,7 @@ void HistoryReader::read_checkpoints() {
     analysis::TransientStart& point = checkpoint.point;
     point.time = file.number_attribute(group, "time");
     point.origin = file.number_attribute(group, "origin");
-    point.step = std::lround(file.number_attribute(group, "step"));
+    point.step = static_cast<long>(file.count_attribute(group, "step"));
     const std::vector<double> state = file.numbers(group + "/state");
     point.z =
         Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
@@ -322,9 +333,13 @@ void HistoryReader::read_checkpoints() {
       point.z_dot =
           Eigen::Map<const Eigen::VectorXd>(rate.data(), static_cast<Eigen::Index>(rate.size()));
     }
+    if (!point.z.allFinite() || !point.z_dot.allFinite() || !std::isfinite(point.time) ||
+        !std::isfinite(point.origin) ||
+        (point.z_dot.size() > 0 && point.z_dot.size() != point.z.size()))
+      throw InputError(path_ + ": " + group + " is no state to go on from");
     point.held = read_held_loads(file, group);
     checkpoint.events = file.numbers(group + "/event_time");
-    checkpoint.rows = static_cast<std::size_t>(file.number_attribute(group, "rows"));
+    checkpoint.rows = file.count_attribute(group, "rows");
     if (checkpoint.rows <= rows_)
       content_.checkpoints.insert(content_.checkpoints.begin(), checkpoint);
   }
@@ -337,7 +352,7 @@ std::vector<double> HistoryReader::read_time(std::size_t first, std::size_t coun
 }
 
 std::vector<double> HistoryReader::read_values(std::size_t first, std::size_t count) const {
-  return storage_->file.slice(history_values, first, count);
+  return storage_->file.slice(history_values, first, count, content_.channels.size());
 }
 
 }  // namespace samara::io

@@ -1,6 +1,7 @@
 #include "samara/io/result_reader.hpp"
 
-#include <filesystem>
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "samara/base/error.hpp"
@@ -13,17 +14,6 @@ namespace samara::io {
 namespace {
 
 constexpr std::string_view setting_start = "# --set ";
-
-Hdf5Reader open_result(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(path + ": no such file");
-  if (std::filesystem::is_directory(status))
-    throw InputError(path + ": a directory, expected a result of samara");
-  if (!is_result(path))
-    throw InputError(path + ": is no result of samara; hint: expected what -o wrote, RESULT.h5");
-  return Hdf5Reader(path);
-}
 
 /// Takes the settings off the top of a case's text, `count` of them or, if it is negative, all.
 std::vector<std::string> take_settings(std::string& text, long count) {
@@ -39,18 +29,18 @@ std::vector<std::string> take_settings(std::string& text, long count) {
 }  // namespace
 
 ResultKind find_result_kind(const std::string& path) {
-  const Hdf5Reader file = open_result(path);
+  const Hdf5Reader file = Hdf5Reader(require_result(path));
   if (file.has("/transient/time")) return ResultKind::history;
   return file.has("/trim/harmonics") ? ResultKind::steady_state : ResultKind::other;
 }
 
 Case read_result_case(const std::string& path) {
-  const Hdf5Reader file = open_result(path);
+  const Hdf5Reader file = Hdf5Reader(require_result(path));
   std::string text = file.text("/case");
   // A case may begin with such a comment of its own: the number of settings stands beside it.
   long count = -1;
   if (file.has_attribute("/case", "settings"))
-    count = static_cast<long>(file.number_attribute("/case", "settings"));
+    count = static_cast<long>(file.count_attribute("/case", "settings"));
   const std::vector<std::string> settings = take_settings(text, count);
   Case result = parse_case(path + ":/case", text, settings);
   result.path = file.text_attribute("/", "case_path");
@@ -58,21 +48,25 @@ Case read_result_case(const std::string& path) {
 }
 
 analysis::Trim read_result_trim(const std::string& path) {
-  const Hdf5Reader file = open_result(path);
-  const std::vector<hsize_t> shape = file.shape("/trim/harmonics");
-  const std::vector<double> numbers = file.numbers("/trim/harmonics");
-  if (shape.size() != 2 || shape[1] % 2 == 0)
+  const Hdf5Reader file = Hdf5Reader(require_result(path));
+  hsize_t rows = 0;
+  hsize_t columns = 0;
+  const std::vector<double> numbers = file.table("/trim/harmonics", rows, columns);
+  if (columns % 2 == 0)
     throw InputError(path + ": /trim/harmonics is not [unknown, mean, cos 1, sin 1, ...]");
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const RowMajor> coefficients(numbers.data(), static_cast<Eigen::Index>(shape[0]),
-                                                static_cast<Eigen::Index>(shape[1]));
-  analysis::Trim trim{{coefficients, file.numbers("/model/period").at(0)}};
+  const Eigen::Map<const RowMajor> coefficients(numbers.data(), static_cast<Eigen::Index>(rows),
+                                                static_cast<Eigen::Index>(columns));
+  const double period = file.number("/model/period");
+  if (!coefficients.allFinite() || !std::isfinite(period) || period < 0.0)
+    throw InputError(path + ": its steady state has values that are no numbers");
+  analysis::Trim trim{{coefficients, period}};
   trim.held = read_held_loads(file, "/trim");
   const std::vector<double> residual = file.numbers("/trim/residual");
   if (residual.size() != 2) throw InputError(path + ": /trim/residual has not two values");
   trim.residual = residual[0];
   trim.residual_between = residual[1];
-  trim.load_level = file.numbers("/trim/load_level").at(0);
+  trim.load_level = file.number("/trim/load_level");
   if (file.text_attribute("/trim", "method") == "shooting")
     trim.method = analysis::TrimMethod::shooting;
   return trim;

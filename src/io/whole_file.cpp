@@ -147,14 +147,21 @@ bool require_writable(const std::string& path) {
   return true;
 }
 
-std::string read_whole_file(const std::string& path, std::size_t megabytes,
-                            const std::string& kind) {
+void require_readable(const std::string& path, const std::string& kind) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) throw InputError(path + ": no such file");
   if (fs::is_directory(status)) throw InputError(path + ": a directory, expected a " + kind);
-  if (!fs::is_regular_file(status) && status.type() != fs::file_type::unknown)
+  if (error || ::access(path.c_str(), R_OK) != 0)
+    throw InputError(path + ": cannot be opened for reading: " +
+                     (error ? error : std::error_code(errno, std::generic_category())).message());
+  if (!fs::is_regular_file(status))
     throw InputError(path + ": not a plain file, expected a " + kind);
+}
+
+std::string read_whole_file(const std::string& path, std::size_t megabytes,
+                            const std::string& kind) {
+  require_readable(path, kind);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path + ": cannot be opened for reading");
   std::string text;

@@ -1,11 +1,11 @@
 """Faults of disks, machines and users: nothing that was promised is lost, nothing foreign touched."""
 
 import os
+import pathlib
+import random
 import shutil
-import signal
 import subprocess
 import sys
-import pathlib
 import time
 import unittest
 
@@ -178,6 +178,140 @@ class Damage(FaultTest):
         self.refuse("export", "r.h5", "-o", "x.csv", words=["missing or damaged"])
         shutil.rmtree(self.folder / "r.h5.parts")
         self.refuse("loads", "r.h5", words=["missing or damaged", "belongs to the file"])
+
+
+class Touched(FaultTest):
+    """Results that another program has changed: refused with the place, or read right."""
+
+    KINDS = {
+        "a text of fixed length": numpy.bytes_(b"complete " * 40),
+        "texts": numpy.array([b"abc", b"de"], dtype="S40"),
+        "texts in two dimensions": numpy.full((48, 40), b"RootFxb1x", dtype="S9"),
+        "texts of any length": numpy.array(["a" * 100] * 500, dtype=h5py.string_dtype()),
+        "an integer": numpy.int8(3),
+        "a number": numpy.float32(0.5),
+        "not a number": numpy.array([numpy.nan]),
+        "a negative number": numpy.array([-7.0]),
+        "a large number": numpy.array([1e300]),
+        "a list": numpy.arange(1000.0),
+        "a table": numpy.ones((3, 5)),
+        "many dimensions": numpy.ones((2, 2, 2, 2)),
+        "nothing": numpy.zeros((0,)),
+        "empty": h5py.Empty("f8"),
+        "complex numbers": numpy.ones(3, dtype=complex),
+    }
+
+    def setUp(self):
+        super().setUp()
+        self.succeed("transient", "case.yaml", "-o", "good.h5", *block(0.5, "none"))
+        self.succeed("transient", "case.yaml", "-o", "parts.h5", *block(1, 0.5))
+        self.succeed("trim", "case.yaml", "-o", "trim.h5")
+
+    def replace(self, source, change):
+        shutil.copyfile(self.folder / source, self.folder / "bad.h5")
+        with h5py.File(self.folder / "bad.h5", "r+") as file:
+            change(file)
+
+    def commands(self, name):
+        start = block(0.1)[1].replace("start: undeformed", f"start: {name}")
+        return (["loads", name], ["export", name, "-o", "x.csv"], ["export", name, "-o", "x.h5"],
+                ["transient", "case.yaml", "-o", "y.h5", "--set", start],
+                ["transient", "case.yaml", "-o", "y.h5", "--restart", name, *block(2)])
+
+    def test_what_was_seen_to_crash(self):
+        def attribute(item, name, value):
+            def change(file):
+                file[item].attrs[name] = value
+            return change
+
+        def dataset(name, value):
+            def change(file):
+                value_of = value(file[name]) if callable(value) else value
+                del file[name]
+                file[name] = value_of
+            return change
+
+        kinds = self.KINDS
+        for change, place in (
+                (attribute("transient/checkpoint", "time", kinds["a list"]),
+                 "/transient/checkpoint:time"),
+                (dataset("transient/model", kinds["texts of any length"]), "/transient/model"),
+                (dataset("transient/channel_name", kinds["texts in two dimensions"]),
+                 "/transient/channel_name"),
+                (dataset("transient/values", lambda values: values[:, :1]), "/transient/values"),
+                (dataset("transient/channel_unit", kinds["texts"][:1]), "channel_"),
+                (dataset("transient/time", kinds["texts"]), "/transient/values")):
+            with self.subTest(place=place):
+                self.replace("good.h5", change)
+                self.refuse("loads", "bad.h5", words=["bad.h5", place])
+        # As MATLAB and numpy write texts.
+        self.replace("good.h5", lambda file: [attribute(item, name, numpy.bytes_(value))(file)
+                                              for item, name, value in (
+                                                  ("transient", "status", b"complete"),
+                                                  ("/", "case_path", b"x" * 400))])
+        self.assertEqual(self.succeed("loads", "bad.h5").stderr, "")
+        self.replace("good.h5", dataset("transient/checkpoint/event_time", numpy.ones(2)))
+        self.refuse("transient", "case.yaml", "-o", "y.h5", "--set",
+                    "transient={duration: 0.1, step: 0.01, start: bad.h5}", words=["event_time"])
+
+    def test_any_item_of_any_kind_is_read_or_refused(self):
+        random_numbers = random.Random(os.environ.get("SAMARA_SEED", "7"))
+        for source in ("good.h5", "parts.h5", "trim.h5"):
+            with h5py.File(self.folder / source) as file:
+                items = [("/", name) for name in file.attrs]
+                file.visititems(lambda name, item: items.extend(
+                    [(name, None)] * isinstance(item, h5py.Dataset)
+                    + [(name, one) for one in item.attrs if one not in ("unit", "frame",
+                                                                       "description")]))
+            for _ in range(int(os.environ.get("SAMARA_TRIALS", "40"))):
+                item, attribute = random_numbers.choice(items)
+                kind = random_numbers.choice(list(self.KINDS))
+
+                def change(file, item=item, attribute=attribute, kind=kind):
+                    if attribute is None:
+                        del file[item]
+                        file[item] = self.KINDS[kind]
+                    else:
+                        file[item].attrs[attribute] = self.KINDS[kind]
+
+                self.replace(source, change)
+                command = random_numbers.choice(self.commands("bad.h5"))
+                with self.subTest(source=source, item=item, attribute=attribute, kind=kind,
+                                  command=command):
+                    run = self.samara(*command)
+                    self.assertIn(run.returncode, (0, 2), run.stderr)
+
+    def test_what_a_newer_version_wrote_is_refused(self):
+        self.replace("good.h5", lambda file: file.attrs.modify("samara_schema", numpy.int32(99)))
+        for command in self.commands("bad.h5"):
+            with self.subTest(command=command):
+                self.refuse(*command, words=["bad.h5", "newer samara", "schema 99"])
+
+    def test_files_that_are_no_results(self):
+        os.mkfifo(self.folder / "pipe.h5")
+        self.write("text.h5", "text")
+        with h5py.File(self.folder / "foreign.h5", "w") as file:
+            file["a"] = 1
+        for name, word in (("pipe.h5", "not a plain file"), ("text.h5", "is no result of samara"),
+                           ("foreign.h5", "of another program"), ("none.h5", "no such file"),
+                           (".", "a directory")):
+            for command in self.commands(name):
+                if name == "." and any("start: ." in one for one in command):
+                    continue  # no name of a result
+                with self.subTest(name=name, command=command):
+                    run = self.samara(*command)
+                    self.assertEqual(run.returncode, 2, run.stderr)
+                    self.assertIn(word, run.stderr)
+        os.mkfifo(self.folder / "pipe.yaml")
+        self.refuse("check", "pipe.yaml", words=["not a plain file"])
+
+    def test_a_lifetime_is_that_of_one_turbine(self):
+        self.write("other.yaml", MINIMAL.replace("EI2: 1e4", "EI2: 2e4"))
+        self.succeed("transient", "other.yaml", "-o", "b.h5", *block(0.5))
+        self.succeed("transient", "case.yaml", "-o", "c.h5", "--set", "shaft.speed=5", *block(0.5))
+        hours = ["--set", "hours=[1, 1]", "--set", "channels=[RootMxb1]"]
+        self.refuse("loads", "good.h5", "b.h5", *hours, words=["b.h5: is of another model", "EI2"])
+        self.succeed("loads", "good.h5", "c.h5", *hours)
 
 
 class FullDisk(FaultTest):

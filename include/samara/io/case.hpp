@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "samara/linear/linearization.hpp"
 #include "samara/analysis/options.hpp"
+#include "samara/linear/linearization.hpp"
 #include "samara/model/definition.hpp"
 #include "samara/system/turbine_channels.hpp"
 #include "samara/system/turbine_events.hpp"

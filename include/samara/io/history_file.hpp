@@ -134,9 +134,10 @@ class HistoryReader {
  private:
   class Storage;
 
-  void read_segments(const std::string& path);
+  void read_segments();
   void read_checkpoints();
 
+  std::string path_;
   std::unique_ptr<Storage> storage_;
   HistoryContent content_;
   std::size_t rows_ = 0;

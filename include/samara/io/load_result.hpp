@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "samara/loads/load_evaluation.hpp"
 #include "samara/io/result_file.hpp"
+#include "samara/loads/load_evaluation.hpp"
 #include "samara/system/turbine_channels.hpp"
 
 namespace samara::io {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "samara/analysis/floquet.hpp"
-#include "samara/linear/linearization.hpp"
 #include "samara/analysis/mode.hpp"
 #include "samara/analysis/static_path.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/io/case.hpp"
+#include "samara/linear/linearization.hpp"
 #include "samara/system/turbine_system.hpp"
 
 namespace samara::io {
@@ -96,6 +96,9 @@ void require_table_path(const std::string& path);
 
 /// True for a file that begins like a table of this program.
 bool is_table(const std::string& path);
+
+/// `path` itself. @throws InputError where no result stands there that this version reads
+std::string require_result(const std::string& path);
 
 /// True for an HDF5 file that has the schema attribute of a result.
 bool is_result(const std::string& path);

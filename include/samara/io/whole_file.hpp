@@ -48,6 +48,9 @@ void write_whole_file(const std::string& path, std::span<const char> content);
 std::string read_whole_file(const std::string& path, std::size_t megabytes,
                             const std::string& kind);
 
+/// @throws InputError where there is no plain file, or no permission to read it; a pipe would hang
+void require_readable(const std::string& path, const std::string& kind);
+
 /// False: nothing is at `path` yet.
 /// @throws InputError where no file can be written there, whatever it holds
 bool require_writable(const std::string& path);
