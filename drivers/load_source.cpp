@@ -40,15 +40,22 @@ struct Columns {
   bool has_azimuth = false;
 };
 
-std::size_t find_channel(const std::string& path, const std::vector<Channel>& all,
-                         const std::string& name) {
-  const auto found = std::ranges::find(all, name, &Channel::name);
-  if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
+/// One line for all that the result does not have.
+[[noreturn]] void refuse_channels(const std::string& path, const std::vector<Channel>& all,
+                                  const std::vector<std::string>& unknown) {
   std::vector<std::string> names;
   for (const Channel& channel : all) names.push_back(channel.name);
+  std::string text;
+  bool has_hint = false;
+  for (const std::string& name : unknown) {
+    const std::string similar = find_similar(name, names);
+    text += (text.empty() ? "\"" : ", \"") + name + "\"";
+    if (!similar.empty()) text += " (did you mean \"" + similar + "\"?)";
+    has_hint = has_hint || similar.empty();
+  }
   throw InputError(
-      "--set channels: " + path + " has no channel \"" + name + "\"" +
-      suggest(name, names, "; hint: transient.output.channels chooses those of a history"));
+      "--set channels: " + path + " has no " + (unknown.size() == 1 ? "channel " : "channels ") +
+      text + (has_hint ? "; hint: transient.output.channels chooses those of a history" : ""));
 }
 
 Columns choose_columns(const std::string& path, const std::vector<Channel>& all,
@@ -62,8 +69,15 @@ Columns choose_columns(const std::string& path, const std::vector<Channel>& all,
       columns.wanted.push_back(i);
     }
   }
-  for (const std::string& name : options.channels)
-    columns.wanted.push_back(find_channel(path, all, name));
+  std::vector<std::string> unknown;
+  for (const std::string& name : options.channels) {
+    const auto found = std::ranges::find(all, name, &Channel::name);
+    if (found == all.end())
+      unknown.push_back(name);
+    else
+      columns.wanted.push_back(static_cast<std::size_t>(found - all.begin()));
+  }
+  if (!unknown.empty()) refuse_channels(path, all, unknown);
   if (columns.wanted.empty()) throw InputError(path + ": has no channel but the azimuth");
   return columns;
 }

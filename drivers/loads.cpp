@@ -14,6 +14,7 @@
 #include "load_tables.hpp"
 #include "progress.hpp"
 #include "same_model.hpp"
+#include "table.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -56,10 +57,24 @@ loads::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
   return evaluation;
 }
 
+/// Tables of cycles that a computer has room for.
+void require_tables(std::size_t channels, const io::LoadOptions& options) {
+  constexpr double most_entries = 5e7;
+  const loads::LoadEvaluationOptions& evaluation = options.evaluation;
+  const double entries = static_cast<double>(channels) * evaluation.range_bins *
+                         static_cast<double>(evaluation.mean_bins);
+  if (entries <= most_entries) return;
+  throw InputError("--set bins: " + std::to_string(evaluation.range_bins) + " x " +
+                   std::to_string(evaluation.mean_bins) + " bins of " +
+                   count(static_cast<int>(channels), "channel") +
+                   " are more than 50 million entries; hint: fewer bins, or channels=[...]");
+}
+
 io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options,
                         analysis::Observer& observer) {
   LoadSource source = read_load_source(path, options, observer);
   io::LoadReport& report = source.report;
+  require_tables(report.channels.size(), options);
   try {
     report.evaluation = loads::evaluate_loads(report.history, source.azimuth,
                                               evaluation_options(options, report.history.names));

@@ -35,6 +35,8 @@ std::size_t compute_edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string find_similar(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t longest_word = 100;
+  if (word.size() > longest_word) return {};
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {

@@ -18,6 +18,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_megabytes = 64;
 
+/// Errors of a deck that are told.
+constexpr std::size_t most_shown = 100;
+
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
 /// The name of a key as it is compared: no case, no parentheses.
@@ -106,14 +109,16 @@ void DeckErrors::add(const std::string& place, const std::string& what) {
 }
 
 void DeckErrors::add_message(const std::string& message) {
-  if (std::find(messages_.begin(), messages_.end(), message) == messages_.end())
-    messages_.push_back(message);
+  if (known_.insert(message).second) messages_.push_back(message);
 }
 
 void DeckErrors::throw_if_any() const {
   if (messages_.empty()) return;
   std::string text;
-  for (const std::string& message : messages_) text += (text.empty() ? "" : "\n") + message;
+  const std::size_t shown = std::min(messages_.size(), most_shown);
+  for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "" : "\n") + messages_[i];
+  if (messages_.size() > shown)
+    text += "\nand " + std::to_string(messages_.size() - shown) + " more errors";
   throw InputError(text);
 }
 
@@ -181,13 +186,20 @@ void Deck::parse_line(const std::string&, int number) {
                           c == '{' || c == '[' || c == ':' || c == '=';
     if (!ends_key) return;
   }
+  index_[fold(entry.key)].push_back(entries_.size());
   entries_.push_back(std::move(entry));
+}
+
+const std::vector<std::size_t>& Deck::places_of(const std::string& key) const {
+  static const std::vector<std::size_t> none;
+  const auto found = index_.find(fold(key));
+  return found == index_.end() ? none : found->second;
 }
 
 DeckEntry* Deck::find(const std::string& key, bool required) {
   DeckEntry* found = nullptr;
-  for (DeckEntry& entry : entries_) {
-    if (fold(entry.key) != fold(key)) continue;
+  for (const std::size_t at : places_of(key)) {
+    DeckEntry& entry = entries_[at];
     if (found != nullptr) {
       errors_.add(place(entry.line), key + ": given twice, first in line " +
                                          std::to_string(found->line) + "; leave one of them out");
@@ -200,15 +212,11 @@ DeckEntry* Deck::find(const std::string& key, bool required) {
   return found;
 }
 
-bool Deck::has(const std::string& key) const {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const DeckEntry& entry) { return fold(entry.key) == fold(key); });
-}
+bool Deck::has(const std::string& key) const { return !places_of(key).empty(); }
 
 std::string Deck::place_of(const std::string& key) const {
-  for (const DeckEntry& entry : entries_)
-    if (fold(entry.key) == fold(key)) return place(entry.line);
-  return path_;
+  const std::vector<std::size_t>& places = places_of(key);
+  return places.empty() ? path_ : place(entries_[places.front()].line);
 }
 
 double Deck::number(const std::string& key) {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace samara::decks {
@@ -22,6 +24,7 @@ class DeckErrors {
 
  private:
   std::vector<std::string> messages_;
+  std::unordered_set<std::string> known_;  ///< the same
 };
 
 struct DeckWord {
@@ -94,12 +97,14 @@ class Deck {
  private:
   DeckEntry* find(const std::string& key, bool required);
   void parse_line(const std::string& line, int number);
+  const std::vector<std::size_t>& places_of(const std::string& key) const;
 
   std::string path_;
   DeckErrors& errors_;
   std::string title_;
   std::vector<std::vector<DeckWord>> lines_;  ///< from line 1
   std::vector<DeckEntry> entries_;
+  std::unordered_map<std::string, std::vector<std::size_t>> index_;  ///< of entries, by name
   bool ends_with_line_ = true;
 };
 

@@ -352,7 +352,8 @@ void read_beam(MapReader& map, const Matrix3& to_a, const RatioKeys& ratios,
   read_point_masses(map, beam.point_masses);
   const bool has_ratios = std::any_of(beam.modal_damping.begin(), beam.modal_damping.end(),
                                       [](const auto& ratio) { return ratio.has_value(); });
-  if (has_ratios && map.errors().size() == errors_before) find_damping(map, beam);
+  if (has_ratios && map.is_complete() && map.errors().size() == errors_before)
+    find_damping(map, beam);
   read_support(map, "support", true, beam.support);
 }
 

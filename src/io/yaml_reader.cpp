@@ -4,8 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <string_view>
 #include <system_error>
 
 #include "samara/base/error.hpp"
@@ -220,9 +223,9 @@ MapReader::MapReader(const YamlNode& node, std::string where, ErrorList& errors)
     errors_.add(node_.place, where_, "expected keys with values, " + describe(node_) + hint);
     return;
   }
-  for (std::size_t i = 0; i < node_.children.size(); ++i) {
-    const YamlNode& entry = node_.children[i];
-    const YamlNode* first = node_.find(entry.key);
+  std::map<std::string_view, const YamlNode*> firsts;
+  for (const YamlNode& entry : node_.children) {
+    const YamlNode* first = firsts.try_emplace(entry.key, &entry).first->second;
     if (first == &entry) continue;
     std::string what = "duplicate key " + quote(entry.key);
     if (!where_.empty()) what += " in " + where_;
@@ -291,7 +294,9 @@ void MapReader::refuse_word(const YamlNode& entry, std::string_view key,
 std::string MapReader::report_unknown(const YamlNode& entry) const {
   std::string what = "unknown key " + quote(entry.key);
   if (!where_.empty() && entry.place.setting < 0) what += " in " + where_;
-  const std::string similar = find_similar(entry.key, known_);
+  // What nobody will see needs no suggestion.
+  const std::string similar =
+      errors_.size() < max_errors_shown ? find_similar(entry.key, known_) : "";
   if (!similar.empty()) {
     what += "; did you mean \"" + similar + "\"?";
   } else {
@@ -303,8 +308,9 @@ std::string MapReader::report_unknown(const YamlNode& entry) const {
 
 void MapReader::finish() {
   std::vector<std::string> meant;
+  std::set<std::string_view> seen;
   for (const YamlNode& entry : node_.children) {
-    if (node_.kind != YamlNode::Kind::map || node_.find(entry.key) != &entry) continue;
+    if (node_.kind != YamlNode::Kind::map || !seen.insert(entry.key).second) continue;
     if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
       meant.push_back(report_unknown(entry));
     }

@@ -93,6 +93,9 @@ class MapReader {
   /// The same for a compulsory key; `hint` is added to the message where it is missing.
   const YamlNode* require(std::string_view key, std::string_view hint = {});
 
+  /// Whether no compulsory key was missing so far; finish() reports those that are.
+  bool is_complete() const { return missing_.empty(); }
+
   /// Optional values: false, and `value` untouched, where the key is left out or wrong.
   bool read(std::string_view key, double& value, const NumberRule& rule);
   bool read(std::string_view key, int& value, int low, int high);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <map>
+#include <set>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include <yaml-cpp/depthguard.h>
@@ -16,7 +19,11 @@ namespace samara::io {
 namespace {
 
 constexpr std::size_t max_depth = 64;
+/// Values that aliases add, that anchors keep for them, and of a whole file: 16 MB can hold values
+/// that would fill gigabytes.
 constexpr std::size_t max_alias_nodes = 200000;
+constexpr std::size_t max_anchor_nodes = 1000000;
+constexpr std::size_t max_nodes = 4000000;
 
 Place to_place(const YAML::Mark& mark) {
   if (mark.is_null()) return {};
@@ -38,12 +45,14 @@ void resolve_merge_key(YamlNode& map) {
   map.children.erase(merge);
   const bool is_list = source.kind == YamlNode::Kind::list;
   const std::vector<YamlNode> maps = is_list ? source.children : std::vector<YamlNode>{source};
+  std::set<std::string, std::less<>> own;
+  for (const YamlNode& child : map.children) own.insert(child.key);
   for (const YamlNode& other : maps) {
     if (other.kind != YamlNode::Kind::map) {
       throw YamlError(source.place, "the merge key << needs a mapping, or a list of mappings");
     }
     for (const YamlNode& child : other.children) {
-      if (map.find(child.key) == nullptr) map.children.push_back(child);
+      if (own.insert(child.key).second) map.children.push_back(child);
     }
   }
 }
@@ -148,7 +157,13 @@ class TreeBuilder final : public YAML::EventHandler {
 
   /// Hands a complete node to what encloses it.
   void finish(YamlNode node, YAML::anchor_t anchor) {
-    if (anchor != YAML::NullAnchor) anchors_[anchor] = node;
+    if (++nodes_ > max_nodes) throw YamlError(node.place, "more than 4 million values");
+    if (anchor != YAML::NullAnchor) {
+      anchor_nodes_ += count_nodes(node);
+      if (anchor_nodes_ > max_anchor_nodes)
+        throw YamlError(node.place, "the anchors hold too many values");
+      anchors_[anchor] = node;
+    }
     if (open_.empty()) {
       root_ = std::move(node);
       return;
@@ -174,6 +189,8 @@ class TreeBuilder final : public YAML::EventHandler {
   std::vector<Frame> open_;
   std::map<YAML::anchor_t, YamlNode> anchors_;
   std::size_t alias_nodes_ = 0;
+  std::size_t anchor_nodes_ = 0;
+  std::size_t nodes_ = 0;
 };
 
 /// Puts the parser's words into the user's.

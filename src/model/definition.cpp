@@ -167,8 +167,9 @@ SectionDefinition interpolate_section(const BeamDefinition& beam, double fractio
   const std::vector<SectionDefinition>& sections = beam.sections;
   if (sections.empty()) throw InternalError("interpolate_section: the beam has no section");
 
-  const auto next = std::find_if(sections.begin(), sections.end(),
-                                 [&](const auto& section) { return section.at >= fraction; });
+  const auto next =
+      std::lower_bound(sections.begin(), sections.end(), fraction,
+                       [](const SectionDefinition& section, double at) { return section.at < at; });
   SectionDefinition result;
   if (next == sections.begin()) {
     result = sections.front();

@@ -4,8 +4,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <thread>
+
+#include <unistd.h>
 
 #include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
@@ -16,7 +19,21 @@ namespace {
 /// What a rank that failed waits for the others, who may be in the middle of a computation [s].
 constexpr double patience = 5.0;
 
-constexpr char own_option[] = "-no_signal_handler";
+/// No file of options but that of the home folder: PETSc would read `.petscrc` and `petscrc` of the
+/// current folder, too, which may be anybody's and can load code (-dll_prepend).
+constexpr char own_options[] = "-no_signal_handler -skip_petscrc";
+
+/// Puts the options of the home folder's `.petscrc` in front of those of the environment.
+void take_home_options() {
+  const char* home = std::getenv("HOME");
+  if (home == nullptr) return;
+  const std::string path = std::string(home) + "/.petscrc";
+  if (path.find_first_of(" \t\n") != std::string::npos || ::access(path.c_str(), R_OK) != 0) return;
+  const char* others = std::getenv("PETSC_OPTIONS");
+  const std::string all =
+      "-options_file " + path + (others == nullptr ? "" : " ") + (others == nullptr ? "" : others);
+  setenv("PETSC_OPTIONS", all.c_str(), 1);
+}
 
 /// A number of the environment that one of the launchers sets, or `otherwise`.
 int launcher_number(std::initializer_list<const char*> names, int otherwise) {
@@ -50,7 +67,10 @@ void prepare_transport() {
 Session::Session(const std::vector<std::string>& options) {
   prepare_transport();
   // A reader that leaves (samara ... | head) is no crash: signals stay with the system.
-  std::vector<std::string> words{"samara", own_option};
+  take_home_options();
+  std::vector<std::string> words{"samara"};
+  std::istringstream own(own_options);
+  for (std::string word; own >> word;) words.push_back(word);
   words.insert(words.end(), options.begin(), options.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -135,8 +155,10 @@ std::string Session::options() {
   check(PetscOptionsGetAll(nullptr, &all));
   std::string text(all);
   PetscFree(all);
-  const std::size_t own = text.find(own_option);
-  if (own != std::string::npos) text.erase(own, sizeof own_option);  // and the blank behind it
+  std::istringstream own(own_options);
+  for (std::string word; own >> word;)
+    if (const std::size_t at = text.find(word); at != std::string::npos)
+      text.erase(at, word.size() + 1);  // and the blank behind it
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <map>
 #include <numbers>
+#include <string_view>
 
 #include "samara/base/error.hpp"
 #include "samara/base/words.hpp"
@@ -88,6 +90,29 @@ std::vector<Channel> TurbineChannels::available(const TurbineSystem& system,
   return ChannelCatalogue(system.turbine(), stations).channels;
 }
 
+namespace {
+
+/// One line for all names that no channel has.
+[[noreturn]] void refuse_names(const std::vector<std::string>& unknown,
+                               const std::vector<std::pair<std::string, std::size_t>>& known) {
+  constexpr std::size_t most_shown = 20;
+  std::vector<std::string> words;
+  for (const auto& one : known) words.push_back(one.first);
+  std::string text = unknown.size() == 1 ? "unknown channel " : "unknown channels ";
+  bool has_hint = false;
+  for (std::size_t i = 0; i < std::min(unknown.size(), most_shown); ++i) {
+    const std::string similar = find_similar(unknown[i], words);
+    text += (i == 0 ? "\"" : ", \"") + unknown[i] + "\"";
+    if (!similar.empty()) text += " (did you mean \"" + similar + "\"?)";
+    has_hint = has_hint || similar.empty();
+  }
+  if (unknown.size() > most_shown)
+    text += " and " + std::to_string(unknown.size() - most_shown) + " more";
+  throw InputError(text + (has_hint ? "; hint: docs/channels.md has those of a turbine" : ""));
+}
+
+}  // namespace
+
 TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStations& stations,
                                  const std::vector<std::string>& names)
     : system_(system), stations_(stations) {
@@ -102,17 +127,17 @@ TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStati
   std::vector<std::pair<std::string, std::size_t>> known = catalogue.aliases;
   for (std::size_t i = 0; i < catalogue.channels.size(); ++i)
     known.emplace_back(catalogue.channels[i].name, i);
+  std::map<std::string_view, std::size_t> numbers;
+  for (const auto& [name, i] : known) numbers.try_emplace(name, i);
+  std::vector<std::string> unknown;
   for (const std::string& name : names) {
-    const auto found = std::find_if(known.begin(), known.end(),
-                                    [&name](const auto& one) { return one.first == name; });
-    if (found == known.end()) {
-      std::vector<std::string> words;
-      for (const auto& one : known) words.push_back(one.first);
-      throw InputError("unknown channel \"" + name + "\"" +
-                       suggest(name, words, "; hint: docs/channels.md has those of a turbine"));
-    }
-    take(found->second, name);
+    const auto found = numbers.find(name);
+    if (found == numbers.end())
+      unknown.push_back(name);
+    else
+      take(found->second, name);
   }
+  if (!unknown.empty()) refuse_names(unknown, known);
   place_sections(catalogue);
 }
 
@@ -154,8 +179,8 @@ class Quantities {
     const auto plain = [](const T& value, int) { return value; };
     elements::HubMotion<T> hub;
     elements::ChainReport<T> chain;
-    elements::rigid_chain(turbine_.chain, equations_.chain_state<T>(t, z, z_dot, plain, inputs_), hub,
-                          &chain);
+    elements::rigid_chain(turbine_.chain, equations_.chain_state<T>(t, z, z_dot, plain, inputs_),
+                          hub, &chain);
     constexpr double turn = 2.0 * std::numbers::pi;
     put(azimuth_slot, chain.azimuth - T(turn * std::floor(real_of(chain.azimuth) / turn)));
     put(rotor_speed, chain.shaft_rate);
