@@ -2,35 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 
 #include "samara/base/error.hpp"
 
+#include "interruption.hpp"
+
 namespace samara::drivers {
-namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void note_signal(int number) {
-  interrupted = 1;
-  std::signal(number, SIG_DFL);
-}
-
-}  // namespace
-
-Interruption::Interruption() {
-  interrupted = 0;
-  std::signal(SIGINT, note_signal);
-  std::signal(SIGTERM, note_signal);
-}
-
-Interruption::~Interruption() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-}
-
-bool Interruption::is_asked() { return interrupted != 0; }
-
 void Extent::add(double value) {
   least = std::min(least, value);
   largest = std::max(largest, value);

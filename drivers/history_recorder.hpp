@@ -15,19 +15,6 @@
 
 namespace samara::drivers {
 
-/// While it lives, the first SIGINT or SIGTERM ends a history in good order, the second one at
-/// once.
-class Interruption {
- public:
-  Interruption();
-  ~Interruption();
-  Interruption(const Interruption&) = delete;
-  Interruption& operator=(const Interruption&) = delete;
-
-  /// A signal has come.
-  static bool is_asked();
-};
-
 /// What a channel did, over the rows of the history.
 struct Extent {
   double least = std::numeric_limits<double>::infinity();

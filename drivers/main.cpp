@@ -19,6 +19,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "interruption.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -160,7 +161,7 @@ Outcome attempt(const std::string& case_path, const Work& work) {
   } catch (const DomainError& error) {
     return {3, with_name(error.what(), case_path)};
   } catch (const Interrupted& error) {
-    return {130, with_name(error.what(), case_path)};
+    return {Interruption::noted(), with_name(error.what(), case_path)};
   } catch (const std::bad_alloc&) {
     return {1, "samara: not enough memory\n"};
   } catch (const InternalError& error) {
@@ -205,6 +206,7 @@ Job prepare(const CommandLine& line) {
 void lock_result(Job& job) {
   if (Session::rank() != 0 || job.result_path.empty()) return;
   job.lock = std::make_shared<io::FileLock>(job.result_path);
+  Interruption::remove_at_end(job.lock->path());
   if (!job.lock->is_held())
     std::cerr << "note: " << job.result_path
               << ": its folder knows no locks; another run into the same result would not be "
@@ -252,6 +254,10 @@ int run(const std::vector<std::string>& arguments) {
   outcome = attempt(line.case_path, [&] { lock_result(job); });
   if (const int code = session.agree(outcome.code, outcome.message)) return code;
   outcome = attempt(line.case_path, [&] { line.command->run(job); });
+  Interruption::remove_at_end("");
+  job.lock.reset();
+  if (outcome.code == 0 && Interruption::is_asked())  // when all was done
+    outcome = {Interruption::noted(), "samara: interrupted; the result is complete\n"};
   const int code = session.agree(outcome.code, outcome.message);
   if (code == 0 && Session::rank() == 0) report_unused_options();
   return code;

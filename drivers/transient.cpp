@@ -17,6 +17,7 @@
 #include "history_legs.hpp"
 #include "history_recorder.hpp"
 #include "history_start.hpp"
+#include "interruption.hpp"
 #include "masses.hpp"
 #include "motion_faults.hpp"
 #include "progress.hpp"

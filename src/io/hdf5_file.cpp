@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <sys/stat.h>
+
 #include "samara/base/error.hpp"
 
 namespace samara::io {
@@ -37,6 +39,20 @@ Hdf5Id memory_access() {
 }  // namespace
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Hdf5Id open_for_reading(const std::string& path) {
+  constexpr int most_attempts = 10;
+  silence_hdf5();
+  for (int attempt = 1;; ++attempt) {
+    struct stat before {};
+    struct stat after {};
+    const bool is_there = ::stat(path.c_str(), &before) == 0;
+    Hdf5Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (file || !is_there || attempt == most_attempts || ::stat(path.c_str(), &after) != 0 ||
+        (before.st_ino == after.st_ino && before.st_dev == after.st_dev))
+      return file;
+  }
+}
 
 Hdf5File::Hdf5File() {
   silence_hdf5();

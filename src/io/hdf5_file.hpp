@@ -47,6 +47,10 @@ class Hdf5Id {
 /// Errors come back as codes and not as pages on stderr. Call it before any other HDF5 function.
 void silence_hdf5();
 
+/// Opens a file to be read; again where a run has just replaced it, which HDF5 may notice and
+/// refuse. Holds nothing where the file cannot be opened.
+Hdf5Id open_for_reading(const std::string& path);
+
 class Hdf5File {
  public:
   using Shape = std::vector<hsize_t>;

@@ -23,8 +23,7 @@ std::string words_of(const std::vector<hsize_t>& extents) {
 }  // namespace
 
 Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
-  silence_hdf5();
-  file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+  file_ = open_for_reading(path);
   if (!file_) throw InputError(path + ": cannot be opened as HDF5");
 }
 

@@ -4,6 +4,7 @@ import os
 import pathlib
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -312,6 +313,125 @@ class Touched(FaultTest):
         hours = ["--set", "hours=[1, 1]", "--set", "channels=[RootMxb1]"]
         self.refuse("loads", "good.h5", "b.h5", *hours, words=["b.h5: is of another model", "EI2"])
         self.succeed("loads", "good.h5", "c.h5", *hours)
+
+
+class Signals(FaultTest):
+    def send(self, arguments, number, delay):
+        """Sends a signal so long after the program stands; its exit code and what it said."""
+        run = self.start(*arguments)
+        end = time.monotonic() + LONGEST_RUN
+        while run.poll() is None and time.monotonic() < end:
+            status = pathlib.Path(f"/proc/{run.pid}/status").read_text(encoding="utf-8")
+            caught = [line.split()[1] for line in status.splitlines() if line.startswith("SigCgt")]
+            name = [line.split()[1] for line in status.splitlines() if line.startswith("Name")]
+            if name == ["samara"] and caught and int(caught[0], 16) >> (number - 1) & 1:
+                break
+        time.sleep(delay)
+        run.send_signal(number)
+        error = run.communicate(timeout=LONGEST_RUN)[1]
+        return run.returncode, error
+
+    def test_a_signal_ends_with_its_code_at_any_moment(self):
+        arguments = ["transient", "case.yaml", "-o", "r.h5", *block(1, 0.25)]
+        began = time.monotonic()
+        self.succeed(*arguments)
+        lasts = time.monotonic() - began
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            for i in range(25):
+                shutil.rmtree(self.folder / "r.h5.parts", ignore_errors=True)
+                (self.folder / "r.h5").unlink(missing_ok=True)
+                found, error = self.send(arguments, number, 1.2 * lasts * (i / 25) ** 2)
+                with self.subTest(signal=number, moment=i):
+                    self.assertIn(found, (code, 0), error)  # 0: it had ended
+                    if found == code:
+                        self.assertIn("interrupted", error)
+                    elif i == 0:
+                        self.fail("ended before the first signal")
+                    if (self.folder / "r.h5").exists():
+                        times, values, _ = history(self.folder / "r.h5")
+                        self.assertEqual(len(times), len(values))
+                        self.assertTrue(numpy.isfinite(values).all())
+                    self.assertFalse([name for name in self.names()
+                                      if name.endswith((".tmp", ".lock", ".room"))])
+
+    def test_other_commands_end_at_once_and_write_nothing(self):
+        for command in ("trim", "floquet"):
+            found, error = self.send([command, "case.yaml", "-o", "x.h5"], signal.SIGINT, 0)
+            self.assertEqual(found, 130, error)
+            self.assertEqual(self.names(), ["case.yaml"])
+
+    def test_the_second_signal_does_not_wait(self):
+        run = self.start("transient", "case.yaml", "-o", "r.h5", *block(1e5))
+        self.wait_for("r.h5")
+        for _ in range(2):
+            run.send_signal(signal.SIGINT)
+        run.communicate(timeout=LONGEST_RUN)
+        self.assertEqual(run.returncode, 130)
+
+    def test_what_the_parent_ignores_is_ignored(self):
+        command = f'trap "" INT; exec {PROGRAM} transient case.yaml -o r.h5 "$@"'
+        run = subprocess.Popen(["bash", "-c", command, "-", *block(1, 0.5)], cwd=self.folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        time.sleep(0.05)
+        run.send_signal(signal.SIGINT)
+        run.communicate(timeout=LONGEST_RUN)
+        self.assertEqual(run.returncode, 0)
+
+
+class Size(FaultTest):
+    """Inputs that are large or nested are read in their proper time and memory, or refused."""
+
+    def check(self, name, code, word):
+        limited = 'ulimit -v 4000000; exec "$@"'
+        run = subprocess.run(["bash", "-c", limited, "-", PROGRAM, *name], cwd=self.folder,
+                             capture_output=True, text=True, timeout=LONGEST_RUN, check=False)
+        self.assertEqual(run.returncode, code, run.stderr[-500:])
+        self.assertIn(word, run.stdout + run.stderr)
+
+    def test_keys_sections_anchors_and_decks(self):
+        many = "".join(f"k{i}: 1\n" for i in range(300000))
+        self.write("keys.yaml", MINIMAL + many)
+        self.check(["check", "keys.yaml"], 2, "and 299900 more errors")
+        self.write("twice.yaml", MINIMAL + "title: a\n" * 300000)
+        self.check(["check", "twice.yaml"], 2, "more errors")
+        head, row = MINIMAL.split("  sections:\n")
+        row = row.replace("    - mass", "    - at: {}\n      mass")
+        count = 20000
+        self.write("sections.yaml", head + "  sections:\n" + "".join(
+            row.replace("{}", repr(i / (count - 1))) for i in range(count)))
+        self.check(["check", "sections.yaml"], 0, "degrees of freedom")
+        anchors = "".join(f"&a{i} [ " for i in range(60))
+        self.write("anchors.yaml", "samara: 1\nx: " + anchors + ",".join(["1"] * 1500000)
+                   + "]" * 60 + "\n")
+        self.check(["check", "anchors.yaml"], 2, "anchors.yaml:2:")
+        self.write("long.yaml", MINIMAL + "? " + "a" * 5000000 + "\n: 1\n")
+        self.check(["check", "long.yaml"], 2, "unknown key")
+        self.write("deck.fst", "------- OpenFAST\n" + "1 GenDOF - x\n" * 1500000)
+        self.check(["import", "openfast", "deck.fst", "-o", "x.yaml"], 2, "deck.fst")
+
+    def test_tables_of_cycles(self):
+        self.succeed("transient", "case.yaml", "-o", "r.h5", *block(1, "none"))
+        self.check(["loads", "r.h5", "--set", "bins=10000"], 2, "50 million entries")
+
+
+class Options(FaultTest):
+    def test_options_of_the_current_folder_are_not_read(self):
+        self.write(".petscrc", "-log_view :notes.txt\n")
+        self.write("petscrc", "-log_view :notes.txt\n")
+        self.write("notes.txt", "precious")
+        self.succeed("trim", "case.yaml", "-o", "x.h5")
+        self.assertEqual((self.folder / "notes.txt").read_text(encoding="utf-8"), "precious")
+
+    def test_options_of_the_home_folder_are(self):
+        home = self.folder / "home"
+        home.mkdir()
+        (home / ".petscrc").write_text("-trim_snes_max_it 0\n", encoding="utf-8")
+        arguments = [PROGRAM, "trim", "case.yaml", "-o", "x.h5", "--set", "gravity=9.81"]
+        for options, code in (([], 3), (["-trim_snes_max_it", "20"], 0),
+                              (["-options_file", "home/.petscrc"], 3)):
+            run = subprocess.run(arguments + options, cwd=self.folder, check=False,
+                                 capture_output=True, env={**os.environ, "HOME": str(home)})
+            self.assertEqual(run.returncode, code, run.stderr)
 
 
 class FullDisk(FaultTest):

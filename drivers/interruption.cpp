@@ -1,0 +1,64 @@
+#include "interruption.hpp"
+
+#include <array>
+#include <climits>
+#include <csignal>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace samara::drivers {
+namespace {
+
+volatile std::sig_atomic_t is_noting = 0;
+volatile std::sig_atomic_t noted_signal = 0;
+volatile std::sig_atomic_t has_file = 0;
+std::array<char, PATH_MAX> file_at_end{};
+
+/// Only what a handler may call.
+[[noreturn]] void leave(int number) {
+  if (has_file != 0) ::unlink(file_at_end.data());
+  constexpr std::array<char, 21> words{"samara: interrupted\n"};
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, words.data(), words.size() - 1);
+  ::_exit(128 + number);
+}
+
+void take_signal(int number) {
+  if (is_noting == 0 || noted_signal != 0) leave(number);
+  noted_signal = number;
+}
+
+/// Leaves alone what the parent has told the process to ignore.
+void prepare() {
+  for (const int number : {SIGINT, SIGTERM}) {
+    struct sigaction action {};
+    if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = take_signal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaddset(&action.sa_mask, SIGINT);
+    sigaddset(&action.sa_mask, SIGTERM);
+    ::sigaction(number, &action, nullptr);
+  }
+}
+
+/// Called before the libraries start: MPI, PETSc and HDF5 take milliseconds for it.
+[[gnu::used, gnu::section(".preinit_array")]] void (*const early)() = prepare;
+
+}  // namespace
+
+Interruption::Interruption() { is_noting = 1; }
+
+Interruption::~Interruption() { is_noting = 0; }
+
+int Interruption::noted() { return noted_signal == 0 ? 0 : 128 + noted_signal; }
+
+void Interruption::remove_at_end(const std::string& path) {
+  has_file = 0;
+  if (path.empty() || path.size() >= file_at_end.size()) return;
+  std::memcpy(file_at_end.data(), path.c_str(), path.size() + 1);
+  has_file = 1;
+}
+
+}  // namespace samara::drivers

@@ -1,0 +1,28 @@
+// SIGINT and SIGTERM: they end the program in good order, from its first instruction on.
+//
+// A signal ends the process at once with exit code 130 (SIGINT) or 143 (SIGTERM): files are whole
+// at any moment, so that nothing is left half written. While a history runs, the first signal
+// is noted instead, the history ends with its rows written, and the second one ends it at once.
+#pragma once
+
+#include <string>
+
+namespace samara::drivers {
+
+/// While it lives, the first signal is noted and nothing more.
+class Interruption {
+ public:
+  Interruption();
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  /// The exit code for the signal that was noted, 0: none has come.
+  static int noted();
+  static bool is_asked() { return noted() != 0; }
+
+  /// A file that goes when a signal ends the process; empty: none.
+  static void remove_at_end(const std::string& path);
+};
+
+}  // namespace samara::drivers
