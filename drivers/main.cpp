@@ -112,7 +112,7 @@ constexpr std::array<Command, 10> commands{{
      .description =
          "Writes the history of a result of samara transient as one file, by its ending: .h5, the\n"
          "whole result without its folder of parts; .csv; .out or .outb, OpenFAST's text and\n"
-         "binary output, for the programs that read those. All digits are kept.\n",
+         "binary output, for the programs that read those; .outb has 16 bits a value.\n",
      .example = "RESULT.h5 -o history.csv",
      .writes_result = true,
      .convert = run_export,

@@ -26,6 +26,13 @@ class ExportTest(ProgramTest):
         self.succeed("transient", BASELINE, *COARSE, "-o", name, "--set", keys, *more)
 
 
+    def assert_packed(self, found, values):
+        """Half of 1/65500 of a channel's range, or what single precision tells apart of its size."""
+        error = numpy.abs(found - values).max(axis=0)
+        bound = 0.51 * numpy.ptp(values, axis=0) / 65500 + 1.3e-7 * numpy.abs(values).max(axis=0)
+        self.assertTrue((error <= bound).all(), (error, bound))
+
+
 class Formats(ExportTest):
     def test_tables_hold_every_bit(self):
         self.run_transient("a.h5")
@@ -42,10 +49,11 @@ class Formats(ExportTest):
                 else:
                     self.assertEqual(names, ["Time", *CHANNELS])
                     self.assertEqual(units, ["(s)", *(f"({unit})" for unit in UNITS)])
-                numpy.testing.assert_array_equal(rows[:, 1:], values)
-                if ending == "outb":  # which has the step only
+                if ending == "outb":  # which has 16 bits a value, and the step only
+                    self.assert_packed(rows[:, 1:], values)
                     numpy.testing.assert_allclose(rows[:, 0], times, rtol=0, atol=1e-12)
                 else:
+                    numpy.testing.assert_array_equal(rows[:, 1:], values)
                     numpy.testing.assert_array_equal(rows[:, 0], times)
 
     def test_the_joined_result_is_the_same_without_its_parts(self):
@@ -105,11 +113,25 @@ class Formats(ExportTest):
         times, values = read_rows(self.folder / "a.h5")
         self.assertGreater(values.size, 2**20)  # more than a slice
         self.succeed("export", "a.h5", "-o", "b.outb")
-        numpy.testing.assert_array_equal(read_outb(self.folder / "b.outb")[2][:, 1:], values)
+        self.assert_packed(read_outb(self.folder / "b.outb")[2][:, 1:], values)
         self.succeed("export", "a.h5", "-o", "b.csv")
         rows = numpy.loadtxt(self.folder / "b.csv", delimiter=",", skiprows=1)
         numpy.testing.assert_array_equal(rows[:, 0], times)
         numpy.testing.assert_array_equal(rows[:, 1:], values)
+
+    def test_channels_of_any_size_are_packed(self):
+        # Constant, zero, a small change of a large value, tiny, huge: as another program wrote them.
+        self.run_transient("a.h5", duration=0.5, checkpoint="none")
+        t = numpy.arange(51.0)
+        columns = [numpy.full(51, 0.123), 0.0 * t, 1e6 + 1e-3 * numpy.sin(t), 1e-30 * t, 1e30 * t,
+                   -7.0 + t % 2]
+        with h5py.File(self.folder / "a.h5", "r+") as file:
+            file["transient/values"][:] = numpy.column_stack(columns)
+        self.succeed("export", "a.h5", "-o", "b.outb")
+        self.assert_packed(read_outb(self.folder / "b.outb")[2][:, 1:], numpy.column_stack(columns))
+        with h5py.File(self.folder / "a.h5", "r+") as file:
+            file["transient/values"][3, 2] = numpy.nan
+        self.refuse("export", "a.h5", "-o", "c.outb", words=["TwrBsMyt", "no numbers", ".csv"])
 
     def test_ranks(self):
         self.run_transient("a.h5", duration=0.1)

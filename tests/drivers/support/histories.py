@@ -32,16 +32,22 @@ def read_out(path):
 
 
 def read_outb(path):
-    """The same of OpenFAST's binary output of kind 3: doubles in equal steps of time."""
+    """The same of OpenFAST's binary output of kind 4: 16 bits a value, in equal steps of time."""
     content = path.read_bytes()
-    kind, channels, count, start, step, length = struct.unpack_from("<hiiddi", content)
-    assert kind == 3
-    place = struct.calcsize("<hiiddi") + length
+    kind, width, channels, count, start, step = struct.unpack_from("<hhiidd", content)
+    assert kind == 4
+    place = struct.calcsize("<hhii") + 16
+    scales = numpy.frombuffer(content, "<f4", channels, place)
+    offsets = numpy.frombuffer(content, "<f4", channels, place + 4 * channels)
+    place += 8 * channels
+    length, = struct.unpack_from("<i", content, place)
+    place += 4 + length
     words = []
     for _ in range(2 * (channels + 1)):
-        words.append(content[place:place + 10].decode("ascii").strip())
-        place += 10
-    values = numpy.frombuffer(content, "<f8", offset=place).reshape(count, channels)
+        words.append(content[place:place + width].decode("ascii").strip())
+        place += width
+    packed = numpy.frombuffer(content, "<i2", offset=place).reshape(count, channels)
+    values = (packed - offsets.astype(float)) / scales.astype(float)
     times = start + step * numpy.arange(count)
     rows = numpy.column_stack([times, values])
     return words[:channels + 1], words[channels + 1:], rows
