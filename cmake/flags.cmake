@@ -9,3 +9,21 @@ endif()
 
 # Only libraries that are called are loaded: each one costs start-up time.
 add_link_options(-Wl,--as-needed)
+
+# A build that finds errors of memory and undefined behaviour (scripts/test --sanitize).
+if(SAMARA_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all
+                      -fno-omit-frame-pointer -g1)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+# What makes errors of memory hard to exploit, for targets that read files, which come from
+# anywhere. Where elements are computed it costs 5 to 7 % of a run and guards nothing.
+add_link_options(-Wl,-z,relro,-z,now)
+function(samara_harden target)
+  if(SAMARA_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
+    return()
+  endif()
+  target_compile_options(${target} PRIVATE -fstack-protector-strong -U_FORTIFY_SOURCE
+                                           -D_FORTIFY_SOURCE=2)
+endfunction()

@@ -15,7 +15,8 @@ volatile std::sig_atomic_t noted_signal = 0;
 volatile std::sig_atomic_t has_file = 0;
 std::array<char, PATH_MAX> file_at_end{};
 
-/// Only what a handler may call.
+// Only what a handler may call.
+
 [[noreturn]] void leave(int number) {
   if (has_file != 0) ::unlink(file_at_end.data());
   constexpr std::array<char, 21> words{"samara: interrupted\n"};
@@ -23,18 +24,26 @@ std::array<char, PATH_MAX> file_at_end{};
   ::_exit(128 + number);
 }
 
+/// A reader that leaves (samara ... | head) ends the process by the signal, as everywhere.
+void take_broken_pipe(int number) {
+  if (has_file != 0) ::unlink(file_at_end.data());
+  std::signal(number, SIG_DFL);
+  std::raise(number);
+}
+
 void take_signal(int number) {
   if (is_noting == 0 || noted_signal != 0) leave(number);
   noted_signal = number;
 }
 
-/// Leaves alone what the parent has told the process to ignore.
-void prepare() {
-  for (const int number : {SIGINT, SIGTERM}) {
+/// Called before the libraries start, a sanitizer's too: MPI, PETSc and HDF5 take milliseconds for
+/// it. Leaves alone what the parent has told the process to ignore.
+[[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void prepare() {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     struct sigaction action {};
     if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
     action = {};
-    action.sa_handler = take_signal;
+    action.sa_handler = number == SIGPIPE ? take_broken_pipe : take_signal;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     sigaddset(&action.sa_mask, SIGINT);
@@ -43,7 +52,6 @@ void prepare() {
   }
 }
 
-/// Called before the libraries start: MPI, PETSc and HDF5 take milliseconds for it.
 [[gnu::used, gnu::section(".preinit_array")]] void (*const early)() = prepare;
 
 }  // namespace

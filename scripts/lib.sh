@@ -2,6 +2,8 @@
 # What scripts/samara and scripts/test share: packages, configuration, build. Sourced with `root`
 # (the checkout) and `build` (its build folder) set; every message goes to stderr.
 
+declare -a cmake_options # more of them for this build
+
 say() { printf 'samara: %s\n' "$*" >&2; }
 fail() {
   say "$@"
@@ -88,7 +90,7 @@ configure() {
     return
   fi
   run_logged "the configuration" configure.log \
-    cmake -S "$root" -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release
+    cmake -S "$root" -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "${cmake_options[@]}"
 }
 
 # Builds what has changed of the given targets and marks the program as up to date. The mark has the

@@ -110,17 +110,11 @@ void Hdf5File::write(const std::string& name, std::span<const int> values, const
 
 void Hdf5File::write(const std::string& name, const std::vector<std::string>& values,
                      const Meaning& meaning) {
-  std::size_t width = 1;
-  for (const std::string& value : values) width = std::max(width, value.size());
-  std::string table;
-  for (const std::string& value : values) table += value + std::string(width - value.size(), '\0');
-  const Hdf5Id type(check(H5Tcopy(H5T_C_S1)), H5Tclose);
-  check(H5Tset_size(type.get(), width));
-  check(H5Tset_strpad(type.get(), H5T_STR_NULLPAD));
-  check(H5Tset_cset(type.get(), H5T_CSET_UTF8));
-  const Hdf5Id dataset = make_dataset(name, type.get(), {values.size()}, meaning);
+  const Hdf5Id dataset = make_dataset(name, text_type_.get(), {values.size()}, meaning);
   if (values.empty()) return;
-  check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, table.data()));
+  std::vector<const char*> words;
+  for (const std::string& value : values) words.push_back(value.c_str());
+  check(H5Dwrite(dataset.get(), text_type_.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, words.data()));
 }
 
 void Hdf5File::write(const std::string& name, const std::string& text, const Meaning& meaning) {

@@ -18,6 +18,8 @@ namespace {
 
 /// What a rank that failed waits for the others, who may be in the middle of a computation [s].
 constexpr double patience = 5.0;
+/// For so long a rank that waits looks without a pause [s].
+constexpr double spinning = 1e-3;
 
 /// No file of options but that of the home folder: PETSc would read `.petscrc` and `petscrc` of the
 /// current folder, too, which may be anybody's and can load code (-dll_prepend).
@@ -120,16 +122,17 @@ int Session::agree(int code, const std::string& message) const {
     MPI_Iallreduce(own.data(), all.data(), 2, MPI_INT, MPI_MAX, agreement_, &request);
     const auto start = std::chrono::steady_clock::now();
     int done = 0;
-    if (code == 0) MPI_Wait(&request, MPI_STATUS_IGNORE);
-    while (code != 0 && done == 0) {
+    // A rank that waits sleeps: MPI would turn in a circle and take time from the one that works.
+    while (done == 0) {
       MPI_Test(&request, &done, MPI_STATUS_IGNORE);
       const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
-      if (done == 0 && waited.count() > patience) {
+      if (done == 0 && code != 0 && waited.count() > patience) {
         std::fputs(message.c_str(), stderr);
         std::fflush(stderr);
         MPI_Abort(MPI_COMM_WORLD, code);
       }
-      if (done == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (done == 0 && waited.count() > spinning)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
   if (ticket > 0 && ticket == all[1]) {

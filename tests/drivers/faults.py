@@ -336,11 +336,11 @@ class Signals(FaultTest):
         began = time.monotonic()
         self.succeed(*arguments)
         lasts = time.monotonic() - began
-        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            for i in range(25):
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
+            for i in range(20):
                 shutil.rmtree(self.folder / "r.h5.parts", ignore_errors=True)
                 (self.folder / "r.h5").unlink(missing_ok=True)
-                found, error = self.send(arguments, number, 1.2 * lasts * (i / 25) ** 2)
+                found, error = self.send(arguments, number, 1.2 * lasts * (i / 20) ** 2)
                 with self.subTest(signal=number, moment=i):
                     self.assertIn(found, (code, 0), error)  # 0: it had ended
                     if found == code:
