@@ -154,19 +154,21 @@ class Reader {
     return result;
   }
 
-  /// A list of words of fixed width.
+  /// A list of words of any length.
   Strings words(const std::string& name) const {
     const std::size_t count = shape(name).at(0);
     const hid_t set = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);
     const hid_t type = H5Dget_type(set);
-    const std::size_t width = H5Tget_size(type);
-    std::string table(count * width, '\0');
-    BOOST_REQUIRE_GE(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, table.data()), 0);
+    BOOST_REQUIRE(H5Tis_variable_str(type) > 0);
+    std::vector<char*> pieces(count, nullptr);
+    BOOST_REQUIRE_GE(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pieces.data()), 0);
     H5Tclose(type);
     H5Dclose(set);
     Strings result;
-    for (std::size_t i = 0; i < count; ++i)
-      result.emplace_back(table.substr(i * width, width).c_str());
+    for (char* piece : pieces) {
+      result.emplace_back(piece);
+      H5free_memory(piece);
+    }
     return result;
   }
 
