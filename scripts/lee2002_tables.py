@@ -68,6 +68,10 @@ BY_SHAPE = {
     },
 }
 
+# Of these the frequency is that of the tower, in the fixed frame; the rotor sees so many per
+# revolution more.
+IN_ROTOR = {("ratio 10, fine", "tower fore-aft 4"): 1.0}
+
 
 def fold_distance(a, b):
     """Distance of two frequencies per revolution where a multiple of one, and the sign, is free."""
@@ -103,9 +107,15 @@ class Run:
         return BY_SHAPE.get(self.name, {}).get(wanted, wanted)
 
     def find(self, wanted):
-        if self.label(wanted) not in self.modes:
-            sys.exit(f"{self.name}: no mode {self.label(wanted)!r} among {sorted(self.modes)}")
-        return self.modes[self.label(wanted)]
+        label = self.label(wanted)
+        # One that is alone among those that are resolved has no number, and a label may say that
+        # it is not resolved.
+        for name in (label, label.removesuffix(" 1"), f"{label} (unresolved)",
+                     f"{label.removesuffix(' 1')} (unresolved)"):
+            if name in self.modes:
+                frequency, resolved = self.modes[name]
+                return frequency + IN_ROTOR.get((self.name, label), 0.0), resolved
+        sys.exit(f"{self.name}: no mode {label!r} among {sorted(self.modes)}")
 
     def frequency(self, wanted):
         return self.find(wanted)[0]
