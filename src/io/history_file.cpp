@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <random>
-#include <regex>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -34,9 +34,14 @@ constexpr const char* room_ending = ".room";
 constexpr std::uintmax_t least_room = std::uintmax_t{1} << 20;
 
 /// RUN-000001.h5, RUN of eight hexadecimal digits.
-bool is_segment_name(const std::string& name) {
-  static const std::regex pattern("[0-9a-f]{8}-[0-9]{6,}\\.h5");
-  return std::regex_match(name, pattern);
+bool is_segment_name(std::string_view name) {
+  constexpr std::string_view hexadecimal = "0123456789abcdef";
+  constexpr std::string_view ending = ".h5";
+  const std::size_t dash = name.find_first_not_of(hexadecimal);
+  if (dash != 8 || name[dash] != '-' || !name.ends_with(ending)) return false;
+  name.remove_prefix(dash + 1);
+  name.remove_suffix(std::min(name.size(), ending.size()));
+  return name.size() >= 6 && name.find_first_not_of(hexadecimal.substr(0, 10)) == name.npos;
 }
 
 std::string new_run_name() {
