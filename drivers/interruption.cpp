@@ -1,6 +1,7 @@
 #include "interruption.hpp"
 
 #include <array>
+#include <atomic>
 #include <climits>
 #include <csignal>
 #include <cstring>
@@ -10,9 +11,14 @@
 namespace samara::drivers {
 namespace {
 
-volatile std::sig_atomic_t is_noting = 0;
-volatile std::sig_atomic_t noted_signal = 0;
-volatile std::sig_atomic_t has_file = 0;
+constexpr std::array<int, 4> handled_signals{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+
+// Any thread may take a signal.
+std::atomic<int> is_noting = 0;
+std::atomic<int> noted_signal = 0;
+std::atomic<int> has_file = 0;
+std::atomic<int> is_paused = 0;
+std::atomic<int> waiting_signal = 0;
 std::array<char, PATH_MAX> file_at_end{};
 
 // Only what a handler may call.
@@ -26,12 +32,20 @@ std::array<char, PATH_MAX> file_at_end{};
 
 /// A reader that leaves (samara ... | head) ends the process by the signal, as everywhere.
 void take_broken_pipe(int number) {
+  if (is_paused != 0) {
+    waiting_signal = number;
+    return;
+  }
   if (has_file != 0) ::unlink(file_at_end.data());
   std::signal(number, SIG_DFL);
   std::raise(number);
 }
 
 void take_signal(int number) {
+  if (is_paused != 0) {
+    waiting_signal = number;
+    return;
+  }
   if (is_noting == 0 || noted_signal != 0) leave(number);
   noted_signal = number;
 }
@@ -39,7 +53,7 @@ void take_signal(int number) {
 /// Called before the libraries start, a sanitizer's too: MPI, PETSc and HDF5 take milliseconds for
 /// it. Leaves alone what the parent has told the process to ignore.
 [[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void prepare() {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+  for (const int number : handled_signals) {
     struct sigaction action {};
     if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
     action = {};
@@ -61,6 +75,13 @@ Interruption::Interruption() { is_noting = 1; }
 Interruption::~Interruption() { is_noting = 0; }
 
 int Interruption::noted() { return noted_signal == 0 ? 0 : 128 + noted_signal; }
+
+SignalPause::SignalPause() { is_paused = 1; }
+
+SignalPause::~SignalPause() {
+  is_paused = 0;
+  if (const int number = waiting_signal.exchange(0); number != 0) std::raise(number);
+}
 
 void Interruption::remove_at_end(const std::string& path) {
   has_file = 0;

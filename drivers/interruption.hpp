@@ -25,4 +25,13 @@ class Interruption {
   static void remove_at_end(const std::string& path);
 };
 
+/// While it lives, signals wait. (A mask would not do: other threads, MPI's, would take them.)
+class SignalPause {
+ public:
+  SignalPause();
+  ~SignalPause();
+  SignalPause(const SignalPause&) = delete;
+  SignalPause& operator=(const SignalPause&) = delete;
+};
+
 }  // namespace samara::drivers

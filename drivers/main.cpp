@@ -205,12 +205,19 @@ Job prepare(const CommandLine& line) {
 /// From here on no other run writes the result.
 void lock_result(Job& job) {
   if (Session::rank() != 0 || job.result_path.empty()) return;
+  const SignalPause pause;  // or a signal would leave the lock's file
   job.lock = std::make_shared<io::FileLock>(job.result_path);
   Interruption::remove_at_end(job.lock->path());
   if (!job.lock->is_held())
     std::cerr << "note: " << job.result_path
               << ": its folder knows no locks; another run into the same result would not be "
                  "noticed\n";
+}
+
+void release_result(Job& job) {
+  const SignalPause pause;
+  Interruption::remove_at_end("");
+  job.lock.reset();
 }
 
 void report_unused_options() {
@@ -254,8 +261,7 @@ int run(const std::vector<std::string>& arguments) {
   outcome = attempt(line.case_path, [&] { lock_result(job); });
   if (const int code = session.agree(outcome.code, outcome.message)) return code;
   outcome = attempt(line.case_path, [&] { line.command->run(job); });
-  Interruption::remove_at_end("");
-  job.lock.reset();
+  release_result(job);
   if (outcome.code == 0 && Interruption::is_asked())  // when all was done
     outcome = {Interruption::noted(), "samara: interrupted; the result is complete\n"};
   const int code = session.agree(outcome.code, outcome.message);
