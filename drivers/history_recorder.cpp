@@ -8,6 +8,7 @@
 #include "interruption.hpp"
 
 namespace samara::drivers {
+
 void Extent::add(double value) {
   least = std::min(least, value);
   largest = std::max(largest, value);

@@ -40,24 +40,6 @@ struct Columns {
   bool has_azimuth = false;
 };
 
-/// One line for all that the result does not have.
-[[noreturn]] void refuse_channels(const std::string& path, const std::vector<Channel>& all,
-                                  const std::vector<std::string>& unknown) {
-  std::vector<std::string> names;
-  for (const Channel& channel : all) names.push_back(channel.name);
-  std::string text;
-  bool has_hint = false;
-  for (const std::string& name : unknown) {
-    const std::string similar = find_similar(name, names);
-    text += (text.empty() ? "\"" : ", \"") + name + "\"";
-    if (!similar.empty()) text += " (did you mean \"" + similar + "\"?)";
-    has_hint = has_hint || similar.empty();
-  }
-  throw InputError(
-      "--set channels: " + path + " has no " + (unknown.size() == 1 ? "channel " : "channels ") +
-      text + (has_hint ? "; hint: transient.output.channels chooses those of a history" : ""));
-}
-
 Columns choose_columns(const std::string& path, const std::vector<Channel>& all,
                        const io::LoadOptions& options) {
   Columns columns;
@@ -77,7 +59,14 @@ Columns choose_columns(const std::string& path, const std::vector<Channel>& all,
     else
       columns.wanted.push_back(static_cast<std::size_t>(found - all.begin()));
   }
-  if (!unknown.empty()) refuse_channels(path, all, unknown);
+  if (!unknown.empty()) {
+    std::vector<std::string> names;
+    for (const Channel& channel : all) names.push_back(channel.name);
+    throw InputError("--set channels: " + path + " has no " +
+                     (unknown.size() == 1 ? "channel " : "channels ") +
+                     list_unknown(unknown, names,
+                                  "; hint: transient.output.channels chooses those of a history"));
+  }
   if (columns.wanted.empty()) throw InputError(path + ": has no channel but the azimuth");
   return columns;
 }

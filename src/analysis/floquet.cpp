@@ -227,8 +227,8 @@ class Analysis {
     for (const Complex value : pairs.values) largest = std::max(largest, std::abs(value));
     for (std::size_t i = 0; i < pairs.values.size(); ++i) {
       if (std::abs(pairs.values[i]) < least_multiplier * largest) {
-        ++deflated_;
-        deflated_rate_ = std::min(deflated_rate_, decay_of(least_multiplier * largest));
+        ++set_.deflated;
+        set_.deflated_rate = std::min(set_.deflated_rate, decay_of(least_multiplier * largest));
         continue;
       }
       if (pairs.values[i].imag() < 0.0) continue;  // its conjugate stands for it
@@ -246,8 +246,8 @@ class Analysis {
     if (ranks_.size > 1) {  // one rank decides
       int count = static_cast<int>(multipliers_.size());
       MPI_Bcast(&count, 1, MPI_INT, 0, ranks_.comm);
-      MPI_Bcast(&deflated_, 1, MPI_INT, 0, ranks_.comm);
-      MPI_Bcast(&deflated_rate_, 1, MPI_DOUBLE, 0, ranks_.comm);
+      MPI_Bcast(&set_.deflated, 1, MPI_INT, 0, ranks_.comm);
+      MPI_Bcast(&set_.deflated_rate, 1, MPI_DOUBLE, 0, ranks_.comm);
       multipliers_.resize(static_cast<std::size_t>(count));
       conditions_.resize(static_cast<std::size_t>(count));
       MPI_Bcast(conditions_.data(), count, MPI_DOUBLE, 0, ranks_.comm);
@@ -255,10 +255,10 @@ class Analysis {
       MPI_Bcast(multipliers_.data(), 2 * count, MPI_DOUBLE, 0, ranks_.comm);
       MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0, ranks_.comm);
     }
-    modes_.resize(multipliers_.size());
-    for (std::size_t i = 0; i < modes_.size(); ++i) {
+    set_.modes.resize(multipliers_.size());
+    for (std::size_t i = 0; i < set_.modes.size(); ++i) {
       exponents_.push_back(principal_exponent(multipliers_[i]));
-      modes_[i].multiplier = std::pow(multipliers_[i], sectors_);
+      set_.modes[i].multiplier = std::pow(multipliers_[i], sectors_);
     }
   }
 
@@ -281,11 +281,11 @@ class Analysis {
   }
 
   void identify() {
-    const auto count = static_cast<Eigen::Index>(modes_.size());
+    const auto count = static_cast<Eigen::Index>(set_.modes.size());
     const Eigen::MatrixXd& signals = history_.values();
     HarmonicEnergy& energy = history_.energy();
     const auto parts = static_cast<Eigen::Index>(energy.part_names().size());
-    participation_.setZero(count, steps_);
+    set_.participation.setZero(count, steps_);
     const Eigen::Index batch = std::max<Eigen::Index>(
         1, batch_values / std::max<Eigen::Index>(1, 2 * history_.most_rows()));
     Eigen::VectorXcd factors(span_);
@@ -308,8 +308,8 @@ class Analysis {
       Eigen::VectorXd participation;
       for (const Eigen::Index mode : modes) {
         describe_energy(energies.middleCols((mode - first) * parts, parts), energy.part_names(),
-                        modes_[static_cast<std::size_t>(mode)], participation);
-        participation_.row(mode) = participation;
+                        set_.modes[static_cast<std::size_t>(mode)], participation);
+        set_.participation.row(mode) = participation;
       }
     }
     find_displacements();
@@ -319,8 +319,8 @@ class Analysis {
   /// middle of the first step has them whole. (A decay or vibration too fast for the step has not.)
   void find_displacements() {
     std::vector<Eigen::Index> modes;
-    for (std::size_t m = 0; m < modes_.size(); ++m)
-      if (is_zero(exponents_[m]) && modes_[m].kinetic_energy < rest_energy)
+    for (std::size_t m = 0; m < set_.modes.size(); ++m)
+      if (is_zero(exponents_[m]) && set_.modes[m].kinetic_energy < rest_energy)
         modes.push_back(static_cast<Eigen::Index>(m));
     if (modes.empty()) return;
     Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), own_weights_of(modes));
@@ -334,11 +334,11 @@ class Analysis {
 
   /// What rests has no energy to be named after, and is in no harmonic but 0.
   void settle_rest(Eigen::Index mode) {
-    Mode& at_rest = modes_[static_cast<std::size_t>(mode)];
+    Mode& at_rest = set_.modes[static_cast<std::size_t>(mode)];
     at_rest.parts.clear();
     at_rest.harmonic = 0;
-    participation_.row(mode).setZero();
-    participation_(mode, steps_ / 2) = 1.0;
+    set_.participation.row(mode).setZero();
+    set_.participation(mode, steps_ / 2) = 1.0;
   }
 
   /// P^-1 on chosen unknowns: (P y)_i = sign_i y_source(i).
@@ -408,7 +408,7 @@ class Analysis {
   }
 
   void find_residuals() {
-    std::vector<Eigen::Index> modes(modes_.size());
+    std::vector<Eigen::Index> modes(set_.modes.size());
     std::iota(modes.begin(), modes.end(), 0);
     const Eigen::MatrixXd weights = own_weights_of(modes);
     Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), weights);
@@ -422,22 +422,23 @@ class Analysis {
                                last.col(2 * m) + 1i * last.col(2 * m + 1),
                                multipliers_[static_cast<std::size_t>(m)]);
     ranks_.sum(residuals);
-    for (const Eigen::Index m : modes) modes_[static_cast<std::size_t>(m)].residual = residuals(m);
+    for (const Eigen::Index m : modes)
+      set_.modes[static_cast<std::size_t>(m)].residual = residuals(m);
   }
 
   /// Of the modes that may count as resolved; of the others as much as their names need.
   void collect_shapes() {
     std::vector<Eigen::Index> trusted;
     std::vector<Eigen::Index> others;
-    for (std::size_t m = 0; m < modes_.size(); ++m) {
+    for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       const Complex exponent = exponents_[m];
       const bool may_be_rigid = exponent.imag() == 0.0 || is_zero(exponent);
-      const bool fine = may_be_rigid || in_reach(unwarped_at(exponent, modes_[m].harmonic));
-      (fine && modes_[m].residual <= largest_residual ? trusted : others)
+      const bool fine = may_be_rigid || in_reach(unwarped_at(exponent, set_.modes[m].harmonic));
+      (fine && set_.modes[m].residual <= largest_residual ? trusted : others)
           .push_back(static_cast<Eigen::Index>(m));
     }
     const Eigen::Index instants = shapes_.rows() / system_.size();
-    mode_shapes_.resize(ranks_.rank == 0 ? modes_.size() : 0);
+    set_.shapes.resize(ranks_.rank == 0 ? set_.modes.size() : 0);
     expand_shapes(trusted, instants);
     expand_shapes(others, std::min(instants, label_samples));
     settle_rigid_body_modes();
@@ -456,7 +457,7 @@ class Analysis {
       const auto m = static_cast<std::size_t>(modes[i]);
       const Sector sector{values.col(2 * static_cast<Eigen::Index>(i)).data(), n, instants,
                           stride_};
-      mode_shapes_[m] = whole_period(sector, exponents_[m], all);
+      set_.shapes[m] = whole_period(sector, exponents_[m], all);
     }
   }
 
@@ -464,20 +465,21 @@ class Analysis {
   /// harmonics that the rotor sees of it are those of its own turning, and k stays 0. What changes
   /// sign with every step, or nearly so, is none of them: a decay too fast for the step.
   void settle_rigid_body_modes() {
-    Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
+    Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set_.modes.size()));
     if (ranks_.rank == 0) {
-      for (std::size_t m = 0; m < modes_.size(); ++m) {
-        Mode mode = modes_[m];
+      for (std::size_t m = 0; m < set_.modes.size(); ++m) {
+        Mode mode = set_.modes[m];
         mode.exponent = exponents_[m];
         const bool real =
-            exponents_[m].imag() == 0.0 && is_rigid_body(system_, mode_shapes_[m], mode);
+            exponents_[m].imag() == 0.0 && is_rigid_body(system_, set_.shapes[m], mode);
         if ((!is_zero(exponents_[m]) && !real) || fast_share(m) > largest_fast_share)
-          harmonics(static_cast<Eigen::Index>(m)) = modes_[m].harmonic;
+          harmonics(static_cast<Eigen::Index>(m)) = set_.modes[m].harmonic;
       }
     }
     ranks_.sum(harmonics);
-    for (std::size_t m = 0; m < modes_.size(); ++m)
-      modes_[m].harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
+    for (std::size_t m = 0; m < set_.modes.size(); ++m)
+      set_.modes[m].harmonic =
+          static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
   }
 
   // ---- the result ------------------------------------------------------------------------------
@@ -488,7 +490,7 @@ class Analysis {
     for (Eigen::Index i = 0; i < steps_; ++i) {
       const auto harmonic = static_cast<int>(i - steps_ / 2);
       if (!in_reach(unwarped_at(exponents_[m], harmonic)))
-        share += participation_(static_cast<Eigen::Index>(m), i);
+        share += set_.participation(static_cast<Eigen::Index>(m), i);
     }
     return share;
   }
@@ -496,10 +498,10 @@ class Analysis {
   /// Moves the harmonic of mode m into the exponent, maps the step back and chooses the conjugate
   /// with Im >= 0. May be called again with another harmonic.
   void settle(std::size_t m) {
-    Mode& mode = modes_[m];
+    Mode& mode = set_.modes[m];
     const bool slow = fast_share(m) <= largest_fast_share;
     const WarpingSpread spread =
-        warping_spread(exponents_[m], participation_.row(static_cast<Eigen::Index>(m)),
+        warping_spread(exponents_[m], set_.participation.row(static_cast<Eigen::Index>(m)),
                        -static_cast<int>(steps_ / 2), mode.harmonic, speed_, dt_);
     mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
     mode.exponent = unwarped(mode.step_exponent, dt_);
@@ -524,20 +526,20 @@ class Analysis {
 
   /// The other one of the pair stands for both.
   void conjugate(std::size_t m) {
-    Mode& mode = modes_[m];
+    Mode& mode = set_.modes[m];
     exponents_[m] = std::conj(exponents_[m]);
     mode.exponent = std::conj(mode.exponent);
     mode.step_exponent = std::conj(mode.step_exponent);
     mode.harmonic = -mode.harmonic;
     mode.multiplier = std::conj(mode.multiplier);
     const auto row = static_cast<Eigen::Index>(m);
-    const Eigen::RowVectorXd shares = participation_.row(row);
+    const Eigen::RowVectorXd shares = set_.participation.row(row);
     const Eigen::Index half = steps_ / 2;
     for (Eigen::Index i = 0; i < steps_; ++i) {
       const Eigen::Index mirrored = half - (i - half);
-      participation_(row, i) = mirrored >= 0 && mirrored < steps_ ? shares(mirrored) : 0.0;
+      set_.participation(row, i) = mirrored >= 0 && mirrored < steps_ ? shares(mirrored) : 0.0;
     }
-    if (!mode_shapes_.empty()) mode_shapes_[m] = mode_shapes_[m].conjugate().eval();
+    if (!set_.shapes.empty()) set_.shapes[m] = set_.shapes[m].conjugate().eval();
   }
 
   /// Whether a mode is among the multipliers next to one of the motions that nothing restores, two
@@ -551,130 +553,122 @@ class Analysis {
   }
 
   double relative_residual(std::size_t m) const {
-    return modes_[m].residual / std::abs(multipliers_[m]);
+    return set_.modes[m].residual / std::abs(multipliers_[m]);
   }
 
   /// Whether a multiplier is so small that rounding has made it.
   bool is_rounding(std::size_t m) const {
     return std::abs(multipliers_[m]) < small_multiplier &&
-           modes_[m].rounding_error > largest_rounding;
+           set_.modes[m].rounding_error > largest_rounding;
   }
 
   /// Modes that rounding has made become deflated ones.
   void drop_rounding() {
     std::vector<Eigen::Index> kept;
-    for (std::size_t m = 0; m < modes_.size(); ++m) {
+    for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       if (is_rounding(m)) {
-        deflated_ += multipliers_[m].imag() == 0.0 ? 1 : 2;
-        deflated_rate_ = std::min(deflated_rate_, decay_of(std::abs(multipliers_[m])));
+        set_.deflated += multipliers_[m].imag() == 0.0 ? 1 : 2;
+        set_.deflated_rate = std::min(set_.deflated_rate, decay_of(std::abs(multipliers_[m])));
         continue;
       }
       const std::size_t at = kept.size();
       multipliers_[at] = multipliers_[m];
       exponents_[at] = exponents_[m];
       conditions_[at] = conditions_[m];
-      if (at != m) modes_[at] = std::move(modes_[m]);
-      if (at != m && !mode_shapes_.empty()) mode_shapes_[at] = std::move(mode_shapes_[m]);
+      if (at != m) set_.modes[at] = std::move(set_.modes[m]);
+      if (at != m && !set_.shapes.empty()) set_.shapes[at] = std::move(set_.shapes[m]);
       kept.push_back(static_cast<Eigen::Index>(m));
     }
     multipliers_.resize(kept.size());
     exponents_.resize(kept.size());
     conditions_.resize(kept.size());
-    modes_.resize(kept.size());
-    if (!mode_shapes_.empty()) mode_shapes_.resize(kept.size());
-    participation_ = participation_(kept, Eigen::all).eval();
+    set_.modes.resize(kept.size());
+    if (!set_.shapes.empty()) set_.shapes.resize(kept.size());
+    set_.participation = set_.participation(kept, Eigen::all).eval();
   }
 
   Floquet finish() {
-    for (std::size_t m = 0; m < modes_.size(); ++m) settle(m);
+    for (std::size_t m = 0; m < set_.modes.size(); ++m) settle(m);
     drop_rounding();
+    set_.degrees_of_freedom = subspace_.degrees_of_freedom();
+    set_.rotor_speed = speed_;
+    set_.step = dt_;
+    set_.conservative = system_.is_conservative();
+    set_.first_harmonic = -steps_ / 2;
+    set_.states = static_cast<int>(states_);
+    for (const Complex multiplier : multipliers_) set_.found += multiplier.imag() == 0.0 ? 1 : 2;
+    if (set_.found + set_.deflated != set_.states)
+      throw InternalError("floquet: " + std::to_string(set_.found) + " exponents found and " +
+                          std::to_string(set_.deflated) + " deflated of " +
+                          std::to_string(set_.states));
+    const Eigen::Index columns = shapes_.rows() / system_.size();
+    for (int q = 0; q < sectors_; ++q)
+      for (Eigen::Index k = 0; k < columns; ++k)
+        set_.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
+    const std::vector<LeadingMotion> leading =
+        find_leading_motions(system_, solution_, set_, sectors_);
+    move_to_leading(leading);
+    set_.reach = 2.0 * largest_half_phase / dt_;
+    for (const Mode& mode : set_.modes)
+      if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
+    find_mesh_errors();
+    name_modes(system_, leading, set_, sectors_);
+    share_names();
+    arrange_modes(set_);
+    scale_shapes(system_, set_);
+    for (std::size_t m = 0; m < set_.shapes.size(); ++m)
+      if (!set_.modes[m].resolved) set_.shapes[m].resize(0, 0);
     Floquet result;
     result.steps = steps_;
     result.sectors = sectors_;
     result.step = dt_;
-    ModeSet& set = result.set;
-    set.degrees_of_freedom = subspace_.degrees_of_freedom();
-    set.rotor_speed = speed_;
-    set.step = dt_;
-    set.conservative = system_.is_conservative();
-    set.first_harmonic = -steps_ / 2;
-    set.states = static_cast<int>(states_);
-    set.deflated = deflated_;
-    for (const Complex multiplier : multipliers_) set.found += multiplier.imag() == 0.0 ? 1 : 2;
-    if (set.found + deflated_ != set.states)
-      throw InternalError("floquet: " + std::to_string(set.found) + " exponents found and " +
-                          std::to_string(deflated_) + " deflated of " + std::to_string(set.states));
-    set.deflated_rate = deflated_rate_;
-    const Eigen::Index columns = shapes_.rows() / system_.size();
-    for (int q = 0; q < sectors_; ++q)
-      for (Eigen::Index k = 0; k < columns; ++k)
-        set.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
-    set.modes = modes_;
-    set.participation = participation_;
-    set.shapes = std::move(mode_shapes_);
-    const std::vector<LeadingMotion> leading =
-        find_leading_motions(system_, solution_, set, sectors_);
-    mode_shapes_ = std::move(set.shapes);
-    move_to_leading(leading);
-    set.modes = modes_;
-    set.shapes = std::move(mode_shapes_);
-    set.participation = participation_;
-    set.reach = 2.0 * largest_half_phase / dt_;
-    for (const Mode& mode : set.modes)
-      if (!mode.resolved) set.reach = std::min(set.reach, std::abs(mode.exponent));
-    find_mesh_errors(set);
-    name_modes(system_, leading, set, sectors_);
-    share_names(set);
-    arrange_modes(set);
-    scale_shapes(system_, set);
-    for (std::size_t m = 0; m < set.shapes.size(); ++m)
-      if (!set.modes[m].resolved) set.shapes[m].resize(0, 0);
+    result.set = std::move(set_);
     return result;
   }
 
   /// The frequency of a mode is that of the motion it is named after, which may be at another
   /// harmonic than the part with most kinetic energy. Only the first rank knows these motions.
   void move_to_leading(const std::vector<LeadingMotion>& leading) {
-    Eigen::VectorXd shifts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes_.size()));
+    Eigen::VectorXd shifts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set_.modes.size()));
     for (std::size_t m = 0; m < leading.size(); ++m)
-      shifts(static_cast<Eigen::Index>(m)) = leading[m].harmonic - modes_[m].harmonic;
+      shifts(static_cast<Eigen::Index>(m)) = leading[m].harmonic - set_.modes[m].harmonic;
     ranks_.sum(shifts);
-    for (std::size_t m = 0; m < modes_.size(); ++m) {
+    for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       const auto shift = static_cast<int>(std::lround(shifts(static_cast<Eigen::Index>(m))));
       if (shift == 0) continue;
-      modes_[m].harmonic += shift;
+      set_.modes[m].harmonic += shift;
       settle(m);
     }
   }
 
   /// From the shapes, which only the first rank has.
-  void find_mesh_errors(ModeSet& set) const {
+  void find_mesh_errors() {
     const std::vector<system::MeshError> elements = system_.mesh_errors();
-    Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(2, static_cast<Eigen::Index>(set.modes.size()));
-    for (std::size_t m = 0; m < set.shapes.size(); ++m)
-      if (set.modes[m].resolved && !is_zero(set.modes[m].exponent))
+    Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(2, static_cast<Eigen::Index>(set_.modes.size()));
+    for (std::size_t m = 0; m < set_.shapes.size(); ++m)
+      if (set_.modes[m].resolved && !is_zero(set_.modes[m].exponent))
         errors.col(static_cast<Eigen::Index>(m)) = find_mesh_error(
-            elements, set.shapes[m], set.modes[m].exponent,
-            std::max(set.modes[m].kinetic_energy, strain_energy_of(system_, set.shapes[m])));
+            elements, set_.shapes[m], set_.modes[m].exponent,
+            std::max(set_.modes[m].kinetic_energy, strain_energy_of(system_, set_.shapes[m])));
     ranks_.sum(errors);
-    for (std::size_t m = 0; m < set.modes.size(); ++m)
-      add_mesh_error(set.modes[m], errors.col(static_cast<Eigen::Index>(m)));
+    for (std::size_t m = 0; m < set_.modes.size(); ++m)
+      add_mesh_error(set_.modes[m], errors.col(static_cast<Eigen::Index>(m)));
   }
 
   /// Names come from the shapes, which only the first rank has.
-  void share_names(ModeSet& set) const {
+  void share_names() {
     if (ranks_.size == 1) return;
-    MPI_Bcast(&set.blades, 1, MPI_INT, 0, ranks_.comm);
-    for (Mode& mode : set.modes)
+    MPI_Bcast(&set_.blades, 1, MPI_INT, 0, ranks_.comm);
+    for (Mode& mode : set_.modes)
       MPI_Bcast(&mode.fixed_frame_frequency, 1, MPI_DOUBLE, 0, ranks_.comm);
     std::string text;
-    for (const Mode& mode : set.modes) text += mode.label + '\n';
+    for (const Mode& mode : set_.modes) text += mode.label + '\n';
     int length = static_cast<int>(text.size());
     MPI_Bcast(&length, 1, MPI_INT, 0, ranks_.comm);
     text.resize(static_cast<std::size_t>(length));
     MPI_Bcast(text.data(), length, MPI_CHAR, 0, ranks_.comm);
     std::istringstream lines(text);
-    for (Mode& mode : set.modes) std::getline(lines, mode.label);
+    for (Mode& mode : set_.modes) std::getline(lines, mode.label);
   }
 
   const system::PeriodicSystem& system_;
@@ -697,13 +691,9 @@ class Analysis {
   Eigen::MatrixXd map_;               ///< of these, over a sector
   std::vector<Complex> multipliers_;  ///< of the sector
   std::vector<double> conditions_;    ///< of these
-  int deflated_ = 0;                  ///< states whose multipliers are rounding
-  double deflated_rate_ = std::numeric_limits<double>::infinity();  ///< of their slowest [1/s]
-  std::vector<Complex> exponents_;                                  ///< principal
+  std::vector<Complex> exponents_;    ///< principal
   Eigen::MatrixXcd vectors_;
-  std::vector<Mode> modes_;
-  Eigen::MatrixXd participation_;
-  std::vector<Eigen::MatrixXcd> mode_shapes_;
+  ModeSet set_;  ///< the result as it comes to be; the first rank has the shapes
 };
 
 }  // namespace

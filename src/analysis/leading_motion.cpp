@@ -145,6 +145,16 @@ double share_at(const ModeSet& set, std::size_t m, Eigen::Index h) {
              : 0.0;
 }
 
+/// Energy of a motion and of those of its name, of all blades, say.
+double energy_alike(const std::vector<system::Motion>& motions, std::size_t motion,
+                    const Eigen::VectorXd& energies) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    if (motions[i].part == motions[motion].part && motions[i].name == motions[motion].name)
+      sum += energies(static_cast<Eigen::Index>(i));
+  return sum;
+}
+
 /// The harmonic, counted from the identified one, that has most of the kinetic energy of a motion
 /// and of those of its name, `own` over all, and no small part of that of the mode; nothing where
 /// none has.
@@ -152,17 +162,14 @@ std::optional<int> own_shift(const std::vector<system::Motion>& motions, const M
                              std::size_t m, std::size_t motion, double own, const NamedShape& named,
                              int sectors, MotionsInTime& in_time) {
   for (Eigen::Index h = -named.reach(); h <= named.reach(); ++h) {
+    if (!(share_at(set, m, h) > clear_part)) continue;
     const Eigen::MatrixXcd rates = named.rate_at(h) * named.at(h);
     double energy = 0.0;
-    for (Eigen::Index c = 0; c < rates.cols(); ++c) {
-      const Eigen::VectorXd energies = in_time.at(time_of(set, named.shape, c, sectors))
-                                           .of(rates.col(c), named.whole_rate.col(c));
-      for (std::size_t i = 0; i < motions.size(); ++i)
-        if (text_of(motions[i]) == text_of(motions[motion]))
-          energy += energies(static_cast<Eigen::Index>(i));
-    }
-    if (energy > dominant_part * own && share_at(set, m, h) > clear_part)
-      return static_cast<int>(h);
+    for (Eigen::Index c = 0; c < rates.cols(); ++c)
+      energy += energy_alike(motions, motion,
+                             in_time.at(time_of(set, named.shape, c, sectors))
+                                 .of(rates.col(c), named.whole_rate.col(c)));
+    if (energy > dominant_part * own) return static_cast<int>(h);
   }
   return std::nullopt;
 }
@@ -211,14 +218,9 @@ Leading find_leading(const system::PeriodicSystem& system,
     shares[name] += energy / (part * mode.kinetic_energy);
   Leading found = leading();
   // Where most of this motion is at another harmonic, its frequency is there.
-  double own = 0.0;
-  double own_identified = 0.0;
-  for (std::size_t i = 0; i < motions.size(); ++i)
-    if (text_of(motions[i]) == text_of(motions[found.motion])) {
-      own += all(static_cast<Eigen::Index>(i));
-      own_identified += identified(static_cast<Eigen::Index>(i));
-    }
-  if (named.waves.size() > 0 && mode.exponent.imag() > 0.0 && own_identified < dominant_part * own)
+  const double own = energy_alike(motions, found.motion, all);
+  if (named.waves.size() > 0 && mode.exponent.imag() > 0.0 &&
+      energy_alike(motions, found.motion, identified) < dominant_part * own)
     found.shift = own_shift(motions, set, m, found.motion, own, named, sectors, in_time);
   return found;
 }

@@ -59,4 +59,22 @@ std::string suggest(std::string_view word, const std::vector<std::string>& candi
   return similar.empty() ? otherwise : "; did you mean \"" + similar + "\"?";
 }
 
+std::string list_unknown(const std::vector<std::string>& words,
+                         const std::vector<std::string>& candidates, const std::string& otherwise) {
+  constexpr std::size_t most_shown = 20;
+  const std::size_t shown = std::min(words.size(), most_shown);
+  std::string text;
+  bool has_stranger = false;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::string similar = find_similar(words[i], candidates);
+    text += (i == 0 ? "\"" : ", \"") + words[i] + "\"";
+    if (similar.empty())
+      has_stranger = true;
+    else
+      text += " (did you mean \"" + similar + "\"?)";
+  }
+  if (words.size() > shown) text += " and " + std::to_string(words.size() - shown) + " more";
+  return text + (has_stranger ? otherwise : "");
+}
+
 }  // namespace samara

@@ -20,12 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_name = 255;
-
 /// A name that is too long with its ending gets a short one of its own.
-std::string lock_name(const std::string& name) {
+std::string lock_name(const fs::path& target) {
+  const std::string name = target.filename().string();
   const std::string plain = "." + name + ".lock";
-  if (plain.size() <= longest_name) return plain;
+  if (plain.size() <= longest_name_in(folder_of(target))) return plain;
   std::ostringstream text;
   text << ".samara-" << std::hex << std::hash<std::string>{}(name) << ".lock";
   return text.str();
@@ -57,7 +56,7 @@ bool is_at(int file, const std::string& path) {
 
 FileLock::FileLock(const std::string& path) {
   const fs::path target(resolved_path(path));
-  lock_path_ = (target.parent_path() / lock_name(target.filename().string())).string();
+  lock_path_ = (target.parent_path() / lock_name(target)).string();
   for (;;) {
     file_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file_ < 0)

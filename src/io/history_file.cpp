@@ -64,9 +64,8 @@ HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
       due_(std::chrono::steady_clock::now() + segment_time) {
   content_.model = input.model_text;
   content_.status = "running";
-  const long longest = ::pathconf(
-      folder().parent_path().empty() ? "." : folder().parent_path().c_str(), _PC_NAME_MAX);
-  if (longest > 0 && folder_name().size() > static_cast<std::size_t>(longest))
+  const std::size_t longest = longest_name_in(folder_of(path_));
+  if (folder_name().size() > longest)
     throw InputError(path_ + ": the name of its folder " + folder_name() + " would have " +
                      std::to_string(folder_name().size()) + " bytes of " + std::to_string(longest) +
                      "; hint: -o gives the result a shorter name");
@@ -217,8 +216,8 @@ void HistoryFile::remove_replaced() {
 void HistoryFile::keep_room() {
   if (content_.segments.empty()) return;
   std::error_code error;
-  const auto size = static_cast<off_t>(std::max<std::uintmax_t>(
-      least_room, 2 * (fs::file_size(path_, error) + fs::file_size(path_, error) / 4)));
+  const auto size =
+      static_cast<off_t>(std::max<std::uintmax_t>(least_room, 5 * fs::file_size(path_, error) / 2));
   if (error || size <= room_) return;
   const std::string place = (folder() / (run_ + room_ending)).string();
   const int file = ::open(place.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);

@@ -530,12 +530,16 @@ std::string require_result(const std::string& path) {
   if (!has_hdf5_signature(path))
     throw InputError(path + ": is no result of samara; hint: expected what -o wrote, RESULT.h5");
   const int schema = read_schema(path);
-  if (schema == -2) throw InputError(path + ": cannot be opened as HDF5: damaged, or in use");
+  if (schema == -2) throw InputError(path + ": cannot be opened as HDF5; hint: damaged, or in use");
   if (schema < 1)
-    throw InputError(path + ": is an HDF5 file of another program, no result of samara");
+    throw InputError(
+        path +
+        ": is an HDF5 file of another program, no result of samara; hint: expected what "
+        "-o wrote, RESULT.h5");
   if (schema > result_schema)
     throw InputError(path + ": is the result of a newer samara (schema " + std::to_string(schema) +
-                     ", this one reads up to " + std::to_string(result_schema) + ")");
+                     ", this one reads up to " + std::to_string(result_schema) +
+                     "); hint: run that samara");
   return path;
 }
 

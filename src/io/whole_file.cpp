@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cerrno>
-#include <climits>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <random>
 #include <utility>
 
@@ -18,12 +18,6 @@ namespace samara::io {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// The folder that will hold `path`; "." for a bare name.
-fs::path folder_of(const std::string& path) {
-  const fs::path parent = fs::path(path).parent_path();
-  return parent.empty() ? fs::path(".") : parent;
-}
 
 /// No longer than others: the file itself may have as long a name as names can be.
 std::string temporary_name() {
@@ -51,6 +45,16 @@ void synchronize_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+fs::path folder_of(const fs::path& path) {
+  const fs::path parent = path.parent_path();
+  return parent.empty() ? fs::path(".") : parent;
+}
+
+std::size_t longest_name_in(const fs::path& folder) {
+  const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  return longest > 0 ? static_cast<std::size_t>(longest) : std::numeric_limits<std::size_t>::max();
+}
 
 std::string resolved_path(const std::string& path) {
   std::error_code error;
@@ -132,11 +136,12 @@ bool require_writable(const std::string& path) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     throw InputError(path + ": no permission to write in " + folder.string() +
                      "; hint: -o names another place");
-  const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  const std::size_t longest = longest_name_in(folder);
   const std::size_t length = fs::path(path).filename().string().size();
-  if (longest > 0 && length > static_cast<std::size_t>(longest))
+  if (length > longest)
     throw InputError(path + ": the name has " + std::to_string(length) + " bytes, and " +
-                     folder.string() + " takes " + std::to_string(longest));
+                     folder.string() + " takes " + std::to_string(longest) +
+                     "; hint: a shorter name");
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status))
     throw InputError(path + ": a folder; hint: give the name of a file in it");

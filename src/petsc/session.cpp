@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <sstream>
 #include <string>
 #include <thread>
 
@@ -21,9 +20,10 @@ constexpr double patience = 5.0;
 /// For so long a rank that waits looks without a pause [s].
 constexpr double spinning = 1e-3;
 
-/// No file of options but that of the home folder: PETSc would read `.petscrc` and `petscrc` of the
-/// current folder, too, which may be anybody's and can load code (-dll_prepend).
-constexpr char own_options[] = "-no_signal_handler -skip_petscrc";
+/// A reader that leaves (samara ... | head) is no crash: signals stay with the system. And no file
+/// of options but that of the home folder: PETSc would read `.petscrc` and `petscrc` of the current
+/// folder, too, which may be anybody's and can load code (-dll_prepend).
+constexpr std::array<const char*, 2> own_options{"-no_signal_handler", "-skip_petscrc"};
 
 /// Puts the options of the home folder's `.petscrc` in front of those of the environment.
 void take_home_options() {
@@ -68,11 +68,9 @@ void prepare_transport() {
 
 Session::Session(const std::vector<std::string>& options) {
   prepare_transport();
-  // A reader that leaves (samara ... | head) is no crash: signals stay with the system.
   take_home_options();
   std::vector<std::string> words{"samara"};
-  std::istringstream own(own_options);
-  for (std::string word; own >> word;) words.push_back(word);
+  words.insert(words.end(), own_options.begin(), own_options.end());
   words.insert(words.end(), options.begin(), options.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -158,8 +156,7 @@ std::string Session::options() {
   check(PetscOptionsGetAll(nullptr, &all));
   std::string text(all);
   PetscFree(all);
-  std::istringstream own(own_options);
-  for (std::string word; own >> word;)
+  for (const std::string word : own_options)
     if (const std::size_t at = text.find(word); at != std::string::npos)
       text.erase(at, word.size() + 1);  // and the blank behind it
   return text.substr(0, text.find_last_not_of(' ') + 1);

@@ -90,29 +90,6 @@ std::vector<Channel> TurbineChannels::available(const TurbineSystem& system,
   return ChannelCatalogue(system.turbine(), stations).channels;
 }
 
-namespace {
-
-/// One line for all names that no channel has.
-[[noreturn]] void refuse_names(const std::vector<std::string>& unknown,
-                               const std::vector<std::pair<std::string, std::size_t>>& known) {
-  constexpr std::size_t most_shown = 20;
-  std::vector<std::string> words;
-  for (const auto& one : known) words.push_back(one.first);
-  std::string text = unknown.size() == 1 ? "unknown channel " : "unknown channels ";
-  bool has_hint = false;
-  for (std::size_t i = 0; i < std::min(unknown.size(), most_shown); ++i) {
-    const std::string similar = find_similar(unknown[i], words);
-    text += (i == 0 ? "\"" : ", \"") + unknown[i] + "\"";
-    if (!similar.empty()) text += " (did you mean \"" + similar + "\"?)";
-    has_hint = has_hint || similar.empty();
-  }
-  if (unknown.size() > most_shown)
-    text += " and " + std::to_string(unknown.size() - most_shown) + " more";
-  throw InputError(text + (has_hint ? "; hint: docs/channels.md has those of a turbine" : ""));
-}
-
-}  // namespace
-
 TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStations& stations,
                                  const std::vector<std::string>& names)
     : system_(system), stations_(stations) {
@@ -137,7 +114,13 @@ TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStati
     else
       take(found->second, name);
   }
-  if (!unknown.empty()) refuse_names(unknown, known);
+  if (!unknown.empty()) {
+    std::vector<std::string> words;
+    for (const auto& one : known) words.push_back(one.first);
+    throw InputError(
+        (unknown.size() == 1 ? "unknown channel " : "unknown channels ") +
+        list_unknown(unknown, words, "; hint: docs/channels.md has those of a turbine"));
+  }
   place_sections(catalogue);
 }
 

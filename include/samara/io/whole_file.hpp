@@ -15,6 +15,12 @@ bool is_same_file(const std::string& a, const std::string& b);
 /// Where a file goes that is written at `path`: the target of a symbolic link, which stays.
 std::string resolved_path(const std::string& path);
 
+/// The folder that holds `path`; "." for a bare name.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
+/// Bytes that a name in a folder may have.
+std::size_t longest_name_in(const std::filesystem::path& folder);
+
 /// A file that is written piece by piece: one without a name in the folder of `path` (a temporary
 /// file where the file system has none), which takes that name in the end, when all of it is on the
 /// disk (fsync). Where anything fails it is removed, and what was at `path` stays.
