@@ -10,7 +10,7 @@ void write_masses(io::ResultFile& file, const model::Masses& masses) {
     const Vector3 center = properties.center();
     file.write_value("/model/mass/" + part, properties.mass, {"kg", "none", "mass"});
     file.write_values("/model/center_of_mass/" + part, {center.x(), center.y(), center.z()},
-                      {"m", frame, "centre of mass"});
+                      {"m", frame, "centre of mass", {"axis"}});
   };
   write("tower", masses.tower, "n1 n2 n3 from the foot");
   write("nacelle", masses.nacelle, "y1 y2 y3 from the tower top");

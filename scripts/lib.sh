@@ -20,7 +20,13 @@ lock_build() {
 }
 unlock_build() { exec 9>&-; }
 
-list_packages() { sed 's/#.*//' "$root/scripts/packages.txt"; }
+# Those of all, and of the kinds (test, ci) that the caller has set.
+declare -a package_kinds
+list_packages() {
+  local kind marks=()
+  for kind in "${package_kinds[@]}"; do marks+=(-e "s/^$kind: //"); done
+  sed -e 's/#.*//' "${marks[@]}" -e '/^[a-z]*: /d' "$root/scripts/packages.txt"
+}
 
 list_missing_packages() {
   local installed package

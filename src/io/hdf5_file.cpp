@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
+#include <hdf5_hl.h>
 #include <sys/stat.h>
 
 #include "samara/base/error.hpp"
+
+#include "axes.hpp"
 
 namespace samara::io {
 namespace {
@@ -24,7 +28,8 @@ std::string reason() {
   return text.empty() ? "unknown reason" : text;
 }
 
-hid_t check(hid_t id) {
+template <class Code>
+Code check(Code id) {
   if (id < 0) throw InternalError("HDF5: " + reason());
   return id;
 }
@@ -34,6 +39,23 @@ Hdf5Id memory_access() {
   Hdf5Id access(check(H5Pcreate(H5P_FILE_ACCESS)), H5Pclose);
   check(H5Pset_fapl_core(access.get(), memory_increment, 0));
   return access;
+}
+
+/// The scale of an axis does not name this dataset any more.
+void detach_axis(const Hdf5Id& dataset, unsigned axis) {
+  if (check(H5DSget_num_scales(dataset.get(), axis)) == 0) return;
+  std::string place;
+  const auto take = [](hid_t, unsigned, hid_t scale, void* target) -> herr_t {
+    const ssize_t length = H5Iget_name(scale, nullptr, 0);
+    if (length <= 0) return -1;
+    std::string& text = *static_cast<std::string*>(target);
+    text.resize(static_cast<std::size_t>(length) + 1);
+    H5Iget_name(scale, text.data(), text.size());
+    return 1;
+  };
+  check(H5DSiterate_scales(dataset.get(), axis, nullptr, take, &place));
+  const Hdf5Id scale(check(H5Dopen2(dataset.get(), place.c_str(), H5P_DEFAULT)), H5Dclose);
+  check(H5DSdetach_scale(dataset.get(), scale.get(), axis));
 }
 
 }  // namespace
@@ -86,13 +108,60 @@ Hdf5Id Hdf5File::make_dataset(const std::string& name, hid_t type, const Shape& 
     own_space = {check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)),
                  H5Sclose};
   const hid_t space = shape.empty() ? scalar_space_.get() : own_space.get();
+  if (H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0)
+    throw InternalError(name + ": written twice, or after what has it as its axis");
   Hdf5Id dataset(
       check(H5Dcreate2(file_.get(), name.c_str(), type, space, link_.get(), creation, H5P_DEFAULT)),
       H5Dclose);
   set_text(dataset.get(), "unit", meaning.unit);
   set_text(dataset.get(), "frame", meaning.frame);
-  set_text(dataset.get(), "description", meaning.description);
+  std::string description = meaning.description;
+  for (std::size_t i = 0; meaning.axes.size() > 1 && i < meaning.axes.size(); ++i)
+    description += (i == 0 ? (description.empty() ? "[" : "; [") : ", ") + meaning.axes[i];
+  set_text(dataset.get(), "description", description + (meaning.axes.size() > 1 ? "]" : ""));
+  attach_axes(dataset, name, shape, meaning);
   return dataset;
+}
+
+void Hdf5File::attach_axes(const Hdf5Id& dataset, const std::string& name, const Shape& shape,
+                           const Meaning& meaning) {
+  if (meaning.axes.size() != shape.size())
+    throw InternalError(name + ": has " + std::to_string(shape.size()) + " axes, of which " +
+                        std::to_string(meaning.axes.size()) + " have a name");
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    const std::string& axis = meaning.axes[i];
+    if (name.ends_with("/" + axis)) {
+      check(H5DSset_scale(dataset.get(), axis.c_str()));
+      continue;
+    }
+    const Hdf5Id scale = find_axis(name, axis, shape[i]);
+    check(H5DSattach_scale(dataset.get(), scale.get(), static_cast<unsigned>(i)));
+  }
+}
+
+/// The axis of dataset `name`, from its group or one above; a new one in its group where there is
+/// none.
+Hdf5Id Hdf5File::find_axis(const std::string& name, const std::string& axis, hsize_t length) {
+  for (std::string group = name; !group.empty();) {
+    group.resize(group.rfind('/'));
+    const std::string place = group + "/" + axis;
+    if (H5Lexists(file_.get(), place.c_str(), H5P_DEFAULT) > 0) {
+      Hdf5Id scale(check(H5Oopen(file_.get(), place.c_str(), H5P_DEFAULT)), H5Oclose);
+      if (H5Iget_type(scale.get()) == H5I_GROUP) continue;
+      const Hdf5Id space(check(H5Dget_space(scale.get())), H5Sclose);
+      if (static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space.get()))) == length)
+        return scale;
+    }
+  }
+  const std::string place = name.substr(0, name.rfind('/') + 1) + axis;
+  if (const std::vector<std::string> words = words_of_axis(axis); !words.empty()) {
+    write(place, words, {"", "none", "entries of this axis", {axis}});
+  } else {
+    std::vector<int> numbers(length);
+    std::iota(numbers.begin(), numbers.end(), 1);
+    write(place, numbers, {"1", "none", "entries of this axis by number", {axis}});
+  }
+  return find_axis(name, axis, length);
 }
 
 void Hdf5File::write(const std::string& name, std::span<const double> values, const Shape& shape,
@@ -162,6 +231,12 @@ void Hdf5File::write_rows(const Hdf5Id& dataset, hsize_t first, hsize_t count,
 }
 
 void Hdf5File::remove(const std::string& name) {
+  const Hdf5Id object(check(H5Oopen(file_.get(), name.c_str(), H5P_DEFAULT)), H5Oclose);
+  if (H5Iget_type(object.get()) == H5I_DATASET && H5DSis_scale(object.get()) == 0) {
+    const Hdf5Id space(check(H5Dget_space(object.get())), H5Sclose);
+    const int rank = check(H5Sget_simple_extent_ndims(space.get()));
+    for (int i = 0; i < rank; ++i) detach_axis(object, static_cast<unsigned>(i));
+  }
   check(H5Ldelete(file_.get(), name.c_str(), H5P_DEFAULT));
 }
 

@@ -77,7 +77,7 @@ class Hdf5File {
   void write_rows(const Hdf5Id& dataset, hsize_t first, hsize_t count,
                   std::span<const double> values);
 
-  /// Takes a group or dataset out.
+  /// Takes a group or dataset out: what has an axis before the axis.
   void remove(const std::string& name);
 
   /// Makes a dataset that shows the datasets `name` of other files one after the other along the
@@ -97,6 +97,9 @@ class Hdf5File {
  private:
   Hdf5Id make_dataset(const std::string& name, hid_t type, const Shape& shape,
                       const Meaning& meaning, hid_t creation = H5P_DEFAULT);
+  void attach_axes(const Hdf5Id& dataset, const std::string& name, const Shape& shape,
+                   const Meaning& meaning);
+  Hdf5Id find_axis(const std::string& name, const std::string& axis, hsize_t length);
   void write_part(const Hdf5Id& dataset, hsize_t first, hsize_t count, hid_t type,
                   const void* values);
   void set_text(hid_t object, const std::string& name, const std::string& text);

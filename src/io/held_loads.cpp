@@ -20,10 +20,12 @@ void write_held_loads(Hdf5File& file, const std::string& group,
     words.push_back(coordinate.name);
     values.push_back(coordinate.load);
   }
-  file.write(group + names, words, {"", "none", description});
+  file.write(group + names, words, {"", "none", description, {"held_name"}});
   file.write(group + loads, values, {values.size()},
-             {unit, "about the joint",
-              "constant load on each of held_name, of a generator at the shaft's end of its gear"});
+             {unit,
+              "about the joint",
+              "constant load on each of held_name, of a generator at the shaft's end of its gear",
+              {"held_name"}});
 }
 
 std::vector<analysis::HeldCoordinate> read_held_loads(const Hdf5Reader& file,

@@ -289,7 +289,7 @@ std::vector<char> joined_result(const std::string& source, const HistoryReader& 
   if (history.content().segments.empty()) return bytes;
   Hdf5File file(bytes);
   for (const char* name :
-       {history_time, history_values, history_segment_file, history_segment_rows})
+       {history_values, history_time, history_segment_rows, history_segment_file})
     file.remove(name);
   const hsize_t width = history.content().channels.size();
   const Hdf5Id times = file.make_rows(history_time, {history.rows()}, meaning_of_history_time());

@@ -162,7 +162,7 @@ void HistoryFile::close_segment() {
   const hsize_t rows = content_.time.size();
   file.write(history_time, content_.time, {rows}, meaning_of_history_time());
   file.write(history_values, content_.values, {rows, content_.channels.size()},
-             {"see the result", "see the result", "[row, channel]"});
+             {"see the result", "see the result", "the rows", {"time", "channel"}});
   write_whole_file((folder() / name).string(), file.image());
   content_.segments.push_back({folder_name() + "/" + name, content_.time.size()});
   content_.time.clear();

@@ -1,8 +1,11 @@
 #include "samara/io/load_result.hpp"
 
+#include <numeric>
 #include <sstream>
 
 #include "samara/io/whole_file.hpp"
+
+#include "axes.hpp"
 
 namespace samara::io {
 namespace {
@@ -12,6 +15,7 @@ using loads::ChannelStatistics;
 constexpr char no_frame[] = "none";
 constexpr char unit_of_channel[] = "of channel_unit";
 constexpr char frame_of_channel[] = "of channel_frame";
+constexpr char event_axis[] = "event";
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -37,7 +41,7 @@ void write_statistics(ResultFile& file, const std::string& group, const LoadRepo
   const auto write = [&](const std::string& name, const auto& member,
                          const std::string& description) {
     file.write_values(group + "/" + name, collect(report, member),
-                      {unit_of_channel, frame_of_channel, description + "; [channel]"});
+                      {unit_of_channel, frame_of_channel, description, {channel_axis}});
   };
   write("mean", &ChannelStatistics::mean, "over time");
   write("standard_deviation", &ChannelStatistics::standard_deviation, "over time, of the history");
@@ -46,10 +50,10 @@ void write_statistics(ResultFile& file, const std::string& group, const LoadRepo
   write("range", &ChannelStatistics::range, "maximum - minimum");
   file.write_values(group + "/time_of_minimum",
                     collect(report, &ChannelStatistics::time_of_minimum),
-                    {"s", no_frame, "of the first row with it; [channel]"});
+                    {"s", no_frame, "of the first row with it", {channel_axis}});
   file.write_values(group + "/time_of_maximum",
                     collect(report, &ChannelStatistics::time_of_maximum),
-                    {"s", no_frame, "of the first row with it; [channel]"});
+                    {"s", no_frame, "of the first row with it", {channel_axis}});
 }
 
 void write_events(ResultFile& file, const std::string& group, const LoadReport& report) {
@@ -65,12 +69,15 @@ void write_events(ResultFile& file, const std::string& group, const LoadReport& 
     times.push_back(event.time);
   }
   file.write_texts(group + "/event/channel", names,
-                   {"", no_frame, "whose extreme value it is; [event]"});
-  file.write_texts(group + "/event/kind", kinds, {"", no_frame, "minimum or maximum; [event]"});
-  file.write_values(group + "/event/time", times, {"s", no_frame, "[event]"});
-  file.write_array(
-      group + "/event/values", flat(values), {names.size(), report.channels.size()},
-      {unit_of_channel, frame_of_channel, "of all channels at that time; [event, channel]"});
+                   {"", no_frame, "whose extreme value it is", {event_axis}});
+  file.write_texts(group + "/event/kind", kinds,
+                   {"", no_frame, "minimum or maximum", {event_axis}});
+  file.write_values(group + "/event/time", times, {"s", no_frame, "of each event", {event_axis}});
+  file.write_array(group + "/event/values", flat(values), {names.size(), report.channels.size()},
+                   {unit_of_channel,
+                    frame_of_channel,
+                    "of all channels at that time",
+                    {event_axis, channel_axis}});
 }
 
 void write_harmonics(ResultFile& file, const std::string& group, const LoadReport& report) {
@@ -78,12 +85,18 @@ void write_harmonics(ResultFile& file, const std::string& group, const LoadRepor
   const loads::LoadHarmonics& harmonics = *report.evaluation.harmonics;
   const std::vector<std::size_t> shape{static_cast<std::size_t>(harmonics.amplitudes.rows()),
                                        report.channels.size()};
+  std::vector<double> orders(shape.front());
+  std::iota(orders.begin(), orders.end(), 0.0);
+  file.write_values(group + "/harmonics/harmonic", orders,
+                    {"1", no_frame, "k, of the rotor speed", {"harmonic"}});
   file.write_array(group + "/harmonics/amplitude", flat(harmonics.amplitudes), shape,
-                   {unit_of_channel, frame_of_channel,
-                    "y = sum of amplitude k * cos(k azimuth + phase k), the mean at k = 0; "
-                    "[k, channel]"});
-  file.write_array(group + "/harmonics/phase", flat(harmonics.phases), shape,
-                   {"rad", no_frame, "from -pi to pi, against the azimuth; [k, channel]"});
+                   {unit_of_channel,
+                    frame_of_channel,
+                    "y = sum of amplitude k * cos(k azimuth + phase k), the mean at k = 0",
+                    {"harmonic", channel_axis}});
+  file.write_array(
+      group + "/harmonics/phase", flat(harmonics.phases), shape,
+      {"rad", no_frame, "from -pi to pi, against the azimuth", {"harmonic", channel_axis}});
   file.set_attribute(group + "/harmonics", "revolutions",
                      static_cast<double>(harmonics.revolutions));
 }
@@ -101,23 +114,26 @@ void write_rainflow(ResultFile& file, const std::string& group, const LoadReport
   const std::size_t channels = report.channels.size();
   const std::size_t range_bins = ranges.size() / channels - 1;
   const std::size_t mean_bins = means.size() / channels - 1;
-  file.write_array(group + "/rainflow/range_edges", ranges, {channels, range_bins + 1},
-                   {unit_of_channel, frame_of_channel, "[channel, edge of the ranges]"});
+  file.write_array(
+      group + "/rainflow/range_edges", ranges, {channels, range_bins + 1},
+      {unit_of_channel, frame_of_channel, "of the bins", {channel_axis, "range_edge"}});
   file.write_array(group + "/rainflow/mean_edges", means, {channels, mean_bins + 1},
-                   {unit_of_channel, frame_of_channel, "[channel, edge of the means]"});
+                   {unit_of_channel, frame_of_channel, "of the bins", {channel_axis, "mean_edge"}});
   file.write_array(group + "/rainflow/counts", counts, {channels, range_bins, mean_bins},
-                   {"1", no_frame,
-                    "cycles, half ones as 0.5, without Goodman's correction; [channel, range, "
-                    "mean]"});
+                   {"1",
+                    no_frame,
+                    "cycles, half ones as 0.5, without Goodman's correction",
+                    {channel_axis, "range_bin", "mean_bin"}});
 }
 
 void write_damage(ResultFile& file, const std::string& group,
                   const std::vector<std::vector<double>>& damage, std::size_t channels,
                   const LoadOptions& options, const std::string& description) {
   const std::vector<double>& exponents = options.evaluation.exponents;
-  file.write_values(group + "/exponent", exponents, {"1", no_frame, "m of the S-N curve"});
+  file.write_values(group + "/exponent", exponents,
+                    {"1", no_frame, "m of the S-N curve", {"exponent"}});
   file.write_array(group + "/equivalent_load", flat(damage), {channels, exponents.size()},
-                   {unit_of_channel, frame_of_channel, description + "; [channel, exponent]"});
+                   {unit_of_channel, frame_of_channel, description, {channel_axis, "exponent"}});
   file.set_attribute(group, "equivalent_frequency", options.evaluation.frequency);
 }
 
@@ -159,7 +175,7 @@ void write_loads(ResultFile& file, const std::vector<LoadReport>& reports,
   const std::vector<system::Channel>& channels = reports.front().channels;
   file.write_channels(group, channels);
   file.write_values(group + "/hours", lifetime.hours,
-                    {"h", no_frame, "that each result stands for; [result]"});
+                    {"h", no_frame, "that each result stands for", {"result"}});
   write_damage(file, group, lifetime.damage, channels.size(), options,
                "range of equal cycles that do the damage of the lifetime");
   if (options.equivalent_cycles)

@@ -102,7 +102,7 @@ std::vector<std::string> names_of(const std::vector<system::Signal>& signals) {
 }
 
 void add_form(Writer& writer, const linear::NamedForm& form) {
-  for (const auto& [letter, matrix, meaning] : linear::state_space_parts) {
+  for (const auto& [letter, matrix, row, column] : linear::state_space_parts) {
     std::vector<double> values;
     for (const linear::StateSpace& coefficient : form.series.coefficients()) {
       const Eigen::MatrixXd& part = coefficient.*matrix;

@@ -21,6 +21,7 @@
 #include "samara/io/load_result.hpp"
 #include "samara/io/whole_file.hpp"
 
+#include "axes.hpp"
 #include "hdf5_file.hpp"
 #include "held_loads.hpp"
 #include "history_datasets.hpp"
@@ -109,49 +110,52 @@ std::vector<std::string> part_names(const ModeSet& set) {
   return names;
 }
 
-std::vector<std::string> harmonic_names(int harmonics) {
-  std::vector<std::string> names{"mean"};
-  for (int k = 1; k <= harmonics; ++k) {
-    names.push_back("cos " + std::to_string(k));
-    names.push_back("sin " + std::to_string(k));
-  }
-  return names;
-}
-
 /// Writes what Floquet modes and constant modes have in common below `group`.
 void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set) {
   const hsize_t count = set.modes.size();
   file.write(group + "/exponents", collect_complex(set, [](const Mode& m) { return m.exponent; }),
              {count, 2},
-             {"rad/s", mode_frame,
-              "lambda + i k Omega with the identified harmonic k; [mode, re/im], im >= 0"});
+             {"rad/s",
+              mode_frame,
+              "lambda + i k Omega with the identified harmonic k, im >= 0",
+              {mode_axis, complex_axis}});
   file.write(group + "/error", collect(set, [](const Mode& m) { return total_error(m); }), {count},
-             {"1", mode_frame,
-              "estimated error of the exponent, relative to its modulus: the sum of those below"});
+             {"1",
+              mode_frame,
+              "estimated error of the exponent, relative to its modulus: the sum of those below",
+              {mode_axis}});
   file.write(group + "/error_step", collect(set, [](const Mode& m) { return m.step_error; }),
-             {count}, {"1", mode_frame, "of the time step"});
+             {count}, {"1", mode_frame, "of the time step", {mode_axis}});
   file.write(group + "/error_mesh", collect(set, [](const Mode& m) { return m.mesh_error; }),
-             {count}, {"1", mode_frame, "of the elements; 0 where the mode is not resolved"});
+             {count},
+             {"1", mode_frame, "of the elements; 0 where the mode is not resolved", {mode_axis}});
   file.write(group + "/error_rounding",
              collect(set, [](const Mode& m) { return m.rounding_error; }), {count},
-             {"1", mode_frame, "of rounding"});
+             {"1", mode_frame, "of rounding", {mode_axis}});
   file.write(group + "/error_growth", collect(set, [](const Mode& m) { return m.growth_error; }),
-             {count}, {"1/s", mode_frame, "estimated error of the real part of the exponent"});
+             {count},
+             {"1/s", mode_frame, "estimated error of the real part of the exponent", {mode_axis}});
   file.write(group + "/frequency_hz", collect(set, hertz), {count},
-             {"Hz", mode_frame, "imaginary part of the exponent over 2 pi"});
+             {"Hz", mode_frame, "imaginary part of the exponent over 2 pi", {mode_axis}});
   if (set.rotor_speed > 0.0)
-    file.write(group + "/frequency_per_rev",
-               collect(set, [&](const Mode& m) { return per_rev(m, set.rotor_speed); }), {count},
-               {"1/rev", mode_frame, "imaginary part of the exponent over the rotor speed"});
-  if (has_fixed_frame(set))
     file.write(
-        group + "/fixed_frame_frequency_hz", collect(set, fixed_frame_hertz), {count},
-        {"Hz", "fixed", "frequency as the ground sees it; not-a-number where that is not one"});
+        group + "/frequency_per_rev",
+        collect(set, [&](const Mode& m) { return per_rev(m, set.rotor_speed); }), {count},
+        {"1/rev", mode_frame, "imaginary part of the exponent over the rotor speed", {mode_axis}});
+  if (has_fixed_frame(set))
+    file.write(group + "/fixed_frame_frequency_hz", collect(set, fixed_frame_hertz), {count},
+               {"Hz",
+                "fixed",
+                "frequency as the ground sees it; not-a-number where that is not one",
+                {mode_axis}});
   file.write(group + "/damping_ratio", collect(set, [](const Mode& m) { return m.damping_ratio; }),
              {count},
-             {"1", no_frame, "- re / abs of the exponent; 0 where the exponent counts as zero"});
+             {"1",
+              no_frame,
+              "- re / abs of the exponent; 0 where the exponent counts as zero",
+              {mode_axis}});
   file.write(group + "/residual", collect(set, [](const Mode& m) { return m.residual; }), {count},
-             {"1", no_frame, "how well the mode closes: a relative norm"});
+             {"1", no_frame, "how well the mode closes: a relative norm", {mode_axis}});
   std::vector<std::string> labels;
   std::vector<int> resolved;
   for (const Mode& mode : set.modes) {
@@ -159,9 +163,10 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
     resolved.push_back(mode.resolved ? 1 : 0);
   }
   file.write(group + "/label", labels,
-             {"", no_frame, "the mode in words; (unresolved): not to be trusted"});
-  file.write(group + "/resolved", resolved,
-             {"1", no_frame, "1: resolved by the time step, with a small residual; 0: not"});
+             {"", no_frame, "the mode in words; (unresolved): not to be trusted", {mode_axis}});
+  file.write(
+      group + "/resolved", resolved,
+      {"1", no_frame, "1: resolved by the time step, with a small residual; 0: not", {mode_axis}});
   const std::vector<std::string> parts = part_names(set);
   std::vector<double> shares(set.modes.size() * parts.size(), 0.0);
   for (std::size_t m = 0; m < set.modes.size(); ++m)
@@ -169,9 +174,9 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
       shares[m * parts.size() +
              static_cast<std::size_t>(std::find(parts.begin(), parts.end(), part.part) -
                                       parts.begin())] = part.share;
-  file.write(group + "/part", parts, {"", no_frame, "the parts of part_share"});
+  file.write(group + "/part", parts, {"", no_frame, "the parts of part_share", {"part"}});
   file.write(group + "/part_share", shares, {count, parts.size()},
-             {"1", mode_frame, "share of the mean kinetic energy; [mode, part]"});
+             {"1", mode_frame, "share of the mean kinetic energy", {mode_axis, "part"}});
   file.set_attribute(group, "degrees_of_freedom", set.degrees_of_freedom);
   file.set_attribute(group, "rotor_speed", set.rotor_speed);
   file.set_attribute(group, "states", set.states);
@@ -187,12 +192,15 @@ void write_shapes(Hdf5File& file, const std::string& group, const ModeSet& set) 
   if (some == set.shapes.end()) return;
   const auto size = static_cast<std::size_t>(some->rows());
   const auto samples = static_cast<std::size_t>(some->cols());
+  file.write(group + "/mode_times", set.shape_times, {set.shape_times.size()},
+             {"s", no_frame, "times of the samples of modes", {"mode_times"}});
   const Hdf5Id dataset = file.make_slices(
       group + "/modes", {set.shapes.size(), samples, size, 2},
-      {"of /model/unknowns/unit", unknown_frame,
+      {"of /model/unknowns/unit",
+       unknown_frame,
        "periodic mode shapes Z(t) exp(-lambda t), lambda without the harmonic, the largest "
-       "position 1, not-a-number where the mode is not resolved; [mode, sample, unknown, "
-       "re/im]"});
+       "position 1, not-a-number where the mode is not resolved",
+       {mode_axis, "mode_times", unknown_axis, complex_axis}});
   std::vector<float> slice(samples * size * 2);
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     if (set.shapes[m].size() == 0) continue;
@@ -204,8 +212,6 @@ void write_shapes(Hdf5File& file, const std::string& group, const ModeSet& set) 
     }
     file.write_slice(dataset, m, slice);
   }
-  file.write(group + "/mode_times", set.shape_times, {set.shape_times.size()},
-             {"s", no_frame, "times of the samples of modes"});
 }
 
 void write_participation(Hdf5File& file, const std::string& group, const ModeSet& set) {
@@ -221,14 +227,19 @@ void write_participation(Hdf5File& file, const std::string& group, const ModeSet
   std::vector<int> harmonics;
   for (Eigen::Index i = first; i < last; ++i)
     harmonics.push_back(set.first_harmonic + static_cast<int>(i));
+  file.write(group + "/participation_harmonic", harmonics,
+             {"1",
+              no_frame,
+              "k of the columns of participation, in the count of harmonic",
+              {"participation_harmonic"}});
   file.write(group + "/participation",
              std::span<const double>(kept.data(), static_cast<std::size_t>(kept.size())),
              {static_cast<hsize_t>(kept.rows()), static_cast<hsize_t>(kept.cols())},
-             {"1", mode_frame,
-              "share of the mean kinetic energy; [mode, harmonic], harmonics k in "
-              "participation_harmonic, beyond which no share reaches 1e-9"});
-  file.write(group + "/participation_harmonic", harmonics,
-             {"1", no_frame, "k of the columns of participation, in the count of harmonic"});
+             {"1",
+              mode_frame,
+              "share of the mean kinetic energy, up to the harmonics beyond which no share reaches "
+              "1e-9",
+              {mode_axis, "participation_harmonic"}});
 }
 
 bool has_hdf5_signature(const std::string& path) {
@@ -329,10 +340,11 @@ void ResultFile::write_model(const system::TurbineSystem& system) {
     roles.emplace_back(word_of(unknown.role));
   }
   Hdf5File& file = storage_->file;
-  file.write("/model/unknowns/name", names, {"", no_frame, "the unknowns in their order"});
-  file.write("/model/unknowns/unit", units, {"", no_frame, "unit of each unknown"});
+  file.write("/model/unknowns/name", names,
+             {"", no_frame, "the unknowns in their order", {unknown_axis}});
+  file.write("/model/unknowns/unit", units, {"", no_frame, "unit of each unknown", {unknown_axis}});
   file.write("/model/unknowns/role", roles,
-             {"", no_frame, "position, velocity or internal (force, moment)"});
+             {"", no_frame, "position, velocity or internal (force, moment)", {unknown_axis}});
   write_value("/model/rotor_speed", system.turbine().speed, {"rad/s", "about +s2", "Omega"});
   write_value("/model/azimuth", system.turbine().azimuth,
               {"rad", "about +s2", "of blade 1 at t = 0"});
@@ -348,19 +360,21 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
   Hdf5File& file = storage_->file;
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coefficients =
       trim.solution.coefficients();
+  file.write("/trim/harmonic_name", harmonic_names(trim.solution.harmonics()),
+             {"", no_frame, "the columns of harmonics", {"harmonic_name"}});
   file.write(
       "/trim/harmonics",
       std::span<const double>(coefficients.data(), static_cast<std::size_t>(coefficients.size())),
       {static_cast<hsize_t>(coefficients.rows()), static_cast<hsize_t>(coefficients.cols())},
-      {"of /model/unknowns/unit", unknown_frame,
-       "z(t) = mean + sum of cos k * cos(k Omega t) + sin k * sin(k Omega t); "
-       "[unknown, coefficient], coefficients in harmonic_name"});
-  file.write("/trim/harmonic_name", harmonic_names(trim.solution.harmonics()),
-             {"", no_frame, "the columns of harmonics"});
-  write_values("/trim/residual", {trim.residual, trim.residual_between},
-               {"N, N m", no_frame,
-                "largest entry of the force and moment balances; [at the samples of the trim, "
-                "between them]"});
+      {"of /model/unknowns/unit",
+       unknown_frame,
+       "z(t) = mean + sum of cos k * cos(k Omega t) + sin k * sin(k Omega t)",
+       {unknown_axis, "harmonic_name"}});
+  write_texts("/trim/residual_place", {"at the samples of the trim", "between them"},
+              {"", no_frame, "the entries of residual", {"residual_place"}});
+  write_values(
+      "/trim/residual", {trim.residual, trim.residual_between},
+      {"N, N m", no_frame, "largest entry of the force and moment balances", {"residual_place"}});
   write_value("/trim/load_level", trim.load_level,
               {"N, N m", no_frame, "largest internal load, to compare the residual with"});
   write_value("/trim/imbalance", trim.imbalance(),
@@ -390,17 +404,20 @@ void ResultFile::write_static(const analysis::StaticPath& path) {
     states.insert(states.end(), state.z.data(), state.z.data() + state.z.size());
   }
   const hsize_t count = path.states.size();
-  write_values("/static/factor", factors,
-               {"1", no_frame, "of gravity and the prescribed loads, in the order of the path"});
+  write_values(
+      "/static/factor", factors,
+      {"1", no_frame, "of gravity and the prescribed loads, in the order of the path", {"state"}});
   file.write("/static/states", states, {count, states.size() / count},
-             {"of /model/unknowns/unit", unknown_frame,
-              "equilibrium at each factor; "
-              "[state, unknown]"});
+             {"of /model/unknowns/unit",
+              unknown_frame,
+              "equilibrium at each factor",
+              {"state", unknown_axis}});
   write_values("/static/residual", residuals,
-               {"N, N m", no_frame, "largest entry of the force and moment balances, by state"});
-  file.write("/static/newton_steps", newton_steps, {"1", no_frame, "of each state"});
-  write_values("/static/limit_points", path.limit_points,
-               {"1", no_frame, "factors of the states next to which the factor turned"});
+               {"N, N m", no_frame, "largest entry of the force and moment balances", {"state"}});
+  file.write("/static/newton_steps", newton_steps, {"1", no_frame, "of each state", {"state"}});
+  write_values(
+      "/static/limit_points", path.limit_points,
+      {"1", no_frame, "factors of the states next to which the factor turned", {"limit_points"}});
   write_value("/static/load_level", path.load_level,
               {"N, N m", no_frame, "largest internal load of the last state"});
   file.set_attribute(
@@ -418,7 +435,7 @@ void ResultFile::write_channels(const std::string& group,
                          const std::string& description) {
     std::vector<std::string> texts;
     for (const system::Channel& channel : channels) texts.push_back(channel.*member);
-    write_texts(group + "/channel_" + name, texts, {"", no_frame, description});
+    write_texts(group + "/channel_" + name, texts, {"", no_frame, description, {channel_axis}});
   };
   write("name", &system::Channel::name, "the channels, by OpenFAST's names");
   write("unit", &system::Channel::unit, "unit of each channel");
@@ -465,15 +482,17 @@ void write_checkpoints(Hdf5File& file, const std::vector<HistoryCheckpoint>& che
     const HistoryCheckpoint& checkpoint = checkpoints[checkpoints.size() - 1 - i];
     const analysis::TransientStart& point = checkpoint.point;
     const std::span<const double> state(point.z.data(), static_cast<std::size_t>(point.z.size()));
-    file.write(group + "/state", state, {state.size()},
-               {"of /model/unknowns/unit", unknown_frame, "from which the run can go on"});
+    file.write(
+        group + "/state", state, {state.size()},
+        {"of /model/unknowns/unit", unknown_frame, "from which the run can go on", {unknown_axis}});
     const std::span<const double> rate(point.z_dot.data(),
                                        static_cast<std::size_t>(point.z_dot.size()));
     if (!rate.empty())
       file.write(group + "/rate", rate, {rate.size()},
-                 {"of /model/unknowns/unit, /s", unknown_frame, "of the state"});
-    file.write(group + "/event_time", checkpoint.events, {checkpoint.events.size()},
-               {"s", no_frame, "when each of transient.events came; not-a-number: not yet"});
+                 {"of /model/unknowns/unit, /s", unknown_frame, "of the state", {unknown_axis}});
+    file.write(
+        group + "/event_time", checkpoint.events, {checkpoint.events.size()},
+        {"s", no_frame, "when each of transient.events came; not-a-number: not yet", {"event"}});
     write_held_loads(file, group, point.held, "coordinates on which a constant load acts");
     file.set_attribute(group, "time", point.time);
     file.set_attribute(group, "origin", point.origin);
@@ -488,20 +507,24 @@ void ResultFile::write_floquet(const analysis::Floquet& floquet) {
   file.write("/floquet/multipliers",
              collect_complex(set, [](const Mode& m) { return m.multiplier; }),
              {set.modes.size(), 2},
-             {"1", no_frame,
-              "over one revolution; [mode, re/im], im >= 0 before it is raised to "
-              "the number of sectors"});
+             {"1",
+              no_frame,
+              "over one revolution; im >= 0 before it is raised to the number of sectors",
+              {mode_axis, complex_axis}});
   file.write("/floquet/step_exponents",
              collect_complex(set, [](const Mode& m) { return m.step_exponent; }),
              {set.modes.size(), 2},
-             {"rad/s", mode_frame,
-              "of the sequence of steps, before (2/dt) tanh(. dt/2) maps it to exponents"});
+             {"rad/s",
+              mode_frame,
+              "of the sequence of steps, before (2/dt) tanh(. dt/2) maps it to exponents",
+              {mode_axis, complex_axis}});
   std::vector<int> harmonics;
   for (const Mode& mode : set.modes) harmonics.push_back(mode.harmonic);
   file.write("/floquet/harmonic", harmonics,
-             {"1", mode_frame,
-              "the identified harmonic k of the rotor speed, counted from the "
-              "principal exponent"});
+             {"1",
+              mode_frame,
+              "the identified harmonic k of the rotor speed, counted from the principal exponent",
+              {mode_axis}});
   write_mode_set(file, "/floquet", set);
   write_participation(file, "/floquet", set);
   write_shapes(file, "/floquet", set);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<double, 4> places{0.05, 0.33, 0.58, 0.81};
 
 void add(StateSpace& sum, double factor, const StateSpace& form) {
-  for (const auto& [name, matrix, meaning] : state_space_parts) {
+  for (const auto& [name, matrix, row, column] : state_space_parts) {
     Eigen::MatrixXd& target = sum.*matrix;
     if (target.size() == 0) target.setZero((form.*matrix).rows(), (form.*matrix).cols());
     target += factor * (form.*matrix);
@@ -29,7 +29,7 @@ constexpr double rounding = 1e-12;
 /// The largest size of every entry at any azimuth.
 StateSpace largest_of(const std::vector<StateSpace>& samples) {
   StateSpace largest = samples.front();
-  for (const auto& [name, matrix, meaning] : state_space_parts) {
+  for (const auto& [name, matrix, row, column] : state_space_parts) {
     Eigen::MatrixXd& target = largest.*matrix;
     for (const StateSpace& sample : samples)
       target = target.cwiseAbs().cwiseMax((sample.*matrix).cwiseAbs());
@@ -43,7 +43,7 @@ StateSpace largest_of(const std::vector<StateSpace>& samples) {
 double compare(const StateSpace& found, const StateSpace& wanted, const StateSpace& largest) {
   double worst = 0.0;
   const double rate = std::sqrt(std::max(1.0, largest.A.size() > 0 ? largest.A.maxCoeff() : 0.0));
-  for (const auto& [name, matrix, meaning] : state_space_parts) {
+  for (const auto& [name, matrix, row, column] : state_space_parts) {
     const Eigen::MatrixXd& reference = wanted.*matrix;
     if (reference.size() == 0) continue;
     const Eigen::VectorXd rows = (largest.*matrix).rowwise().maxCoeff();

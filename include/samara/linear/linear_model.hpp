@@ -37,14 +37,15 @@ struct StateSpace {
 struct StateSpacePart {
   const char* name;
   Eigen::MatrixXd StateSpace::*matrix;
-  const char* meaning;
+  const char* row;
+  const char* column;
 };
 
 inline constexpr std::array<StateSpacePart, 4> state_space_parts{
-    {{"A", &StateSpace::A, "state by state"},
-     {"B", &StateSpace::B, "state by input"},
-     {"C", &StateSpace::C, "output by state"},
-     {"D", &StateSpace::D, "output by input"}}};
+    {{"A", &StateSpace::A, "state_rate", "state"},
+     {"B", &StateSpace::B, "state_rate", "input"},
+     {"C", &StateSpace::C, "output", "state"},
+     {"D", &StateSpace::D, "output", "input"}}};
 
 /// What a column of B and D stands for: an input, its rate or its acceleration.
 struct InputColumn {

@@ -1,0 +1,20 @@
+// Names of the axes that datasets have, and of the entries along them (docs/case_file.md, Results).
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace samara::io {
+
+inline constexpr char complex_axis[] = "re_im";
+inline constexpr char mode_axis[] = "mode";
+inline constexpr char unknown_axis[] = "unknown";
+inline constexpr char channel_axis[] = "channel_name";
+
+/// Words for the entries of an axis that has the same ones everywhere; none: they have numbers.
+std::vector<std::string> words_of_axis(const std::string& axis);
+
+/// mean, cos 1, sin 1, ... of a Fourier series of real coefficients.
+std::vector<std::string> harmonic_names(int harmonics);
+
+}  // namespace samara::io
