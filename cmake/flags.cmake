@@ -17,6 +17,15 @@ if(SAMARA_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
+# Which code an input of a harness reaches (scripts/fuzz).
+if(SAMARA_FUZZ)
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    add_compile_options(-fsanitize=fuzzer-no-link)
+  else()
+    add_compile_options(-fsanitize-coverage=trace-pc)
+  endif()
+endif()
+
 # What makes errors of memory hard to exploit, for targets that read files, which come from
 # anywhere. Where elements are computed it costs 5 to 7 % of a run and guards nothing.
 add_link_options(-Wl,-z,relro,-z,now)

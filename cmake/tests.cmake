@@ -4,6 +4,7 @@
 #   tests/verification/                         -> test_verification, the same way
 #   tests/drivers/*.sh, *.py                    -> the program as its users run it
 #   tests/layering/                             -> rules of the source tree
+#   tests/fuzz/<name>_harness.cpp               -> fuzz_<name>, a little of scripts/fuzz
 set(samara_program ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/samara)
 
 # Debian's own interpreter, which has h5py and numpy, whatever else is first in PATH.
@@ -71,6 +72,52 @@ function(samara_add_scripts folder label prefix)
   endforeach()
 endfunction()
 
+# Harnesses: driven by libFuzzer where this is a build for clang with SAMARA_FUZZ, else by our own
+# driver. The tests run the corpus and some changes of it.
+set(samara_fuzz_corpus ${PROJECT_SOURCE_DIR}/tests/fuzz/corpus)
+set(seeds_of_case ${samara_fuzz_corpus}/case ${PROJECT_SOURCE_DIR}/inputs)
+set(seeds_of_formula ${samara_fuzz_corpus}/formula)
+set(seeds_of_result ${samara_fuzz_corpus}/result)
+set(seeds_of_windio ${PROJECT_SOURCE_DIR}/tests/decks/files/windio)
+set(seeds_of_openfast ${PROJECT_BINARY_DIR}/fuzz_seeds/openfast)
+# A deck in one file, each of its files behind a line with its name.
+foreach(deck teeter/Main three/Main three/Main_BeamDyn three/Main_curved)
+  get_filename_component(folder ${PROJECT_SOURCE_DIR}/tests/decks/files/${deck} DIRECTORY)
+  get_filename_component(main ${deck} NAME)
+  file(GLOB others RELATIVE ${folder} ${folder}/*.dat)
+  set(joined "")
+  foreach(file ${main}.fst ${others})
+    file(READ ${folder}/${file} text)
+    string(APPEND joined "==== ${file}\n${text}")
+  endforeach()
+  string(REPLACE "/" "_" name ${deck})
+  file(WRITE ${seeds_of_openfast}/${name} "${joined}")
+endforeach()
+
+function(samara_add_fuzz_tests libraries)
+  set(directory ${PROJECT_SOURCE_DIR}/tests/fuzz)
+  file(GLOB harnesses CONFIGURE_DEPENDS ${directory}/*_harness.cpp)
+  add_custom_target(fuzz)
+  foreach(harness ${harnesses})
+    get_filename_component(name ${harness} NAME_WE)
+    string(REPLACE "_harness" "" name ${name})
+    set(target fuzz_${name})
+    add_executable(${target} ${harness} ${directory}/folder.cpp)
+    target_link_libraries(${target} PRIVATE ${libraries})
+    target_compile_definitions(${target} PRIVATE SAMARA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    if(SAMARA_FUZZ AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+      target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+    else()
+      target_sources(${target} PRIVATE ${directory}/driver.cpp)
+    endif()
+    add_dependencies(fuzz ${target})
+    string(REPLACE ";" " " seeds "${seeds_of_${name}}")
+    file(WRITE ${PROJECT_BINARY_DIR}/fuzz_seeds/${name}.list "${seeds}\n")
+    samara_add_ctest(${target} unit ${target} -seed=1 -runs=500 -timeout=60
+                     -artifact_prefix=${PROJECT_BINARY_DIR}/tests/${name}- ${seeds_of_${name}})
+  endforeach()
+endfunction()
+
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
 foreach(room base math petsc elements model system analysis linear loads)
   samara_add_tests(${room} unit samara::${room})
@@ -78,6 +125,7 @@ endforeach()
 samara_add_tests(io unit "samara::io;samara_external_files")
 samara_add_tests(decks unit "samara::decks;samara_external_files")
 samara_add_tests(verification verification "samara::io;samara_external_files")
+samara_add_fuzz_tests("samara::decks;samara_external_files")
 samara_add_scripts(layering tree "")
 if(TARGET samara)
   samara_add_scripts(drivers program program_)

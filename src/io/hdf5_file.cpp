@@ -62,17 +62,19 @@ void detach_axis(const Hdf5Id& dataset, unsigned axis) {
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-Hdf5Id open_for_reading(const std::string& path) {
+OpenHdf5 open_for_reading(const std::string& path) {
   constexpr int most_attempts = 10;
   silence_hdf5();
   for (int attempt = 1;; ++attempt) {
     struct stat before {};
     struct stat after {};
     const bool is_there = ::stat(path.c_str(), &before) == 0;
-    Hdf5Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (file || !is_there || attempt == most_attempts || ::stat(path.c_str(), &after) != 0 ||
+    OpenHdf5 open{{}, try_hdf5_file(path)};
+    if (open.trial->is_passed)
+      open.file = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+    if (open.file || !is_there || attempt == most_attempts || ::stat(path.c_str(), &after) != 0 ||
         (before.st_ino == after.st_ino && before.st_dev == after.st_dev))
-      return file;
+      return open;
   }
 }
 

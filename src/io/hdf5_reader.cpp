@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "samara/base/error.hpp"
 
@@ -23,7 +24,9 @@ std::string words_of(const std::vector<hsize_t>& extents) {
 }  // namespace
 
 Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
-  file_ = open_for_reading(path);
+  OpenHdf5 open = open_for_reading(path);
+  file_ = std::move(open.file);
+  trial_ = std::move(open.trial);
   if (!file_) throw InputError(path + ": cannot be opened as HDF5");
 }
 
@@ -87,6 +90,26 @@ std::size_t Hdf5Reader::size_of(const Item& item, const std::vector<hsize_t>& ex
   return count;
 }
 
+std::vector<std::string> Hdf5Reader::sources(const std::string& name) const {
+  const Item item = open(name);
+  const Hdf5Id creation(check(H5Dget_create_plist(item.id.get()), name), H5Pclose);
+  std::vector<std::string> files;
+  const H5D_layout_t layout = H5Pget_layout(creation.get());
+  if (layout == H5D_CONTIGUOUS && H5Pget_external_count(creation.get()) != 0)
+    refuse(name, "has its values in another file");
+  if (layout != H5D_VIRTUAL) return files;
+  std::size_t count = 0;
+  if (H5Pget_virtual_count(creation.get(), &count) < 0) refuse(name, "cannot be read");
+  for (std::size_t i = 0; i < count; ++i) {
+    const ssize_t length = H5Pget_virtual_filename(creation.get(), i, nullptr, 0);
+    if (length < 0) refuse(name, "cannot be read");
+    std::string file(static_cast<std::size_t>(length), '\0');
+    H5Pget_virtual_filename(creation.get(), i, file.data(), file.size() + 1);
+    files.push_back(file);
+  }
+  return files;
+}
+
 void Hdf5Reader::require_numbers(const Item& item) const {
   const H5T_class_t kind = H5Tget_class(type_of(item).get());
   if (kind != H5T_INTEGER && kind != H5T_FLOAT) refuse(item.place, "does not hold numbers");
@@ -116,13 +139,10 @@ std::vector<std::string> Hdf5Reader::read_texts(const Item& item, std::size_t co
           item.place);
   };
   if (H5Tis_variable_str(type.get()) > 0) {
-    std::vector<char*> pieces(count, nullptr);
-    read(pieces.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      if (pieces[i] != nullptr) words[i] = pieces[i];
-      H5free_memory(pieces[i]);
-    }
-    return words;
+    const auto found = trial_->texts.find(item.place);
+    if (found == trial_->texts.end() || found->second.size() != count)
+      refuse(item.place, "cannot be read");
+    return found->second;
   }
   const std::size_t width = H5Tget_size(type.get());
   if (width == 0 || width > most_bytes / count) refuse(item.place, "has texts of too many bytes");

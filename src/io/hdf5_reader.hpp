@@ -4,6 +4,7 @@
 // compared with what is expected before anything is read.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class Hdf5Reader {
   std::vector<std::string> texts(const std::string& name) const;
   /// The only text of a dataset.
   std::string text(const std::string& name) const;
+
+  /// The files that a dataset shows the content of; none: it has its own.
+  std::vector<std::string> sources(const std::string& name) const;
 
   /// Entries first to first + count along the first axis, of a list or of rows of `width` numbers.
   std::vector<double> slice(const std::string& name, std::size_t first, std::size_t count) const;
@@ -68,6 +72,7 @@ class Hdf5Reader {
 
   std::string path_;
   Hdf5Id file_;
+  std::shared_ptr<const Hdf5Trial> trial_;
 };
 
 }  // namespace samara::io

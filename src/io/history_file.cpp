@@ -293,6 +293,11 @@ void HistoryReader::read_segments() {
   if (counts.size() != segments.size())
     throw InputError(path + ": " + history_segment_file + " and " + history_segment_rows +
                      " differ in length");
+  for (const char* name : {history_time, history_values})
+    for (const std::string& source : file.sources(name))
+      if (std::ranges::find(segments, source) == segments.end())
+        throw InputError(path + ": " + name + " shows " + source +
+                         ", which is none of its segments");
   if (segments.empty()) return;
   const std::size_t all = rows_;
   const fs::path folder = fs::path(resolved_path(path)).parent_path();

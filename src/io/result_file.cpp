@@ -252,7 +252,7 @@ bool has_hdf5_signature(const std::string& path) {
 
 /// The schema of a result; -1: an HDF5 file of someone else, -2: one that cannot be opened.
 int read_schema(const std::string& path) {
-  const Hdf5Id file = open_for_reading(path);
+  const Hdf5Id file = open_for_reading(path).file;
   if (!file) return -2;
   const Hdf5Id attribute(
       H5Aopen_by_name(file.get(), "/", schema_attribute, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
