@@ -111,7 +111,7 @@ function(samara_add_fuzz_tests libraries)
       target_sources(${target} PRIVATE ${directory}/driver.cpp)
     endif()
     add_dependencies(fuzz ${target})
-    string(REPLACE ";" " " seeds "${seeds_of_${name}}")
+    string(REPLACE ";" "\n" seeds "${seeds_of_${name}}")
     file(WRITE ${PROJECT_BINARY_DIR}/fuzz_seeds/${name}.list "${seeds}\n")
     samara_add_ctest(${target} unit ${target} -seed=1 -runs=500 -timeout=60
                      -artifact_prefix=${PROJECT_BINARY_DIR}/tests/${name}- ${seeds_of_${name}})
