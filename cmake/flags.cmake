@@ -2,7 +2,7 @@
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion
                     $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast>
                     # g++ 12 sees overlaps in std::string that are not there (GCC bug 105651)
-                    $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
+                    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>)
 if(SAMARA_WERROR)
   add_compile_options(-Werror)
 endif()

@@ -6,13 +6,13 @@
 
 namespace samara::petsc {
 
-void check(PetscErrorCode code, const std::source_location& where) {
+void check(PetscErrorCode code, const char* file, int line) {
   if (code == 0) return;
   const char* text = nullptr;
   PetscErrorMessage(code, &text, nullptr);
   throw InternalError(std::string("PETSc: ") + (text != nullptr ? text : "unknown error") +
-                      " (code " + std::to_string(code) + ") at " + where.file_name() + ":" +
-                      std::to_string(where.line()));
+                      " (code " + std::to_string(code) + ") at " + file + ":" +
+                      std::to_string(line));
 }
 
 Handle<Vec> make_vector(MPI_Comm comm, PetscInt local_size, PetscInt size) {

@@ -1,6 +1,9 @@
 // Owners of PETSc and SLEPc objects, and the check of their calls. The only place that destroys.
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include <petscksp.h>
 #include <petscmat.h>
 #include <petscsnes.h>
@@ -8,15 +11,11 @@
 #include <petscvec.h>
 #include <slepceps.h>
 
-#include <source_location>
-#include <type_traits>
-#include <utility>
-
 namespace samara::petsc {
 
 /// Throws an InternalError with place and PETSc's words where `code` is not zero.
-void check(PetscErrorCode code,
-           const std::source_location& where = std::source_location::current());
+/// (`file` and `line` are the caller's; clang 14 has no std::source_location.)
+void check(PetscErrorCode code, const char* file = __builtin_FILE(), int line = __builtin_LINE());
 
 /// Sole owner of a PETSc object (Vec, Mat, KSP, SNES, TS, EPS, FN, IS); moves, never copies.
 template <class Object>
