@@ -1,7 +1,8 @@
-# One executable per folder of tests. Labels: unit, verification, program, tree.
-#   tests/<room>/*_test.cpp + main.cpp          -> test_<room>      (main.cpp names the module)
-#   tests/<room>/*_mpi_test.cpp + mpi_main.cpp  -> test_<room>_mpi  at 1, 2 and 3 ranks
-#   tests/verification/                         -> test_verification, the same way
+# One executable per folder of tests, one entry of ctest per source of it. Labels: unit, verification,
+# program, tree.
+#   tests/<room>/<name>_test.cpp + main.cpp          -> test_<room>.<name> (main.cpp: the module)
+#   tests/<room>/<name>_mpi_test.cpp + mpi_main.cpp  -> test_<room>_mpi.<name>.<ranks>, 1, 2 and 3
+#   tests/verification/                              -> test_verification.<name>, the same way
 #   tests/drivers/*.sh, *.py                    -> the program as its users run it
 #   tests/layering/                             -> rules of the source tree
 #   tests/fuzz/<name>_harness.cpp               -> fuzz_<name>, a little of scripts/fuzz
@@ -37,6 +38,28 @@ function(samara_add_ctest name label)
                                           ENVIRONMENT "${samara_test_environment}" TIMEOUT 5000)
 endfunction()
 
+# What Boost calls the suites and cases that stand outermost in a source, with commas between.
+function(samara_list_boost_tests source names)
+  file(STRINGS ${source} lines REGEX "^BOOST_AUTO_TEST_(SUITE|CASE|SUITE_END) *[(]")
+  set(found "")
+  set(depth 0)
+  foreach(line ${lines})
+    if(line MATCHES "^BOOST_AUTO_TEST_SUITE_END")
+      math(EXPR depth "${depth} - 1")
+      continue()
+    endif()
+    if(depth EQUAL 0 AND line MATCHES "[(]([A-Za-z0-9_]+)")
+      list(APPEND found ${CMAKE_MATCH_1})
+    endif()
+    if(line MATCHES "^BOOST_AUTO_TEST_SUITE")
+      math(EXPR depth "${depth} + 1")
+    endif()
+  endforeach()
+  list(JOIN found "," found)
+  set(${names} ${found} PARENT_SCOPE)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+endfunction()
+
 function(samara_add_tests folder label libraries)
   set(directory ${PROJECT_SOURCE_DIR}/tests/${folder})
   file(GLOB serial CONFIGURE_DEPENDS ${directory}/*_test.cpp)
@@ -46,15 +69,25 @@ function(samara_add_tests folder label libraries)
   list(REMOVE_ITEM serial ${parallel})
   if(serial)
     samara_add_boost_test(test_${folder} "${libraries}" ${serial} ${main})
-    samara_add_ctest(test_${folder} ${label} test_${folder})
+    foreach(source ${serial})
+      get_filename_component(name ${source} NAME_WE)
+      string(REGEX REPLACE "_test$" "" name ${name})
+      samara_list_boost_tests(${source} tests)
+      samara_add_ctest(test_${folder}.${name} ${label} test_${folder} --run_test=${tests})
+    endforeach()
   endif()
   if(parallel)
     samara_add_boost_test(test_${folder}_mpi "${libraries}" ${parallel} ${mpi_main})
-    foreach(ranks 1 2 3)
-      set(name test_${folder}_mpi_${ranks})
-      samara_add_ctest(${name} ${label} ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
-                       $<TARGET_FILE:test_${folder}_mpi>)
-      set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks})
+    foreach(source ${parallel})
+      get_filename_component(name ${source} NAME_WE)
+      string(REGEX REPLACE "_mpi_test$" "" name ${name})
+      samara_list_boost_tests(${source} tests)
+      foreach(ranks 1 2 3)
+        set(entry test_${folder}_mpi.${name}.${ranks})
+        samara_add_ctest(${entry} ${label} ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
+                         $<TARGET_FILE:test_${folder}_mpi> --run_test=${tests})
+        set_tests_properties(${entry} PROPERTIES PROCESSORS ${ranks})
+      endforeach()
     endforeach()
   endif()
 endfunction()

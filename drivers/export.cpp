@@ -27,9 +27,7 @@ void run_export(const CommandLine& line) {
   if (history.rows() > 0)
     std::cout << ", t = " << general(history.read_time(0, 1).at(0), 6) << " to "
               << general(history.read_time(history.rows() - 1, 1).at(0), 6) << " s";
-  std::cout << "\nstatus  " << history.content().status << "\nexport: " << path << "\n"
-            << std::flush;
-  if (!std::cout) throw InternalError("standard output cannot be written");
+  std::cout << "\nstatus  " << history.content().status << "\nexport: " << path << "\n";
 }
 
 }  // namespace samara::drivers

@@ -44,8 +44,6 @@ void run_import(const CommandLine& line) {
   for (const auto& [title, fate] : blocks)
     std::cout << title << "\n\n" << report_table(import, fate) << "\n";
   if (!line.result_path.empty()) std::cout << "case: " << line.result_path << "\n";
-  std::cout << std::flush;
-  if (!std::cout) throw InternalError("standard output cannot be written");
 }
 
 }  // namespace samara::drivers

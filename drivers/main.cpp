@@ -9,6 +9,9 @@
 #include <new>
 #include <sstream>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
 #include "samara/io/case.hpp"
@@ -269,14 +272,30 @@ int run(const std::vector<std::string>& arguments) {
   return code;
 }
 
+/// A standard stream that is closed would give its number to the next file that is opened, which
+/// would get what is printed. In its place comes one that cannot be used.
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0)  // the lowest free number is this one
+      ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 }  // namespace
 }  // namespace samara::drivers
 
 int main(int argc, char** argv) {
   using namespace samara::drivers;
+  hold_standard_streams();
   int code = 1;
   const Outcome outcome =
       attempt("", [&] { code = run(std::vector<std::string>(argv + 1, argv + argc)); });
-  if (outcome.code != 0) std::fputs(outcome.message.c_str(), stderr);
-  return outcome.code != 0 ? outcome.code : code;
+  if (outcome.code != 0) {
+    std::fputs(outcome.message.c_str(), stderr);
+    return outcome.code;
+  }
+  if (!std::cout.flush()) {
+    std::fputs("samara: standard output cannot be written\n", stderr);
+    return code != 0 ? code : 1;
+  }
+  return code;
 }

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -14,7 +15,10 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import LONGEST_RUN, MINIMAL, PROGRAM, ProgramTest  # noqa: E402
+from program import LONGEST_RUN, MINIMAL, MPIEXEC, PROGRAM, SOURCE, ProgramTest  # noqa: E402
+
+COARSE_TURBINE = SOURCE / "inputs/nrel5mw/land.yaml"
+COARSE = ["--set", "blades.elements=2", "--set", "tower.elements=2"]
 
 
 def block(duration, checkpoint=0.5, channels="RotSpeed, RootMxb1"):
@@ -39,10 +43,12 @@ class FaultTest(ProgramTest):
         self.addCleanup(lambda: (run.kill(), run.wait(), run.stderr.close()))
         return run
 
-    def wait_for(self, name):
+    def wait_for(self, name, run=None):
         end = time.monotonic() + LONGEST_RUN
         while not (self.folder / name).exists():
             self.assertLess(time.monotonic(), end, name)
+            if run is not None:
+                self.assertIsNone(run.poll(), "the run has ended")
             time.sleep(0.02)
 
     def names(self):
@@ -136,6 +142,125 @@ class Folders(FaultTest):
         self.assertEqual(run.returncode, 1, error)
         self.assertIn("out/r.h5", error)
         self.assertNotIn("unexpected", error)
+
+
+class Kills(FaultTest):
+    def test_whatever_is_killed_goes_on_bit_by_bit(self):
+        # At moments all over the run, before its first checkpoint and after its end included.
+        keys = ["transient", COARSE_TURBINE, *COARSE, *block(5, 0.1, "RotSpeed, TwrBsMyt")]
+        begin = time.monotonic()
+        self.succeed(*keys, "-o", "whole.h5")
+        length = time.monotonic() - begin
+        whole = history(self.folder / "whole.h5")
+        moments = random.Random(4)
+        unfinished = 0
+        for i in range(50):
+            name = f"killed{i}.h5"
+            run = self.start(*keys, "-o", name)
+            time.sleep(1.1 * length * moments.random())
+            run.kill()
+            run.wait()
+            if not (self.folder / name).exists():
+                continue
+            times, values, status = history(self.folder / name)
+            unfinished += status == "running"
+            count = len(times)
+            with self.subTest(kill=i, rows=count, status=status):
+                self.assertGreater(count, 0)
+                numpy.testing.assert_array_equal(times, whole[0][:count])
+                numpy.testing.assert_array_equal(values, whole[1][:count])
+                if count == len(whole[0]):
+                    continue
+                self.succeed(*keys, "-o", name, "--restart", name)
+                for a, b in zip(history(self.folder / name), whole):
+                    numpy.testing.assert_array_equal(a, b)
+        self.assertGreater(unfinished, 20)
+
+    def test_a_rank_that_is_killed_ends_the_run(self):
+        run = subprocess.Popen(
+            [MPIEXEC, "-n", "3", PROGRAM, "transient", "case.yaml", "-o", "r.h5", *block(1e5)],
+            cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(lambda: (run.kill(), run.wait(), run.stderr.close()))
+        self.wait_for("r.h5", run)
+        children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
+        ranks = [pid for pid in children
+                 if pathlib.Path(f"/proc/{pid}/exe").resolve() == pathlib.Path(PROGRAM).resolve()]
+        self.assertEqual(len(ranks), 3)
+        os.kill(int(ranks[2]), signal.SIGKILL)
+        error = run.communicate(timeout=LONGEST_RUN)[1]
+        self.assertNotEqual(run.returncode, 0)
+        self.assertIn("signal 9", error)
+        times, values, status = history(self.folder / "r.h5")
+        self.assertNotEqual(status, "complete")
+        self.assertTrue(numpy.isfinite(values).all())
+        end = int(times[-1]) + 1
+        self.succeed("transient", "case.yaml", "-o", "r.h5", "--restart", "r.h5", *block(end))
+        self.assertEqual(len(history(self.folder / "r.h5")[0]), 100 * end + 1)
+
+
+class Surroundings(FaultTest):
+    def run_shell(self, script, **variables):
+        return subprocess.run(["bash", "-c", script, "-", PROGRAM], cwd=self.folder, text=True,
+                              capture_output=True, timeout=LONGEST_RUN, check=False,
+                              env={**os.environ, **variables})
+
+    def test_closed_and_full_outputs_cost_no_result(self):
+        # A closed stream's number must not become that of the result.
+        self.succeed("transient", "case.yaml", "-o", "good.h5", *block(1))
+        good = history(self.folder / "good.h5")
+        for i, streams in enumerate((">&-", ">&- 2>&-", "<&- >&- 2>&-", ">/dev/full")):
+            with self.subTest(streams=streams):
+                words = " ".join(f"'{word}'" for word in block(1))
+                run = self.run_shell(f'"$1" transient case.yaml -o {i}.h5 {words} {streams}')
+                self.assertEqual(run.returncode, 1)
+                if "2>" not in streams:
+                    self.assertIn("standard output cannot be written", run.stderr)
+                for a, b in zip(history(self.folder / f"{i}.h5"), good):
+                    numpy.testing.assert_array_equal(a, b)
+
+    def test_a_locale_with_commas_changes_no_number(self):
+        (self.folder / "locales").mkdir()
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8",
+                        str(self.folder / "locales/de_DE.UTF-8")], check=False, capture_output=True)
+        comma = {"LOCPATH": str(self.folder / "locales"), "LC_ALL": "de_DE.UTF-8"}
+        self.assertEqual(self.run_shell("printf '%.1f' 0,5", **comma).stdout, "0,5")
+        self.write("loads.yaml", MINIMAL + "loads: [{beam: blades, at: 1, force: [0, 0, 0.5]}]\n")
+        outputs = []
+        for name, variables in (("c", {}), ("de", comma)):
+            script = (f'"$1" trim loads.yaml -o {name}.h5 --csv {name}.csv --set gravity=9.81 && '
+                      f'"$1" check loads.yaml && "$1" transient loads.yaml -o {name}2.h5 --set '
+                      '"transient={duration: 0.5, step: 0.01, pitch_deg: {formula: 2.5*sin(t)^2}}" && '
+                      f'"$1" export {name}2.h5 -o {name}.out && "$1" loads {name}2.h5 -o {name}3.h5')
+            run = self.run_shell(script, **variables)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            table = (self.folder / f"{name}.csv").read_bytes()
+            rows = (self.folder / f"{name}.out").read_text().splitlines()[8:]
+            words = re.sub(rf"\b{name}(\d?\.(h5|csv|out))", r"x\1", run.stdout)
+            words = re.sub(r"in [0-9.e-]+ s, [0-9.e+]+ times", "", words)
+            outputs.append((words, table, rows))
+        self.assertEqual(outputs[0], outputs[1])
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can become another user")
+    def test_no_permission_is_said_as_such(self):
+        self.folder.chmod(0o755)
+        self.succeed("trim", "case.yaml", "-o", "r.h5")
+        (self.folder / "mine").mkdir(mode=0o700)
+        for name in ("case.yaml", "r.h5"):
+            shutil.copy(self.folder / name, self.folder / "mine" / name)
+        for name in ("secret.yaml", "secret.h5"):
+            shutil.copy(self.folder / name.replace("secret.yaml", "case.yaml").replace(
+                "secret.h5", "r.h5"), self.folder / name)
+            (self.folder / name).chmod(0o600)
+        as_nobody = ("setpriv --reuid=65534 --regid=65534 --clear-groups ")
+        for command in ("trim secret.yaml -o /tmp/x.h5", "export secret.h5 -o /tmp/x.csv",
+                        "loads secret.h5 -o /tmp/x.h5", "trim case.yaml -o mine/new.h5",
+                        "trim case.yaml -o new.h5", "trim case.yaml -o r.h5",
+                        "trim case.yaml -o mine/r.h5", "trim mine/case.yaml -o /tmp/x.h5"):
+            with self.subTest(command=command):
+                run = self.run_shell(f'{as_nobody} "$1" {command}', HOME="/")
+                self.assertEqual(run.returncode, 2, run.stderr)
+                self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+                self.assertIn("permission", run.stderr.lower())
 
 
 class Damage(FaultTest):

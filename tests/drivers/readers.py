@@ -11,7 +11,7 @@ import scipy.io
 import xarray
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import BASELINE, ProgramTest  # noqa: E402
+from program import BASELINE, LONGEST_RUN, ProgramTest  # noqa: E402
 
 ENGINES = ["netcdf4", "h5netcdf"]
 COARSE = ["--set", "blades.elements=2", "--set", "tower.elements=2", "--set", "gravity=9.81"]
@@ -136,7 +136,7 @@ class Readers(ProgramTest):
             ["octave", "--no-gui", "--no-window-system", "--norc", "--quiet", "--eval",
              "pkg load netcdf; " + "; ".join(statements)],
             cwd=self.results, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-            timeout=600, check=False)
+            timeout=LONGEST_RUN, check=False)
         self.assertEqual(run.returncode, 0, run.stderr)
         return numpy.array([float(word) for word in run.stdout.split()])
 
