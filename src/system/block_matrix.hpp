@@ -1,8 +1,9 @@
 // A sparse matrix of dense 18 x 18 blocks that elements add to, and its copy into PETSc.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "samara/petsc/handle.hpp"
 

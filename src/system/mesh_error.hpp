@@ -10,7 +10,6 @@
 namespace samara::system {
 
 /// One entry an element of every beam.
-std::vector<MeshError> find_mesh_errors(const model::Turbine& turbine,
-                                        const model::Layout& layout);
+std::vector<MeshError> find_mesh_errors(const model::Turbine& turbine, const model::Layout& layout);
 
 }  // namespace samara::system

@@ -56,7 +56,8 @@ std::vector<Signal> TurbineInputOutput::available_inputs(const TurbineSystem& sy
   std::vector<Signal> signals;
   if (turbine.chain.generator.free)
     signals.push_back({"generator_torque", "N m", "shaft",
-                       "of the nacelle on the generator, behind the gear, against its turning", "", 0, false});
+                       "of the nacelle on the generator, behind the gear, against its turning", "",
+                       0, false});
   if (turbine.chain.yaw.free)
     signals.push_back({"yaw_torque", "N m", "nacelle",
                        "of the tower top on the nacelle, about y3 (up)", "", 0, false});

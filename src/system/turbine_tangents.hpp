@@ -4,8 +4,9 @@
 
 #include <vector>
 
-#include "block_matrix.hpp"
 #include "samara/system/turbine_residual.hpp"
+
+#include "block_matrix.hpp"
 
 namespace samara::system {
 

@@ -418,8 +418,7 @@ Balance lagrange(const RigidChain& chain, const Instant& now, int i) {
   balance.add(-partial.segment<3>(6).dot(now.hub_load.head<3>()));
   balance.add(-partial.segment<3>(9).dot(now.hub_load.tail<3>()));
   // The torques: of the generator on its own angle, against its turning, of the rotor along h2.
-  if (i == at_generator)
-    balance.add(std::abs(chain.gear_ratio) * generator_torque_of(chain, now));
+  if (i == at_generator) balance.add(std::abs(chain.gear_ratio) * generator_torque_of(chain, now));
   const double spin = load_speeds<double>(chain, now.prescribed, now.q, now.q_dot, now.t)(10);
   balance.add(-partial(10) * (chain.rotor_torque.torque +
                               chain.rotor_torque.slope * (spin - chain.rotor_torque.speed)));

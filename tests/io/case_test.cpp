@@ -251,18 +251,20 @@ BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
 }
 
 BOOST_AUTO_TEST_CASE(an_inertia_at_the_speed_of_the_shaft_is_refused_with_the_new_keys) {
-  check_error(minimal + "shaft:\n  generator: {joint: locked, inertia: 5e6}\n",
-              "case.yaml:10:30: shaft.generator.inertia: was counted at the speed of the shaft, "
-              "gears included, and is no longer read; hint: own_inertia, of the generator about its "
-              "own axis, and shaft.gear_ratio (of an OpenFAST deck GenIner and GBRatio); without "
-              "gears own_inertia is the same number");
+  check_error(
+      minimal + "shaft:\n  generator: {joint: locked, inertia: 5e6}\n",
+      "case.yaml:10:30: shaft.generator.inertia: was counted at the speed of the shaft, "
+      "gears included, and is no longer read; hint: own_inertia, of the generator about its "
+      "own axis, and shaft.gear_ratio (of an OpenFAST deck GenIner and GBRatio); without "
+      "gears own_inertia is the same number");
   check_error(minimal + "shaft:\n  gear_ratio: 0\n",
               "case.yaml:10:3: shaft.gear_ratio: expected a number other than 0");
 }
 
 BOOST_AUTO_TEST_CASE(a_generator_table_reaches_to_the_speed_behind_the_gear) {
-  const std::string shaft = minimal + "shaft:\n  speed: 2\n  gear_ratio: -10\n  generator:\n"
-                                      "    joint: free\n    torque_table: ";
+  const std::string shaft = minimal +
+                            "shaft:\n  speed: 2\n  gear_ratio: -10\n  generator:\n"
+                            "    joint: free\n    torque_table: ";
   const model::ShaftDefinition read = read_text(shaft + "[[10, 3], [30, 7]]\n").turbine.shaft;
   BOOST_TEST(read.generator_speed() == 20.0);
   BOOST_TEST(model::build_turbine(read_text(shaft + "[[10, 3], [30, 7]]\n").turbine)

@@ -223,8 +223,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
            "blades.precone_deg=3", "shaft.tilt_deg=4", "nacelle.yaw.stiffness=1e6",
            "nacelle.yaw.damping=1e4", "blades.damping=2e-3", "tower.damping=2e-3",
            "shaft.generator={joint: free, own_inertia: 20, torque: 1e3, torque_slope: 30}",
-           "shaft.gear_ratio=-10",
-           "shaft.rotor={torque: 1e4, torque_slope: -1e3}"})
+           "shaft.gear_ratio=-10", "shaft.rotor={torque: 1e4, torque_slope: -1e3}"})
           .turbine;
   const std::vector<std::string> inputs{"generator_torque", "yaw_torque",   "top_force_n1",
                                         "top_force_n2",     "top_force_n3", "pitch",
@@ -232,9 +231,9 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
                                         "base_n3",          "base_rot_n1",  "base_rot_n2",
                                         "base_rot_n3"};
   const std::vector<std::string> channels{
-      "RootMxb1", "RootMyb2",  "RootMzb1",  "RootMyc1", "TipDxb1",  "TTDspFA",
-      "TTDspSS",  "TwrBsMyt",  "TwrBsMxt",  "NacYaw",   "RotSpeed", "TeetDefl",
-      "RotTorq",  "GenSpeed", "GenTq",    "LSSTipMys", "YawBrTAxp", "TipALxb1", "YawBrMzp"};
+      "RootMxb1", "RootMyb2",  "RootMzb1",  "RootMyc1", "TipDxb1",  "TTDspFA", "TTDspSS",
+      "TwrBsMyt", "TwrBsMxt",  "NacYaw",    "RotSpeed", "TeetDefl", "RotTorq", "GenSpeed",
+      "GenTq",    "LSSTipMys", "YawBrTAxp", "TipALxb1", "YawBrMzp"};
   const Linearized linear(definition, inputs, channels, 14);
   const auto outputs = static_cast<Eigen::Index>(channels.size());
   const auto n = static_cast<Eigen::Index>(linear.model.states().size());

@@ -1,8 +1,8 @@
 // The rigid bodies between tower and blades by Kane's method (docs/theory.md, section 3; Lee,
 // Hodges & Patil (2002), eq. (8), (9)): tower top T, yaw q_y about t3, nacelle Y, tilted shaft
-// bearing, low-speed end L of the generator's gear turned by psi + q_g about s2, shaft S turned by q_s
-// more (torsion), teeter q_h about the hinge axis e of S and H, hub H. psi is the azimuth at constant
-// speed. The generator turns n times as fast as L against the nacelle, n its gear ratio.
+// bearing, low-speed end L of the generator's gear turned by psi + q_g about s2, shaft S turned by
+// q_s more (torsion), teeter q_h about the hinge axis e of S and H, hub H. psi is the azimuth at
+// constant speed. The generator turns n times as fast as L against the nacelle, n its gear ratio.
 //
 // Generalized speeds: U1 = omega_Y.y3, U2 = omega_H.e, U3..5 = omega_T in t1 t2 t3, U6..8 = v_T in
 // t1 t2 t3, U_g = omega_L.s2, U_s = omega_S.s2. "Speed of the outer body in the inertial frame"
@@ -79,15 +79,15 @@ struct ChainState {
   Vec3<T> theta;         ///< Rodrigues parameters of T, components in the tower's a
   Vec6<T> top_velocity;  ///< V, Omega of T: (U8, U6, U7, U5, U3, U4)
   Vec6<T> top_velocity_dot;
-  JointState<T> yaw;        ///< q_y, U1
-  JointState<T> teeter;     ///< q_h, U2
-  JointState<T> torsion;    ///< q_s, U_s
-  JointState<T> generator;  ///< q_g, U_g
-  Vec6<T> top_load;         ///< F_hat, M_hat at the tower tip, components in the tower's a
-  Vec6<T> hub_load;         ///< sum of the blade-root loads: force, moment about the apex, in H
-  double azimuth = 0.0;     ///< psi [rad]
-  double speed = 0.0;       ///< psi_dot [rad/s]
-  double speed_dot = 0.0;   ///< of a generator that is not free, at L [rad/s^2]
+  JointState<T> yaw;          ///< q_y, U1
+  JointState<T> teeter;       ///< q_h, U2
+  JointState<T> torsion;      ///< q_s, U_s
+  JointState<T> generator;    ///< q_g, U_g
+  Vec6<T> top_load;           ///< F_hat, M_hat at the tower tip, components in the tower's a
+  Vec6<T> hub_load;           ///< sum of the blade-root loads: force, moment about the apex, in H
+  double azimuth = 0.0;       ///< psi [rad]
+  double speed = 0.0;         ///< psi_dot [rad/s]
+  double speed_dot = 0.0;     ///< of a generator that is not free, at L [rad/s^2]
   T generator_torque = T(0);  ///< on the generator beside the chain's, against its turning [N m]
   T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
   Vec3<T> up = Vec3<T>::UnitX();  ///< n3, components in the tower's a
@@ -121,16 +121,17 @@ struct ChainRows {
 /// What is asked of the chain beside its rows. It is only given where torque tables reach.
 template <class T>
 struct ChainReport {
-  T azimuth;           ///< of S against the bearing [rad]
-  T yaw, teeter;       ///< angles [rad]
-  T yaw_rate;          ///< [rad/s]
-  T generator_rate;    ///< of the generator against the nacelle, in the sense of its turning [rad/s]
+  T azimuth;         ///< of S against the bearing [rad]
+  T yaw, teeter;     ///< angles [rad]
+  T yaw_rate;        ///< [rad/s]
+  T generator_rate;  ///< of the generator against the nacelle, in the sense of its turning [rad/s]
   T generator_torque;  ///< of the nacelle on it, against its turning, without the brake [N m]
   T brake_torque;      ///< the same way [N m]
   T shaft_rate;        ///< of S against the nacelle [rad/s]
   T teeter_rate;       ///< [rad/s]
-  Vec6<T> rotor_load;  ///< force and moment of the hub on the shaft at the teeter pin, in S [N, N m]
-  Vec6<T> top_load;    ///< of the nacelle on T at the tower top, in t1 t2 t3 [N, N m]
+  Vec6<T>
+      rotor_load;    ///< force and moment of the hub on the shaft at the teeter pin, in S [N, N m]
+  Vec6<T> top_load;  ///< of the nacelle on T at the tower top, in t1 t2 t3 [N, N m]
   Vec3<T> top_acceleration;  ///< of T, in t1 t2 t3 [m/s^2]
 };
 
@@ -215,8 +216,8 @@ Wrench<T> active_and_inertia(const RigidBody& body, const Motion<T>& m, const Ve
 template <class T>
 class JointWalk {
  public:
-  /// `rate`: to which the joint's own is added, as `acceleration` where it is not free. `inner`: the motion of the joint's point, in the
-  /// components of the body behind it.
+  /// `rate`: to which the joint's own is added, as `acceleration` where it is not free. `inner`:
+  /// the motion of the joint's point, in the components of the body behind it.
   JointWalk(const Hinge& hinge, const Vector3& axis, const JointState<T>& state,
             const Motion<T>& inner, double rate = 0.0, double acceleration = 0.0)
       : hinge_(hinge), axis_(axis.cast<T>()), state_(state), carried_rate_(rate) {
@@ -227,8 +228,7 @@ class JointWalk {
     }
     const JointMotion& own = state.prescribed;
     outer_ = with_relative_rate<T>(axis_, T(rate + own.rate), inner);
-    for (int i = 0; i < 3; ++i)
-      outer_.alpha(i) += axis_(i) * T(own.acceleration + acceleration);
+    for (int i = 0; i < 3; ++i) outer_.alpha(i) += axis_(i) * T(own.acceleration + acceleration);
   }
 
   const Motion<T>& outer() const { return outer_; }
@@ -252,7 +252,6 @@ class JointWalk {
     return rows;
   }
 
- 
  private:
   /// Of the stops on what is behind the hinge, against the turning.
   T stop_torque() const {
@@ -338,8 +337,7 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
   const Vec3<T> root_moment = state.hub_load.template tail<3>();
   w.force += root_force;
   w.moment += root_moment + cross(apex, root_force);
-  if (!chain.rotor_torque.is_zero())
-    w.moment(1) += chain.rotor_torque.at(T(hub_motion.omega(1)));
+  if (!chain.rotor_torque.is_zero()) w.moment(1) += chain.rotor_torque.at(T(hub_motion.omega(1)));
   rows.teeter = teeter.take(w.moment);
   if (report != nullptr) {
     report->azimuth = azimuth;
@@ -351,7 +349,6 @@ ChainRows<T> rigid_chain(const RigidChain& chain, const ChainState<T>& state, Hu
     report->rotor_load << C_HS.transpose() * w.force, C_HS.transpose() * w.moment;
     report->top_acceleration = top.a;
   }
-
 
   // The sum so far, applied at `arm` of the next body, in whose components C^T brings it.
   const auto pass_to = [&w](const Wrench<T>& own, const Mat3<T>& C, const Vec3<T>& arm) {

@@ -22,7 +22,8 @@ struct TorqueLine {
 
   /// @throws DomainError where the table does not reach to a speed
   void require(double at_speed) const {
-    if (table.empty() || (at_speed >= table.front().first && at_speed <= table.back().first)) return;
+    if (table.empty() || (at_speed >= table.front().first && at_speed <= table.back().first))
+      return;
     std::ostringstream text;
     text << "a torque table reaches from " << table.front().first << " to " << table.back().first
          << " rad/s, the speed is " << at_speed << " rad/s; hint: more entries";

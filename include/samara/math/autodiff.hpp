@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-
 #include <unsupported/Eigen/AutoDiff>
 
 namespace samara::math {

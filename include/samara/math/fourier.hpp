@@ -1,8 +1,9 @@
 // Discrete Fourier transform of many signals of any length (FFTW).
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
+
+#include <Eigen/Core>
 
 namespace samara::math {
 

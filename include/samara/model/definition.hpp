@@ -120,9 +120,10 @@ struct TorqueLaw {
 };
 
 struct GeneratorDefinition {
-  JointKind kind = JointKind::locked;  ///< locked: the shaft turns at `speed`; free: its angle varies
-  double inertia = 0.0;                ///< about its own axis [kg m^2]
-  TorqueLaw law;                       ///< against its turning, by its own speed
+  JointKind kind =
+      JointKind::locked;  ///< locked: the shaft turns at `speed`; free: its angle varies
+  double inertia = 0.0;   ///< about its own axis [kg m^2]
+  TorqueLaw law;          ///< against its turning, by its own speed
 };
 
 struct NacelleDefinition {
@@ -144,8 +145,9 @@ struct ShaftDefinition {
   double inertia_lateral = 0.0;  ///< [kg m^2]
   JointDefinition torsion;       ///< between generator and rotor
   GeneratorDefinition generator;
-  double gear_ratio = 1.0;  ///< turns of the generator for one of the shaft, < 0 the other way; not 0
-  TorqueLaw rotor;          ///< on the hub about h2
+  double gear_ratio =
+      1.0;          ///< turns of the generator for one of the shaft, < 0 the other way; not 0
+  TorqueLaw rotor;  ///< on the hub about h2
 
   /// Mean speed of the generator against the nacelle, in the sense of its turning [rad/s].
   double generator_speed() const { return std::abs(gear_ratio) * speed; }
@@ -164,8 +166,8 @@ struct HubDefinition {
   Vector3 inertia =
       Vector3::Zero();  ///< about its own centre: h1 (teeter), h2 (shaft), h3 [kg m^2]
   std::vector<HubMassDefinition> point_masses;
-  double radius = 0.0;      ///< shaft axis to blade root [m]
-  JointDefinition teeter;   ///< locked = rigid hub
+  double radius = 0.0;     ///< shaft axis to blade root [m]
+  JointDefinition teeter;  ///< locked = rigid hub
   StopDefinition teeter_stops;
   double undersling = 0.0;  ///< along s2 from teeter pin to rotor apex [m]
   double delta3 = 0.0;      ///< teeter axis from h1 toward h3 [rad]

@@ -53,8 +53,8 @@ class TurbineChannels {
 
   /// The same of plain arrays, under inputs; T: double, or std::complex<double> to differentiate.
   template <class T>
-  void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                std::span<T> values, const TurbineInputs<T>& inputs = {}) const;
+  void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot, std::span<T> values,
+                const TurbineInputs<T>& inputs = {}) const;
 
  private:
   /// A station that is asked for.

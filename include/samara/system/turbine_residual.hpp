@@ -149,7 +149,6 @@ class TurbineResidual {
   elements::Attachment<T> attachment(const PlacedBeam& placed, const elements::HubMotion<T>& hub,
                                      double t, const TurbineInputs<T>& inputs = {}) const;
 
-
   /// By the turbine's operation and by inputs together.
   template <class T>
   BladePitch<T> pitch_of(const PlacedBeam& placed, double t,
