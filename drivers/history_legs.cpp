@@ -93,7 +93,7 @@ analysis::TransientRun HistoryLegs::run_leg(std::optional<double> stop,
   recorder_.begin_leg(system, watch);
   analysis::TransientOptions options = transient_.options;
   options.stop_at = stop;
-  const analysis::TransientRun leg = analysis::run_transient(system, start_, options, recorder_);
+  analysis::TransientRun leg = analysis::run_transient(system, start_, options, recorder_);
   total_.method = leg.method;
   total_.steps += leg.steps;
   total_.newton_steps += leg.newton_steps;

@@ -84,6 +84,7 @@ struct NumTraits<samara::math::Dependence> : GenericNumTraits<samara::math::Depe
   using Real = samara::math::Dependence;
   using NonInteger = samara::math::Dependence;
   using Nested = samara::math::Dependence;
+  // NOLINTNEXTLINE(readability-identifier-naming): Eigen's names
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1 };
 };
 
