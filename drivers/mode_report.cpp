@@ -80,7 +80,7 @@ std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
   if (!mode.resolved) return "unresolved*";
   if (motion == Motion::rigid_body) return "rigid-body";
   const bool is_marked = total_error(mode) > marked_error;
-  const std::string harmonics =
+  std::string harmonics =
       set.participation.size() > 0 ? other_harmonics(set, m, is_marked ? 1 : most_harmonics) : "";
   if (!is_marked) return harmonics;
   const double percents = 100.0 * total_error(mode);

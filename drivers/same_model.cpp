@@ -45,7 +45,8 @@ void require_same_model(const std::string& path, const std::string& there, const
   };
   ModelKeys all = a;
   all.insert(b.begin(), b.end());
-  for (const auto& [key, value] : all) {
+  for (const auto& entry : all) {
+    const std::string& key = entry.first;
     const auto frees = [&key](std::string_view one) { return is_free(key, one); };
     if (value_of(a, key) == value_of(b, key) || std::ranges::any_of(free, frees)) continue;
     throw InputError(path + ": is of another model (" + key + ": " + value_of(a, key) + " there, " +
