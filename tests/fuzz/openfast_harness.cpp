@@ -35,14 +35,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   folder.clear();
   const std::string main = write_deck(folder, samara::fuzz::text_of(data, size));
   if (main.empty()) return 0;
-  for (const bool tower_only : {false, true}) {
-    try {
-      const samara::decks::Import import =
-          samara::decks::import_openfast(folder / main, {.tower_only = tower_only});
-      samara::io::parse_case("case.yaml", import.text, {});
-    } catch (const samara::InputError&) {
-    } catch (const samara::DomainError&) {
-    }
+  const bool tower_only = size % 2 == 0;
+  try {
+    const samara::decks::Import import =
+        samara::decks::import_openfast(folder / main, {.tower_only = tower_only});
+    samara::io::parse_case("case.yaml", import.text, {});
+  } catch (const samara::InputError&) {
+  } catch (const samara::DomainError&) {
   }
   return 0;
 }

@@ -8,14 +8,13 @@
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const samara::fuzz::Folder folder;
   folder.write("turbine.yaml", samara::fuzz::text_of(data, size));
-  for (const bool tower_only : {false, true}) {
-    try {
-      const samara::decks::Import import =
-          samara::decks::import_windio(folder / "turbine.yaml", {.tower_only = tower_only});
-      samara::io::parse_case("case.yaml", import.text, {});
-    } catch (const samara::InputError&) {
-    } catch (const samara::DomainError&) {
-    }
+  const bool tower_only = size % 2 == 0;
+  try {
+    const samara::decks::Import import =
+        samara::decks::import_windio(folder / "turbine.yaml", {.tower_only = tower_only});
+    samara::io::parse_case("case.yaml", import.text, {});
+  } catch (const samara::InputError&) {
+  } catch (const samara::DomainError&) {
   }
   return 0;
 }
