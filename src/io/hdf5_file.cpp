@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include <hdf5_hl.h>
-#include <sys/stat.h>
 
 #include "samara/base/error.hpp"
 
@@ -61,22 +60,6 @@ void detach_axis(const Hdf5Id& dataset, unsigned axis) {
 }  // namespace
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-
-OpenHdf5 open_for_reading(const std::string& path) {
-  constexpr int most_attempts = 10;
-  silence_hdf5();
-  for (int attempt = 1;; ++attempt) {
-    struct stat before {};
-    struct stat after {};
-    const bool is_there = ::stat(path.c_str(), &before) == 0;
-    OpenHdf5 open{{}, try_hdf5_file(path)};
-    if (open.trial->is_passed)
-      open.file = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
-    if (open.file || !is_there || attempt == most_attempts || ::stat(path.c_str(), &after) != 0 ||
-        (before.st_ino == after.st_ino && before.st_dev == after.st_dev))
-      return open;
-  }
-}
 
 Hdf5File::Hdf5File() {
   silence_hdf5();
@@ -150,6 +133,8 @@ Hdf5Id Hdf5File::find_axis(const std::string& name, const std::string& axis, hsi
     if (H5Lexists(file_.get(), place.c_str(), H5P_DEFAULT) > 0) {
       Hdf5Id scale(check(H5Oopen(file_.get(), place.c_str(), H5P_DEFAULT)), H5Oclose);
       if (H5Iget_type(scale.get()) == H5I_GROUP) continue;
+      if (H5DSis_scale(scale.get()) == 0)  // of a version that wrote none
+        check(H5DSset_scale(scale.get(), axis.c_str()));
       const Hdf5Id space(check(H5Dget_space(scale.get())), H5Sclose);
       if (static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space.get()))) == length)
         return scale;

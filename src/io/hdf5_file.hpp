@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,8 +13,6 @@
 #include <hdf5.h>
 
 #include "samara/io/result_file.hpp"
-
-#include "hdf5_trial.hpp"
 
 namespace samara::io {
 
@@ -49,16 +46,6 @@ class Hdf5Id {
 
 /// Errors come back as codes and not as pages on stderr. Call it before any other HDF5 function.
 void silence_hdf5();
-
-/// A file that is open to be read, and what was found before.
-struct OpenHdf5 {
-  Hdf5Id file;
-  std::shared_ptr<const Hdf5Trial> trial;
-};
-
-/// Opens a file to be read; again where a run has just replaced it, which HDF5 may notice and
-/// refuse. Holds nothing where the file cannot be opened, or is damaged (hdf5_trial.hpp).
-OpenHdf5 open_for_reading(const std::string& path);
 
 class Hdf5File {
  public:

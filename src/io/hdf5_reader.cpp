@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "samara/base/error.hpp"
+#include "samara/io/whole_file.hpp"
 
 namespace samara::io {
 namespace {
@@ -27,7 +29,12 @@ Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
   OpenHdf5 open = open_for_reading(path);
   file_ = std::move(open.file);
   trial_ = std::move(open.trial);
-  if (!file_) throw InputError(path + ": cannot be opened as HDF5");
+  access_ = {H5Pcreate(H5P_DATASET_ACCESS), H5Pclose};
+  const std::filesystem::path folder = folder_of(resolved_path(path));
+  H5Pset_virtual_prefix(access_.get(), std::filesystem::absolute(folder).c_str());
+  if (!file_)
+    throw InputError(path + ": cannot be opened as HDF5" +
+                     (trial_->ending.empty() ? "" : ": " + trial_->ending));
 }
 
 void Hdf5Reader::refuse(const std::string& place, const std::string& why) const {
@@ -47,18 +54,17 @@ bool Hdf5Reader::has(const std::string& name) const {
 }
 
 Hdf5Reader::Item Hdf5Reader::open(const std::string& name) const {
-  return {{check(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT), name), H5Dclose}, false, name};
+  Hdf5Id id(check(H5Dopen2(file_.get(), name.c_str(), access_.get()), name), H5Dclose);
+  std::string text_place = place_of(file_, id.get());
+  return {std::move(id), false, name, std::move(text_place)};
 }
 
 Hdf5Reader::Item Hdf5Reader::open_attribute(const std::string& object,
                                             const std::string& name) const {
   const std::string place = object + ":" + name;
-  return {
-      {check(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-             place),
-       H5Aclose},
-      true,
-      place};
+  const Hdf5Id owner(check(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT), object), H5Oclose);
+  Hdf5Id id(check(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), place), H5Aclose);
+  return {std::move(id), true, place, place_of(file_, owner.get(), name)};
 }
 
 Hdf5Id Hdf5Reader::type_of(const Item& item) const {
@@ -139,7 +145,7 @@ std::vector<std::string> Hdf5Reader::read_texts(const Item& item, std::size_t co
           item.place);
   };
   if (H5Tis_variable_str(type.get()) > 0) {
-    const auto found = trial_->texts.find(item.place);
+    const auto found = trial_->texts.find(item.text_place);
     if (found == trial_->texts.end() || found->second.size() != count)
       refuse(item.place, "cannot be read");
     return found->second;

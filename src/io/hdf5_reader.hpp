@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hdf5_file.hpp"
+#include "hdf5_trial.hpp"
 
 namespace samara::io {
 
@@ -53,7 +54,8 @@ class Hdf5Reader {
   struct Item {
     Hdf5Id id;
     bool is_attribute = false;
-    std::string place;  ///< for messages
+    std::string place;       ///< for messages
+    std::string text_place;  ///< in Hdf5Trial::texts
   };
 
   Item open(const std::string& name) const;
@@ -73,6 +75,7 @@ class Hdf5Reader {
   std::string path_;
   Hdf5Id file_;
   std::shared_ptr<const Hdf5Trial> trial_;
+  Hdf5Id access_;  ///< to datasets: where segments are
 };
 
 }  // namespace samara::io

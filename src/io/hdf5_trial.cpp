@@ -2,49 +2,52 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <csignal>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <fcntl.h>
 #include <hdf5.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "samara/base/error.hpp"
-
-#include "hdf5_file.hpp"
+#include "run_apart.hpp"
 
 namespace samara::io {
 namespace {
 
-/// Larger numeric data are not read whole in one piece by anyone.
+/// Of one dataset or attribute, that is read at once.
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-/// Processor time of the child; a whole file of 10 MB takes some hundredths of it.
-rlim_t most_seconds(off_t file_size) {
-  return 1 + std::min<rlim_t>(static_cast<rlim_t>(file_size) / 10'000'000, 60);
+/// Processor time of the child [s]; a whole file of 10 MB takes some hundredths of it.
+std::size_t most_seconds(std::size_t file_size) {
+  return 3 + std::min<std::size_t>(file_size / 10'000'000, 60);
 }
 
-/// Memory of the child beyond what the process has at the fork: metadata have no more bytes than
-/// their file, whatever they say of their size.
-rlim_t most_memory(off_t file_size) {
-  return 3 * most_bytes + 8 * std::min<rlim_t>(static_cast<rlim_t>(file_size), 2 * most_bytes);
+/// Memory of the child: metadata have no more bytes than their file, whatever they say of their
+/// size.
+std::size_t most_memory(std::size_t file_size) {
+  return 3 * most_bytes + 8 * std::min(file_size, 2 * most_bytes);
 }
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool limits_memory = false;  // the sanitizer's own map is 16 TB
-#else
-constexpr bool limits_memory = true;
-#endif
+std::size_t size_of(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : static_cast<std::size_t>(size);
+}
+
+std::string words_of(const struct stat& info) {
+  std::string words;
+  for (const auto part :
+       {static_cast<long long>(info.st_dev), static_cast<long long>(info.st_ino),
+        static_cast<long long>(info.st_size), static_cast<long long>(info.st_mtim.tv_sec),
+        static_cast<long long>(info.st_mtim.tv_nsec)})
+    words += std::to_string(part) + " ";
+  return words;
+}
 
 std::size_t bytes_of(const Hdf5Id& space, const Hdf5Id& type) {
   const hssize_t count = H5Sget_simple_extent_npoints(space.get());
@@ -54,8 +57,9 @@ std::size_t bytes_of(const Hdf5Id& space, const Hdf5Id& type) {
   return static_cast<std::size_t>(count) * width;
 }
 
-/// What the child says: for each text its place, the number of entries and these, each with its
-/// length before it; a number at the end that tells that all is there.
+/// What the child says: for each text its place, the number of
+/// entries and these, each with its length before it; a number at the end that tells that all is
+/// there.
 class Report {
  public:
   void add(const std::string& place, const std::vector<char*>& words) {
@@ -63,27 +67,21 @@ class Report {
     add_number(words.size());
     for (const char* word : words) add_word(word, word == nullptr ? 0 : std::strlen(word));
   }
-  bool is_too_large() const { return bytes_.size() > most_bytes; }
-
   bool send(int file) {
     add_number(end_mark);
-    for (std::size_t sent = 0; sent < bytes_.size();) {
-      const ssize_t count = ::write(file, bytes_.data() + sent, bytes_.size() - sent);
-      if (count <= 0) return false;
-      sent += static_cast<std::size_t>(count);
-    }
-    return true;
+    return write_all(file, bytes_);
   }
 
   /// False where it is not whole.
   static bool parse(std::string_view bytes, Hdf5Trial& trial) {
+    std::uint64_t length = 0;
+    std::uint64_t count = 0;
     for (;;) {
-      std::uint64_t length = 0;
-      std::uint64_t count = 0;
       if (!take_number(bytes, length)) return false;
       if (length == end_mark) return bytes.empty();
       std::string place;
-      if (!take_word(bytes, length, place) || !take_number(bytes, count) || count > most_bytes)
+      if (!take_word(bytes, length, place) || !take_number(bytes, count) ||
+          count > bytes.size() / sizeof count)
         return false;
       std::vector<std::string> words(count);
       for (std::string& word : words)
@@ -120,178 +118,185 @@ class Report {
   std::string bytes_;
 };
 
-/// Reads by `read` what has this type and space; of other classes than numbers and texts nothing,
-/// for nobody reads them.
-template <class Read>
-bool read_all(const Hdf5Id& type, const Hdf5Id& space, const std::string& place, Report& report,
-              const Read& read) {
-  if (!type || !space) return false;
-  const H5T_class_t kind = H5Tget_class(type.get());
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT && kind != H5T_STRING) return true;
-  const bool is_variable = H5Tis_variable_str(type.get()) > 0;
-  const std::size_t size = bytes_of(space, type);
-  if (size > most_bytes) return !is_variable;
-  if (!is_variable) {
-    std::vector<std::byte> values(size);
-    return size == 0 || read(values.data()) >= 0;
-  }
-  std::vector<char*> words(size / sizeof(char*), nullptr);
-  if (size > 0 && read(words.data()) < 0) return false;
-  report.add(place, words);
-  return !report.is_too_large();
-}
+/// One object after the other of a file, of which is told what texts it has.
+class Visitor {
+ public:
+  Visitor(const Hdf5Id& file, Report& report) : file_(file), report_(report) {}
 
-/// An object of the file and what is told of it.
-struct Visit {
-  std::string place;
-  Report& report;
+  /// False where something cannot be read that results are read for.
+  bool visit() {
+    const Hdf5Id root(H5Oopen(file_.get(), "/", H5P_DEFAULT), H5Oclose);
+    return root && try_object(root, true) &&
+           H5Lvisit(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, try_link, this) >= 0;
+  }
+
+ private:
+  /// Whatever a name leads to; a soft link may lead nowhere.
+  static herr_t try_link(hid_t file, const char* name, const H5L_info_t* link, void* target) {
+    const std::string_view top = std::string_view(name).substr(0, std::strcspn(name, "/"));
+    const bool is_read = top == "case" || top == "model" || top == "trim" || top == "transient";
+    const Hdf5Id object(H5Oopen(file, name, H5P_DEFAULT), H5Oclose);
+    if (!object) return link->type == H5L_TYPE_HARD && is_read ? -1 : 0;
+    return static_cast<Visitor*>(target)->try_object(object, is_read) || !is_read ? 0 : -1;
+  }
+
+  bool try_object(const Hdf5Id& object, bool is_read) {
+    object_ = object.get();
+    hsize_t first = 0;
+    if (H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, &first, try_attribute, this) < 0)
+      return false;
+    return H5Iget_type(object.get()) != H5I_DATASET || try_dataset(object, is_read);
+  }
+
+  static herr_t try_attribute(hid_t object, const char* name, const H5A_info_t*, void* target) {
+    const Hdf5Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+    if (!attribute) return -1;
+    const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose);
+    const Hdf5Id space(H5Aget_space(attribute.get()), H5Sclose);
+    const auto read = [&](void* values) { return H5Aread(attribute.get(), type.get(), values); };
+    return static_cast<Visitor*>(target)->read_all(type, space, name, read) ? 0 : -1;
+  }
+
+  bool try_dataset(const Hdf5Id& dataset, bool is_read) {
+    const Hdf5Id type(H5Dget_type(dataset.get()), H5Tclose);
+    const Hdf5Id space(H5Dget_space(dataset.get()), H5Sclose);
+    if (!type || !space) return false;
+    const bool is_text = H5Tget_class(type.get()) == H5T_STRING;
+    if (!is_text && (!is_read || is_plain(dataset))) return true;
+    return read_all(type, space, {}, [&](void* values) {
+      return H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    });
+  }
+
+  /// Numbers that lie in one piece are bytes whatever they are, and those of other files have their
+  /// own trial.
+  static bool is_plain(const Hdf5Id& dataset) {
+    const Hdf5Id creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+    const H5D_layout_t layout = H5Pget_layout(creation.get());
+    return layout == H5D_CONTIGUOUS || layout == H5D_VIRTUAL;
+  }
+
+  /// Reads by `read` what has this type and space; of other classes than numbers and texts nothing,
+  /// and nothing that is too large, for nobody reads them.
+  template <class Read>
+  bool read_all(const Hdf5Id& type, const Hdf5Id& space, const std::string& attribute,
+                const Read& read) {
+    if (!type || !space) return false;
+    const H5T_class_t kind = H5Tget_class(type.get());
+    if (kind != H5T_INTEGER && kind != H5T_FLOAT && kind != H5T_STRING) return true;
+    const std::size_t size = bytes_of(space, type);
+    if (size > most_bytes) return true;
+    if (H5Tis_variable_str(type.get()) <= 0) {
+      std::vector<std::byte> values(size);
+      return size == 0 || read(values.data()) >= 0;
+    }
+    std::vector<char*> words(size / sizeof(char*), nullptr);
+    if (size > 0 && read(words.data()) < 0) return false;
+    if (const std::string place = place_of(file_, object_, attribute); !place.empty())
+      report_.add(place, words);
+    return true;
+  }
+
+  const Hdf5Id& file_;
+  Report& report_;
+  hid_t object_ = H5I_INVALID_HID;  ///< of which attributes and values are read
 };
 
-herr_t try_attribute(hid_t object, const char* name, const H5A_info_t*, void* target) {
-  const Visit& visit = *static_cast<const Visit*>(target);
-  const Hdf5Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  if (!attribute) return -1;
-  const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose);
-  const Hdf5Id space(H5Aget_space(attribute.get()), H5Sclose);
-  const auto read = [&](void* values) { return H5Aread(attribute.get(), type.get(), values); };
-  return read_all(type, space, visit.place + ":" + name, visit.report, read) ? 0 : -1;
+/// By the driver of stdio: the usual one looks for the file at the path behind a symbolic link.
+Hdf5Id open_descriptor(const std::string& name) {
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_stdio(access.get());
+  return {H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose};
 }
 
-/// Numbers that lie in one piece are bytes whatever they are, and those of other files have their
-/// own trial: both are left.
-bool is_plain(const Hdf5Id& dataset, const Hdf5Id& type) {
-  const Hdf5Id creation(H5Dget_create_plist(dataset.get()), H5Pclose);
-  const H5D_layout_t layout = H5Pget_layout(creation.get());
-  const H5T_class_t kind = H5Tget_class(type.get());
-  return (layout == H5D_CONTIGUOUS || layout == H5D_VIRTUAL) &&
-         (kind == H5T_INTEGER || kind == H5T_FLOAT);
-}
-
-bool try_dataset(const Hdf5Id& dataset, const Visit& visit) {
-  const Hdf5Id type(H5Dget_type(dataset.get()), H5Tclose);
-  const Hdf5Id space(H5Dget_space(dataset.get()), H5Sclose);
-  if (type && space && is_plain(dataset, type)) return true;
-  return read_all(type, space, visit.place, visit.report, [&](void* values) {
-    return H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-  });
-}
-
-bool try_object(const Hdf5Id& object, Visit visit) {
-  hsize_t first = 0;
-  if (H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, &first, try_attribute, &visit) < 0)
-    return false;
-  return H5Iget_type(object.get()) != H5I_DATASET || try_dataset(object, visit);
-}
-
-/// Whatever a name leads to, in this file or another; a soft link may lead nowhere.
-herr_t try_link(hid_t file, const char* name, const H5L_info_t* link, void* report) {
-  const Hdf5Id object(H5Oopen(file, name, H5P_DEFAULT), H5Oclose);
-  if (!object) return link->type == H5L_TYPE_HARD ? -1 : 0;
-  return try_object(object, {std::string("/") + name, *static_cast<Report*>(report)}) ? 0 : -1;
-}
-
-bool read_file(const std::string& path, Report& report) {
+bool read_file(const std::string& path, int output) {
   silence_hdf5();
-  const Hdf5Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Hdf5Id file = open_descriptor(path);
   if (!file) return false;
-  const Hdf5Id root(H5Oopen(file.get(), "/", H5P_DEFAULT), H5Oclose);
-  return root && try_object(root, {"/", report}) &&
-         H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, try_link, &report) >= 0;
-}
-
-void limit(int resource, rlim_t value) {
-  const rlimit both{value, value};
-  ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
-}
-
-rlim_t own_memory() {
-  std::array<char, 64> text{};
-  const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-  const ssize_t length = file < 0 ? 0 : ::read(file, text.data(), text.size() - 1);
-  if (file >= 0) ::close(file);
-  return length > 0
-             ? std::strtoul(text.data(), nullptr, 10) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE))
-             : 0;
-}
-
-[[noreturn]] void run_child(const std::string& path, off_t size, int output,
-                            const sigset_t& signals) {
-  for (const int signal :
-       {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU})
-    ::signal(signal, SIG_DFL);
-  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
-  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  ::dup2(nowhere, STDOUT_FILENO);
-  ::dup2(nowhere, STDERR_FILENO);
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, most_seconds(size));
-  if (const rlim_t own = own_memory(); limits_memory && own > 0)
-    limit(RLIMIT_AS, own + most_memory(size));
   Report report;
-  ::_exit(read_file(path, report) && report.send(output) ? 0 : 1);
+  return Visitor(file, report).visit() && report.send(output);
 }
 
-/// What tells one state of a file from another.
-struct Version {
-  dev_t device = 0;
-  ino_t node = 0;
-  off_t size = -1;
-  timespec changed{};
-
-  explicit Version(const struct stat& info)
-      : device(info.st_dev), node(info.st_ino), size(info.st_size), changed(info.st_ctim) {}
-  bool operator==(const Version& other) const {
-    return device == other.device && node == other.node && size == other.size &&
-           changed.tv_sec == other.changed.tv_sec && changed.tv_nsec == other.changed.tv_nsec;
-  }
-};
-
-/// All that comes from the child until it ends.
-std::string receive(int file) {
-  std::string bytes;
-  std::array<char, 65536> piece{};
-  for (;;) {
-    const ssize_t count = ::read(file, piece.data(), piece.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0 || bytes.size() > 2 * most_bytes) return bytes;
-    bytes.append(piece.data(), static_cast<std::size_t>(count));
-  }
-}
-
-Hdf5Trial run_trial(const std::string& path, off_t size) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw InternalError("no pipe can be made to try " + path);
-  sigset_t all;
-  sigset_t before;
-  ::sigfillset(&all);
-  ::sigprocmask(SIG_SETMASK, &all, &before);  // or a signal would run this process's handler twice
-  const pid_t child = ::fork();
-  if (child == 0) run_child(path, size, ends[1], before);
-  ::sigprocmask(SIG_SETMASK, &before, nullptr);
-  ::close(ends[1]);
-  const std::string bytes = child < 0 ? "" : receive(ends[0]);
-  ::close(ends[0]);
-  if (child < 0) throw InternalError("no process can be started to try " + path);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+Hdf5Trial run_trial(const std::string& path) {
+  const std::size_t size = size_of(path);
+  const Apart apart = run_apart(most_memory(size), most_seconds(size),
+                                [&path](int output) { return read_file(path, output); });
   Hdf5Trial trial;
-  trial.is_passed = WIFEXITED(status) && WEXITSTATUS(status) == 0 && Report::parse(bytes, trial);
+  trial.is_passed = apart.is_done && Report::parse(apart.bytes, trial);
+  trial.ending = apart.ending;
   return trial;
+}
+
+/// The last file is not tried again until it changes.
+std::shared_ptr<const Hdf5Trial> try_file(const std::string& path, const struct stat& info) {
+  static std::string version;
+  static auto trial = std::make_shared<const Hdf5Trial>();
+  const std::string now = words_of(info);
+  if (now != version) trial = std::make_shared<const Hdf5Trial>(run_trial(path));
+  version = now;
+  return trial;
+}
+
+bool is_whole(const ExpectedFile& expected) {
+  const Hdf5Id file(H5Fopen(expected.path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file) return false;
+  for (const auto& [name, shape] : expected.shapes) {
+    const Hdf5Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Id space(dataset ? H5Dget_space(dataset.get()) : H5I_INVALID_HID, H5Sclose);
+    if (!space || H5Sget_simple_extent_ndims(space.get()) != static_cast<int>(shape.size()))
+      return false;
+    std::vector<hsize_t> extents(shape.size());
+    H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr);
+    if (extents != shape) return false;
+  }
+  return true;
 }
 
 }  // namespace
 
-std::shared_ptr<const Hdf5Trial> try_hdf5_file(const std::string& path) {
-  static Version version{{}};
-  static auto trial = std::make_shared<const Hdf5Trial>();
+std::string place_of(const Hdf5Id& file, hid_t object, const std::string& attribute) {
+  H5O_info_t own{};
+  H5O_info_t root{};
+  if (H5Oget_info2(object, &own, H5O_INFO_BASIC) < 0 ||
+      H5Oget_info2(file.get(), &root, H5O_INFO_BASIC) < 0 || own.fileno != root.fileno)
+    return {};
+  return std::to_string(own.addr) + ":" + attribute;
+}
+
+OpenHdf5 open_for_reading(const std::string& path) {
+  silence_hdf5();
+  OpenHdf5 open{{}, std::make_shared<const Hdf5Trial>()};
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) return std::make_shared<const Hdf5Trial>();
-  if (Version(info) == version) return trial;
-  trial = std::make_shared<const Hdf5Trial>(run_trial(path, info.st_size));
-  version = Version(info);
-  return trial;
+  if (descriptor >= 0 && ::fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode)) {
+    // By this name child and parent open one file, whatever takes its place at the path meanwhile.
+    const std::string name = "/proc/self/fd/" + std::to_string(descriptor);
+    open.trial = try_file(name, info);
+    if (open.trial->is_passed) open.file = open_descriptor(name);
+  }
+  if (descriptor >= 0) ::close(descriptor);
+  return open;
+}
+
+std::vector<bool> find_whole(const std::vector<ExpectedFile>& files) {
+  std::vector<bool> whole;
+  while (whole.size() < files.size()) {  // again behind the file that ended the child
+    std::size_t largest = 0;
+    for (std::size_t i = whole.size(); i < files.size(); ++i)
+      largest = std::max(largest, size_of(files[i].path));
+    const Apart apart = run_apart(most_memory(largest), most_seconds(largest) + files.size() / 100,
+                                  [&files, first = whole.size()](int output) {
+                                    silence_hdf5();
+                                    for (std::size_t i = first; i < files.size(); ++i)
+                                      if (!write_all(output, is_whole(files[i]) ? "1" : "0"))
+                                        return false;
+                                    return true;
+                                  });
+    for (const char found : apart.bytes) whole.push_back(found == '1');
+    if (!apart.is_done) whole.push_back(false);
+    whole.resize(std::min(whole.size(), files.size()));
+  }
+  return whole;
 }
 
 }  // namespace samara::io

@@ -53,7 +53,7 @@ std::string new_run_name() {
 
 }  // namespace
 
-HistoryFile::HistoryFile(std::string path, const Case& input, RunRecord record,
+HistoryFile::HistoryFile(const std::string& path, const Case& input, RunRecord record,
                          HistoryContent content, std::function<void(ResultFile&)> write_rest)
     : path_(resolved_path(path)),
       input_(input),
@@ -231,21 +231,6 @@ void HistoryFile::give_room() noexcept {
   room_ = 0;
 }
 
-namespace {
-
-bool is_whole_segment(const std::string& path, std::size_t rows, std::size_t channels) {
-  if (!fs::exists(path)) return false;
-  try {
-    const Hdf5Reader file(path);
-    return file.shape(history_time) == std::vector<hsize_t>{rows} &&
-           file.shape(history_values) == std::vector<hsize_t>{rows, channels};
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
-}  // namespace
-
 class HistoryReader::Storage {
  public:
   explicit Storage(const std::string& path) : file(path) {}
@@ -302,10 +287,16 @@ void HistoryReader::read_segments() {
   const std::size_t all = rows_;
   const fs::path folder = fs::path(resolved_path(path)).parent_path();
   rows_ = 0;
+  std::vector<ExpectedFile> expected;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    expected.push_back(
+        {(folder / segments[i]).string(),
+         {{history_time, {counts[i]}}, {history_values, {counts[i], content_.channels.size()}}}});
+  const std::vector<bool> whole = find_whole(expected);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const std::size_t rows = counts[i];
     const fs::path place = folder / segments[i];
-    const bool is_whole = is_whole_segment(place.string(), rows, content_.channels.size());
+    const bool is_whole = whole[i];
     if (is_whole && damage_.empty()) {
       content_.segments.push_back({segments[i], rows});
       rows_ += rows;

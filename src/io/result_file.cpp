@@ -23,6 +23,7 @@
 
 #include "axes.hpp"
 #include "hdf5_file.hpp"
+#include "hdf5_trial.hpp"
 #include "held_loads.hpp"
 #include "history_datasets.hpp"
 #include "linear_groups.hpp"
@@ -265,6 +266,12 @@ int read_schema(const std::string& path) {
   if (!is_one_integer || H5Aread(attribute.get(), H5T_NATIVE_INT, &schema) < 0 || schema < 1)
     return -1;
   return schema;
+}
+
+/// Why a file did not pass its trial, behind a colon; nothing where that is not known.
+std::string why_not(const std::string& path) {
+  const std::string ending = open_for_reading(path).trial->ending;
+  return ending.empty() ? ending : ": " + ending;
 }
 
 /// All digits of a double.
@@ -553,7 +560,9 @@ std::string require_result(const std::string& path) {
   if (!has_hdf5_signature(path))
     throw InputError(path + ": is no result of samara; hint: expected what -o wrote, RESULT.h5");
   const int schema = read_schema(path);
-  if (schema == -2) throw InputError(path + ": cannot be opened as HDF5; hint: damaged, or in use");
+  if (schema == -2)
+    throw InputError(path + ": cannot be opened as HDF5" + why_not(path) +
+                     "; hint: damaged, or in use");
   if (schema < 1)
     throw InputError(
         path +
@@ -573,7 +582,8 @@ void require_result_path(const std::string& path) {
     throw InputError(path + ": exists and is no result of samara, it would be lost" + hint);
   const int schema = read_schema(path);
   if (schema == -2)
-    throw InputError(path + ": exists and cannot be opened: damaged, or in use" + hint);
+    throw InputError(path + ": exists and cannot be opened, damaged or in use" + why_not(path) +
+                     hint);
   if (schema < 1)
     throw InputError(path + ": exists and is an HDF5 file of another program, it would be lost" +
                      hint);

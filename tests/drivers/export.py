@@ -98,6 +98,20 @@ class Formats(ExportTest):
         for a, b in zip(read_rows(self.folder / "b.h5"), read_rows(self.folder / "whole.h5")):
             numpy.testing.assert_array_equal(a, b)
 
+    def test_a_result_from_before_there_were_scales_gets_those_of_its_rows(self):
+        self.run_transient("a.h5")
+        with h5py.File(self.folder / "a.h5", "r+") as file:
+            def strip(_, item):
+                for name in SCALE_ATTRIBUTES & set(item.attrs):
+                    del item.attrs[name]
+            file.visititems(strip)
+        self.succeed("export", "a.h5", "-o", "b.h5")
+        with h5py.File(self.folder / "b.h5") as file:
+            values = file["transient/values"]
+            self.assertEqual([axis[0].name for axis in values.dims],
+                             ["/transient/time", "/transient/channel_name"])
+            self.assertTrue(all(h5py.h5ds.get_scale_name(axis[0].id) for axis in values.dims))
+
     def test_a_result_without_segments_is_copied(self):
         self.run_transient("a.h5", duration=0.1, checkpoint="none")
         self.assertFalse((self.folder / "a.h5.parts").exists())

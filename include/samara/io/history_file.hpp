@@ -63,7 +63,7 @@ class HistoryFile {
  public:
   /// `content`: channels, and how the drive train is at the start; `write_rest` adds to each
   /// version of the result what else belongs in it.
-  HistoryFile(std::string path, const Case& input, RunRecord record, HistoryContent content,
+  HistoryFile(const std::string& path, const Case& input, RunRecord record, HistoryContent content,
               std::function<void(ResultFile&)> write_rest);
   ~HistoryFile();
   HistoryFile(const HistoryFile&) = delete;
