@@ -43,18 +43,22 @@ Hdf5Id memory_access() {
 /// The scale of an axis does not name this dataset any more.
 void detach_axis(const Hdf5Id& dataset, unsigned axis) {
   if (check(H5DSget_num_scales(dataset.get(), axis)) == 0) return;
-  std::string place;
-  const auto take = [](hid_t, unsigned, hid_t scale, void* target) -> herr_t {
-    const ssize_t length = H5Iget_name(scale, nullptr, 0);
-    if (length <= 0) return -1;
-    std::string& text = *static_cast<std::string*>(target);
-    text.resize(static_cast<std::size_t>(length) + 1);
-    H5Iget_name(scale, text.data(), text.size());
+  Hdf5Id scale;
+  const auto take = [](hid_t, unsigned, hid_t found, void* target) -> herr_t {
+    if (H5Iinc_ref(found) < 0) return -1;
+    *static_cast<Hdf5Id*>(target) = {found, H5Dclose};
     return 1;
   };
-  check(H5DSiterate_scales(dataset.get(), axis, nullptr, take, &place));
-  const Hdf5Id scale(check(H5Dopen2(dataset.get(), place.c_str(), H5P_DEFAULT)), H5Dclose);
+  check(H5DSiterate_scales(dataset.get(), axis, nullptr, take, &scale));
   check(H5DSdetach_scale(dataset.get(), scale.get(), axis));
+}
+
+/// The description, and the axes where there are several.
+std::string describe(const Meaning& meaning) {
+  if (meaning.axes.size() < 2) return meaning.description;
+  std::string axes;
+  for (const std::string& axis : meaning.axes) axes += (axes.empty() ? "[" : ", ") + axis;
+  return meaning.description + (meaning.description.empty() ? "" : "; ") + axes + "]";
 }
 
 }  // namespace
@@ -100,10 +104,7 @@ Hdf5Id Hdf5File::make_dataset(const std::string& name, hid_t type, const Shape& 
       H5Dclose);
   set_text(dataset.get(), "unit", meaning.unit);
   set_text(dataset.get(), "frame", meaning.frame);
-  std::string description = meaning.description;
-  for (std::size_t i = 0; meaning.axes.size() > 1 && i < meaning.axes.size(); ++i)
-    description += (i == 0 ? (description.empty() ? "[" : "; [") : ", ") + meaning.axes[i];
-  set_text(dataset.get(), "description", description + (meaning.axes.size() > 1 ? "]" : ""));
+  set_text(dataset.get(), "description", describe(meaning));
   attach_axes(dataset, name, shape, meaning);
   return dataset;
 }

@@ -57,9 +57,8 @@ std::size_t bytes_of(const Hdf5Id& space, const Hdf5Id& type) {
   return static_cast<std::size_t>(count) * width;
 }
 
-/// What the child says: for each text its place, the number of
-/// entries and these, each with its length before it; a number at the end that tells that all is
-/// there.
+/// What the child says: for each text its place, the number of entries and these, each with its
+/// length before it; a number at the end that tells that all is there.
 class Report {
  public:
   void add(const std::string& place, const std::vector<char*>& words) {
@@ -67,6 +66,7 @@ class Report {
     add_number(words.size());
     for (const char* word : words) add_word(word, word == nullptr ? 0 : std::strlen(word));
   }
+
   bool send(int file) {
     add_number(end_mark);
     return write_all(file, bytes_);

@@ -57,7 +57,7 @@ void write_signals(Hdf5File& file, const std::string& group, const std::string& 
 }
 
 std::string part_description(const linear::StateSpacePart& part) {
-  return std::string(part.name) + " of x_dot = A x + B u, y = C x + D u";
+  return std::string("matrix ") + part.name + " of the form";
 }
 
 void write_form(Hdf5File& file, const NamedForm& form) {

@@ -42,8 +42,8 @@ struct StateSpacePart {
 };
 
 inline constexpr std::array<StateSpacePart, 4> state_space_parts{
-    {{"A", &StateSpace::A, "state_rate", "state"},
-     {"B", &StateSpace::B, "state_rate", "input"},
+    {{"A", &StateSpace::A, "row", "state"},
+     {"B", &StateSpace::B, "row", "input"},
      {"C", &StateSpace::C, "output", "state"},
      {"D", &StateSpace::D, "output", "input"}}};
 
