@@ -48,7 +48,9 @@ std::string mass_table(const model::Turbine& turbine, const model::Masses& masse
   add("nacelle", masses.nacelle, "y1 y2 y3, tower top");
   add("shaft", masses.shaft, "s1 s2 s3, yaw axis");
   add("hub", masses.hub, "h1 h2 h3, teeter pin");
-  const std::size_t shown = turbine.identical_blades ? 1 : masses.blades.size();
+  const std::size_t shown = turbine.identical_blades
+                                ? std::min<std::size_t>(1, masses.blades.size())
+                                : masses.blades.size();
   for (std::size_t k = 0; k < shown; ++k)
     add(turbine.identical_blades && turbine.blades.size() > 1 ? "each blade"
                                                               : turbine.blades[k].name,
@@ -167,23 +169,31 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
   const auto line = [&text](const std::string& name, const std::string& words) {
     text += name + std::string(17 - name.size(), ' ') + words + "\n";
   };
-  line("rotor speed", speed == 0.0 ? "0, parked"
-                                   : general(speed, 6) + " rad/s, " +
-                                         general(speed * 30.0 / std::numbers::pi, 5) +
-                                         " rpm; tip speed " + general(speed * radius, 4) + " m/s");
-  line("rotor radius", general(radius, 6) + " m: hub " + general(definition.hub.radius, 5) +
-                           " m, blade " + general(definition.blades.beam.length, 5) + " m");
+  const bool has_rotor = !turbine.blades.empty();
+  if (has_rotor) {
+    line("rotor speed", speed == 0.0
+                            ? "0, parked"
+                            : general(speed, 6) + " rad/s, " +
+                                  general(speed * 30.0 / std::numbers::pi, 5) + " rpm; tip speed " +
+                                  general(speed * radius, 4) + " m/s");
+    line("rotor radius", general(radius, 6) + " m: hub " + general(definition.hub.radius, 5) +
+                             " m, blade " + general(definition.blades.beam.length, 5) + " m");
+  }
   if (turbine.has_tower) line("tower", general(definition.tower.length, 6) + " m");
-  line("rotor inertia", inertia_words(masses));
-  line("rotor balance", balance_words(masses));
-  line("blades", count(static_cast<int>(turbine.blades.size()), "blade") +
-                     (turbine.blades.size() == 1 ? ""
-                      : turbine.identical_blades ? ", alike"
-                                                 : ", not alike"));
-  line("rotor symmetry",
-       system.symmetry().sectors > 1
-           ? "repeats every 1/" + std::to_string(system.symmetry().sectors) + " revolution"
-           : "none, the period is a whole revolution");
+  if (has_rotor) {
+    line("rotor inertia", inertia_words(masses));
+    line("rotor balance", balance_words(masses));
+  }
+  if (has_rotor)
+    line("blades", count(static_cast<int>(turbine.blades.size()), "blade") +
+                       (turbine.blades.size() == 1 ? ""
+                        : turbine.identical_blades ? ", alike"
+                                                   : ", not alike"));
+  if (has_rotor)
+    line("rotor symmetry",
+         system.symmetry().sectors > 1
+             ? "repeats every 1/" + std::to_string(system.symmetry().sectors) + " revolution"
+             : "none, the period is a whole revolution");
   line("joints", "yaw " + joint_words(turbine.chain.yaw, turbine.yaw_motion) + "; teeter " +
                      joint_words(turbine.chain.teeter, turbine.teeter_motion) + "; shaft torsion " +
                      joint_words(turbine.chain.torsion) + "; generator " +
@@ -208,22 +218,25 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
            shaft.gear_ratio == 1.0 ? "the rotor" : "its own", shaft.generator_speed());
   torque("rotor torque", shaft.rotor, "the rotor", shaft.speed);
   if (definition.has_tower) line("tower foot", support_words(definition.tower.support));
-  if (!definition.blades.beam.support.is_clamp())
+  if (has_rotor && !definition.blades.beam.support.is_clamp())
     line("blade roots", support_words(definition.blades.beam.support));
   line("gravity", general(definition.gravity, 6) + " m/s^2");
   if (!definition.loads.empty())
     line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));
-  line("mesh", "blades " + mesh_words(turbine.blades.front()) +
-                   (turbine.has_tower ? "; tower " + mesh_words(turbine.tower) : ""));
+  std::string mesh;
+  if (has_rotor) mesh = "blades " + mesh_words(turbine.blades.front());
+  if (turbine.has_tower) mesh += (mesh.empty() ? "tower " : "; tower ") + mesh_words(turbine.tower);
+  line("mesh", mesh);
   const auto damping = [&line](std::string name, const std::vector<std::string>& lines) {
     for (const std::string& words : lines) {
       line(name, words);
       name.clear();
     }
   };
-  damping("blade damping",
-          damping_lines(definition.blades.beam, model::build_beam("blade", definition.blades.beam),
-                        {"flap", "lead-lag", "torsion"}));
+  if (has_rotor)
+    damping("blade damping", damping_lines(definition.blades.beam,
+                                           model::build_beam("blade", definition.blades.beam),
+                                           {"flap", "lead-lag", "torsion"}));
   if (turbine.has_tower)
     damping("tower damping",
             damping_lines(definition.tower, turbine.tower, {"fore-aft", "lateral", "torsion"}));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -88,7 +90,12 @@ class Parser {
     else if (name == "--set")
       line_.settings.push_back(value_of(name, "key=value, e.g. --set blades.elements=8", value));
     else if (word == "--tower-only")
-      line_.tower_only = true;
+      take_import(name).tower_only = true;
+    else if (name == "--mu-order")
+      take_import(name).mu_order =
+          mu_order_of(value_of(name, "beamdyn or hawc2, e.g. --mu-order hawc2", value));
+    else if (const decks::StatedQuantity* quantity = find_quantity(name))
+      take_quantity(*quantity, name, value);
     else if (word == "--report")
       line_.report = true;
     else if (word == "--all")
@@ -107,10 +114,50 @@ class Parser {
       throw InputError("unknown option " + word + unknown_option_words(name));
   }
 
+  decks::ImportOptions& take_import(const std::string& name) {
+    if (line_.import_option.empty()) line_.import_option = name;
+    return line_.import;
+  }
+
+  static decks::MuOrder mu_order_of(const std::string& word) {
+    if (word == "beamdyn") return decks::MuOrder::beamdyn;
+    if (word == "hawc2") return decks::MuOrder::hawc2;
+    throw InputError("--mu-order: expected beamdyn or hawc2, got " + quote(word) +
+                     suggest(word, {"beamdyn", "hawc2"}));
+  }
+
+  static const decks::StatedQuantity* find_quantity(const std::string& name) {
+    for (const decks::StatedQuantity& quantity : decks::stated_quantities())
+      if (name == std::string("--") + quantity.option) return &quantity;
+    return nullptr;
+  }
+
+  void take_quantity(const decks::StatedQuantity& quantity, const std::string& name,
+                     const std::optional<std::string>& value) {
+    const std::string expected =
+        quantity.count == 1 ? "a number" : std::to_string(quantity.count) + " numbers, e.g. 0,1,2";
+    const std::string words = value_of(name, expected, value);
+    std::vector<double>& numbers = take_import(name).stated[quantity.key];
+    if (!numbers.empty()) throw InputError(name + " is given twice; leave one of them out");
+    std::istringstream stream(words);
+    for (std::string word; std::getline(stream, word, ',');) {
+      double number = 0.0;
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+      if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number))
+        throw InputError(name + " needs " + expected + ", got " + quote(words));
+      numbers.push_back(number);
+    }
+    if (numbers.size() != quantity.count)
+      throw InputError(name + " needs " + expected + ", got " + quote(words));
+  }
+
   static std::string unknown_option_words(const std::string& name) {
-    const std::string suggestion =
-        suggest(name, {"--set", "--csv", "--all", "--first", "--parked", "--restart",
-                       "--tower-only", "--report", "--help", "--version"});
+    std::vector<std::string> known{"--set",    "--csv",     "--all",       "--first",
+                                   "--parked", "--restart", "--mu-order",  "--report",
+                                   "--help",   "--version", "--tower-only"};
+    for (const decks::StatedQuantity& quantity : decks::stated_quantities())
+      known.push_back(std::string("--") + quantity.option);
+    const std::string suggestion = suggest(name, known);
     return suggestion.empty() ? "; hint: samara --help; options of PETSc have one dash"
                               : suggestion;
   }
@@ -201,9 +248,9 @@ class Parser {
       require_deck(name);
       return;
     }
-    if (line_.tower_only || line_.report)
-      throw InputError(std::string(line_.tower_only ? "--tower-only" : "--report") + ": samara " +
-                       name + " has no use for it, samara import has");
+    if (!line_.import_option.empty() || line_.report)
+      throw InputError((line_.report ? "--report" : line_.import_option) + ": samara " + name +
+                       " has no use for it, samara import has");
     if (line_.command->most_results > 0)
       require_result(name);
     else if (line_.case_path.empty()) {
@@ -256,6 +303,10 @@ class Parser {
                        " has no use for it; hint: it serves the commands that read the case");
     if (!line_.petsc_options.empty())
       throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
+    if (line_.format != "windio" && !line_.import_option.empty() &&
+        line_.import_option != "--tower-only")
+      throw InputError(line_.import_option + ": the decks of " + line_.format +
+                       " state it; it serves windio");
     if (line_.result_path.empty() && !line_.report)
       throw InputError(
           "missing -o CASE.yaml; hint: --report alone prints the report and writes no case");
@@ -272,6 +323,11 @@ constexpr char import_lines[] =
   -o CASE.yaml      the case file; only a case of samara is ever overwritten
   --report          makes -o optional: the report alone, nothing is written
   --tower-only      leaves out what carries the tower, which is clamped at its foot
+  --mu-order ORDER  beamdyn or hawc2: the order of structural_damping.mu (windio)
+  --nacelle-mass M  states what a deck lacks, or has otherwise (windio), in units and axes of the
+                    case; also --nacelle-center Y1,Y2,Y3 --nacelle-inertia I1,I2,I3 --yaw-mass
+                    --hub-mass --hub-center --hub-inertia I1,I2,I3 --generator-inertia
+                    --rotor-speed-rpm
   --help            this text
 )";
 

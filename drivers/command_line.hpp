@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "samara/decks/import.hpp"
+
 #include "job.hpp"
 
 namespace samara::drivers {
@@ -37,8 +39,9 @@ struct CommandLine {
   std::string format;                ///< of a deck
   std::string case_path;             ///< or the deck, or the first result
   std::vector<std::string> more_results;
-  bool tower_only = false;
-  bool report = false;  ///< is wanted, if need be without a case
+  decks::ImportOptions import;
+  std::string import_option;  ///< the first that is given of the above; empty: none
+  bool report = false;        ///< is wanted, if need be without a case
   bool all_modes = false;
   int first_modes = 0;  ///< rows of a table of modes; 0: all
   bool parked = false;

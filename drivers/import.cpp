@@ -32,11 +32,11 @@ std::string report_table(const decks::Import& import, decks::Fate fate) {
 
 void run_import(const CommandLine& line) {
   if (!line.result_path.empty()) decks::require_case_path(line.result_path);
-  const decks::ImportOptions options{line.tower_only};
   const decks::Import import = line.format == "openfast"
-                                   ? decks::import_openfast(line.case_path, options)
-                                   : decks::import_windio(line.case_path, options);
+                                   ? decks::import_openfast(line.case_path, line.import)
+                                   : decks::import_windio(line.case_path, line.import);
   if (!line.result_path.empty()) decks::write_case(line.result_path, import);
+  for (const std::string& warning : import.warnings) std::cerr << warning << "\n";
   constexpr std::array<std::pair<const char*, decks::Fate>, 3> blocks{
       {{"taken: the value stands in the case", decks::Fate::taken},
        {"derived: the case holds what follows from it", decks::Fate::derived},

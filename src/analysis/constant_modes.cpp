@@ -33,6 +33,9 @@ constexpr std::size_t slow_modes = 12;
 
 /// Below this, relative to the shift, an exponent is zero: a double zero in double precision.
 constexpr double zero_to_shift = 1e-7;
+/// An exponent this small that another shift has otherwise is half of a double zero, which rounding
+/// splits by its square root.
+constexpr double split_to_shift = 1e-5;
 
 struct Spectrum {
   std::vector<Complex> exponents;
@@ -233,6 +236,11 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
       mode.exponent = 0.0;
     mode.residual =
         mode.exponent == 0.0 ? 0.0 : distance(mode.exponent, found.spectrum->check, zero);
+    if (mode.residual > largest_difference &&
+        std::abs(mode.exponent) < split_to_shift * found.spectrum->sigma) {
+      mode.exponent = 0.0;
+      mode.residual = 0.0;
+    }
     mode.resolved = mode.residual <= largest_difference;
     mode.step_exponent = mode.exponent;
     mode.rounding_error = mode.residual;

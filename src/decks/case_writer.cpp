@@ -48,10 +48,12 @@ class Writer {
       text_ += "\ntower:\n";
       add_beam("tower", draft_.tower);
     }
-    add_nacelle();
-    add_shaft();
-    add_hub();
-    add_blades();
+    if (draft_.has_rotor) {
+      add_nacelle();
+      add_shaft();
+      add_hub();
+      add_blades();
+    }
     return text_;
   }
 
@@ -136,7 +138,11 @@ class Writer {
     add("nacelle", 2, "mass", exact(draft_.nacelle_mass), "kg");
     add("nacelle", 2, "center_of_mass", list(draft_.nacelle_center), "m");
     add("nacelle", 2, "inertia", list(draft_.nacelle_inertia), "kg m^2");
-    add("nacelle", 2, "yaw", "{joint: locked}", "");
+    add("nacelle", 2, "yaw",
+        draft_.yaw_free ? "{joint: free, stiffness: " + exact(draft_.yaw_stiffness) +
+                              ", damping: " + exact(draft_.yaw_damping) + "}"
+                        : "{joint: locked}",
+        "");
   }
 
   void add_shaft() {

@@ -59,10 +59,14 @@ struct CaseDraft {
 
   double gravity = 9.80665;
   bool has_tower = false;
+  bool has_rotor = true;  ///< false: nothing but the tower
   DraftBeam tower;
   double nacelle_mass = 0.0;
   Vector3 nacelle_center = Vector3::Zero();
   Vector3 nacelle_inertia = Vector3::Zero();
+  bool yaw_free = false;
+  double yaw_stiffness = 0.0;
+  double yaw_damping = 0.0;
   double speed_rpm = 0.0;
   double overhang = 0.0;
   double tilt_deg = 0.0;

@@ -20,10 +20,29 @@ constexpr double jump_width = 1e-12;
 /// Places closer than this are one [of the length].
 constexpr double same_place = 1e-9;
 
+/// Entries of a symmetric matrix that should be the same [of the diagonal].
+constexpr double round_off = 1e-6;
+
+/// A coupling that is none [of the diagonal].
+constexpr double no_coupling = 1e-14;
+
 constexpr std::array<Eigen::Index, 3> source_axis = {2, 1, 0};
 constexpr std::array<double, 3> source_sign = {1.0, -1.0, 1.0};
 
+constexpr std::array<StatedQuantity, 9> quantities{
+    {{"rotor-speed-rpm", "shaft.speed_rpm", 1},
+     {"nacelle-mass", "nacelle.mass", 1},
+     {"nacelle-center", "nacelle.center_of_mass", 3},
+     {"nacelle-inertia", "nacelle.inertia", 3},
+     {"yaw-mass", "tower.tip_mass", 1},
+     {"generator-inertia", "shaft.generator.own_inertia", 1},
+     {"hub-mass", "hub.mass", 1},
+     {"hub-center", "hub.center_of_mass", 1},
+     {"hub-inertia", "hub.inertia", 3}}};
+
 }  // namespace
+
+std::span<const StatedQuantity> stated_quantities() { return quantities; }
 
 std::vector<Station> merge_grids(const std::vector<const std::vector<double>*>& grids) {
   std::vector<Station> stations;
@@ -87,6 +106,20 @@ Vector6 turn_damping(const Vector6& mu) {
   return turned;
 }
 
+double symmetrize(Matrix6& matrix) {
+  double furthest = 0.0;
+  for (Eigen::Index i = 0; i < 6; ++i)
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double difference = std::abs(matrix(i, j) - matrix(j, i));
+      const double scale = std::sqrt(std::abs(matrix(i, i) * matrix(j, j)));
+      if (difference == 0.0) continue;
+      if (!(difference <= round_off * scale)) return 0.0;
+      furthest = std::max(furthest, difference / scale);
+    }
+  matrix = (0.5 * (matrix + matrix.transpose())).eval();
+  return furthest;
+}
+
 Matrix6 build_mass_matrix(double mass, const Vector3& inertia) {
   Matrix6 matrix = Matrix6::Zero();
   matrix.diagonal() << mass, mass, mass, inertia(0), inertia(1), inertia(2);
@@ -95,17 +128,41 @@ Matrix6 build_mass_matrix(double mass, const Vector3& inertia) {
 
 void check_sections(const DraftBeam& beam, const std::string& what,
                     const std::vector<std::string>& places, DeckErrors& errors) {
+  struct Fault {
+    std::size_t first;
+    std::string words;
+    std::size_t count;
+  };
+  std::vector<Fault> faults;
   for (std::size_t i = 0; i < beam.sections.size(); ++i) {
     const DraftSection& draft = beam.sections[i];
     model::SectionDefinition section;
     section.stiffness = draft.stiffness;
     section.rigid = draft.rigid;
     section.mass = draft.mass;
-    const std::string fault = model::find_section_fault(section);
-    if (!fault.empty())
-      errors.add(places[std::min(i, places.size() - 1)],
-                 what + ", section at " + rounded(draft.at) + " of the length: " + fault);
+    const std::string words = model::find_section_fault(section);
+    if (words.empty()) continue;
+    const auto known = std::find_if(faults.begin(), faults.end(),
+                                    [&](const Fault& fault) { return fault.words == words; });
+    if (known == faults.end())
+      faults.push_back({i, words, 1});
+    else
+      ++known->count;
   }
+  for (const Fault& fault : faults)
+    errors.add(places[std::min(fault.first, places.size() - 1)],
+               what + ", section at " + rounded(beam.sections[fault.first].at) + " of the length" +
+                   (fault.count > 1 ? " and " + std::to_string(fault.count - 1) + " more"
+                                    : std::string()) +
+                   ": " + fault.words);
+}
+
+void drop_round_off(Matrix6& matrix) {
+  for (Eigen::Index i = 0; i < 6; ++i)
+    for (Eigen::Index j = 0; j < 6; ++j)
+      if (i != j &&
+          std::abs(matrix(i, j)) <= no_coupling * std::sqrt(std::abs(matrix(i, i) * matrix(j, j))))
+        matrix(i, j) = 0.0;
 }
 
 BeamMass integrate_mass(const DraftBeam& beam, double length) {
@@ -128,7 +185,12 @@ void check_import(const Import& import) {
   try {
     io::parse_case("the imported case", import.text, {});
   } catch (const InputError& error) {
-    throw InputError(std::string("the deck makes no valid case:\n") + error.what());
+    std::string words = error.what();
+    const std::size_t end = words.find('\n');
+    const auto more = std::count(words.begin(), words.end(), '\n');
+    if (end != std::string::npos)
+      words = words.substr(0, end) + " (and " + std::to_string(more) + " more)";
+    throw InputError("the deck makes no valid case: " + words);
   }
 }
 

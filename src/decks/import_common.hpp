@@ -40,10 +40,17 @@ Matrix6 turn_to_section_axes(const Matrix6& matrix);
 Vector3 turn_to_section_axes(const Vector3& vector);
 Vector6 turn_damping(const Vector6& mu);
 
+/// Replaces a matrix that is symmetric but for round-off by its symmetric part. Returns by how much
+/// it was not [of the diagonal]; 0 where it is symmetric, or too far from it to be mended.
+double symmetrize(Matrix6& matrix);
+
 /// A section's mass matrix without offsets.
 Matrix6 build_mass_matrix(double mass, const Vector3& inertia);
 
-/// Adds what is wrong with the sections of a beam, each by its place.
+/// Couplings that are round-off beside the diagonal become 0.
+void drop_round_off(Matrix6& matrix);
+
+/// Adds what is wrong with the sections of a beam, each fault once, by the first place that has it.
 void check_sections(const DraftBeam& beam, const std::string& what,
                     const std::vector<std::string>& places, DeckErrors& errors);
 

@@ -19,6 +19,9 @@ namespace {
 
 constexpr double straight_tolerance = 1e-9;
 
+/// Coordinates that are round-off [of the length].
+constexpr double no_distance = 1e-14;
+
 /// More mass per length [kg/m] than any tower or monopile of steel has.
 constexpr double most_mass = 1e5;
 
@@ -38,10 +41,6 @@ struct Material {
 std::string read_text(const std::string& path) {
   std::string text = io::read_whole_file(path, max_megabytes, "deck");
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
-  if (!text.empty() && text.back() != '\n' && text.back() != '\r')
-    throw InputError(path + ":" + std::to_string(1 + std::count(text.begin(), text.end(), '\n')) +
-                     ": the file ends inside this line, perhaps in a number; hint: if it is "
-                     "whole, end it with a new line");
   return text;
 }
 
@@ -71,14 +70,23 @@ class Importer {
       throw InputError(path_ + ": missing key \"components\": not a turbine of windIO");
     refuse_duplicates(root_, "");
     read_version();
+    refuse_layups();
     read_top();
     read_supports();
-    read_rotor();
-    read_nacelle();
-    read_hub();
-    read_tower();
-    read_blade();
+    draft_.has_rotor = find("components.blade") != nullptr;
+    if (draft_.has_rotor) {
+      read_rotor();
+      read_nacelle();
+      read_hub();
+    } else if (find("components.tower") == nullptr) {
+      errors_.add(path_, "missing keys \"components.blade\" and \"components.tower\"");
+    } else {
+      warn(path_, "note: no components.blade: the case is the tower alone, without anything on it");
+    }
+    if (draft_.has_rotor || find("components.tower") != nullptr) read_tower();
+    if (draft_.has_rotor) read_blade();
     errors_.throw_if_any();
+    warn_of_left_out();
     report_rest(root_, "");
     Import result;
     draft_.head = {
@@ -87,11 +95,15 @@ class Importer {
         "Every key is explained in docs/case_file.md, the import in docs/import.md. SI units."};
     const BeamMass tower = integrate_mass(draft_.tower, draft_.tower.length);
     const BeamMass blade = integrate_mass(draft_.blade, draft_.blade.length);
-    draft_.head.push_back("Masses [kg]: tower " + rounded(tower.mass) + ", each blade " +
-                          rounded(blade.mass) + ", hub " + rounded(draft_.hub_mass) + ", nacelle " +
-                          rounded(draft_.nacelle_mass) + ".");
+    draft_.head.push_back("Masses [kg]: tower " + rounded(tower.mass) +
+                          (draft_.has_rotor ? ", each blade " + rounded(blade.mass) + ", hub " +
+                                                  rounded(draft_.hub_mass) + ", nacelle " +
+                                                  rounded(draft_.nacelle_mass)
+                                            : std::string()) +
+                          ".");
     result.text = write_case_text(draft_);
     result.report = std::move(report_);
+    result.warnings = std::move(warnings_);
     check_import(result);
     return result;
   }
@@ -163,11 +175,37 @@ class Importer {
     }
   }
 
-  /// What a deck may leave out is 0 in the case.
-  void missing(const std::string& what, const std::string& key) {
-    note(key == "shaft.generator.own_inertia" ? "shaft.generator" : key, "not in the deck");
-    report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
+  /// The place of the comment behind a key of the case.
+  static std::string comment_place(const std::string& key) {
+    return key == "shaft.generator.own_inertia" ? "shaft.generator" : key;
   }
+
+  /// What a deck may leave out is 0 in the case, and said.
+  void missing(const std::string& what, const std::string& key) {
+    note(comment_place(key), "not in the deck");
+    report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
+    std::string hint;
+    for (const StatedQuantity& quantity : stated_quantities())
+      if (key == quantity.key) hint = std::string("; hint: --") + quantity.option + " states it";
+    warn(path_, "warning: " + what + " is not in the deck: " + key + " is 0" + hint);
+  }
+
+  void warn(const std::string& place, const std::string& words) {
+    warnings_.push_back(place + ": " + words);
+  }
+
+  /// What the command line states counts, whatever the deck has.
+  template <class Value>
+  void apply_stated(const std::string& key, Value& value) {
+    const auto found = options_.stated.find(key);
+    if (found == options_.stated.end()) return;
+    if constexpr (std::is_same_v<Value, double>)
+      value = found->second[0];
+    else
+      value = Eigen::Map<const Value>(found->second.data());
+    note(comment_place(key), "of the command line");
+  }
+  bool is_stated(const std::string& key) const { return options_.stated.contains(key); }
 
   double number_at(const std::string& path, const io::YamlNode& node) {
     const std::optional<double> value = parse_number(node);
@@ -230,6 +268,21 @@ class Importer {
 
   // ---- the top
 
+  /// Before all else: nothing else of such a deck can be mended.
+  void refuse_layups() {
+    const io::YamlNode* blade = find("components.blade");
+    if (blade == nullptr || !choose(blade_matrices()).empty()) return;
+    const std::string key = is_first_ ? "components.blade.elastic_properties_mb.six_x_six"
+                                      : "components.blade.structure.elastic_properties";
+    const bool has_layers = !choose({"components.blade.structure.layers",
+                                     "components.blade.internal_structure_2d_fem.layers"})
+                                 .empty();
+    throw InputError(place(*blade) + ": missing key \"" + key + "\"" +
+                     (has_layers ? ": the deck states the lay-up of the blade alone, from which "
+                                   "sections are not computed"
+                                 : ""));
+  }
+
   void read_version() {
     const io::YamlNode* version = root_.find("windIO_version");
     is_first_ = version == nullptr || version->text.starts_with("1");
@@ -254,6 +307,7 @@ class Importer {
     } else {
       note("gravity", "not in the deck");
     }
+    if (find("components.blade") == nullptr) return;
     const std::string orientation = require({"assembly.rotor_orientation"});
     if (orientation.empty()) return;
     std::string word = find(orientation)->text;
@@ -274,28 +328,26 @@ class Importer {
       if (find(path) == nullptr) continue;
       if (options_.tower_only) {
         say(path, Fate::ignored, "--tower-only: the tower is clamped at its foot");
+        warn(place(*find(path)), path + ": note: left out, the tower is clamped at its foot; " +
+                                     "tower.support of the case can state a foundation");
         continue;
       }
-      refuse_implausible(path);
-      refuse(path,
-             "a foundation cannot be imported; hint: --tower-only leaves it out and clamps "
-             "the tower at its foot");
+      refuse(path, "a foundation cannot be imported" + implausible(path) +
+                       "; hint: --tower-only leaves it out and clamps the tower at its foot");
     }
   }
 
-  void refuse_implausible(const std::string& path) {
-    const std::string inertia = choose({path + ".structure.elastic_properties.inertia_matrix",
-                                        path + ".elastic_properties.inertia_matrix"});
-    if (inertia.empty() || find(inertia + ".mass") == nullptr) return;
-    const Curve mass = curve(inertia, "mass");
-    const io::YamlNode& values = *find(inertia + ".mass");
-    for (std::size_t i = 0; i < mass.values.size(); ++i)
-      if (std::abs(mass.values[i]) > most_mass)
-        errors_.add(place(values), inertia + ".mass: " + rounded(mass.values[i]) + " kg/m at " +
-                                       rounded(mass.grid[i]) +
-                                       " of the length is implausible (more than " +
-                                       rounded(most_mass) + "); hint: --tower-only leaves the " +
-                                       path.substr(path.find('.') + 1) + " out");
+  /// Words about a mass per length that no foundation has, or none.
+  std::string implausible(const std::string& path) {
+    const std::string inertia = choose({path + ".structure.elastic_properties.inertia_matrix.mass",
+                                        path + ".elastic_properties.inertia_matrix.mass"});
+    if (inertia.empty()) return "";
+    double most = 0.0;
+    for (const io::YamlNode& value : find(inertia)->children)
+      most = std::max(most, std::abs(parse_number(value).value_or(0.0)));
+    return most > most_mass
+               ? " (its mass of up to " + rounded(most) + " kg/m is implausible besides)"
+               : "";
   }
 
   // ---- bodies
@@ -320,13 +372,23 @@ class Importer {
       draft_.speed_rpm = is_first_ ? value * 30.0 / std::numbers::pi : value;
       note("shaft.speed_rpm",
            is_first_ ? "control.torque.VS_maxspd, from rad/s" : "control.torque.VS_maxspd");
-    } else {
+    } else if (choose({"control.supervisory.maxTS"}) != "" &&
+               choose({"assembly.rotor_diameter"}) != "") {
+      const double tip_speed = number({"control.supervisory.maxTS"}, Fate::derived,
+                                      "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
+      const double diameter = number({"assembly.rotor_diameter"}, Fate::derived,
+                                     "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
+      if (diameter > 0.0) draft_.speed_rpm = 60.0 * tip_speed / (std::numbers::pi * diameter);
+      note("shaft.speed_rpm", "from the greatest tip speed, control.supervisory.maxTS");
+    } else if (!is_stated("shaft.speed_rpm")) {
       missing("the rated rotor speed", "shaft.speed_rpm");
     }
+    apply_stated("shaft.speed_rpm", draft_.speed_rpm);
     const double sign = is_upwind_ ? -1.0 : 1.0;
     const double tilt = to_degrees(number(
         {"components.drivetrain.outer_shape.uptilt", "components.drivetrain.outer_shape_bem.uptilt",
-         "components.nacelle.drivetrain.uptilt", "components.nacelle.outer_shape_bem.uptilt_angle",
+         "components.nacelle.drivetrain.uptilt", "components.nacelle.drivetrain.uptilt_angle",
+         "components.nacelle.outer_shape_bem.uptilt_angle",
          "components.nacelle.outer_shape_bem.uptilt"},
         Fate::derived, "shaft.tilt_deg, < 0 upwind"));
     const double overhang = number(
@@ -396,56 +458,87 @@ class Importer {
     return point;
   }
 
+  void read_nacelle_body(const std::string& block) {
+    draft_.nacelle_mass =
+        number({block + ".mass", block + ".system_mass"}, Fate::taken, "nacelle.mass");
+    note("nacelle.mass", "without the yaw bearing");
+    const std::string location = choose({block + ".location", block + ".system_center_mass"});
+    if (location.empty() && !is_stated("nacelle.center_of_mass"))
+      missing("the centre of mass of the nacelle", "nacelle.center_of_mass");
+    const Vector3 center =
+        point_of(location, "nacelle.center_of_mass = [-y, x, z] (y is to the left)");
+    draft_.nacelle_center = {-center(1), center(0), center(2)};
+    if (!location.empty()) note("nacelle.center_of_mass", "-y, x, z of windIO");
+
+    const std::string own = choose({block + ".inertia", block + ".system_inertia"});
+    const std::string about_top = choose({block + ".inertia_tt", block + ".system_inertia_tt"});
+    Vector3 inertia = Vector3::Zero();
+    if (!own.empty()) {
+      inertia = inertia_of(own, "nacelle.inertia = [Iyy, Ixx, Izz], about its own centre");
+      say(about_top, Fate::ignored, "the same body about the tower top");
+      note("nacelle.inertia", "Iyy, Ixx, Izz, about its own centre");
+    } else if (!about_top.empty()) {
+      inertia = inertia_of(about_top,
+                           "nacelle.inertia, moved from the tower top to its own centre, about "
+                           "which it is not in the deck");
+      inertia -= draft_.nacelle_mass *
+                 (Vector3::Constant(center.squaredNorm()) - center.cwiseProduct(center));
+      if (inertia.minCoeff() < 0.0)
+        refuse(about_top, "less than the mass times its squared distance, which no body has");
+      note("nacelle.inertia", "Iyy, Ixx, Izz, moved from the tower top to its own centre");
+    } else if (!is_stated("nacelle.inertia")) {
+      missing("the inertia of the nacelle", "nacelle.inertia");
+    }
+    draft_.nacelle_inertia = {inertia(1), inertia(0), inertia(2)};
+  }
+
   void read_nacelle() {
     const Paths blocks = {"components.drivetrain.elastic_properties",
                           "components.drivetrain.elastic_properties_mb",
                           "components.nacelle.elastic_properties_mb"};
-    const std::string block = require(blocks);
-    if (!block.empty()) {
-      draft_.nacelle_mass =
-          number({block + ".mass", block + ".system_mass"}, Fate::taken, "nacelle.mass");
-      const Vector3 center = point_of(require({block + ".location", block + ".system_center_mass"}),
-                                      "nacelle.center_of_mass = [-y, x, z] (y is to the left)");
-      draft_.nacelle_center = {-center(1), center(0), center(2)};
-      const Vector3 inertia = inertia_of(require({block + ".inertia", block + ".system_inertia"}),
-                                         "nacelle.inertia = [Iyy, Ixx, Izz], about its own centre");
-      draft_.nacelle_inertia = {inertia(1), inertia(0), inertia(2)};
-      for (const char* key : {".inertia_tt", ".system_inertia_tt"})
-        say(block + key, Fate::ignored, "the same body about the tower top");
-      note("nacelle.mass", "without the yaw bearing");
-      note("nacelle.center_of_mass", "-y, x, z of windIO");
-      note("nacelle.inertia", "Iyy, Ixx, Izz, about its own centre");
-    }
+    const std::string block = choose(blocks);
+    if (!block.empty())
+      read_nacelle_body(block);
+    else if (!is_stated("nacelle.mass"))
+      missing("the mass of the nacelle (components.drivetrain.elastic_properties)", "nacelle.mass");
+    apply_stated("nacelle.mass", draft_.nacelle_mass);
+    apply_stated("nacelle.center_of_mass", draft_.nacelle_center);
+    apply_stated("nacelle.inertia", draft_.nacelle_inertia);
+    if (draft_.nacelle_mass < 0.0) refuse(block, "expected a mass >= 0");
     note("nacelle.yaw", "the yaw drive is not in the deck");
     const std::string yaw = choose({"components.yaw.elastic_properties.mass",
                                     "components.nacelle.elastic_properties_mb.yaw_mass"});
     if (!yaw.empty()) {
       draft_.tower.tip_mass = number({yaw}, Fate::taken, "tower.tip_mass");
       note("tower.tip_mass", yaw.substr(yaw.find('.') + 1));
-    } else {
+    } else if (!is_stated("tower.tip_mass")) {
       missing("the mass of the yaw bearing", "tower.tip_mass");
     }
+    apply_stated("tower.tip_mass", draft_.tower.tip_mass);
     const std::string generator =
         choose({"components.drivetrain.generator.elastic_properties.inertia",
                 "components.drivetrain.generator.elastic_properties_mb.rotor_inertia",
                 "components.nacelle.generator.elastic_properties_mb.rotor_inertia"});
-    if (generator.empty()) {
-      missing("the inertia of the generator", "shaft.generator.own_inertia");
-      return;
-    }
     const std::string gear = choose(
         {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"});
-    const std::size_t errors_before = errors_.size();
-    draft_.gear_ratio = number(
-        {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
-        Fate::taken, "shaft.gear_ratio");
-    if (draft_.gear_ratio == 0.0 && errors_.size() == errors_before)
-      refuse(gear, "expected a number other than 0");
-    note("shaft.gear_ratio", "gear_ratio");
-    const Vector3 inertia =
-        inertia_of(generator, "shaft.generator.own_inertia = Ixx; its mass is the nacelle's");
-    draft_.generator_inertia = inertia(0);
-    note("shaft.generator", "generator Ixx");
+    if (!gear.empty() || !generator.empty()) {
+      const std::size_t errors_before = errors_.size();
+      draft_.gear_ratio = number(
+          {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
+          Fate::taken, "shaft.gear_ratio");
+      if (draft_.gear_ratio == 0.0 && errors_.size() == errors_before)
+        refuse(gear, "expected a number other than 0");
+      note("shaft.gear_ratio", "gear_ratio");
+    }
+    if (!generator.empty()) {
+      const Vector3 inertia =
+          inertia_of(generator, "shaft.generator.own_inertia = Ixx; its mass is the nacelle's");
+      draft_.generator_inertia = inertia(0);
+      note("shaft.generator", "generator Ixx");
+    } else if (!is_stated("shaft.generator.own_inertia")) {
+      missing("the inertia of the generator", "shaft.generator.own_inertia");
+    }
+    apply_stated("shaft.generator.own_inertia", draft_.generator_inertia);
   }
 
   void read_hub() {
@@ -460,16 +553,32 @@ class Importer {
         0.5 * number({"components.hub.diameter"}, Fate::derived, "hub.radius, half of it");
     note("hub.radius", "half of hub.diameter");
     const std::string block =
-        require({"components.hub.elastic_properties", "components.hub.elastic_properties_mb"});
-    if (block.empty()) return;
+        choose({"components.hub.elastic_properties", "components.hub.elastic_properties_mb"});
+    if (!block.empty())
+      read_hub_body(block);
+    else if (!is_stated("hub.mass"))
+      missing("the mass of the hub (components.hub.elastic_properties)", "hub.mass");
+    apply_stated("hub.mass", draft_.hub_mass);
+    apply_stated("hub.center_of_mass", draft_.hub_center);
+    apply_stated("hub.inertia", draft_.hub_inertia);
+    if (draft_.hub_mass < 0.0) refuse(block, "expected a mass >= 0");
+  }
+
+  void read_hub_body(const std::string& block) {
     draft_.hub_mass = number({block + ".mass", block + ".system_mass"}, Fate::taken, "hub.mass");
     const std::string location = choose({block + ".location", block + ".system_center_mass"});
-    if (location.empty() && !is_first_) require({block + ".location"});
-    if (location.empty() && is_first_) missing("the hub's centre of mass", "hub.center_of_mass");
+    if (location.empty() && !is_stated("hub.center_of_mass"))
+      missing("the hub's centre of mass", "hub.center_of_mass");
     const Vector3 center =
         point_of(location, "hub.center_of_mass (x from the apex toward the nacelle)");
+    const std::string path = choose({block + ".inertia", block + ".system_inertia"});
+    if (path.empty()) {
+      draft_.hub_center = is_upwind_ ? center(0) : -center(0);
+      if (!is_stated("hub.inertia")) missing("the inertia of the hub", "hub.inertia");
+      return;
+    }
     const Vector3 inertia =
-        inertia_of(require({block + ".inertia", block + ".system_inertia"}),
+        inertia_of(path,
                    "hub.inertia = [Iyy, Ixx, Izz] - mass x^2 across the shaft: from the apex to "
                    "its own centre");
     if (center(1) != 0.0 || center(2) != 0.0)
@@ -528,21 +637,51 @@ class Importer {
     beam.length = model::compute_arc_length(line);
   }
 
-  void read_damping(const std::string& path, DraftBeam& beam, const std::string& key) {
+  /// `shear_is_rigid`: the deck's matrices have no shear stiffness.
+  void read_damping(const std::string& path, DraftBeam& beam, const std::string& key,
+                    bool shear_is_rigid) {
     if (path.empty()) {
       missing("structural_damping", key);
       return;
     }
     const io::YamlNode* node = find(path);
     const io::YamlNode* list = node->find("mu") != nullptr ? node->find("mu") : node;
+    const std::size_t errors_before = errors_.size();
     const std::vector<double> mu = numbers_at(path, *list);
+    if (errors_.size() > errors_before) return;
     if (mu.size() != 6 || *std::min_element(mu.begin(), mu.end()) < 0.0) {
       refuse(path, "expected 6 numbers >= 0");
       return;
     }
-    beam.damping = turn_damping(Eigen::Map<const Vector6>(mu.data()));
-    say(path, Fate::taken, key + ", turned to b1 = z, b2 = -y, b3 = x");
-    note(key, "structural_damping.mu, in the order of a case");
+    Vector6 coefficients = Eigen::Map<const Vector6>(mu.data());
+    const bool has_pattern = coefficients.head<3>().minCoeff() > 0.0 &&
+                             coefficients.tail<3>().isZero(0.0) && shear_is_rigid;
+    const bool is_hawc2 = options_.mu_order == MuOrder::hawc2 ||
+                          (options_.mu_order == MuOrder::automatic && has_pattern);
+    if (is_hawc2 && !coefficients.tail<3>().isZero(0.0)) {
+      refuse(path, "--mu-order hawc2: the last three numbers must be 0");
+      return;
+    }
+    if (is_hawc2) {
+      coefficients.tail<3>() = coefficients.head<3>().eval();
+      coefficients.head<3>().setZero();
+      warn(place(*node), path +
+                             ": note: read as HAWC2's Kx, Ky, Kz (bending about x and y, "
+                             "torsion)" +
+                             (options_.mu_order == MuOrder::automatic
+                                  ? ", for the last three are 0 and the deck states no shear "
+                                    "stiffness; hint: --mu-order beamdyn takes them as they stand"
+                                  : ""));
+    } else if (has_pattern) {
+      warn(place(*node), path + ": note: damps extension and shear alone, which hardly move");
+    }
+    beam.damping = turn_damping(coefficients);
+    say(path, is_hawc2 ? Fate::derived : Fate::taken,
+        key + (is_hawc2 ? ", as HAWC2's Kx, Ky, Kz" : "") + ", turned to b1 = z, b2 = -y, b3 = x");
+    note(key, std::string("structural_damping.mu") + (is_hawc2 ? " as HAWC2's Kx, Ky, Kz" : "") +
+                  ", in the order of a case");
+    if (coefficients.isZero(0.0))
+      warn(place(*node), path + ": note: all 0: " + key.substr(0, key.find('.')) + " undamped");
   }
 
   std::optional<Material> find_material(const std::string& name, const std::string& user) {
@@ -598,12 +737,17 @@ class Importer {
     note("tower.length", "reference_axis, from its foot at z = " + rounded(foot(2)));
     note("tower.reference_line", "reference_axis from its foot, [-y, x, z]");
 
-    compare_height(foot(2) + draft_.tower.length);
+    if (draft_.has_rotor) compare_height(foot(2) + draft_.tower.length);
     const Curve diameter = curve(diameter_path);
     say(diameter_path, Fate::derived, "tower.sections");
     const std::string outfitting = structure + ".outfitting_factor";
+    if (choose({outfitting}).empty())
+      report_.push_back({place(*find(structure)), outfitting, Fate::derived,
+                         "not in the deck: 1, as the schema has it"});
     const double factor =
-        number({outfitting}, Fate::derived, "multiplies mass and inertia of all sections");
+        choose({outfitting}).empty()
+            ? 1.0
+            : number({outfitting}, Fate::derived, "multiplies mass and inertia of all sections");
     if (!(factor > 0.0)) refuse(outfitting, "expected a number > 0");
     const io::YamlNode* layers = find(structure + ".layers");
     if (layers == nullptr || layers->kind != io::YamlNode::Kind::list || layers->children.empty()) {
@@ -615,7 +759,8 @@ class Importer {
         choose({structure + ".elastic_properties", "components.tower.elastic_properties",
                 "components.tower.elastic_properties_mb"});
     read_damping(elastic.empty() ? "" : choose({elastic + ".structural_damping"}), draft_.tower,
-                 "tower.damping");
+                 "tower.damping",
+                 elastic.empty() || find(elastic + ".stiffness_matrix.K11") == nullptr);
     if (!elastic.empty()) compare_tower(elastic);
     set_mesh(draft_.tower, tower_mesh);
     note("tower.elements", "chosen by the importer");
@@ -741,19 +886,27 @@ class Importer {
     say(elastic + ".stiffness_matrix", Fate::ignored, "the sections follow from the layers");
   }
 
+  /// Where a deck states the blade's matrices.
+  static Paths blade_matrices() {
+    const std::string blade = "components.blade";
+    return {blade + ".structure.elastic_properties", blade + ".elastic_properties",
+            blade + ".elastic_properties_mb.six_x_six", blade + ".elastic_properties_mb"};
+  }
+
   void read_blade() {
     const std::string blade = "components.blade";
-    const std::string elastic =
-        require({blade + ".structure.elastic_properties", blade + ".elastic_properties",
-                 blade + ".elastic_properties_mb.six_x_six", blade + ".elastic_properties_mb"});
+    const std::string elastic = choose(blade_matrices());
     const std::string axis =
         require({elastic + ".reference_axis", blade + ".reference_axis",
                  blade + ".outer_shape.reference_axis", blade + ".outer_shape_bem.reference_axis"});
     const std::string twist_path = require(
         {elastic + ".twist", blade + ".outer_shape.twist", blade + ".outer_shape_bem.twist"});
     if (elastic.empty() || axis.empty() || twist_path.empty()) return;
-    const std::vector<Vector3> points = read_axis(axis);
-    if (!points.empty() && !points[0].isZero(straight_tolerance))
+    std::vector<Vector3> points = read_axis(axis);
+    for (Vector3& point : points)
+      for (double& component : point)
+        if (std::abs(component) <= no_distance * points.back().norm()) component = 0.0;
+    if (!points.empty() && points[0].norm() > straight_tolerance * points.back().norm())
       refuse(axis, "the first point must be 0, 0, 0, the root of the blade");
     else
       set_line(
@@ -776,7 +929,8 @@ class Importer {
       }
     }
     read_blade_sections(elastic, twist);
-    read_damping(choose({elastic + ".structural_damping"}), draft_.blade, "blades.damping");
+    read_damping(choose({elastic + ".structural_damping"}), draft_.blade, "blades.damping",
+                 blade_shear_is_rigid_);
     set_mesh(draft_.blade, blade_mesh);
     note("blades.elements", "chosen by the importer");
     note("blades.sections", "matrices of windIO, turned to b1 = z, b2 = -y, b3 = x");
@@ -790,10 +944,7 @@ class Importer {
     Entries mass;
     const std::string new_stiffness = choose({elastic + ".stiffness_matrix"});
     if (!new_stiffness.empty()) {
-      std::size_t entry = 0;
-      for (int i = 1; i <= 6; ++i)
-        for (int j = i; j <= 6; ++j)
-          stiffness[entry++] = curve(new_stiffness, "K" + std::to_string(i) + std::to_string(j));
+      stiffness = read_entries(new_stiffness);
       say(new_stiffness, Fate::taken, "stiffness_matrix of blades.sections");
     } else {
       const std::string path = require({elastic + ".stiffness_matrix", elastic + ".stiff_matrix"});
@@ -809,17 +960,66 @@ class Importer {
       mass = read_rows(inertia);
     say(inertia, Fate::taken, "mass_matrix of blades.sections");
     if (!errors_.empty()) return;
+    const std::array<bool, 6> rigid = find_rigid(stiffness);
     std::vector<std::string> places;
     for (const Station& station : merge_grids({&mass[0].grid, &stiffness[0].grid, &twist.grid})) {
       DraftSection section;
       section.at = place_of(station);
+      section.rigid = rigid;
       section.stiffness = turn_to_section_axes(assemble(stiffness, station));
       section.mass = turn_to_section_axes(assemble(mass, station));
+      drop_round_off(section.stiffness);
+      drop_round_off(section.mass);
       section.twist_deg = interpolate(twist, station);
       draft_.blade.sections.push_back(section);
     }
     places.push_back(place(*find(inertia)));
     check_sections(draft_.blade, "blade", places, errors_);
+  }
+
+  /// windIO 2.0: a list for each entry. A matrix that stops at the diagonal is diagonal; K11 and
+  /// K22 may be missing, which means that shear is rigid.
+  Entries read_entries(const std::string& path) {
+    Entries entries;
+    const io::YamlNode& node = *find(path);
+    const io::YamlNode* grid = node.find("grid");
+    const auto name_of = [](int i, int j) { return "K" + std::to_string(i) + std::to_string(j); };
+    bool is_diagonal = grid != nullptr;
+    for (int i = 1; i <= 6; ++i)
+      for (int j = i + 1; j <= 6; ++j)
+        if (node.find(name_of(i, j)) != nullptr) is_diagonal = false;
+    std::size_t entry = 0;
+    for (int i = 1; i <= 6; ++i)
+      for (int j = i; j <= 6; ++j, ++entry) {
+        const std::string name = name_of(i, j);
+        const bool may_be_absent = i != j ? is_diagonal : i <= 2 && grid != nullptr;
+        entries[entry] = node.find(name) == nullptr && may_be_absent
+                             ? Curve{numbers_at(path + ".grid", *grid),
+                                     std::vector<double>(grid->children.size(), 0.0)}
+                             : curve(path, name);
+      }
+    if (is_diagonal)
+      warn(place(node), path + ": note: no entry off the diagonal: there are no couplings");
+    return entries;
+  }
+
+  /// Shear stiffness that is 0 at all places is rigid, in the order of a case.
+  std::array<bool, 6> find_rigid(const Entries& stiffness) {
+    std::array<bool, 6> rigid{};
+    std::string names;
+    const std::array<std::size_t, 2> diagonal{0, 6};  // K11, K22
+    for (std::size_t k = 0; k < diagonal.size(); ++k) {
+      const std::vector<double>& values = stiffness[diagonal[k]].values;
+      if (std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; }))
+        continue;
+      rigid[2 - k] = true;  // x is b3, y is -b2
+      names += std::string(names.empty() ? "" : " and ") + (k == 0 ? "K11" : "K22");
+    }
+    blade_shear_is_rigid_ = rigid[1] && rigid[2];
+    if (!names.empty())
+      warn(path_, "note: the blade's shear stiffness " + names +
+                      " is 0 or not in the deck: shear is rigid");
+    return rigid;
   }
 
   static Matrix6 assemble(const Entries& entries, const Station& station) {
@@ -864,18 +1064,50 @@ class Importer {
     return entries;
   }
 
+  /// Some files have i_flap = 0 and -i_edge in the place of i_cp. Of a thin section i_plr is the
+  /// sum of the two others.
+  void derive_flap_inertia(const std::string& path, const Curve& edge, const Curve& polar,
+                           Curve& flap, Curve& cross) {
+    const std::size_t count = flap.values.size();
+    if (edge.values.size() != count || polar.values.size() != count) return;
+    for (std::size_t i = 0; i < count; ++i)
+      if (flap.values[i] != 0.0 || !(polar.values[i] > edge.values[i]) || !(edge.values[i] > 0.0))
+        return;
+    for (std::size_t i = 0; i < count; ++i) flap.values[i] = polar.values[i] - edge.values[i];
+    const bool is_shifted =
+        cross.values.size() == count &&
+        std::equal(cross.values.begin(), cross.values.end(), edge.values.begin(),
+                   [](double a, double b) { return a == -b; });
+    if (is_shifted) std::fill(cross.values.begin(), cross.values.end(), 0.0);
+    warn(place(*find(path)),
+         path +
+             ": warning: i_flap is 0 at all stations, which no section has: i_plr - i_edge "
+             "is taken" +
+             (is_shifted ? ", and 0 for i_cp, where the deck has -i_edge" : ""));
+  }
+
   /// windIO 2.0: mass, centre and moments. Entries of the matrix as in its 1.0 form.
   Entries read_inertia(const std::string& path) {
     const Curve mass = curve(path, "mass");
-    const Curve x = curve(path, "cm_x");
-    const Curve y = curve(path, "cm_y");
+    std::string absent;
+    const auto or_zero = [&](const char* key) {
+      if (find(path + "." + key) != nullptr) return curve(path, key);
+      absent += (absent.empty() ? "" : ", ") + std::string(key);
+      return Curve{mass.grid, std::vector<double>(mass.grid.size(), 0.0)};
+    };
+    const Curve x = or_zero("cm_x");
+    const Curve y = or_zero("cm_y");
     const Curve edge = curve(path, "i_edge");
-    const Curve flap = curve(path, "i_flap");
+    Curve flap = curve(path, "i_flap");
     const Curve polar = curve(path, "i_plr");
-    const Curve cross = curve(path, "i_cp");
+    Curve cross = or_zero("i_cp");
+    if (!absent.empty())
+      warn(place(*find(path)), path + ": note: " + absent + " not in the deck: 0");
+    derive_flap_inertia(path, edge, polar, flap, cross);
     Entries entries;
     for (Curve& entry : entries) entry = {mass.grid, std::vector<double>(mass.grid.size(), 0.0)};
-    for (const Curve* other : {&x, &y, &edge, &flap, &polar, &cross})
+    for (const Curve* other :
+         std::initializer_list<const Curve*>{&x, &y, &edge, &flap, &polar, &cross})
       if (other->grid.size() != mass.grid.size()) return entries;
     for (std::size_t i = 0; i < mass.grid.size(); ++i) {
       const double m = mass.values[i];
@@ -893,6 +1125,19 @@ class Importer {
   }
 
   // ---- what is left
+
+  /// By name, on standard error.
+  void warn_of_left_out() {
+    std::string names;
+    const auto add = [&](const char* path, const char* words) {
+      if (find(path) != nullptr) names += (names.empty() ? "" : ", ") + std::string(words);
+    };
+    add("airfoils", "airfoils (aerodynamics)");
+    add("control", "control");
+    add("components.mooring", "mooring lines");
+    add("components.foundation", "the foundation");
+    if (!names.empty()) warn(path_, "note: left out: " + names);
+  }
 
   static std::string reason(const std::string& path) {
     const auto starts = [&](const char* word) { return path.starts_with(word); };
@@ -936,9 +1181,11 @@ class Importer {
   DeckErrors errors_;
   CaseDraft draft_;
   std::vector<ImportLine> report_;
+  std::vector<std::string> warnings_;
   std::set<std::string> used_;
   bool is_first_ = false;
   bool is_upwind_ = true;
+  bool blade_shear_is_rigid_ = false;
 };
 
 }  // namespace

@@ -38,11 +38,21 @@ bool is_key(const std::string& word) {
   });
 }
 
+/// Words that cannot be keys.
 std::optional<bool> parse_flag(const std::string& word) {
   const std::string folded = fold(word);
   if (folded == "true" || folded == "t" || folded == ".true.") return true;
   if (folded == "false" || folded == "f" || folded == ".false.") return false;
   return {};
+}
+
+/// As Fortran reads a flag: T or F, perhaps behind a point, and whatever follows.
+std::optional<bool> parse_fortran_flag(const std::string& word) {
+  const std::size_t first = word.starts_with('.') ? 1 : 0;
+  if (word.size() == first) return {};
+  const char c = lower(word[first]);
+  if (c != 't' && c != 'f') return {};
+  return c == 't';
 }
 
 /// Lines that hold no values: rules, headings, comments.
@@ -98,6 +108,30 @@ std::vector<std::string> split_lines(const std::string& text) {
   }
   if (!line.empty()) lines.push_back(line);
   return lines;
+}
+
+/// The path whose names differ from this one by upper and lower case alone; empty where there is
+/// none.
+std::string find_in_other_case(const std::string& path) {
+  fs::path found;
+  for (const fs::path& part : fs::path(path)) {
+    std::error_code error;
+    if (fs::exists(found / part, error)) {
+      found /= part;
+      continue;
+    }
+    std::string match;
+    for (fs::directory_iterator entry(found.empty() ? fs::path(".") : found, error), end;
+         !error && entry != end; entry.increment(error)) {
+      const std::string name = entry->path().filename().string();
+      const auto same = [](char a, char b) { return lower(a) == lower(b); };
+      if (std::equal(name.begin(), name.end(), part.native().begin(), part.native().end(), same))
+        match = name;
+    }
+    if (match.empty()) return "";
+    found /= match;
+  }
+  return found.string();
 }
 
 std::string got(const std::string& word) { return ", got \"" + word + "\""; }
@@ -164,11 +198,11 @@ Deck::Deck(std::string path, DeckErrors& errors) : path_(std::move(path)), error
       in_output_list = true;
       continue;
     }
-    parse_line(lines[i], static_cast<int>(i + 1));
+    parse_line(static_cast<int>(i + 1));
   }
 }
 
-void Deck::parse_line(const std::string&, int number) {
+void Deck::parse_line(int number) {
   const std::vector<DeckWord>& words = lines_[static_cast<std::size_t>(number - 1)];
   if (!words[0].quoted && is_heading(words[0].text)) return;
   DeckEntry entry;
@@ -178,22 +212,88 @@ void Deck::parse_line(const std::string&, int number) {
   while (i < words.size() && (words[i].quoted || words[i - 1].comma ||
                               parse_deck_number(words[i].text) || parse_flag(words[i].text)))
     entry.values.push_back(words[i++]);
-  if (i == words.size() || words[i].quoted || !is_key(words[i].text)) return;
-  entry.key = words[i++].text;
-  if (i < words.size()) {
-    const char c = words[i].text.empty() ? ' ' : words[i].text[0];
-    const bool ends_key = words[i].quoted || c == '-' || c == '!' || c == '#' || c == '(' ||
-                          c == '{' || c == '[' || c == ':' || c == '=';
-    if (!ends_key) return;
+  const bool starts_with_value =
+      words[0].quoted || parse_deck_number(words[0].text) || parse_flag(words[0].text);
+  if (i < words.size() && !words[i].quoted && is_key(words[i].text)) {
+    entry.key = words[i].text;
+    if (const bool ends = words[i++].comma || i == words.size(); !ends) {
+      const char c = words[i].text.empty() ? ' ' : words[i].text[0];
+      entry.is_free_text = !words[i].quoted && c != '-' && c != '!' && c != '#' && c != '(' &&
+                           c != '{' && c != '[' && c != ':' && c != '=';
+    }
+    if (entry.is_free_text && !starts_with_value) return;
+  } else {  // perhaps a key that has lost its name
+    if (!starts_with_value || entry.values.size() != 1) return;
+    entry.is_free_text = true;
   }
-  index_[fold(entry.key)].push_back(entries_.size());
+  if (!entry.key.empty())
+    (entry.is_free_text ? free_text_ : index_)[fold(entry.key)].push_back(entries_.size());
   entries_.push_back(std::move(entry));
 }
 
+void Deck::set_order(const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    order_.push_back(fold(key.ends_with('?') ? key.substr(0, key.size() - 1) : key));
+    if (key.ends_with('?')) optional_.insert(order_.back());
+  }
+}
+
+std::vector<std::size_t> Deck::named_so(const std::string& folded) const {
+  for (const Index* index : {&index_, &free_text_})
+    if (const auto found = index->find(folded); found != index->end()) return found->second;
+  return {};
+}
+
+std::optional<std::size_t> Deck::between_neighbours(const std::string& folded) const {
+  const auto self = std::find(order_.begin(), order_.end(), folded);
+  if (self == order_.end()) return {};
+  int first = 0;
+  int last = static_cast<int>(lines_.size()) + 1;
+  std::vector<std::string> missing{folded};
+  for (auto before = self; before != order_.begin();) {
+    --before;
+    if (const auto found = named_so(*before); !found.empty()) {
+      first = entries_[found.front()].line;
+      break;
+    }
+    if (!optional_.contains(*before)) missing.insert(missing.begin(), *before);
+  }
+  const auto at = static_cast<std::ptrdiff_t>(missing.size()) - 1;
+  for (auto behind = self + 1; behind != order_.end(); ++behind) {
+    if (const auto found = named_so(*behind); !found.empty()) {
+      last = entries_[found.front()].line;
+      break;
+    }
+    if (!optional_.contains(*behind)) missing.push_back(*behind);
+  }
+  std::vector<std::size_t> unknown;
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (entries_[i].line > first && entries_[i].line < last &&
+        std::find(order_.begin(), order_.end(), fold(entries_[i].key)) == order_.end())
+      unknown.push_back(i);
+  if (unknown.size() != missing.size()) return {};
+  return unknown[static_cast<std::size_t>(at)];
+}
+
 const std::vector<std::size_t>& Deck::places_of(const std::string& key) const {
-  static const std::vector<std::size_t> none;
-  const auto found = index_.find(fold(key));
-  return found == index_.end() ? none : found->second;
+  const std::string folded = fold(key);
+  for (const Index* index : {&index_, &free_text_, static_cast<const Index*>(&by_place_)})
+    if (const auto found = index->find(folded); found != index->end()) return found->second;
+  std::vector<std::size_t>& places = by_place_[folded];
+  if (const std::optional<std::size_t> place = between_neighbours(folded)) places = {*place};
+  return places;
+}
+
+std::vector<Deck::FoundByPlace> Deck::found_by_place() const {
+  std::vector<FoundByPlace> found;
+  for (const std::string& key : order_)
+    if (const auto place = by_place_.find(key); place != by_place_.end())
+      for (const std::size_t entry : place->second) found.push_back({key, &entries_[entry]});
+  return found;
+}
+
+void Deck::mark_used(const std::string& key) {
+  for (const std::size_t place : places_of(key)) entries_[place].used = true;
 }
 
 DeckEntry* Deck::find(const std::string& key, bool required) {
@@ -244,7 +344,7 @@ int Deck::integer(const std::string& key, int low, int high) {
 bool Deck::flag(const std::string& key) {
   const DeckEntry* entry = find(key, true);
   if (entry == nullptr) return false;
-  const std::optional<bool> value = parse_flag(entry->values[0].text);
+  const std::optional<bool> value = parse_fortran_flag(entry->values[0].text);
   if (!value)
     errors_.add(place(entry->line), key + ": expected True or False" + got(entry->values[0].text));
   return value.value_or(false);
@@ -261,16 +361,48 @@ double Deck::number_or(const std::string& key, double value) {
 
 bool Deck::flag_or(const std::string& key, bool value) { return has(key) ? flag(key) : value; }
 
-std::string Deck::file(const std::string& key) {
+std::string Deck::full_path(const std::string& key) {
   std::string name = text(key);
   if (name.empty()) return name;
   std::replace(name.begin(), name.end(), '\\', '/');
   const fs::path path(name);
   const fs::path folder = fs::path(path_).parent_path();
-  std::string full = (path.is_absolute() ? path : (folder / path)).lexically_normal().string();
+  return (path.is_absolute() ? path : (folder / path)).lexically_normal().string();
+}
+
+std::string Deck::find_file(const std::string& key) {
+  std::string full = has(key) ? full_path(key) : std::string();
+  std::error_code error;
+  return fs::is_regular_file(full, error) ? full : std::string();
+}
+
+Vector3 Deck::point(const std::string& key, const std::string& ending) {
+  const std::string whole = key + "_" + ending;
+  if (!has(whole))
+    return {number(key + "x" + ending), number(key + "y" + ending), number(key + "z" + ending)};
+  const DeckEntry* entry = find(whole, true);
+  Vector3 point = Vector3::Zero();
+  bool is_whole = entry->values.size() == 3;
+  for (std::size_t i = 0; i < 3 && is_whole; ++i) {
+    const std::optional<double> value = parse_deck_number(entry->values[i].text);
+    is_whole = value.has_value();
+    point(static_cast<Eigen::Index>(i)) = value.value_or(0.0);
+  }
+  if (!is_whole) errors_.add(place(entry->line), whole + ": expected three numbers");
+  return point;
+}
+
+std::string Deck::file(const std::string& key) {
+  const std::string full = full_path(key);
+  if (full.empty()) return full;
   std::error_code error;
   if (fs::exists(full, error)) return full;
-  errors_.add(place_of(key), key + ": no such file " + full);
+  const std::string other = find_in_other_case(full);
+  errors_.add(place_of(key), key + ": no such file " + full +
+                                 (other.empty() ? std::string()
+                                                : "; hint: there is " + other +
+                                                      ", upper and lower case are not the same "
+                                                      "on this system"));
   return "";
 }
 
@@ -364,6 +496,23 @@ DeckTable Deck::table(const std::vector<std::string>& names, int count,
     errors_.add(place(table.line), "the table has " + std::to_string(table.lines.size()) +
                                        " rows, " + count_key + " says " + std::to_string(count));
   return table;
+}
+
+std::vector<std::vector<double>> Deck::rows_behind(const std::string& key, int count) const {
+  std::vector<std::vector<double>> rows;
+  const std::vector<std::size_t>& places = places_of(key);
+  if (places.empty()) return rows;
+  for (auto i = static_cast<std::size_t>(entries_[places.front()].line);
+       i < lines_.size() && static_cast<int>(rows.size()) < count; ++i) {
+    if (lines_[i].empty() || is_heading(lines_[i][0].text)) continue;
+    rows.emplace_back();
+    for (const DeckWord& word : lines_[i]) {
+      const std::optional<double> value = parse_deck_number(word.text);
+      if (!value) break;
+      rows.back().push_back(*value);
+    }
+  }
+  return rows;
 }
 
 std::vector<DeckRow> Deck::rows_after(int line) {

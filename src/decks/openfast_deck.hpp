@@ -1,5 +1,6 @@
 // The text files of OpenFAST: a value, then the name of its key, then a description; tables with a
-// line of column names. Everything is found by its name, never by the number of its line.
+// line of column names. Everything is found by its name; OpenFAST itself goes by the order of the
+// lines, so a name that is spelled in another way is found between its neighbours.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +9,8 @@
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
+
+#include "samara/math/types.hpp"
 
 namespace samara::decks {
 
@@ -34,10 +37,11 @@ struct DeckWord {
 };
 
 struct DeckEntry {
-  std::string key;  ///< as written
+  std::string key;  ///< as written; empty where a value stands alone
   std::vector<DeckWord> values;
   int line = 0;
   bool used = false;
+  bool is_free_text = false;  ///< nothing sets the key off from the words behind it
 };
 
 /// Rows of numbers under a line of names.
@@ -67,8 +71,19 @@ class Deck {
   std::string place(int line) const { return path_ + ":" + std::to_string(line); }
   std::string place_of(const std::string& key) const;
 
+  /// The keys of this kind of file in their order, a "?" behind those that some versions lack: one
+  /// that is not found by its name is the line between its neighbours.
+  void set_order(const std::vector<std::string>& keys);
   /// Keys are compared without case, and `Key(1)` is `Key1`.
   bool has(const std::string& key) const;
+  /// Counts the line of the key as read.
+  void mark_used(const std::string& key);
+  /// Keys found by their place: the name that was asked for, and the line.
+  struct FoundByPlace {
+    std::string key;
+    const DeckEntry* entry = nullptr;
+  };
+  std::vector<FoundByPlace> found_by_place() const;
   /// First value of the key; a missing key is an error.
   double number(const std::string& key);
   int integer(const std::string& key, int low, int high);
@@ -77,8 +92,12 @@ class Deck {
   /// The same where the key may be missing.
   double number_or(const std::string& key, double value);
   bool flag_or(const std::string& key, bool value);
-  /// The path of a file, relative to this one.
+  /// The path of a file, relative to this one; an error where there is none.
   std::string file(const std::string& key);
+  /// The same, empty where there is none.
+  std::string find_file(const std::string& key);
+  /// Three numbers, of one key, or of three with x, y and z before the `ending` of their names.
+  Vector3 point(const std::string& key, const std::string& ending);
 
   /// The table that has the column `names[0]`; `count` rows, which the key `count_key` has said.
   DeckTable table(const std::vector<std::string>& names, int count, const std::string& count_key);
@@ -88,23 +107,33 @@ class Deck {
   bool ends_inside(int line) const {
     return !ends_with_line_ && line == static_cast<int>(lines_.size());
   }
+  /// The leading numbers of the next `count` lines behind a key that are no headings.
+  std::vector<std::vector<double>> rows_behind(const std::string& key, int count) const;
   /// Rows of one or six numbers behind a line, to the end of the file.
   std::vector<DeckRow> rows_after(int line);
 
-  std::vector<DeckEntry>& entries() { return entries_; }
+  const std::vector<DeckEntry>& entries() const { return entries_; }
   DeckErrors& errors() { return errors_; }
 
  private:
   DeckEntry* find(const std::string& key, bool required);
-  void parse_line(const std::string& line, int number);
+  std::string full_path(const std::string& key);
+  void parse_line(int number);
   const std::vector<std::size_t>& places_of(const std::string& key) const;
+  std::vector<std::size_t> named_so(const std::string& key) const;
+  std::optional<std::size_t> between_neighbours(const std::string& key) const;
 
   std::string path_;
   DeckErrors& errors_;
   std::string title_;
   std::vector<std::vector<DeckWord>> lines_;  ///< from line 1
   std::vector<DeckEntry> entries_;
-  std::unordered_map<std::string, std::vector<std::size_t>> index_;  ///< of entries, by name
+  using Index = std::unordered_map<std::string, std::vector<std::size_t>>;
+  Index index_;                     ///< of entries, by name
+  Index free_text_;                 ///< the same of those in free text
+  std::vector<std::string> order_;  ///< of keys, without case
+  std::unordered_set<std::string> optional_;
+  mutable Index by_place_;  ///< what was found between neighbours; empty: nothing
   bool ends_with_line_ = true;
 };
 

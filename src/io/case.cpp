@@ -469,7 +469,11 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("nacelle")) read_nacelle(*node, turbine, errors);
   if (const YamlNode* node = map.find("shaft")) read_shaft(*node, turbine.shaft, errors);
   if (const YamlNode* node = map.find("hub")) read_hub(*node, turbine.hub, errors);
-  if (const YamlNode* node = map.require("blades")) read_blades(*node, turbine.blades, errors);
+  // A tower may stand alone.
+  if (const YamlNode* node = turbine.has_tower ? map.find("blades") : map.require("blades"))
+    read_blades(*node, turbine.blades, errors);
+  else
+    turbine.blades.count = 0;
   if (const YamlNode* node = map.find("loads")) read_loads(map, *node, turbine);
   if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);

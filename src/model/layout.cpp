@@ -14,7 +14,7 @@ Layout::Chain::Chain(const Beam& beam) {
 }
 
 Layout::Layout(const Turbine& turbine)
-    : blade_(turbine.blades.front()),
+    : blade_(turbine.blades.empty() ? Chain() : Chain(turbine.blades.front())),
       tower_(turbine.tower),
       blade_count_(static_cast<int>(turbine.blades.size())) {
   tower_first_ = blade_.size * blade_count_;

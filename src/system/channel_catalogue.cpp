@@ -35,7 +35,8 @@ ChannelCatalogue::ChannelCatalogue(const model::Turbine& turbine, const ChannelS
 }
 
 int ChannelCatalogue::section_slot(int beam, std::size_t i) const {
-  const std::size_t each = stations_of(turbine_.blades.front(), stations_.blade).size();
+  const std::size_t each =
+      turbine_.blades.empty() ? 0 : stations_of(turbine_.blades.front(), stations_.blade).size();
   return blade_slot(static_cast<int>(turbine_.blades.size())) +
          static_cast<int>(static_cast<std::size_t>(beam) * each + i) * section_slots;
 }

@@ -413,6 +413,7 @@ class Describer {
     const auto alike = [](const model::BeamLoad& a, const model::BeamLoad& b) {
       return a.source == b.source;
     };
+    if (turbine_.blades.empty()) return "there are no blades";
     const std::vector<model::BeamLoad>& first = turbine_.blades.front().loads;
     for (const model::Beam& blade : turbine_.blades)
       if (!std::equal(first.begin(), first.end(), blade.loads.begin(), blade.loads.end(), alike))

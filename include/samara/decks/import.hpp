@@ -1,6 +1,8 @@
 // Reads turbines in the formats of other programs and states them as case files (docs/import.md).
 #pragma once
 
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,13 +22,31 @@ struct ImportLine {
   std::string words;  ///< where it went, or why it did not
 };
 
+/// A quantity that a deck may lack and an option of the command line can state.
+struct StatedQuantity {
+  const char* option;  ///< without the dashes
+  const char* key;     ///< of the case, in whose units and axes it counts
+  std::size_t count;   ///< of numbers
+};
+std::span<const StatedQuantity> stated_quantities();
+
+/// The order of six structural damping coefficients mu of windIO.
+enum class MuOrder {
+  automatic,  ///< as the deck's matrices, but for the pattern that tells the other
+  beamdyn,    ///< shear x, shear y, axial, bending x, bending y, torsion
+  hawc2       ///< bending x, bending y, torsion, as Kx Ky Kz of HAWC2, and three zeros
+};
+
 struct ImportOptions {
   bool tower_only = false;  ///< leave out what carries the tower, which is clamped at its foot
+  MuOrder mu_order = MuOrder::automatic;
+  std::map<std::string, std::vector<double>> stated{};  ///< quantities of the case, by their keys
 };
 
 struct Import {
   std::string text;  ///< a complete, commented case file
   std::vector<ImportLine> report;
+  std::vector<std::string> warnings;  ///< what the user would not expect, `place: words`
 };
 
 /// Reads the main file of OpenFAST (8.16 to 5.0) and the files of ElastoDyn and BeamDyn it names.

@@ -46,6 +46,7 @@ class Layout {
  private:
   /// The blocks of a beam, root to tip: unknowns up to and with that of each point and mass node.
   struct Chain {
+    Chain() = default;
     explicit Chain(const Beam& beam);
     std::vector<int> points;
     std::vector<int> masses;

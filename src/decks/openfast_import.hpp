@@ -1,0 +1,51 @@
+// What the readers of OpenFAST's files share: the case that grows, the report, the errors.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "samara/decks/import.hpp"
+
+#include "case_writer.hpp"
+#include "openfast_deck.hpp"
+
+namespace samara::decks {
+
+struct OpenfastImport {
+  explicit OpenfastImport(const ImportOptions& given) : options(given) {}
+
+  ImportOptions options;
+  DeckErrors errors;
+  CaseDraft draft;
+  std::vector<ImportLine> report;
+  std::vector<std::string> warnings;
+
+  /// Adds a line to the report; the key counts as read.
+  void say(Deck& deck, const std::string& key, Fate fate, const std::string& words);
+  /// The same for the lines of a table.
+  void say_line(const Deck& deck, int line, const std::string& key, Fate fate,
+                const std::string& words) {
+    report.push_back({deck.place(line), key, fate, words});
+  }
+  /// The comment behind a key of the case.
+  void note(const std::string& key, const std::string& words) { draft.notes[key] = words; }
+  /// Says on standard error what the user would not expect of the case.
+  void warn(const std::string& place, const std::string& words) {
+    warnings.push_back(place + ": " + words);
+  }
+
+  /// A number that stands in the case as it is.
+  double take(Deck& deck, const std::string& key, const std::string& target);
+  double derive(Deck& deck, const std::string& key, const std::string& words);
+  void ignore(Deck& deck, const std::string& key, const std::string& why);
+  /// An error where the key is there and does not hold.
+  void require(bool holds, Deck& deck, const std::string& key, const std::string& what);
+  /// Names what nothing has read.
+  void report_unused(Deck& deck);
+
+  /// Opens another file; nothing where it cannot be read, which is an error.
+  std::unique_ptr<Deck> open(const std::string& path);
+};
+
+}  // namespace samara::decks

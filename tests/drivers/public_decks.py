@@ -1,0 +1,89 @@
+"""Turbines as their repositories ship them, and what becomes of each: tests/decks/public_decks.csv.
+
+A row names a deck and its outcome: `imports`; `--tower-only`, where that option is asked for; or
+the reason of the refusal. `modes` and `floquet` name the reason where the command has no modes to
+find. The table only ever improves.
+"""
+
+import csv
+import os
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import SOURCE, ProgramTest  # noqa: E402
+
+FOLDER = os.environ.get("SAMARA_PUBLIC_DECKS")
+REFUSED = 2
+
+
+def read_table():
+    with open(SOURCE / "tests/decks/public_decks.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@unittest.skipUnless(FOLDER, "SAMARA_PUBLIC_DECKS does not name the folder of public decks")
+class PublicDecks(ProgramTest):
+    """Every deck of the folder."""
+
+    @staticmethod
+    def rows():
+        for row in read_table():
+            deck = pathlib.Path(FOLDER) / row["deck"]
+            if deck.exists():
+                yield row, deck
+
+    def run_import(self, deck, *options):
+        kind = "openfast" if deck.suffix == ".fst" else "windio"
+        return self.samara("import", kind, deck, "-o", "case.yaml", *options)
+
+    def import_row(self, row, deck):
+        """Imports what imports; whether there is a case."""
+        outcome = row["outcome"]
+        if outcome not in ("imports", "--tower-only"):
+            return False
+        run = self.run_import(deck, *([] if outcome == "imports" else [outcome]))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return True
+
+    def test_every_deck_of_the_folder_is_in_the_table(self):
+        known = {row["deck"] for row in read_table()}
+        found = {str(path.relative_to(FOLDER))
+                 for suffix in ("fst", "yaml") for path in pathlib.Path(FOLDER).rglob(f"*.{suffix}")}
+        self.assertEqual(found - known, set())
+
+    def test_outcomes(self):
+        for row, deck in self.rows():
+            with self.subTest(deck=row["deck"]):
+                if self.import_row(row, deck):
+                    self.succeed("check", "case.yaml")
+                    if row["outcome"] == "imports":
+                        continue
+                run = self.run_import(deck)
+                self.assertEqual(run.returncode, REFUSED)
+                self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+                self.assertIn(row["outcome"], run.stderr)
+
+    def analyse(self, reason, *arguments):
+        run = self.samara(*arguments, "-o", "result.h5")
+        if reason:
+            self.assertEqual(run.returncode, REFUSED)
+            self.assertIn(reason, run.stderr)
+        else:
+            self.assertEqual(run.returncode, 0, run.stderr)
+
+    def test_analyses(self):
+        for row, deck in self.rows():
+            with self.subTest(deck=row["deck"]):
+                if not self.import_row(row, deck):
+                    continue
+                self.analyse(row["modes"], "modes", "case.yaml", "--parked")
+                self.analyse("", "trim", "case.yaml")
+                self.analyse(row["floquet"], "floquet", "case.yaml")
+                self.analyse("", "transient", "case.yaml", "--set", "transient.duration=10",
+                             "--set", "transient.step=0.01")
+
+
+if __name__ == "__main__":
+    unittest.main()
