@@ -85,6 +85,8 @@ class Parser {
     if (equals != std::string::npos) value = word.substr(equals + 1);
     if (word == "--help")
       line_.request = Request::help;
+    else if (word == "--help-options")
+      line_.request = Request::solver_options;
     else if (word == "--version")
       line_.request = Request::version;
     else if (name == "--set")
@@ -154,7 +156,7 @@ class Parser {
   static std::string unknown_option_words(const std::string& name) {
     std::vector<std::string> known{"--set",    "--csv",     "--all",       "--first",
                                    "--parked", "--restart", "--mu-order",  "--report",
-                                   "--help",   "--version", "--tower-only"};
+                                   "--help",   "--version", "--tower-only", "--help-options"};
     for (const decks::StatedQuantity& quantity : decks::stated_quantities())
       known.push_back(std::string("--") + quantity.option);
     const std::string suggestion = suggest(name, known);
@@ -358,6 +360,7 @@ constexpr char option_lines[] =
   --restart FILE.h5 goes on from the last checkpoint of a result (transient)
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
+  --help-options    the prefixes of options of PETSc and SLEPc
   -name [value]     anything else with one dash goes to PETSc and SLEPc
 )";
 

@@ -30,7 +30,7 @@ struct Command {
   int most_results = 0;                           ///< that it reads at once
 };
 
-enum class Request { run, help, version };
+enum class Request { run, help, solver_options, version };
 
 struct CommandLine {
   Request request = Request::run;

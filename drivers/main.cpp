@@ -23,6 +23,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "interruption.hpp"
+#include "solver_options.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -223,17 +224,26 @@ void release_result(Job& job) {
   job.lock.reset();
 }
 
-void report_unused_options() {
+void report_unused_options(const std::string& command) {
   const std::string unused = Session::unused_options();
-  if (!unused.empty())
-    std::cerr << "samara: options that nothing in this run asked for: " << unused
-              << "; hint: misspelt, or of a solver that this command does not start\n";
+  if (unused.empty()) return;
+  std::string hint;
+  std::istringstream words(unused);
+  for (std::string word; words >> word;)
+    if (const std::string whole = prefixed_option(word, command); !whole.empty())
+      hint += (hint.empty() ? "did you mean " : ", ") + whole;
+  std::cerr << "samara: options that nothing in this run asked for: " << unused << "; hint: "
+            << (hint.empty() ? "misspelt, or of a solver that this command does not start"
+                             : hint + "?")
+            << "; samara --help-options lists the prefixes\n";
 }
 
 void print_text(const CommandLine& line) {
   if (Session::launch_rank() != 0) return;
   if (line.request == Request::help)
     std::cout << help_text(line, commands);
+  else if (line.request == Request::solver_options)
+    std::cout << solver_options_text();
   else
     std::cout << "samara " << version << "\n"
               << petsc::library_versions() << "\n"
@@ -268,7 +278,7 @@ int run(const std::vector<std::string>& arguments) {
   if (outcome.code == 0 && Interruption::is_asked())  // when all was done
     outcome = {Interruption::noted(), "samara: interrupted; the result is complete\n"};
   const int code = session.agree(outcome.code, outcome.message);
-  if (code == 0 && Session::rank() == 0) report_unused_options();
+  if (code == 0 && Session::rank() == 0) report_unused_options(line.command->name);
   return code;
 }
 

@@ -126,6 +126,8 @@ class Writer {
     add(block, 2, "order", std::to_string(beam.order), "Gauss points an element");
     add(block, 2, "damping",
         list(std::vector<double>(beam.damping.data(), beam.damping.data() + 6)), "s");
+    if (!beam.mass_damping.isZero(0.0))
+      add(block, 2, "mass_damping", list(beam.mass_damping), "1/s");
     add(block, 2, "tip_mass", exact(beam.tip_mass), "kg");
     const auto note = draft_.notes.find(block + ".sections");
     if (note != draft_.notes.end()) text_ += "  # " + note->second + "\n";

@@ -25,10 +25,11 @@ struct Mesh {
   int order = 1;
 };
 
-/// Of imported beams: the first ten modes of the turbines in inputs/ are within 0.1 % of converged
-/// ones (docs/import.md).
-inline constexpr Mesh blade_mesh{3, 4};
-inline constexpr Mesh tower_mesh{1, 5};
+/// Of imported beams: the first ten modes are within 0.5 % of converged ones (docs/import.md).
+inline constexpr Mesh bending_blade_mesh{3, 4};  ///< of blades that do nothing but bend
+inline constexpr Mesh blade_mesh{2, 4};          ///< of blades with all six strains
+inline constexpr Mesh bending_tower_mesh{1, 5};  ///< of towers below the former
+inline constexpr Mesh tower_mesh{1, 4};          ///< below the latter
 
 struct DraftBeam {
   double length = 0.0;
@@ -37,6 +38,7 @@ struct DraftBeam {
   int order = 2;
   std::vector<DraftSection> sections;
   Vector6 damping = Vector6::Zero();
+  Vector3 mass_damping = Vector3::Zero();
   double tip_mass = 0.0;
 };
 

@@ -6,6 +6,8 @@
 #include <complex>
 #include <numbers>
 
+#include <Eigen/LU>
+
 #include "import_common.hpp"
 
 namespace samara::decks {
@@ -20,6 +22,9 @@ constexpr double shape_tolerance = 0.015;
 constexpr double grid_tolerance = 1e-9;
 
 constexpr int most_rows = 100000;
+
+/// A damping ratio is met within this.
+constexpr double met_ratio = 1e-9;
 
 /// A direction in which a beam of ElastoDyn bends: what the deck calls its keys.
 struct Direction {
@@ -43,14 +48,23 @@ struct BeamWords {
   std::array<Direction, 2> directions;
 };
 
-/// ElastoDyn's own frequency of an assumed shape, sum c_k x^k with k from 2, without the masses at
-/// its end: stiffness along the local principal direction, which the twist turns.
-double compute_shape_frequency(const std::array<double, 5>& coefficients, const Curve& mass,
-                               const Curve& stiffness, const Curve& twist, double length) {
+/// A mode of ElastoDyn.
+struct AssumedMode {
+  double frequency = 0.0;  ///< [rad/s]
+  double share = 1.0;      ///< of its modal mass, by the motion along the section's own axis
+  double ratio = 0.0;      ///< of damping
+  std::string key;         ///< of the ratio
+};
+
+/// The mode of an assumed shape, sum c_k x^k with k from 2, without the masses at its end:
+/// stiffness along the local principal direction, which the twist turns.
+AssumedMode assumed_mode(const std::array<double, 5>& coefficients, const Curve& mass,
+                         const Curve& stiffness, const Curve& twist, double length) {
   const double h = 1.0 / integration_steps;
   std::complex<double> slope = 0.0;
   std::complex<double> place = 0.0;
   double generalized_mass = 0.0;
+  double along_own_axis = 0.0;
   double generalized_stiffness = 0.0;
   for (int i = 0; i < integration_steps; ++i) {
     const double x = (i + 0.5) * h;
@@ -58,16 +72,21 @@ double compute_shape_frequency(const std::array<double, 5>& coefficients, const 
     double curvature = 0.0;
     for (int k = 6; k >= 2; --k)
       curvature = curvature * x + coefficients[static_cast<std::size_t>(k - 2)] * k * (k - 1);
-    const std::complex<double> turned =
-        curvature * std::polar(1.0, interpolate(twist, station) * std::numbers::pi / 180.0);
-    const std::complex<double> middle = place + 0.5 * h * slope + 0.125 * h * h * turned;
-    generalized_mass += interpolate(mass, station) * std::norm(middle) * h * length;
+    const std::complex<double> axis =
+        std::polar(1.0, interpolate(twist, station) * std::numbers::pi / 180.0);
+    const std::complex<double> middle = place + 0.5 * h * slope + 0.125 * h * h * curvature * axis;
+    const double step_mass = interpolate(mass, station) * h * length;
+    generalized_mass += step_mass * std::norm(middle);
+    along_own_axis += step_mass * std::pow((middle * std::conj(axis)).real(), 2);
     generalized_stiffness +=
         interpolate(stiffness, station) * curvature * curvature * h / (length * length * length);
-    place += h * slope + 0.5 * h * h * turned;
-    slope += h * turned;
+    place += h * slope + 0.5 * h * h * curvature * axis;
+    slope += h * curvature * axis;
   }
-  return std::sqrt(generalized_stiffness / generalized_mass);
+  AssumedMode mode;
+  mode.frequency = std::sqrt(generalized_stiffness / generalized_mass);
+  mode.share = along_own_axis / generalized_mass;
+  return mode;
 }
 
 std::array<double, 5> read_shape(OpenfastImport& import, Deck& deck, const std::string& shape,
@@ -85,12 +104,48 @@ std::array<double, 5> read_shape(OpenfastImport& import, Deck& deck, const std::
   return coefficients;
 }
 
-/// Damping [s] that ElastoDyn gives to a direction by its first mode; reports the second.
-double fit_damping(OpenfastImport& import, Deck& deck, const BeamWords& words,
-                   const Direction& direction, const Curve& mass, const Curve& stiffness,
-                   const Curve& twist, double length) {
-  const std::string target = words.block + ".damping of bending " + direction.bending;
+/// Strain-rate damping mu [s] and mass damping alpha [1/s].
+struct DampingPair {
   double mu = 0.0;
+  double alpha = 0.0;
+  double ratio(const AssumedMode& mode) const {
+    return 0.5 * (mu * mode.frequency + alpha * mode.share / mode.frequency);
+  }
+};
+
+/// The pair that meets the ratios of one or two modes; where that asks for a negative constant, the
+/// constant of the one kind that is nearest to both ratios by least squares.
+DampingPair fit_pair(const std::vector<AssumedMode>& modes) {
+  Eigen::MatrixX2d by_constant(static_cast<Eigen::Index>(modes.size()), 2);
+  Eigen::VectorXd ratios(by_constant.rows());
+  for (Eigen::Index i = 0; i < by_constant.rows(); ++i) {
+    const AssumedMode& mode = modes[static_cast<std::size_t>(i)];
+    by_constant.row(i) << 0.5 * mode.frequency, 0.5 * mode.share / mode.frequency;
+    ratios(i) = mode.ratio;
+  }
+  if (modes.size() == 2) {
+    const Eigen::Vector2d both = by_constant.fullPivLu().solve(ratios);
+    if (both.allFinite() && both.minCoeff() >= 0.0 &&
+        (by_constant * both - ratios).norm() <= met_ratio * (1.0 + ratios.norm()))
+      return {both(0), both(1)};
+  }
+  const auto nearest = [&](Eigen::Index kind) {
+    return by_constant.col(kind).dot(ratios) / by_constant.col(kind).squaredNorm();
+  };
+  const auto distance = [&](Eigen::Index kind) {
+    return (by_constant.col(kind) * nearest(kind) - ratios).norm();
+  };
+  if (modes.size() == 1 || distance(0) <= distance(1)) return {nearest(0), 0.0};
+  return {0.0, nearest(1)};
+}
+
+/// Damping of a direction by the ratios of its modes, at rest and without masses at the end, as
+/// ElastoDyn has them.
+DampingPair fit_damping(OpenfastImport& import, Deck& deck, const BeamWords& words,
+                        const Direction& direction, const Curve& mass, const Curve& stiffness,
+                        const Curve& twist, double length) {
+  const std::string target = words.block + ".damping of bending " + direction.bending;
+  std::vector<AssumedMode> modes;
   double first_tuner = 1.0;
   for (std::size_t mode = 0; mode < direction.shapes.size(); ++mode) {
     const std::array<double, 5> coefficients =
@@ -102,33 +157,39 @@ double fit_damping(OpenfastImport& import, Deck& deck, const BeamWords& words,
     const double tuner = has_tuner ? deck.number(direction.tuners[mode]) : 1.0;
     if (mode == 0) first_tuner = tuner;
     if (!import.errors.empty()) continue;
-    // `stiffness` holds the first tuner already.
-    const double frequency = compute_shape_frequency(coefficients, mass, stiffness, twist, length) *
-                             std::sqrt(tuner / first_tuner);
-    const std::string stated = rounded(100.0 * ratio, 4) + " % at the " +
-                               rounded(frequency * 0.5 / std::numbers::pi, 5) +
-                               " Hz of the assumed shape";
-    if (mode == 0) {
-      mu = 2.0 * ratio / frequency;
-      import.say(deck, key, Fate::derived,
-                 target + " = 2 zeta/omega = " + rounded(mu, 5) + " s from " + stated +
-                     " without masses at the end, as ElastoDyn has it");
-      if (has_tuner)
-        import.say(deck, direction.tuners[mode], Fate::derived,
-                   "multiplies the stiffness of all sections");
-      continue;
-    }
-    import.say(deck, key, Fate::ignored,
-               stated + ": one mu serves both modes and gives this one " +
-                   rounded(50.0 * mu * frequency, 4) + " %");
-    if (has_tuner)
+    AssumedMode found = assumed_mode(coefficients, mass, stiffness, twist, length);
+    found.frequency *= std::sqrt(tuner / first_tuner);  // `stiffness` holds the first already
+    found.ratio = ratio;
+    found.key = key;
+    modes.push_back(found);
+    if (mode == 0 && has_tuner)
+      import.say(deck, direction.tuners[mode], Fate::derived,
+                 "multiplies the stiffness of all sections");
+    else if (has_tuner)
       import.say(deck, direction.tuners[mode], tuner == first_tuner ? Fate::derived : Fate::ignored,
                  tuner == first_tuner
                      ? "the same as the first, which multiplies the stiffness"
                      : rounded(tuner) + " differs from the first, " + rounded(first_tuner) +
                            ", which multiplies the stiffness of all modes");
   }
-  return mu;
+  if (!import.errors.empty()) return {};
+  const DampingPair pair = fit_pair(modes);
+  for (const AssumedMode& mode : modes) {
+    const double given = pair.ratio(mode);
+    const std::string stated = rounded(100.0 * mode.ratio, 4) + " % at the " +
+                               rounded(mode.frequency * 0.5 / std::numbers::pi, 5) +
+                               " Hz of the assumed shape";
+    import.say(deck, mode.key, Fate::derived,
+               target + " = " + rounded(pair.mu, 5) +
+                   " s and mass_damping = " + rounded(pair.alpha, 5) + " 1/s, from " + stated);
+    if (std::abs(given - mode.ratio) > met_ratio)
+      import.warn(deck.place_of(mode.key),
+                  mode.key + ": note: " + stated + " is not met, the mode gets " +
+                      rounded(100.0 * given, 4) +
+                      " %: no damping in proportion to stiffness and mass that is not negative "
+                      "meets both ratios of the direction");
+  }
+  return pair;
 }
 
 /// A single row is a uniform beam.
@@ -244,10 +305,14 @@ void read_beam(OpenfastImport& import, Deck& deck, const BeamWords& words, Draft
   const Curve twist = words.twist.empty() ? Curve{{0.0}, {0.0}} : scaled(4, 1.0);
   build_sections(import, deck, table, words, mass, stiffness,
                  words.twist.empty() ? nullptr : &twist, beam);
-  for (std::size_t k = 0; k < 2 && import.errors.empty(); ++k)
-    beam.damping(static_cast<Eigen::Index>(4 + k)) = fit_damping(
-        import, deck, words, words.directions[k], mass, stiffness[k], twist, beam.length);
-  import.note(words.block + ".damping", "from the first mode of each direction, 2 zeta/omega");
+  for (std::size_t k = 0; k < 2 && import.errors.empty(); ++k) {
+    const DampingPair pair = fit_damping(import, deck, words, words.directions[k], mass,
+                                         stiffness[k], twist, beam.length);
+    beam.damping(static_cast<Eigen::Index>(4 + k)) = pair.mu;
+    beam.mass_damping(static_cast<Eigen::Index>(2 - k)) = pair.alpha;  // bending 2 moves along b3
+  }
+  import.note(words.block + ".damping", "by the ratios of the modes of each direction");
+  import.note(words.block + ".mass_damping", "by the ratios of the modes of each direction");
   import.note(words.block + ".sections",
               "ElastoDyn has no axial, shear and torsional stiffness: rigid; no rotary inertia: 0");
   import.report_unused(deck);
@@ -297,8 +362,6 @@ void read_elastodyn_tower(OpenfastImport& import, const std::string& path, bool 
                            "3",
                            bends_sideways}}}};
   read_beam(import, *deck, words, import.draft.tower);
-  set_mesh(import.draft.tower, tower_mesh);
-  import.note("tower.elements", "chosen by the importer");
 }
 
 bool read_elastodyn_blade(OpenfastImport& import, const std::string& path, bool speaks,

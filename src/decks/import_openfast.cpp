@@ -506,8 +506,10 @@ class Importer {
     }
     if (!import_.errors.empty() || blades.empty()) return;
     import_.draft.blade = blades[0].beam;
-    set_mesh(import_.draft.blade, blade_mesh);
+    set_mesh(import_.draft.blade, uses_beamdyn_ ? blade_mesh : bending_blade_mesh);
+    set_mesh(import_.draft.tower, uses_beamdyn_ ? tower_mesh : bending_tower_mesh);
     import_.note("blades.elements", "chosen by the importer");
+    import_.note("tower.elements", "chosen by the importer");
     for (std::size_t k = 1; k < blades.size(); ++k) compare_blade(blades, k);
     const double flexible = tip_radius_ - import_.draft.hub_radius;
     if (!uses_beamdyn_) {

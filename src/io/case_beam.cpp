@@ -198,6 +198,27 @@ void read_damping(MapReader& map, const RatioKeys& ratios, model::BeamDefinition
   if (read_number(*entry, map.where("damping"), rule, mu, map.errors())) damping.setConstant(mu);
 }
 
+void read_mass_damping(MapReader& map, model::BeamDefinition& beam) {
+  const YamlNode* entry = map.find("mass_damping");
+  if (entry == nullptr) return;
+  const std::string where = map.where("mass_damping");
+  if (map.node().find("damping") != nullptr &&
+      map.node().find("damping")->kind == YamlNode::Kind::map) {
+    map.refuse(*entry, "mass_damping",
+               "not beside damping ratios, which are met by strain rates alone; hint: give damping "
+               "as mu");
+    return;
+  }
+  if (entry->kind == YamlNode::Kind::list) {
+    read_numbers(*entry, where, non_negative, std::span<double>(beam.mass_damping.data(), 3),
+                 map.errors());
+    return;
+  }
+  constexpr NumberRule rule{"a number >= 0 or a list of 3", non_negative.low};
+  double alpha = 0.0;
+  if (read_number(*entry, where, rule, alpha, map.errors())) beam.mass_damping.setConstant(alpha);
+}
+
 /// Reads the points of a reference line as the file states them. False: there is none to use.
 bool read_points(MapReader& map, const YamlNode& node, std::vector<Vector3>& points) {
   const std::string where = map.where("reference_line");
@@ -348,6 +369,7 @@ void read_beam(MapReader& map, const Matrix3& to_a, const RatioKeys& ratios,
   map.read("order", beam.order, 1, max_order);
   read_sections(map, beam.sections);
   read_damping(map, ratios, beam);
+  read_mass_damping(map, beam);
   map.read("tip_mass", beam.tip_mass, non_negative);
   read_point_masses(map, beam.point_masses);
   const bool has_ratios = std::any_of(beam.modal_damping.begin(), beam.modal_damping.end(),

@@ -259,6 +259,9 @@ Beam build_beam(const std::string& name, const BeamDefinition& definition, doubl
       point.mass = (means.empty() ? section.mass : means[j].mass) * mass_factor;
       for (int i = 0; i < 6; ++i)
         point.damping(i) = section.rigid[static_cast<std::size_t>(i)] ? 0.0 : definition.damping(i);
+      point.drag = point.mass(0, 0) * point.C_ab * definition.mass_damping.asDiagonal() *
+                   point.C_ab.transpose();
+      if (!point.drag.isZero(0.0)) beam.has_drag = true;
       beam.points.push_back(point);
       beam.fractions.push_back(fraction);
     }

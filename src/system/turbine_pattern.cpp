@@ -53,6 +53,7 @@ class PatternFinder {
       add_ends(placed, a);
       add_changes(placed);
       add_loads(placed);
+      if (placed.beam->has_drag) add_drag(placed);
     }
     add_chain(rows);
     for (std::vector<std::vector<int>>* rows_of : {&pattern_.K, &pattern_.M})
@@ -290,6 +291,38 @@ class PatternFinder {
               couple(placed.force_rows(start, node),
                      placed.points[static_cast<std::size_t>(start + j)]);
       }
+    }
+  }
+
+  void add_drag(const PlacedBeam& placed) {
+    const model::Beam& beam = *placed.beam;
+    const auto three = [](int first) {
+      return Vec3<Dependence>(Dependence::on(first), Dependence::on(first + 1),
+                              Dependence::on(first + 2));
+    };
+    const elements::RootMotion<Dependence> root{three(6), three(9), three(12), three(15)};
+    const int base = beam.has_support ? placed.masses.front() : 0;
+    for (int p = 0; p < beam.point_count(); ++p) {
+      const elements::BeamPoint& point = beam.points[static_cast<std::size_t>(p)];
+      const int first = placed.points[static_cast<std::size_t>(p)];
+      const elements::DragTerms<Dependence> drag = elements::beam_drag_terms<Dependence>(
+          point.x, point.drag, three(0), three(3), beam.has_support ? &root : nullptr);
+      const auto add_rows = [&](int row, const Vec3<Dependence>& terms) {
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            if (terms(i).is_on(j)) K(row + i).push_back(first + j);
+            if (terms(i).is_on(3 + j)) M(row + i).push_back(first + j);
+            for (const int part : {0, 3}) {
+              if (terms(i).is_on(6 + part + j)) K(row + i).push_back(base + part + j);
+              if (terms(i).is_on(12 + part + j)) M(row + i).push_back(base + part + j);
+            }
+          }
+      };
+      for (int node = 0; node <= beam.order; ++node)
+        if (placed.node_weights(node, p)[1] != 0.0)
+          add_rows(placed.force_rows(p, node), drag.force);
+      add_rows(placed.root_rows(), drag.force);
+      add_rows(placed.root_rows() + 3, drag.moment);
     }
   }
 

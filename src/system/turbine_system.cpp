@@ -218,6 +218,7 @@ bool TurbineSystem::is_conservative() const {
     if (hinge->free && hinge->damping != 0.0) return false;
   for (const PlacedBeam& placed : assembly_->equations.beams()) {
     if (placed.beam->has_support && placed.beam->support.damping != 0.0) return false;
+    if (placed.beam->has_drag) return false;
     for (const elements::BeamPoint& point : placed.beam->points)
       if (!point.damping.isZero(0.0)) return false;
   }

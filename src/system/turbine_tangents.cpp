@@ -58,6 +58,7 @@ class Pattern {
         }
       }
       couple(placed.root, placed.root);
+      if (beam.has_drag) couple_drag(couple, placed);
       couple(placed.points.back(), placed.tip);
       if (placed.on_hub()) couple_to_motion(couple, placed.tip);
       for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
@@ -78,6 +79,17 @@ class Pattern {
   }
 
  private:
+  /// The root has the reactions of all sections, which see its motion where it stands on springs.
+  template <class Couple>
+  static void couple_drag(const Couple& couple, const PlacedBeam& placed) {
+    const model::Beam& beam = *placed.beam;
+    for (int p = 0; p < beam.point_count(); ++p) {
+      couple(placed.root_rows(), placed.points[static_cast<std::size_t>(p)]);
+      for (int node = 0; beam.has_support && node <= beam.order; ++node)
+        couple(placed.force_rows(p, node), placed.masses.front());
+    }
+  }
+
   template <class Couple>
   void couple_to_motion(const Couple& couple, int row) const {
     couple(row, layout_.joints());
@@ -135,6 +147,7 @@ class TurbineTangents::Scatter {
       add_end_tangents(placed, a, root, z, z_dot);
       add_change_tangents(placed, z, &*first);
       add_load_tangents(placed, t, z);
+      if (placed.beam->has_drag) add_drag_tangents(placed, z, z_dot);
     }
     add_chain_tangents(rows);
   }
@@ -362,6 +375,49 @@ class TurbineTangents::Scatter {
         rotation.block<3, 3>(0, 3) += slope * Matrix3::Identity();
         add_term(change.row, first, missed * rotation, {}, false);
       }
+    }
+  }
+
+  // Independent quantities of a drag: u, u_dot; u, theta of the root and their rates.
+  using DragDual = math::Dual<18>;
+  using DragJacobian = Eigen::Matrix<double, 3, 18>;
+
+  void add_drag_tangents(const PlacedBeam& placed, const std::vector<double>& z,
+                         const std::vector<double>& z_dot) {
+    const model::Beam& beam = *placed.beam;
+    const auto three = [](const std::vector<double>& values, int first, int quantity) {
+      Vec3<DragDual> dual;
+      for (int i = 0; i < 3; ++i)
+        dual(i) = math::independent<18>(values[static_cast<std::size_t>(first + i)], quantity + i);
+      return dual;
+    };
+    elements::RootMotion<DragDual> root;
+    const int base = beam.has_support ? placed.masses.front() : -1;
+    if (beam.has_support)
+      root = {three(z, base, 6), three(z, base + 3, 9), three(z_dot, base, 12),
+              three(z_dot, base + 3, 15)};
+    const auto add_rows = [&](int row, int first, const DragJacobian& j) {
+      K_.at(row / block, first / block).block<3, 3>(row % block, 0) += j.middleCols<3>(0);
+      M_.at(row / block, first / block).block<3, 3>(row % block, 0) += j.middleCols<3>(3);
+      if (base < 0) return;
+      K_.at(row / block, base / block).block<3, 6>(row % block, 0) += j.middleCols<6>(6);
+      M_.at(row / block, base / block).block<3, 6>(row % block, 0) += j.middleCols<6>(12);
+    };
+    for (int p = 0; p < beam.point_count(); ++p) {
+      const elements::BeamPoint& point = beam.points[static_cast<std::size_t>(p)];
+      const int first = placed.points[static_cast<std::size_t>(p)];
+      const elements::DragTerms<DragDual> drag = elements::beam_drag_terms<DragDual>(
+          point.x, point.drag, three(z, first, 0), three(z_dot, first, 3),
+          beam.has_support ? &root : nullptr);
+      DragJacobian force, moment;
+      for (int i = 0; i < 3; ++i) {
+        force.row(i) = drag.force(i).derivatives();
+        moment.row(i) = drag.moment(i).derivatives();
+      }
+      for (int node = 0; node <= beam.order; ++node)
+        add_rows(placed.force_rows(p, node), first, -placed.node_weights(node, p)[1] * force);
+      add_rows(placed.root_rows(), first, beam.point_length(p) * force);
+      add_rows(placed.root_rows() + 3, first, beam.point_length(p) * moment);
     }
   }
 

@@ -38,6 +38,29 @@ class CommandLine(ProgramTest):
                 words = [str(SOURCE / w) if w.startswith("inputs/") else w for w in words]
                 self.succeed(*words)
 
+    def test_prefixes_of_solver_options(self):
+        table = self.succeed("--help-options").stdout
+        page = (SOURCE / "docs/case_file.md").read_text(encoding="utf-8")
+        for prefix in ("-trim_", "-static_", "-modes_", "-floquet_", "-shooting_", "-transient_"):
+            self.assertIn(prefix, table)
+            row = next(line for line in table.splitlines() if line.startswith(prefix))
+            described = next(line for line in page.splitlines() if line.startswith(f"| `{prefix}` |"))
+            for word in described.replace("`", "").replace("|", " ").split():
+                self.assertIn(word, row.split())
+
+    def test_an_option_without_its_prefix_is_matched(self):
+        self.write("case.yaml", MINIMAL)
+        for command, option, whole in (("trim", "-snes_monitor", "-trim_snes_monitor"),
+                                       ("modes", "-eps_view", "-modes_eps_view"),
+                                       ("transient", "-ts_monitor", "-transient_ts_monitor")):
+            words = {"modes": ["--parked"],
+                     "transient": ["--set", "transient={duration: 0.02, step: 0.01}"]}
+            run = self.succeed(command, "case.yaml", *words.get(command, []), option)
+            self.assertIn(f"did you mean {whole}?", run.stderr)
+            self.assertIn("--help-options", run.stderr)
+        run = self.succeed("trim", "case.yaml", "-nothing_of_the_kind")
+        self.assertIn("misspelt", run.stderr)
+
     def test_help_needs_no_case(self):
         self.assertEqual(self.succeed("floquet", "no.yaml", "--help").stderr, "")
         self.assertEqual(self.files(), {})

@@ -6,6 +6,7 @@ find. The table only ever improves.
 """
 
 import csv
+import math
 import os
 import pathlib
 import sys
@@ -83,6 +84,37 @@ class PublicDecks(ProgramTest):
                 self.analyse(row["floquet"], "floquet", "case.yaml")
                 self.analyse("", "transient", "case.yaml", "--set", "transient.duration=10",
                              "--set", "transient.step=0.01")
+
+
+    def find(self, name):
+        row, deck = next((item for item in self.rows() if item[0]["deck"].endswith(name)),
+                         (None, None))
+        if deck is None:
+            self.skipTest(f"no {name} in the folder")
+        self.assertTrue(self.import_row(row, deck))
+
+    def multipliers(self):
+        """Sizes of the multipliers of `floquet`, by the names of the modes."""
+        with open(self.folder / "modes.csv", encoding="utf-8", newline="") as file:
+            return {row["label"]: math.hypot(float(row["multiplier_re"]),
+                                            float(row["multiplier_im"]))
+                    for row in csv.DictReader(file)}
+
+    def test_awt27_decays_as_openfast_has_it(self):
+        """Yaw, generator and shaft locked; OpenFAST's linearization with 100 blade nodes has the
+        sizes 0.77367, 0.77354, 0.58535 and 0.54859."""
+        self.find("AWT_YFix_WSt.fst")
+        self.succeed("floquet", "case.yaml", "--csv", "modes.csv", "-o", "result.h5",
+                     "--set", "shaft.torsion={joint: locked}")
+        found = self.multipliers()
+        for mode, size in (("tower lateral 1", 0.77367), ("tower fore-aft 1", 0.77354),
+                           ("teeter", 0.58535), ("blade flap symmetric 1", 0.54859)):
+            self.assertLess(abs(found[mode] / size - 1.0), 1e-3, mode)
+
+    def test_awt27_with_a_free_yaw_names_it(self):
+        self.find("AWT_YFree_WSt.fst")
+        self.succeed("floquet", "case.yaml", "--csv", "modes.csv", "-o", "result.h5")
+        self.assertTrue(any(mode.startswith("yaw") for mode in self.multipliers()))
 
 
 if __name__ == "__main__":

@@ -98,6 +98,7 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
   d.tower.order = 1 + choice.order % 3;
   d.tower.sections = {section(0.0, 4.0, tower, choice), section(1.0, 3.0, 0.7 * tower, choice)};
   if (choice.damped) d.tower.damping = damping;
+  if (choice.damped) d.tower.mass_damping = Vector3(0.1, 0.3, 0.2);
   d.tower.tip_mass = 0.8;
 
   d.nacelle.mass = 7.0;
@@ -128,6 +129,7 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
   d.blades.beam.sections = {section(0.0, 2.0, blade, choice),
                             section(1.0, 1.2, 0.6 * blade, choice)};
   if (choice.damped) d.blades.beam.damping = damping;
+  if (choice.damped) d.blades.beam.mass_damping = Vector3(0.2, 0.5, 0.4);
   d.blades.beam.tip_mass = choice.order == 2 ? 0.0 : 0.7;
   if (choice.prescribed) {
     d.nacelle.yaw.kind = d.hub.teeter.kind = model::JointKind::prescribed;

@@ -27,6 +27,8 @@ std::vector<model::TurbineDefinition> supported_turbines() {
     model::TurbineDefinition d = sample::turbine_definition(choice);
     d.tower.support = springs(3e3, 5e3);
     d.blades.beam.support = springs(4e3, 2e3);
+    d.tower.mass_damping = Vector3(0.1, 0.3, 0.2);
+    d.blades.beam.mass_damping = Vector3(0.4, 0.2, 0.3);
     if (choice.full) {  // a hinge, and an end that is held
       d.blades.beam.support.stiffness.row(4).setZero();
       d.blades.beam.support.stiffness.col(4).setZero();

@@ -53,6 +53,7 @@ void vary(model::BeamDefinition& beam, Draw& draw, bool can_hold_end) {
   for (int i = 0; i < 6; ++i)
     if (draw.one_in(5) || beam.sections.front().rigid[static_cast<std::size_t>(i)])
       beam.damping(i) = 0.0;
+  beam.mass_damping = Vector3(draw.some(0.1), draw.some(0.3), draw.some(0.2));
   beam.tip_mass = draw.some(0.7);
   if (draw.one_in(3))
     beam.point_masses = {{0.55, 0.6, Vector3(0.0, draw.some(0.1), 0.0), Vector3(0.1, 0.05, 0.08)}};

@@ -166,7 +166,9 @@ BOOST_AUTO_TEST_CASE(eigenvalues_of_constant_state_spaces_are_those_of_modes) {
   const std::vector<model::TurbineDefinition> cases{
       lee("rigid_tower", {"nacelle.yaw={joint: locked}"}).turbine,
       lee("baseline", {"shaft.speed=0", "blades.damping=1e-4", "tower.damping=2e-4"}).turbine,
-      lee("baseline", {"shaft.speed=0", "gravity=9.81", "blades.pitch_deg=10"}).turbine,
+      lee("baseline", {"shaft.speed=0", "gravity=9.81", "blades.pitch_deg=10",
+                       "blades.mass_damping=0.2", "tower.mass_damping=[0, 0.1, 0.3]"})
+          .turbine,
   };
   for (const model::TurbineDefinition& definition : cases) {
     const Linearized linear(definition);

@@ -24,6 +24,7 @@ struct BeamPoint {
   Matrix6 compliance = Matrix6::Zero();     ///< S^-1 of (4); zero rows and columns where rigid
   Matrix6 mass = Matrix6::Zero();           ///< I6 of (3)
   Vector6 damping = Vector6::Zero();        ///< mu [s]; zero where rigid
+  Matrix3 drag = Matrix3::Zero();           ///< C_ab diag(alpha m) C_ba [kg/(m s)]
 };
 
 /// The motion of the attachment frame and the gravity seen in it (components in a).

@@ -47,6 +47,7 @@ struct Beam {
   Matrix6 tip_mass = Matrix6::Zero();        ///< at the tip, as MassNode::mass
   std::vector<MassNode> mass_nodes;          ///< root to tip, without the tip
   bool has_support = false;                  ///< the first mass node is the root, on springs
+  bool has_drag = false;                     ///< damping in proportion to the mass
   elements::RootSupport support;
   elements::EndSupport end_support;
   std::vector<BeamLoad> loads;

@@ -61,6 +61,7 @@ struct BeamDefinition {
   int order = 1;                            ///< Gauss points an element, 1 to 6
   std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
   Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component
+  Vector3 mass_damping = Vector3::Zero();   ///< alpha [1/s] along b1, b2, b3 of the sections
   ModalDamping modal_damping{};             ///< from which mu was found, if it was
   double tip_mass = 0.0;                    ///< [kg], >= 0
   std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`

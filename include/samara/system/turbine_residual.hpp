@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "samara/base/error.hpp"
+#include "samara/elements/beam_drag.hpp"
 #include "samara/elements/beam_load.hpp"
 #include "samara/elements/beam_tip.hpp"
 #include "samara/elements/rigid_chain.hpp"
@@ -55,6 +56,10 @@ struct PlacedBeam {
   std::array<double, 2> node_weights(int a, int p) const;
   /// The mass node at end e of the elements, -1 where there is none.
   int mass_at(int e) const;
+
+  /// First row of the force and moment balance of the root: its own, or that of the mass between
+  /// the beam and the springs of its support.
+  int root_rows() const { return force_rows(0, 0); }
 };
 
 /// How a blade's axes a have turned about -b1 from those that C_Ha states.
@@ -177,6 +182,9 @@ class TurbineResidual {
   template <class T>
   void add_loads(const PlacedBeam& placed, double t, const std::vector<T>& z,
                  const TurbineInputs<T>& inputs, std::vector<T>& r) const;
+  template <class T>
+  static void add_drag(const PlacedBeam& placed, const std::vector<T>& z,
+                       const std::vector<T>& z_dot, std::vector<T>& r);
   template <class T>
   static void add_top_force(const PlacedBeam& tower, const Vec3<T>& force, std::vector<T>& r);
   template <class T>
@@ -301,6 +309,7 @@ void TurbineResidual::evaluate(double t, const std::vector<T>& z, const std::vec
     add_ends(placed, a, z, z_dot, r);
     add_changes(placed, z, r);
     add_loads(placed, t, z, inputs, r);
+    if (placed.beam->has_drag) add_drag(placed, z, z_dot, r);
     if (!placed.on_hub()) add_top_force(placed, inputs.top_force, r);
   }
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
@@ -458,6 +467,35 @@ Vec3<T> TurbineResidual::rotation_before(const PlacedBeam& placed, const Referen
     rotation += state.template segment<3>(3) * T(slope) + terms.turn * T(value);
   }
   return rotation;
+}
+
+/// Damping in proportion to the mass, on the sections, and its reaction on the root.
+template <class T>
+void TurbineResidual::add_drag(const PlacedBeam& placed, const std::vector<T>& z,
+                               const std::vector<T>& z_dot, std::vector<T>& r) {
+  using Rows = Eigen::Map<Vec3<T>>;
+  const model::Beam& beam = *placed.beam;
+  elements::RootMotion<T> root;
+  if (beam.has_support) {
+    const State<T> node = at(z, placed.masses.front());
+    const State<T> rate = at(z_dot, placed.masses.front());
+    root = {node.template segment<3>(0), node.template segment<3>(3), rate.template segment<3>(0),
+            rate.template segment<3>(3)};
+  }
+  Rows root_force(r.data() + placed.root_rows());
+  Rows root_moment(r.data() + placed.root_rows() + 3);
+  for (int p = 0; p < beam.point_count(); ++p) {
+    const elements::BeamPoint& point = beam.points[static_cast<std::size_t>(p)];
+    const int first = placed.points[static_cast<std::size_t>(p)];
+    const elements::DragTerms<T> drag = elements::beam_drag_terms<T>(
+        point.x, point.drag, at(z, first).template segment<3>(0),
+        at(z_dot, first).template segment<3>(0), beam.has_support ? &root : nullptr);
+    for (int node = 0; node <= beam.order; ++node)
+      Rows(r.data() + placed.force_rows(p, node)) -=
+          drag.force * T(placed.node_weights(node, p)[1]);
+    root_force += drag.force * T(beam.point_length(p));
+    root_moment += drag.moment * T(beam.point_length(p));
+  }
 }
 
 /// The prescribed loads: -f, -m of the force and moment balances.

@@ -1,0 +1,90 @@
+#include "solver_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+struct Prefix {
+  const char* name;
+  std::vector<std::string_view> objects;  ///< what follows the prefix
+  std::vector<std::string_view> commands;
+  const char* words;
+};
+
+const std::vector<Prefix>& prefixes() {
+  static const std::vector<Prefix> all{
+      {"transient_",
+       {"ts", "snes", "ksp", "pc", "mat"},
+       {"transient"},
+       "time integration: TS, and the SNES and KSP of a step"},
+      {"static_", {"ksp", "pc", "mat"}, {"static"}, "linear systems of the equilibrium at rest"},
+      {"modes_",
+       {"eps", "ksp", "pc", "mat"},
+       {"modes"},
+       "eigenproblem of constant coefficients, and its linear systems"},
+      {"floquet_",
+       {"eps", "ksp", "pc", "mat"},
+       {"floquet", "linearize"},
+       "eigenproblem of the monodromy matrix, and the linear system of a step"},
+      {"shooting_",
+       {"ksp", "pc", "mat"},
+       {"trim", "floquet", "modes", "linearize", "transient"},
+       "linear system of a step of the steady state by shooting (trim.method)"},
+      {"trim_",
+       {"snes", "ksp", "pc", "mat"},
+       {"trim", "floquet", "modes", "linearize", "transient"},
+       "steady state by harmonic balance: SNES and its KSP"}};
+  return all;
+}
+
+bool contains(const std::vector<std::string_view>& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string join(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const std::string_view word : words) text += (text.empty() ? "" : " ") + std::string(word);
+  return text;
+}
+
+}  // namespace
+
+std::string solver_options_text() {
+  Table table;
+  for (const char* title : {"prefix", "before", "command", "solver"})
+    table.add_column(title, "", Align::left);
+  for (const Prefix& prefix : prefixes())
+    table.add_row({std::string("-") + prefix.name, join(prefix.objects), join(prefix.commands),
+                   prefix.words});
+  return "Options of PETSc and SLEPc are those of the solver with its prefix before them, as in "
+         "-trim_snes_monitor:\n\n" +
+         table.text() +
+         "\nexamples\n"
+         "  samara trim CASE.yaml -trim_snes_monitor -trim_snes_max_it 80\n"
+         "  samara floquet CASE.yaml -floquet_eps_view -floquet_ksp_view\n"
+         "  samara transient CASE.yaml -transient_ts_monitor -transient_snes_rtol 1e-9\n"
+         "Without a prefix: -options_file FILE, -log_view, -options_left and others of PETSc itself.\n";
+}
+
+std::string prefixed_option(const std::string& option, const std::string& command) {
+  const std::string name = option.substr(option.find_first_not_of('-'));
+  const std::size_t end = name.find('_');
+  if (end == std::string::npos) return "";
+  const std::string_view object = std::string_view(name).substr(0, end);
+  std::string others;
+  for (const Prefix& prefix : prefixes()) {
+    if (!contains(prefix.objects, object)) continue;
+    const std::string whole = std::string("-") + prefix.name + name;
+    if (contains(prefix.commands, command)) return whole;
+    others += (others.empty() ? "" : ", ") + whole;
+  }
+  return others;
+}
+
+}  // namespace samara::drivers

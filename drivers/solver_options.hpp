@@ -1,0 +1,15 @@
+// The options of PETSc and SLEPc that the program's solvers take, by their prefixes.
+#pragma once
+
+#include <string>
+
+namespace samara::drivers {
+
+/// The table of `samara --help-options`.
+std::string solver_options_text();
+
+/// What to write instead of an option that nothing asked for, as a hint; empty where it is no option
+/// of a solver that lacks its prefix. `option`: with its dash.
+std::string prefixed_option(const std::string& option, const std::string& command);
+
+}  // namespace samara::drivers
