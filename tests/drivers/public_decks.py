@@ -9,6 +9,7 @@ import csv
 import math
 import os
 import pathlib
+import re
 import sys
 import unittest
 
@@ -110,6 +111,43 @@ class PublicDecks(ProgramTest):
         for mode, size in (("tower lateral 1", 0.77367), ("tower fore-aft 1", 0.77354),
                            ("teeter", 0.58535), ("blade flap symmetric 1", 0.54859)):
             self.assertLess(abs(found[mode] / size - 1.0), 1e-3, mode)
+
+    def frequencies(self, *arguments):
+        self.succeed("modes", *arguments, "--csv", "modes.csv", "-o", "result.h5")
+        with open(self.folder / "modes.csv", encoding="utf-8", newline="") as file:
+            return {row["label"]: float(row["frequency_hz"]) for row in csv.DictReader(file)}
+
+    def alone(self, block):
+        """Frequencies of the imported tower or blade, clamped and at rest, without anything on it."""
+        text = (self.folder / "case.yaml").read_text(encoding="utf-8")
+        start = text.index(f"\n{block}:")
+        text = text[start : text.index("\nnacelle:")] if block == "tower" else text[start:]
+        for key in ("tip_mass", "precone_deg", "pitch_deg"):
+            text = re.sub(rf"\n  {key}: .*", "", text)
+        text = re.sub(r"\n  count: .*", "\n  count: 1", text)
+        self.write("alone.yaml", "samara: 1\ngravity: 0\n" + text)
+        return self.frequencies("alone.yaml")
+
+    def assert_near(self, found, known, tolerance):
+        for label, value in known.items():
+            self.assertLess(abs(found[label] / value - 1.0), tolerance, label)
+
+    def test_frequencies_beside_those_of_others(self):
+        """The table of docs/verification.md, section I1."""
+        self.find("Ideal_Beam_Fixed_Free_Linear.fst")
+        found = self.frequencies("case.yaml")
+        self.assert_near(found, {"blade bending 1": 0.58410}, 2e-3)
+        self.assert_near(found, {"blade bending 3": 3.6605}, 1e-2)
+        self.find("5MW_Land_DLL_WTurb.fst")
+        found = self.frequencies("case.yaml", "--parked")
+        self.assert_near(found, {"tower fore-aft 1": 0.3195, "tower lateral 1": 0.3164}, 2e-2)
+        self.assert_near(found, {"shaft torsion": 0.6094}, 1e-2)
+        self.assert_near(found, {"blade lead-lag 1": 1.0740, "blade lead-lag 2": 1.0877}, 1.5e-2)
+        self.write("case.yaml", (SOURCE / "inputs/iea15mw/land.yaml").read_bytes())
+        self.assert_near(self.alone("tower"), {"tower bending 1": 0.7746}, 1.2e-2)
+        found = self.alone("blades")
+        self.assert_near(found, {"blade flap 1": 0.514}, 2e-2)
+        self.assert_near(found, {"blade lead-lag 1": 0.722}, 4.5e-2)
 
     def test_awt27_with_a_free_yaw_names_it(self):
         self.find("AWT_YFree_WSt.fst")
