@@ -88,9 +88,40 @@ std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
          (harmonics.empty() ? "" : "; " + harmonics);
 }
 
+/// Whether a mode decays as fast as this one grows, or grows as fast as it decays, in the same way.
+/// In a conservative system every growth has its decay, exponents lambda and -lambda*, but for the
+/// error of the mesh.
+bool has_partner(const ModeSet& set, const Mode& mode) {
+  constexpr double slack = 0.05;  // of the rate of growth
+  const double apart = std::max(slack * std::abs(mode.exponent.real()),
+                                analysis::zero_exponent * rate_scale(set.rotor_speed));
+  const double rate = mode.exponent.real();
+  return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& other) {
+    if (std::abs(other.exponent.real() + rate) > apart) return false;
+    // A row stands for its conjugate, too, and each has a multiple of the rotor speed of its own.
+    for (const double sign : {1.0, -1.0}) {
+      double distance = sign * other.exponent.imag() - mode.exponent.imag();
+      if (set.rotor_speed > 0.0) distance = std::remainder(distance, set.rotor_speed);
+      if (std::abs(distance) < apart) return true;
+    }
+    return false;
+  });
+}
+
+/// What a mode does. Where nothing damps, a growth or decay without its partner is an error: a
+/// small one of a mode that is undamped.
+Motion motion_in(const ModeSet& set, const Mode& mode) {
+  const Motion motion = motion_of(mode, set.rotor_speed);
+  const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
+  const bool is_small =
+      std::abs(mode.exponent.real()) <= marked_error * std::abs(mode.exponent.imag());
+  return set.conservative && has_rate && is_small && !has_partner(set, mode) ? Motion::undamped
+                                                                             : motion;
+}
+
 std::vector<std::string> row_of(const ModeSet& set, std::size_t m) {
   const Mode& mode = set.modes[m];
-  const Motion motion = motion_of(mode, set.rotor_speed);
+  const Motion motion = motion_in(set, mode);
   const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
   const bool is_known = has_rate || motion == Motion::rigid_body || !is_rough(mode);
   const double frequency = motion == Motion::rigid_body ? 0.0 : mode.exponent.imag();
@@ -131,25 +162,6 @@ std::string name_growing(std::vector<const Mode*> growing) {
   return text;
 }
 
-/// Whether a mode decays as fast as this one grows, in the same way. In a conservative system every
-/// growth has its decay, exponents lambda and -lambda*, but for the error of the mesh.
-bool has_partner(const ModeSet& set, const Mode& growing) {
-  constexpr double slack = 0.05;  // of the rate of growth
-  const double apart = std::max(slack * growing.exponent.real(),
-                                analysis::zero_exponent * rate_scale(set.rotor_speed));
-  const double rate = growing.exponent.real();
-  return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& other) {
-    if (std::abs(other.exponent.real() + rate) > apart) return false;
-    // A row stands for its conjugate, too, and each has a multiple of the rotor speed of its own.
-    for (const double sign : {1.0, -1.0}) {
-      double distance = sign * other.exponent.imag() - growing.exponent.imag();
-      if (set.rotor_speed > 0.0) distance = std::remainder(distance, set.rotor_speed);
-      if (std::abs(distance) < apart) return true;
-    }
-    return false;
-  });
-}
-
 struct Tally {
   std::vector<const Mode*> growing;
   std::vector<const Mode*> growing_alone;  ///< what the mesh makes of a conservative system
@@ -163,7 +175,7 @@ struct Tally {
 Tally tally(const ModeSet& set) {
   Tally result;
   for (const Mode& mode : set.modes) {
-    const Motion motion = motion_of(mode, set.rotor_speed);
+    const Motion motion = motion_in(set, mode);
     if (!mode.resolved)
       ++result.unresolved;
     else if (motion == Motion::rigid_body)
