@@ -278,9 +278,11 @@ double row_error(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected,
   return worst;
 }
 
+/// Without damping in proportion to the mass, which mass_damping_test.cpp sums.
 system::TurbineSystem build(const sample::Choice& choice) {
-  return system::TurbineSystem(model::build_turbine(sample::turbine_definition(choice)),
-                               PETSC_COMM_SELF);
+  model::TurbineDefinition definition = sample::turbine_definition(choice);
+  definition.tower.mass_damping = definition.blades.beam.mass_damping = Vector3::Zero();
+  return system::TurbineSystem(model::build_turbine(definition), PETSC_COMM_SELF);
 }
 
 /// Entry i of P z is sign[i] z[source[i]]; the rows are renamed in the same way.
@@ -318,10 +320,7 @@ BOOST_AUTO_TEST_SUITE(turbine_residual)
 
 BOOST_AUTO_TEST_CASE(residual_is_the_sum_over_points_nodes_and_bodies) {
   for (const sample::Choice& choice : sample::choices()) {
-    model::TurbineDefinition definition = sample::turbine_definition(choice);
-    // What this adds is summed in mass_damping_test.cpp.
-    definition.tower.mass_damping = definition.blades.beam.mass_damping = Vector3::Zero();
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const system::TurbineSystem system = build(choice);
     for (unsigned seed = 1; seed <= 2; ++seed) {
       const sample::RandomState state = sample::random_state(system, seed);
       const double t = 0.2 + seed;
