@@ -118,6 +118,7 @@ class Parser {
 
   decks::ImportOptions& take_import(const std::string& name) {
     if (line_.import_option.empty()) line_.import_option = name;
+    if (name != "--tower-only") line_.windio_option = name;
     return line_.import;
   }
 
@@ -149,13 +150,13 @@ class Parser {
         throw InputError(name + " needs " + expected + ", got " + quote(words));
       numbers.push_back(number);
     }
-    if (numbers.size() != quantity.count)
+    if (numbers.size() != quantity.count || words.ends_with(','))
       throw InputError(name + " needs " + expected + ", got " + quote(words));
   }
 
   static std::string unknown_option_words(const std::string& name) {
-    std::vector<std::string> known{"--set",    "--csv",     "--all",       "--first",
-                                   "--parked", "--restart", "--mu-order",  "--report",
+    std::vector<std::string> known{"--set",    "--csv",     "--all",        "--first",
+                                   "--parked", "--restart", "--mu-order",   "--report",
                                    "--help",   "--version", "--tower-only", "--help-options"};
     for (const decks::StatedQuantity& quantity : decks::stated_quantities())
       known.push_back(std::string("--") + quantity.option);
@@ -305,9 +306,8 @@ class Parser {
                        " has no use for it; hint: it serves the commands that read the case");
     if (!line_.petsc_options.empty())
       throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
-    if (line_.format != "windio" && !line_.import_option.empty() &&
-        line_.import_option != "--tower-only")
-      throw InputError(line_.import_option + ": the decks of " + line_.format +
+    if (line_.format != "windio" && !line_.windio_option.empty())
+      throw InputError(line_.windio_option + ": the decks of " + line_.format +
                        " state it; it serves windio");
     if (line_.result_path.empty() && !line_.report)
       throw InputError(

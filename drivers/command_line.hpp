@@ -41,6 +41,7 @@ struct CommandLine {
   std::vector<std::string> more_results;
   decks::ImportOptions import;
   std::string import_option;  ///< the first that is given of the above; empty: none
+  std::string windio_option;  ///< the last of these that only windIO has; empty: none
   bool report = false;        ///< is wanted, if need be without a case
   bool all_modes = false;
   int first_modes = 0;  ///< rows of a table of modes; 0: all

@@ -69,7 +69,8 @@ std::string solver_options_text() {
          "  samara trim CASE.yaml -trim_snes_monitor -trim_snes_max_it 80\n"
          "  samara floquet CASE.yaml -floquet_eps_view -floquet_ksp_view\n"
          "  samara transient CASE.yaml -transient_ts_monitor -transient_snes_rtol 1e-9\n"
-         "Without a prefix: -options_file FILE, -log_view, -options_left and others of PETSc itself.\n";
+         "Without a prefix: -options_file FILE, -log_view, -options_left and others of PETSc "
+         "itself.\n";
 }
 
 std::string prefixed_option(const std::string& option, const std::string& command) {
@@ -77,14 +78,10 @@ std::string prefixed_option(const std::string& option, const std::string& comman
   const std::size_t end = name.find('_');
   if (end == std::string::npos) return "";
   const std::string_view object = std::string_view(name).substr(0, end);
-  std::string others;
-  for (const Prefix& prefix : prefixes()) {
-    if (!contains(prefix.objects, object)) continue;
-    const std::string whole = std::string("-") + prefix.name + name;
-    if (contains(prefix.commands, command)) return whole;
-    others += (others.empty() ? "" : ", ") + whole;
-  }
-  return others;
+  for (const Prefix& prefix : prefixes())
+    if (contains(prefix.objects, object) && contains(prefix.commands, command))
+      return std::string("-") + prefix.name + name;
+  return "";
 }
 
 }  // namespace samara::drivers

@@ -16,6 +16,9 @@ namespace {
 
 constexpr int most_degree = 6;
 
+/// Of the length through the key points.
+constexpr double longest_line = 1.5;
+
 /// A line is straight where it stays this close to its axis, of its length.
 constexpr double straight_tolerance = 1e-9;
 
@@ -120,6 +123,11 @@ BeamdynLine::BeamdynLine(const std::vector<KeyPoint>& points, const std::vector<
     members_.push_back(std::move(member));
     start += static_cast<std::size_t>(count) - 1;
   }
+  double chords = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    chords += (points[i].position - points[i - 1].position).norm();
+  swings_out_ = !(length_ <= longest_line * chords);
+  if (swings_out_) return;
   for (Member& member : members_) member.station = member.arc / length_;
   is_straight_ = across <= straight_tolerance * members_.back().last(2);
   if (is_straight_) {  // exactly

@@ -25,6 +25,9 @@ class BeamdynLine {
 
   bool is_straight() const { return is_straight_; }
   double length() const { return length_; }  ///< of the arc [m]
+  /// The line is far longer than the way through the key points: there is no blade of this shape,
+  /// and nothing else but the length is known.
+  bool swings_out() const { return swings_out_; }
 
   /// Points of a natural spline that follows the line, in b1 b2 b3 of the root; two for a straight
   /// one.
@@ -68,6 +71,7 @@ class BeamdynLine {
   std::optional<model::ReferenceLine> case_line_;  ///< of a line that is not straight
   double length_ = 0.0;
   bool is_straight_ = false;
+  bool swings_out_ = false;
 };
 
 }  // namespace samara::decks

@@ -15,6 +15,8 @@ namespace {
 /// Of places along the blade, and of the root's coordinates by its length.
 constexpr double same_place = 1e-9;
 
+constexpr double most_twist = 180.0;  // deg
+
 constexpr int most_rows = 100000;
 constexpr int most_order = 100;
 
@@ -47,6 +49,13 @@ class Reader {
     if (!body || !import_.errors.empty()) return false;
 
     const BeamdynLine line(points, members, order);
+    if (line.swings_out()) {
+      import_.errors.add(deck.place_of("kp_total"),
+                         "kp_zr: the polynomials over z through the key points swing out to a "
+                         "length of " +
+                             rounded(line.length()) + " m; hint: z must rise evenly");
+      return false;
+    }
     beam.length = line.length();
     if (!line.is_straight()) beam.reference_line = line.points();
     import_.note("blades.length", "the last key point");
@@ -74,6 +83,11 @@ class Reader {
       points.push_back(
           {{table.columns[0][i], table.columns[1][i], table.columns[2][i]}, table.columns[3][i]});
     if (points.empty()) return points;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (std::abs(points[i].twist_deg) > most_twist)
+        import_.errors.add(deck.place(table.lines[i]),
+                           "initial_twist: expected an angle between -180 and 180 degrees, got " +
+                               rounded(points[i].twist_deg));
     for (std::size_t i = 1; i < points.size(); ++i)
       if (!(points[i].position(2) > points[i - 1].position(2)))
         import_.errors.add(deck.place(table.lines[i]),
@@ -97,7 +111,14 @@ class Reader {
     const int count = deck.integer("member_total", 1, most_rows);
     import_.say(deck, "member_total", Fate::derived,
                 count == 1 ? "one polynomial" : "one polynomial for each member");
-    if (count == 1) return {points};
+    if (count == 1) {
+      const std::vector<std::vector<double>> row = deck.rows_behind("kp_total", 1);
+      if (!row.empty() && row[0].size() == 2 && row[0][0] == 1.0 && row[0][1] != points)
+        import_.errors.add(deck.place_of("kp_total"), "kp_total: " + std::to_string(points) +
+                                                          ", the member behind it has " +
+                                                          rounded(row[0][1]) + " key points");
+      return {points};
+    }
     std::vector<int> members;
     int sum = 1;
     for (const std::vector<double>& row : deck.rows_behind("kp_total", count)) {

@@ -124,7 +124,9 @@ DampingPair fit_pair(const std::vector<AssumedMode>& modes) {
     ratios(i) = mode.ratio;
   }
   if (modes.size() == 2) {
-    const Eigen::Vector2d both = by_constant.fullPivLu().solve(ratios);
+    const Eigen::Vector2d scale = by_constant.colwise().norm().cwiseInverse();
+    const Eigen::Vector2d both =
+        scale.asDiagonal() * (by_constant * scale.asDiagonal()).fullPivLu().solve(ratios);
     if (both.allFinite() && both.minCoeff() >= 0.0 &&
         (by_constant * both - ratios).norm() <= met_ratio * (1.0 + ratios.norm()))
       return {both(0), both(1)};
@@ -155,6 +157,8 @@ DampingPair fit_damping(OpenfastImport& import, Deck& deck, const BeamWords& wor
     import.require(ratio >= 0.0, deck, key, "expected a number >= 0");
     const bool has_tuner = mode < direction.tuners.size();
     const double tuner = has_tuner ? deck.number(direction.tuners[mode]) : 1.0;
+    if (has_tuner)
+      import.require(tuner > 0.0, deck, direction.tuners[mode], "expected a number > 0");
     if (mode == 0) first_tuner = tuner;
     if (!import.errors.empty()) continue;
     AssumedMode found = assumed_mode(coefficients, mass, stiffness, twist, length);
@@ -308,6 +312,7 @@ void read_beam(OpenfastImport& import, Deck& deck, const BeamWords& words, Draft
   for (std::size_t k = 0; k < 2 && import.errors.empty(); ++k) {
     const DampingPair pair = fit_damping(import, deck, words, words.directions[k], mass,
                                          stiffness[k], twist, beam.length);
+    if (!words.directions[k].bends) continue;  // nothing to damp
     beam.damping(static_cast<Eigen::Index>(4 + k)) = pair.mu;
     beam.mass_damping(static_cast<Eigen::Index>(2 - k)) = pair.alpha;  // bending 2 moves along b3
   }

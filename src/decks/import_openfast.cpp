@@ -192,7 +192,7 @@ class Importer {
       return;
     }
     CaseDraft& draft = import_.draft;
-    if (main_.number_or("CompServo", 0.0) == 0.0) {
+    if (main_.number("CompServo") == 0.0) {
       draft.yaw_free = true;
       import_.say(deck, "YawDOF", Fate::taken,
                   "nacelle.yaw: free, without spring and damper, for ServoDyn is off");

@@ -82,6 +82,10 @@ class Importer {
       errors_.add(path_, "missing keys \"components.blade\" and \"components.tower\"");
     } else {
       warn(path_, "note: no components.blade: the case is the tower alone, without anything on it");
+      for (const auto& [key, numbers] : options_.stated)
+        errors_.add(path_, key +
+                               ": the deck has no blade, the case is a tower without anything on "
+                               "it; hint: leave out what the command line states");
     }
     if (draft_.has_rotor || find("components.tower") != nullptr) read_tower();
     if (draft_.has_rotor) read_blade();
@@ -378,7 +382,10 @@ class Importer {
                                       "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
       const double diameter = number({"assembly.rotor_diameter"}, Fate::derived,
                                      "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
-      if (diameter > 0.0) draft_.speed_rpm = 60.0 * tip_speed / (std::numbers::pi * diameter);
+      if (diameter > 0.0)
+        draft_.speed_rpm = 60.0 * tip_speed / (std::numbers::pi * diameter);
+      else
+        refuse("assembly.rotor_diameter", "expected a number > 0");
       note("shaft.speed_rpm", "from the greatest tip speed, control.supervisory.maxTS");
     } else if (!is_stated("shaft.speed_rpm")) {
       missing("the rated rotor speed", "shaft.speed_rpm");
@@ -458,53 +465,70 @@ class Importer {
     return point;
   }
 
-  void read_nacelle_body(const std::string& block) {
-    draft_.nacelle_mass =
-        number({block + ".mass", block + ".system_mass"}, Fate::taken, "nacelle.mass");
-    note("nacelle.mass", "without the yaw bearing");
-    const std::string location = choose({block + ".location", block + ".system_center_mass"});
-    if (location.empty() && !is_stated("nacelle.center_of_mass"))
-      missing("the centre of mass of the nacelle", "nacelle.center_of_mass");
-    const Vector3 center =
-        point_of(location, "nacelle.center_of_mass = [-y, x, z] (y is to the left)");
-    draft_.nacelle_center = {-center(1), center(0), center(2)};
-    if (!location.empty()) note("nacelle.center_of_mass", "-y, x, z of windIO");
-
-    const std::string own = choose({block + ".inertia", block + ".system_inertia"});
-    const std::string about_top = choose({block + ".inertia_tt", block + ".system_inertia_tt"});
-    Vector3 inertia = Vector3::Zero();
-    if (!own.empty()) {
-      inertia = inertia_of(own, "nacelle.inertia = [Iyy, Ixx, Izz], about its own centre");
-      say(about_top, Fate::ignored, "the same body about the tower top");
-      note("nacelle.inertia", "Iyy, Ixx, Izz, about its own centre");
-    } else if (!about_top.empty()) {
-      inertia = inertia_of(about_top,
-                           "nacelle.inertia, moved from the tower top to its own centre, about "
-                           "which it is not in the deck");
-      inertia -= draft_.nacelle_mass *
-                 (Vector3::Constant(center.squaredNorm()) - center.cwiseProduct(center));
-      if (inertia.minCoeff() < 0.0)
-        refuse(about_top, "less than the mass times its squared distance, which no body has");
-      note("nacelle.inertia", "Iyy, Ixx, Izz, moved from the tower top to its own centre");
-    } else if (!is_stated("nacelle.inertia")) {
-      missing("the inertia of the nacelle", "nacelle.inertia");
-    }
-    draft_.nacelle_inertia = {inertia(1), inertia(0), inertia(2)};
-  }
-
-  void read_nacelle() {
-    const Paths blocks = {"components.drivetrain.elastic_properties",
-                          "components.drivetrain.elastic_properties_mb",
-                          "components.nacelle.elastic_properties_mb"};
-    const std::string block = choose(blocks);
-    if (!block.empty())
-      read_nacelle_body(block);
+  /// Mass, centre and inertia of the nacelle, each from the deck or from the command line.
+  void read_nacelle_body() {
+    const std::string block = choose({"components.drivetrain.elastic_properties",
+                                      "components.drivetrain.elastic_properties_mb",
+                                      "components.nacelle.elastic_properties_mb"});
+    const auto find_of = [&](const char* key, const char* other) {
+      return block.empty() ? std::string() : choose({block + key, block + other});
+    };
+    const std::string mass = find_of(".mass", ".system_mass");
+    if (!mass.empty()) draft_.nacelle_mass = number({mass}, Fate::taken, "nacelle.mass");
+    if (!mass.empty())
+      note("nacelle.mass", "without the yaw bearing");
     else if (!is_stated("nacelle.mass"))
       missing("the mass of the nacelle (components.drivetrain.elastic_properties)", "nacelle.mass");
     apply_stated("nacelle.mass", draft_.nacelle_mass);
+    if (draft_.nacelle_mass < 0.0)
+      errors_.add(path_,
+                  "nacelle.mass: expected a number >= 0, got " + rounded(draft_.nacelle_mass));
+
+    const std::string location = find_of(".location", ".system_center_mass");
+    const bool has_body = !mass.empty() || is_stated("nacelle.mass");
+    const Vector3 center =
+        point_of(location, "nacelle.center_of_mass = [-y, x, z] (y is to the left)");
+    draft_.nacelle_center = {-center(1), center(0), center(2)};
+    if (!location.empty())
+      note("nacelle.center_of_mass", "-y, x, z of windIO");
+    else if (has_body && !is_stated("nacelle.center_of_mass"))
+      missing("the centre of mass of the nacelle", "nacelle.center_of_mass");
     apply_stated("nacelle.center_of_mass", draft_.nacelle_center);
+
+    const std::string own = find_of(".inertia", ".system_inertia");
+    const std::string about_top = find_of(".inertia_tt", ".system_inertia_tt");
+    if (!own.empty()) {
+      const Vector3 inertia =
+          inertia_of(own, "nacelle.inertia = [Iyy, Ixx, Izz], about its own centre");
+      draft_.nacelle_inertia = {inertia(1), inertia(0), inertia(2)};
+      say(about_top, Fate::ignored, "the same body about the tower top");
+      note("nacelle.inertia", "Iyy, Ixx, Izz, about its own centre");
+    } else if (!about_top.empty() && !is_stated("nacelle.inertia")) {
+      const Vector3 inertia =
+          inertia_of(about_top,
+                     "nacelle.inertia, moved from the tower top to its own centre, about which it "
+                     "is not in the deck");
+      const Vector3& arm = draft_.nacelle_center;
+      draft_.nacelle_inertia =
+          Vector3(inertia(1), inertia(0), inertia(2)) -
+          draft_.nacelle_mass * (Vector3::Constant(arm.squaredNorm()) - arm.cwiseProduct(arm));
+      if (draft_.nacelle_inertia.minCoeff() < 0.0)
+        refuse(about_top, "less than the mass times its squared distance, which no body has");
+      note("nacelle.inertia", "Iyy, Ixx, Izz, moved from the tower top to its own centre");
+    } else if (has_body && !is_stated("nacelle.inertia")) {
+      missing("the inertia of the nacelle", "nacelle.inertia");
+    }
     apply_stated("nacelle.inertia", draft_.nacelle_inertia);
-    if (draft_.nacelle_mass < 0.0) refuse(block, "expected a mass >= 0");
+    require_inertia("nacelle.inertia", draft_.nacelle_inertia);
+  }
+
+  void require_inertia(const std::string& key, const Vector3& inertia) {
+    if (is_stated(key) && inertia.minCoeff() < 0.0)
+      errors_.add(path_, key + ": expected moments of inertia >= 0");
+  }
+
+  void read_nacelle() {
+    read_nacelle_body();
     note("nacelle.yaw", "the yaw drive is not in the deck");
     const std::string yaw = choose({"components.yaw.elastic_properties.mass",
                                     "components.nacelle.elastic_properties_mb.yaw_mass"});
@@ -552,45 +576,55 @@ class Importer {
     draft_.hub_radius =
         0.5 * number({"components.hub.diameter"}, Fate::derived, "hub.radius, half of it");
     note("hub.radius", "half of hub.diameter");
+    read_hub_body();
+  }
+
+  /// Mass, centre and inertia of the hub, each from the deck or from the command line.
+  void read_hub_body() {
     const std::string block =
         choose({"components.hub.elastic_properties", "components.hub.elastic_properties_mb"});
-    if (!block.empty())
-      read_hub_body(block);
+    const auto find_of = [&](const char* key, const char* other) {
+      return block.empty() ? std::string() : choose({block + key, block + other});
+    };
+    const std::string mass = find_of(".mass", ".system_mass");
+    if (!mass.empty())
+      draft_.hub_mass = number({mass}, Fate::taken, "hub.mass");
     else if (!is_stated("hub.mass"))
       missing("the mass of the hub (components.hub.elastic_properties)", "hub.mass");
     apply_stated("hub.mass", draft_.hub_mass);
-    apply_stated("hub.center_of_mass", draft_.hub_center);
-    apply_stated("hub.inertia", draft_.hub_inertia);
-    if (draft_.hub_mass < 0.0) refuse(block, "expected a mass >= 0");
-  }
+    if (draft_.hub_mass < 0.0)
+      errors_.add(path_, "hub.mass: expected a number >= 0, got " + rounded(draft_.hub_mass));
 
-  void read_hub_body(const std::string& block) {
-    draft_.hub_mass = number({block + ".mass", block + ".system_mass"}, Fate::taken, "hub.mass");
-    const std::string location = choose({block + ".location", block + ".system_center_mass"});
-    if (location.empty() && !is_stated("hub.center_of_mass"))
-      missing("the hub's centre of mass", "hub.center_of_mass");
+    const bool has_body = !mass.empty() || is_stated("hub.mass");
+    const std::string location = find_of(".location", ".system_center_mass");
     const Vector3 center =
         point_of(location, "hub.center_of_mass (x from the apex toward the nacelle)");
-    const std::string path = choose({block + ".inertia", block + ".system_inertia"});
-    if (path.empty()) {
-      draft_.hub_center = is_upwind_ ? center(0) : -center(0);
-      if (!is_stated("hub.inertia")) missing("the inertia of the hub", "hub.inertia");
-      return;
-    }
-    const Vector3 inertia =
-        inertia_of(path,
-                   "hub.inertia = [Iyy, Ixx, Izz] - mass x^2 across the shaft: from the apex to "
-                   "its own centre");
     if (center(1) != 0.0 || center(2) != 0.0)
-      refuse(block, "the centre of mass is off the shaft, which a case cannot state");
+      refuse(location, "the centre of mass is off the shaft, which a case cannot state");
     draft_.hub_center = is_upwind_ ? center(0) : -center(0);
-    const double shift = draft_.hub_mass * center(0) * center(0);
-    draft_.hub_inertia = {inertia(1) - shift, inertia(0), inertia(2) - shift};
-    if (inertia(1) < shift || inertia(2) < shift)
-      refuse(block, "the inertia across the shaft is less than mass x^2 = " + rounded(shift) +
-                        ", which no body has");
-    if (!location.empty()) note("hub.center_of_mass", "from the apex");
-    note("hub.inertia", "Iyy, Ixx, Izz, moved from the apex to its own centre");
+    if (!location.empty())
+      note("hub.center_of_mass", "from the apex");
+    else if (has_body && !is_stated("hub.center_of_mass"))
+      missing("the hub's centre of mass", "hub.center_of_mass");
+    apply_stated("hub.center_of_mass", draft_.hub_center);
+
+    const std::string path = find_of(".inertia", ".system_inertia");
+    if (!path.empty() && !is_stated("hub.inertia")) {
+      const Vector3 inertia =
+          inertia_of(path,
+                     "hub.inertia = [Iyy, Ixx, Izz] - mass x^2 across the shaft: from the apex to "
+                     "its own centre");
+      const double shift = draft_.hub_mass * draft_.hub_center * draft_.hub_center;
+      draft_.hub_inertia = {inertia(1) - shift, inertia(0), inertia(2) - shift};
+      if (inertia(1) < shift || inertia(2) < shift)
+        refuse(path, "the inertia across the shaft is less than mass x^2 = " + rounded(shift) +
+                         ", which no body has");
+      note("hub.inertia", "Iyy, Ixx, Izz, moved from the apex to its own centre");
+    } else if (path.empty() && has_body && !is_stated("hub.inertia")) {
+      missing("the inertia of the hub", "hub.inertia");
+    }
+    apply_stated("hub.inertia", draft_.hub_inertia);
+    require_inertia("hub.inertia", draft_.hub_inertia);
   }
 
   // ---- beams
@@ -637,6 +671,26 @@ class Importer {
     beam.length = model::compute_arc_length(line);
   }
 
+  /// Whether the deck's matrices have a shear stiffness.
+  bool states_shear(const std::string& elastic) const {
+    const auto is_positive = [](const io::YamlNode& value) {
+      return parse_number(value).value_or(0.0) > 0.0;
+    };
+    for (const char* key : {".stiffness_matrix.K11", ".stiffness_matrix.K22"})
+      if (const io::YamlNode* values = find(elastic + key);
+          values != nullptr &&
+          std::any_of(values->children.begin(), values->children.end(), is_positive))
+        return true;
+    const std::string rows =
+        choose({elastic + ".stiffness_matrix.values", elastic + ".stiff_matrix.values",
+                elastic + ".six_x_six.stiff_matrix.values"});
+    if (rows.empty()) return false;
+    const io::YamlNode& list = *find(rows);  // K11 is the first of each row
+    return std::any_of(list.children.begin(), list.children.end(), [&](const io::YamlNode& row) {
+      return !row.children.empty() && is_positive(row.children.front());
+    });
+  }
+
   /// `shear_is_rigid`: the deck's matrices have no shear stiffness.
   void read_damping(const std::string& path, DraftBeam& beam, const std::string& key,
                     bool shear_is_rigid) {
@@ -654,25 +708,26 @@ class Importer {
       return;
     }
     Vector6 coefficients = Eigen::Map<const Vector6>(mu.data());
-    const bool has_pattern = coefficients.head<3>().minCoeff() > 0.0 &&
-                             coefficients.tail<3>().isZero(0.0) && shear_is_rigid;
-    const bool is_hawc2 = options_.mu_order == MuOrder::hawc2 ||
+    // HAWC2's x is chordwise on a blade and lateral on a tower: windIO's y.
+    const bool may_be_hawc2 =
+        !coefficients.head<3>().isZero(0.0) && coefficients.tail<3>().isZero(0.0);
+    const bool has_pattern =
+        may_be_hawc2 && coefficients.head<3>().minCoeff() > 0.0 && shear_is_rigid;
+    const bool is_hawc2 = (options_.mu_order == MuOrder::hawc2 && may_be_hawc2) ||
                           (options_.mu_order == MuOrder::automatic && has_pattern);
-    if (is_hawc2 && !coefficients.tail<3>().isZero(0.0)) {
-      refuse(path, "--mu-order hawc2: the last three numbers must be 0");
-      return;
-    }
     if (is_hawc2) {
-      coefficients.tail<3>() = coefficients.head<3>().eval();
-      coefficients.head<3>().setZero();
+      const Vector3 k = coefficients.head<3>();
+      coefficients << 0.0, 0.0, 0.0, k(1), k(0), k(2);
       warn(place(*node), path +
-                             ": note: read as HAWC2's Kx, Ky, Kz (bending about x and y, "
-                             "torsion)" +
+                             ": note: read as HAWC2's Kx, Ky, Kz (flap or fore-aft, edge or "
+                             "side-side, torsion)" +
                              (options_.mu_order == MuOrder::automatic
                                   ? ", for the last three are 0 and the deck states no shear "
                                     "stiffness; hint: --mu-order beamdyn takes them as they stand"
                                   : ""));
-    } else if (has_pattern) {
+    } else if (options_.mu_order == MuOrder::hawc2 && !coefficients.isZero(0.0)) {
+      warn(place(*node), path + ": note: the last three are not 0: read in BeamDyn's order");
+    } else if (may_be_hawc2) {
       warn(place(*node), path + ": note: damps extension and shear alone, which hardly move");
     }
     beam.damping = turn_damping(coefficients);
@@ -759,8 +814,7 @@ class Importer {
         choose({structure + ".elastic_properties", "components.tower.elastic_properties",
                 "components.tower.elastic_properties_mb"});
     read_damping(elastic.empty() ? "" : choose({elastic + ".structural_damping"}), draft_.tower,
-                 "tower.damping",
-                 elastic.empty() || find(elastic + ".stiffness_matrix.K11") == nullptr);
+                 "tower.damping", elastic.empty() || !states_shear(elastic));
     if (!elastic.empty()) compare_tower(elastic);
     set_mesh(draft_.tower, tower_mesh);
     note("tower.elements", "chosen by the importer");

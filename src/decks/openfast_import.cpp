@@ -63,6 +63,12 @@ void OpenfastImport::require(bool holds, Deck& deck, const std::string& key,
 }
 
 void OpenfastImport::report_unused(Deck& deck) {
+  for (const Deck::FoundByPlace& found : deck.found_by_place()) {
+    const std::string name = found.entry->key.empty() ? "a line without a name" : found.entry->key;
+    const std::string words = "read as " + found.key + ", by its place between its neighbours";
+    report.push_back({deck.place(found.entry->line), name, Fate::derived, words});
+    warn(deck.place(found.entry->line), name + ": note: " + words);
+  }
   for (const DeckEntry& entry : deck.entries())
     if (!entry.used && !entry.is_free_text)
       report.push_back({deck.place(entry.line), entry.key, Fate::ignored, reason(entry.key)});

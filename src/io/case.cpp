@@ -309,6 +309,21 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   map.finish();
 }
 
+/// A tower may stand alone: nothing turns about a shaft then.
+void refuse_rotor(MapReader& map, model::TurbineDefinition& turbine) {
+  turbine.blades.count = 0;
+  for (const char* key : {"shaft", "hub"})
+    if (const YamlNode* node = map.find(key))
+      map.refuse(*node, key, "there are no blades; hint: what stands on the tower is the nacelle");
+  const model::NacelleDefinition& nacelle = turbine.nacelle;
+  const double about_yaw =
+      nacelle.inertia(2) + nacelle.mass * nacelle.center_of_mass.head<2>().squaredNorm();
+  if (nacelle.yaw.kind == model::JointKind::free && !(about_yaw > 0.0))
+    map.refuse(*map.find("nacelle"), "nacelle.yaw",
+               "free, but without blades nothing has inertia about the yaw axis; hint: "
+               "nacelle.inertia, or joint: locked");
+}
+
 /// Reads `tower`, `blades` or `blade 2`.
 void read_loaded_beam(MapReader& map, const model::TurbineDefinition& turbine,
                       model::LoadDefinition& load) {
@@ -317,6 +332,10 @@ void read_loaded_beam(MapReader& map, const model::TurbineDefinition& turbine,
   const std::string& text = entry->text;
   load.on_tower = text == "tower";
   if (load.on_tower && !turbine.has_tower) map.refuse(*entry, "beam", "there is no tower");
+  if (!load.on_tower && turbine.blades.count == 0) {
+    map.refuse(*entry, "beam", "there are no blades, only a tower; " + describe(*entry));
+    return;
+  }
   if (load.on_tower || text == "blades") return;
   for (int k = 1; k <= turbine.blades.count; ++k)
     if (text == "blade " + std::to_string(k)) load.blade = k;
@@ -473,7 +492,7 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = turbine.has_tower ? map.find("blades") : map.require("blades"))
     read_blades(*node, turbine.blades, errors);
   else
-    turbine.blades.count = 0;
+    refuse_rotor(map, turbine);
   if (const YamlNode* node = map.find("loads")) read_loads(map, *node, turbine);
   if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);

@@ -109,7 +109,9 @@ class Irregular(ProgramTest):
                   ("BldFlDmp(2) - ", "BldFlDmp(2)   "), ("AdjBlMs     -", "           -"))
         self.assertEqual(self.case()[0], expected)
         self.edit("Tower.dat", ("AdjTwMa     -", "heavier     -"), ("AdjSSSt", "     "))
-        self.assertEqual(self.case()[0], expected)
+        case, said = self.case()
+        self.assertEqual(case, expected)
+        self.assertIn("heavier: note: read as adjtwma", said)
 
     def test_older_name_of_the_damping_switch(self):
         self.copy()
@@ -228,6 +230,38 @@ class Turbines(ProgramTest):
         for words in ("mass: 12345 ", "center_of_mass: [-1, 2, 3]", "inertia: [1, 2, 3]",
                       "of the command line"):
             self.assertIn(words, text)
+        self.refuse("import", "windio", "deck.yaml", "-o", "c.yaml", "--tower-only", "--hub-mass",
+                    "-5", words="hub.mass: expected a number >= 0")
+        self.refuse("import", "openfast", THREE, "-o", "c.yaml", "--tower-only", "--hub-mass", "5",
+                    words="--hub-mass")
+
+    def test_each_quantity_that_a_deck_lacks_is_said(self):
+        text = SECOND.read_text(encoding="utf-8")
+        for block in ("drivetrain", "hub"):
+            start = text.index(f"\n  {block}:")
+            first = text.index("\n    elastic_properties:", start)
+            last = re.compile(r"\n {2,4}\S").search(text, first + 5).start()
+            text = text[:first] + text[last:]
+        self.write("deck.yaml", text)
+        _, said = self.case("--nacelle-mass", "5e5", "--hub-mass", "5e4")
+        for option in ("--nacelle-center", "--nacelle-inertia", "--hub-center", "--hub-inertia"):
+            self.assertIn(f"{option} states it", said)
+
+    def test_inertia_about_the_tower_top_is_moved_by_what_is_stated(self):
+        text = SECOND.read_text(encoding="utf-8")
+        start = text.index("\n    elastic_properties:", text.index("\n  drivetrain:"))
+        end = text.index("\n  ", text.index("inertia_tt", start))
+        block = text[start:end]
+        kept = "\n".join(line for line in block.split("\n")
+                         if not re.match(r"\s*(inertia|location):", line))
+        self.write("deck.yaml", text[:start] + kept + text[end:])
+        case, _ = self.case("--nacelle-mass", "100", "--nacelle-center", "0,3,4")
+        about_top = [float(word) for word in
+                     re.search(r"inertia_tt: \[(.*?)\]", block).group(1).split(",")][:3]
+        found = re.search(r"nacelle:(?:\n.*)*?inertia: \[(.*?)\]", case).group(1).split(",")
+        for value, known in zip(map(float, found),
+                                (about_top[1] - 2500, about_top[0] - 1600, about_top[2] - 900)):
+            self.assertAlmostEqual(value, known, delta=1e-6 * abs(known))
         for options in (("--nacelle-center", "1,2"), ("--hub-mass", "heavy"), ("--hub-mass",)):
             self.refuse("import", "windio", "deck.yaml", "-o", "c.yaml", *options,
                         words=options[0] + " needs")
@@ -235,21 +269,21 @@ class Turbines(ProgramTest):
 
     def test_order_of_damping(self):
         mu = "mu: [0.001, 0.002, 0.003, 0.004, 0.005, 0.006]"
-        kxyz = "mu: [0.004, 0.004, 0.0004, 0, 0, 0]"
+        kxyz = "mu: [0.004, 0.003, 0.0004, 0, 0, 0]"
         tower = ("mu: [0.001, 0.001, 0.001, 0.002, 0.003, 0.001]", kxyz)
         self.deck(tower)  # the deck states no shear stiffness of the tower
         text, said = self.case()
-        self.assertEqual(text.count("[0, 0, 0, 4e-04, 0.004, 0.004]"), 1)
+        self.assertEqual(text.count("[0, 0, 0, 4e-04, 0.004, 0.003]"), 1)
         self.assertIn("--mu-order beamdyn", said)
         self.deck(tower, (mu, kxyz))  # of the blade it does
         text, _ = self.case()
-        self.assertEqual(text.count("[0, 0, 0, 4e-04, 0.004, 0.004]"), 1)
-        self.assertEqual(text.count("[4e-04, 0.004, 0.004, 0, 0, 0]"), 1)
+        self.assertEqual(text.count("[0, 0, 0, 4e-04, 0.004, 0.003]"), 1)
+        self.assertEqual(text.count("[4e-04, 0.003, 0.004, 0, 0, 0]"), 1)
         text, said = self.case("--mu-order", "hawc2")
-        self.assertEqual(text.count("[0, 0, 0, 4e-04, 0.004, 0.004]"), 2)
+        self.assertEqual(text.count("[0, 0, 0, 4e-04, 0.004, 0.003]"), 2)
         self.assertIn("HAWC2", said)
         text, _ = self.case("--mu-order", "beamdyn")
-        self.assertEqual(text.count("[4e-04, 0.004, 0.004, 0, 0, 0]"), 2)
+        self.assertEqual(text.count("[4e-04, 0.003, 0.004, 0, 0, 0]"), 2)
         self.refuse("import", "windio", "deck.yaml", "-o", "c.yaml", "--mu-order", "bladed",
                     words="beamdyn or hawc2")
 
@@ -272,6 +306,10 @@ class Turbines(ProgramTest):
         self.assertIn("tower", self.succeed("modes", "case.yaml").stdout)
         self.succeed("static", "case.yaml")
         self.refuse("floquet", "case.yaml", words="shaft.speed is 0")
+        for setting, words in (("shaft.speed=1", "there are no blades"),
+                               ("loads=[{beam: blades, at: 1, force: [0, 0, 1]}]", "no blades"),
+                               ("nacelle={mass: 5, yaw: {joint: free}}", "yaw axis")):
+            self.refuse("check", "case.yaml", "--set", setting, words=words)
 
     def test_lay_ups_alone_are_refused_in_one_line(self):
         text = SECOND.read_text(encoding="utf-8")
