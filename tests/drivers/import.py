@@ -258,7 +258,7 @@ class Turbines(ProgramTest):
         case, _ = self.case("--nacelle-mass", "100", "--nacelle-center", "0,3,4")
         about_top = [float(word) for word in
                      re.search(r"inertia_tt: \[(.*?)\]", block).group(1).split(",")][:3]
-        found = re.search(r"nacelle:(?:\n.*)*?inertia: \[(.*?)\]", case).group(1).split(",")
+        found = re.search(r"\nnacelle:.*?inertia: \[(.*?)\]", case, re.DOTALL).group(1).split(",")
         for value, known in zip(map(float, found),
                                 (about_top[1] - 2500, about_top[0] - 1600, about_top[2] - 900)):
             self.assertAlmostEqual(value, known, delta=1e-6 * abs(known))
