@@ -312,8 +312,13 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
 /// A tower may stand alone: nothing turns about a shaft then.
 void refuse_rotor(MapReader& map, model::TurbineDefinition& turbine) {
   turbine.blades.count = 0;
+  // As `modes --parked` sets it.
+  const auto stands_still = [](const YamlNode& node) {
+    return node.kind == YamlNode::Kind::map && node.children.size() == 1 &&
+           node.children[0].key == "speed" && node.children[0].text == "0";
+  };
   for (const char* key : {"shaft", "hub"})
-    if (const YamlNode* node = map.find(key))
+    if (const YamlNode* node = map.find(key); node != nullptr && !stands_still(*node))
       map.refuse(*node, key, "there are no blades; hint: what stands on the tower is the nacelle");
   const model::NacelleDefinition& nacelle = turbine.nacelle;
   const double about_yaw =

@@ -303,7 +303,7 @@ class Turbines(ProgramTest):
         self.assertIn("the tower alone", run.stderr)
         self.assertNotIn("blades:", (self.folder / "case.yaml").read_text(encoding="utf-8"))
         self.succeed("check", "case.yaml")
-        self.assertIn("tower", self.succeed("modes", "case.yaml").stdout)
+        self.assertIn("tower", self.succeed("modes", "case.yaml", "--parked").stdout)
         self.succeed("static", "case.yaml")
         self.refuse("floquet", "case.yaml", words="shaft.speed is 0")
         for setting, words in (("shaft.speed=1", "there are no blades"),
