@@ -43,8 +43,8 @@ constexpr double largest_fast_share = 0.01;
 constexpr double least_imaginary = 1e-6;
 /// Of an exponent that is none of a free motion.
 constexpr double far_from_zero = std::numeric_limits<double>::infinity();
-/// Of the energy of a state of length 1 in energy coordinates: less is rounding. A motion that rests
-/// comes with the square root of round-off as its exponent, and moves with that speed.
+/// Of the energy of a state of length 1 in energy coordinates: less is rounding. A motion that
+/// rests comes with the square root of round-off as its exponent, and moves with that speed.
 constexpr double rest_energy = 1e-10;
 /// Numbers in the histories of the modes that are identified at a time, about.
 constexpr Eigen::Index batch_values = 1 << 24;

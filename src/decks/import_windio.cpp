@@ -376,8 +376,8 @@ class Importer {
       draft_.speed_rpm = is_first_ ? value * 30.0 / std::numbers::pi : value;
       note("shaft.speed_rpm",
            is_first_ ? "control.torque.VS_maxspd, from rad/s" : "control.torque.VS_maxspd");
-    } else if (choose({"control.supervisory.maxTS"}) != "" &&
-               choose({"assembly.rotor_diameter"}) != "") {
+    } else if (!choose({"control.supervisory.maxTS"}).empty() &&
+               !choose({"assembly.rotor_diameter"}).empty()) {
       const double tip_speed = number({"control.supervisory.maxTS"}, Fate::derived,
                                       "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
       const double diameter = number({"assembly.rotor_diameter"}, Fate::derived,

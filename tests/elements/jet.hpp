@@ -98,7 +98,7 @@ struct NumTraits<samara::Jet<T>> : NumTraits<double> {
   using NonInteger = samara::Jet<T>;
   using Nested = samara::Jet<T>;
   using Literal = double;
-  enum { RequireInitialization = 1 };
+  enum { RequireInitialization = 1 };  // NOLINT: Eigen's name
 };
 
 }  // namespace Eigen

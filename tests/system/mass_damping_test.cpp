@@ -1,10 +1,9 @@
 // Damping in proportion to the mass: forces on the sections against the rigid frame of the root,
 // and their reaction on it, by what they do at random states of turning rotors.
-#include <boost/test/unit_test.hpp>
-
 #include <map>
 
 #include <Eigen/QR>
+#include <boost/test/unit_test.hpp>
 
 #include "../elements/jet.hpp"
 #include "sample_turbine.hpp"

@@ -32,7 +32,7 @@ TipTerms<T> beam_tip_terms(const Vector3& x, const Matrix3& reference, const Mat
   if (mass(0, 0) > 0.0) {
     const Vec3<T> V = z.template segment<3>(6);
     const Vec3<T> Omega = z.template segment<3>(9);
-    const Mat6<T> inertia = mass.cast<T>();
+    const Mat6<T> inertia = mass.cast<T>();  // NOLINT: no copy where T is no double
     const Vec6<T> momentum = inertia * z.template segment<6>(6);
     const Vec6<T> momentum_dot = inertia * z_dot.template segment<6>(6);
     Vec6<T> fall = Vec6<T>::Zero();
