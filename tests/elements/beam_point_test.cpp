@@ -185,7 +185,7 @@ struct Trajectory {
     return turned_by<T>(curve<T>(turn, t));
   }
   template <class T>
-  Mat3<T> from_B(const T& t) const {
+  Mat3<T> from_B(const T& t) const {  // NOLINT: B is a basis
     const Mat3<T> relative = turned_by<T>(curve<T>(theta, t));
     return from_a<T>(t) * relative * point.C_ab.cast<T>();
   }

@@ -163,7 +163,7 @@ Mat3<T> about(const Vector3& e, const T& angle) {
 
 /// From components along (n3, n1, n2) to components along (n1, n2, n3).
 template <class T>
-Vec3<T> in_N(const Vec3<T>& a) {
+Vec3<T> in_N(const Vec3<T>& a) {  // NOLINT: N is a frame
   return Vec3<T>(a(1), a(2), a(0));
 }
 
