@@ -57,20 +57,21 @@ Eigen::Vector4d values_of(const KeyPoint& point) {
 
 }  // namespace
 
+Eigen::Vector4d BeamdynLine::Member::chord(double xi) const {
+  return 0.5 * ((1.0 - xi) * first + (1.0 + xi) * last);
+}
+
 Eigen::Vector4d BeamdynLine::Member::value(double xi) const {
-  Eigen::Vector4d ends;
-  ends.head<3>() = 0.5 * ((1.0 - xi) * first + (1.0 + xi) * last);
-  ends(3) = 0.5 * ((1.0 - xi) * first_twist + (1.0 + xi) * last_twist);
   Eigen::VectorXd p, slope;
   legendre(xi, series.rows(), p, slope);
-  return ends + (1.0 - xi * xi) * series.transpose() * p;
+  return chord(xi) + (1.0 - xi * xi) * series.transpose() * p;
 }
 
 Vector3 BeamdynLine::Member::slope(double xi) const {
   Eigen::VectorXd p, slope;
   legendre(xi, series.rows(), p, slope);
   const Eigen::VectorXd bubble = (1.0 - xi * xi) * slope - 2.0 * xi * p;
-  return 0.5 * (last - first) + series.leftCols<3>().transpose() * bubble;
+  return 0.5 * (last - first).head<3>() + series.leftCols<3>().transpose() * bubble;
 }
 
 double BeamdynLine::Member::arc_to(double xi) const {
@@ -89,10 +90,8 @@ BeamdynLine::BeamdynLine(const std::vector<KeyPoint>& points, const std::vector<
     const KeyPoint& front = points[start];
     const KeyPoint& back = points[start + static_cast<std::size_t>(count) - 1];
     Member member;
-    member.first = front.position;
-    member.last = back.position;
-    member.first_twist = front.twist_deg;
-    member.last_twist = back.twist_deg;
+    member.first = values_of(front);
+    member.last = values_of(back);
     const int degree = std::min({order, count - 1, most_degree});
     const auto terms = static_cast<Eigen::Index>(std::max(0, degree - 1));
     member.series.setZero(terms, 4);
@@ -106,9 +105,7 @@ BeamdynLine::BeamdynLine(const std::vector<KeyPoint>& points, const std::vector<
         Eigen::VectorXd p, slope;
         legendre(xi, terms, p, slope);
         matrix.row(i) = (1.0 - xi * xi) * p.transpose();
-        rest.row(i) = (values_of(point) -
-                       0.5 * ((1.0 - xi) * values_of(front) + (1.0 + xi) * values_of(back)))
-                          .transpose();
+        rest.row(i) = (values_of(point) - member.chord(xi)).transpose();
       }
       rest.col(2).setZero();  // z is xi itself
       member.series = matrix.colPivHouseholderQr().solve(rest);

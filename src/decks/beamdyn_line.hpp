@@ -47,13 +47,13 @@ class BeamdynLine {
  private:
   /// A polynomial of xi in [-1, 1]: its values at the ends and (1 - xi^2) times a Legendre series.
   struct Member {
-    double station = 0.0;  ///< at its beginning
-    double arc = 0.0;      ///< the same [m]
-    double length = 0.0;   ///< of its arc [m]
-    Vector3 first, last;
-    double first_twist = 0.0, last_twist = 0.0;
-    Eigen::Matrix<double, Eigen::Dynamic, 4> series;  ///< x, y, z, twist
+    double station = 0.0;         ///< at its beginning
+    double arc = 0.0;             ///< the same [m]
+    double length = 0.0;          ///< of its arc [m]
+    Eigen::Vector4d first, last;  ///< x, y, z, twist
+    Eigen::Matrix<double, Eigen::Dynamic, 4> series;
 
+    Eigen::Vector4d chord(double xi) const;
     Eigen::Vector4d value(double xi) const;
     Vector3 slope(double xi) const;
     double arc_to(double xi) const;

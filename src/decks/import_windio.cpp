@@ -465,15 +465,17 @@ class Importer {
     return point;
   }
 
+  /// The path of a key of a block by either of its names; empty where the block is.
+  std::string choose_in(const std::string& block, const char* key, const char* other) {
+    return block.empty() ? std::string() : choose({block + key, block + other});
+  }
+
   /// Mass, centre and inertia of the nacelle, each from the deck or from the command line.
   void read_nacelle_body() {
     const std::string block = choose({"components.drivetrain.elastic_properties",
                                       "components.drivetrain.elastic_properties_mb",
                                       "components.nacelle.elastic_properties_mb"});
-    const auto find_of = [&](const char* key, const char* other) {
-      return block.empty() ? std::string() : choose({block + key, block + other});
-    };
-    const std::string mass = find_of(".mass", ".system_mass");
+    const std::string mass = choose_in(block, ".mass", ".system_mass");
     if (!mass.empty()) draft_.nacelle_mass = number({mass}, Fate::taken, "nacelle.mass");
     if (!mass.empty())
       note("nacelle.mass", "without the yaw bearing");
@@ -484,7 +486,7 @@ class Importer {
       errors_.add(path_,
                   "nacelle.mass: expected a number >= 0, got " + rounded(draft_.nacelle_mass));
 
-    const std::string location = find_of(".location", ".system_center_mass");
+    const std::string location = choose_in(block, ".location", ".system_center_mass");
     const bool has_body = !mass.empty() || is_stated("nacelle.mass");
     const Vector3 center =
         point_of(location, "nacelle.center_of_mass = [-y, x, z] (y is to the left)");
@@ -495,8 +497,8 @@ class Importer {
       missing("the centre of mass of the nacelle", "nacelle.center_of_mass");
     apply_stated("nacelle.center_of_mass", draft_.nacelle_center);
 
-    const std::string own = find_of(".inertia", ".system_inertia");
-    const std::string about_top = find_of(".inertia_tt", ".system_inertia_tt");
+    const std::string own = choose_in(block, ".inertia", ".system_inertia");
+    const std::string about_top = choose_in(block, ".inertia_tt", ".system_inertia_tt");
     if (!own.empty()) {
       const Vector3 inertia =
           inertia_of(own, "nacelle.inertia = [Iyy, Ixx, Izz], about its own centre");
@@ -583,10 +585,7 @@ class Importer {
   void read_hub_body() {
     const std::string block =
         choose({"components.hub.elastic_properties", "components.hub.elastic_properties_mb"});
-    const auto find_of = [&](const char* key, const char* other) {
-      return block.empty() ? std::string() : choose({block + key, block + other});
-    };
-    const std::string mass = find_of(".mass", ".system_mass");
+    const std::string mass = choose_in(block, ".mass", ".system_mass");
     if (!mass.empty())
       draft_.hub_mass = number({mass}, Fate::taken, "hub.mass");
     else if (!is_stated("hub.mass"))
@@ -596,7 +595,7 @@ class Importer {
       errors_.add(path_, "hub.mass: expected a number >= 0, got " + rounded(draft_.hub_mass));
 
     const bool has_body = !mass.empty() || is_stated("hub.mass");
-    const std::string location = find_of(".location", ".system_center_mass");
+    const std::string location = choose_in(block, ".location", ".system_center_mass");
     const Vector3 center =
         point_of(location, "hub.center_of_mass (x from the apex toward the nacelle)");
     if (center(1) != 0.0 || center(2) != 0.0)
@@ -608,7 +607,7 @@ class Importer {
       missing("the hub's centre of mass", "hub.center_of_mass");
     apply_stated("hub.center_of_mass", draft_.hub_center);
 
-    const std::string path = find_of(".inertia", ".system_inertia");
+    const std::string path = choose_in(block, ".inertia", ".system_inertia");
     if (!path.empty() && !is_stated("hub.inertia")) {
       const Vector3 inertia =
           inertia_of(path,

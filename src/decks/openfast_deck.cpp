@@ -232,10 +232,7 @@ void Deck::parse_line(int number) {
 }
 
 void Deck::set_order(const std::vector<std::string>& keys) {
-  for (const std::string& key : keys) {
-    order_.push_back(fold(key.ends_with('?') ? key.substr(0, key.size() - 1) : key));
-    if (key.ends_with('?')) optional_.insert(order_.back());
-  }
+  for (const std::string& key : keys) order_.push_back(fold(key));
 }
 
 std::vector<std::size_t> Deck::named_so(const std::string& folded) const {
@@ -256,7 +253,7 @@ std::optional<std::size_t> Deck::between_neighbours(const std::string& folded) c
       first = entries_[found.front()].line;
       break;
     }
-    if (!optional_.contains(*before)) missing.insert(missing.begin(), *before);
+    missing.insert(missing.begin(), *before);
   }
   const auto at = static_cast<std::ptrdiff_t>(missing.size()) - 1;
   for (auto behind = self + 1; behind != order_.end(); ++behind) {
@@ -264,7 +261,7 @@ std::optional<std::size_t> Deck::between_neighbours(const std::string& folded) c
       last = entries_[found.front()].line;
       break;
     }
-    if (!optional_.contains(*behind)) missing.push_back(*behind);
+    missing.push_back(*behind);
   }
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < entries_.size(); ++i)

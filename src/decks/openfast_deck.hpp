@@ -71,8 +71,8 @@ class Deck {
   std::string place(int line) const { return path_ + ":" + std::to_string(line); }
   std::string place_of(const std::string& key) const;
 
-  /// The keys of this kind of file in their order, a "?" behind those that some versions lack: one
-  /// that is not found by its name is the line between its neighbours.
+  /// The keys of this kind of file in their order: one that is not found by its name is the line
+  /// between its neighbours.
   void set_order(const std::vector<std::string>& keys);
   /// Keys are compared without case, and `Key(1)` is `Key1`.
   bool has(const std::string& key) const;
@@ -132,8 +132,7 @@ class Deck {
   Index index_;                     ///< of entries, by name
   Index free_text_;                 ///< the same of those in free text
   std::vector<std::string> order_;  ///< of keys, without case
-  std::unordered_set<std::string> optional_;
-  mutable Index by_place_;  ///< what was found between neighbours; empty: nothing
+  mutable Index by_place_;          ///< what was found between neighbours; empty: nothing
   bool ends_with_line_ = true;
 };
 

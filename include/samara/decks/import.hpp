@@ -34,7 +34,7 @@ std::span<const StatedQuantity> stated_quantities();
 enum class MuOrder {
   automatic,  ///< as the deck's matrices, but for the pattern that tells the other
   beamdyn,    ///< shear x, shear y, axial, bending x, bending y, torsion
-  hawc2       ///< bending x, bending y, torsion, as Kx Ky Kz of HAWC2, and three zeros
+  hawc2       ///< HAWC2's Kx (bending about y), Ky (about x), Kz (torsion), three zeros
 };
 
 struct ImportOptions {
