@@ -115,6 +115,9 @@ void require_transient(const io::Case& input) {
   };
   const model::TurbineDefinition& turbine = input.turbine;
   const bool is_free = turbine.shaft.generator.kind == model::JointKind::free;
+  const bool has_blades = turbine.blades.count > 0;
+  if (!has_blades && input.transient.speed) refuse("speed", "there are no blades, nothing turns");
+  if (!has_blades && input.transient.pitch) refuse("pitch_deg", "there are no blades");
   if (input.transient.speed && is_free)
     refuse("speed",
            "the generator is free, its torque makes the speed; hint: "
@@ -126,6 +129,7 @@ void require_transient(const io::Case& input) {
   for (std::size_t i = 0; i < input.transient.events.size(); ++i) {
     const system::TurbineEvent& event = input.transient.events[i];
     const std::string place = "events[" + std::to_string(i) + "]";
+    if (!has_blades) refuse(place, "there are no blades, nothing turns and nothing pitches");
     if (!is_free && (event.brake > 0.0 || event.generator_off))
       refuse(place,
              "the generator is locked and takes any torque; hint: "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "case_stations.hpp"
 #include "yaml_lists.hpp"
 
 namespace samara::io {
@@ -39,7 +40,8 @@ void read_forms(MapReader& map, linear::LinearizeOptions& options) {
 
 }  // namespace
 
-void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& errors) {
+void read_linearize(const YamlNode& node, const model::TurbineDefinition& turbine,
+                    LinearizeCase& linearize, ErrorList& errors) {
   linear::LinearizeOptions& options = linearize.options;
   linearize.is_given = true;
   MapReader map(node, "linearize", errors);
@@ -55,8 +57,7 @@ void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& e
   }
   read_words(map, "inputs", linearize.inputs);
   read_words(map, "outputs", linearize.outputs);
-  read_stations(map, "blade_stations", linearize.stations.blade);
-  read_stations(map, "tower_stations", linearize.stations.tower);
+  read_stations(map, turbine, linearize.stations);
   read_forms(map, options);
   map.read("hill_harmonics", options.hill_harmonics, 1, most_harmonics);
   map.read("lyapunov_floquet_steps", options.lyapunov_floquet_steps, 16, most_steps);

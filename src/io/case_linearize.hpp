@@ -7,6 +7,8 @@
 
 namespace samara::io {
 
-void read_linearize(const YamlNode& node, LinearizeCase& linearize, ErrorList& errors);
+/// `turbine` has been read.
+void read_linearize(const YamlNode& node, const model::TurbineDefinition& turbine,
+                    LinearizeCase& linearize, ErrorList& errors);
 
 }  // namespace samara::io

@@ -9,6 +9,7 @@
 
 #include "samara/base/error.hpp"
 
+#include "case_stations.hpp"
 #include "yaml_lists.hpp"
 
 namespace samara::io {
@@ -39,13 +40,13 @@ void read_steps(MapReader& map, std::string_view key, double step, long& steps) 
   steps = static_cast<long>(count);
 }
 
-void read_output(const YamlNode& node, const std::string& where, TransientCase& transient,
+void read_output(const YamlNode& node, const std::string& where,
+                 const model::TurbineDefinition& turbine, TransientCase& transient,
                  ErrorList& errors) {
   MapReader map(node, where, errors);
   read_steps(map, "every", transient.options.step, transient.output_steps);
   read_words(map, "channels", transient.channels);
-  read_stations(map, "blade_stations", transient.stations.blade);
-  read_stations(map, "tower_stations", transient.stations.tower);
+  read_stations(map, turbine, transient.stations);
   map.finish();
 }
 
@@ -193,7 +194,8 @@ void read_start(MapReader& map, TransientCase& transient) {
 
 }  // namespace
 
-void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& errors) {
+void read_transient(const YamlNode& node, const model::TurbineDefinition& turbine,
+                    TransientCase& transient, ErrorList& errors) {
   analysis::TransientOptions& options = transient.options;
   transient.is_given = true;
   MapReader map(node, "transient", errors);
@@ -231,7 +233,7 @@ void read_transient(const YamlNode& node, TransientCase& transient, ErrorList& e
   read_curve(map, "teeter_deg", degree, false, options.duration, transient.teeter);
   read_events(map, options.duration, transient.events);
   if (const YamlNode* entry = map.find("output"))
-    read_output(*entry, map.where("output"), transient, errors);
+    read_output(*entry, map.where("output"), turbine, transient, errors);
   map.finish();
 }
 

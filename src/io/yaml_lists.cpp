@@ -33,8 +33,4 @@ void read_numbers(MapReader& map, std::string_view key, const NumberRule& rule,
     read_number(list->children[i], join_path(map.where(key), i), rule, values[i], map.errors());
 }
 
-void read_stations(MapReader& map, std::string_view key, std::vector<double>& places) {
-  read_numbers(map, key, fraction_of_one, places, "fractions of the length");
-}
-
 }  // namespace samara::io

@@ -18,7 +18,4 @@ void read_words(MapReader& map, std::string_view key, std::vector<std::string>& 
 void read_numbers(MapReader& map, std::string_view key, const NumberRule& rule,
                   std::vector<double>& values, const std::string& items = "numbers");
 
-/// Reads places along a beam.
-void read_stations(MapReader& map, std::string_view key, std::vector<double>& places);
-
 }  // namespace samara::io

@@ -66,7 +66,8 @@ std::vector<Signal> TurbineInputOutput::available_inputs(const TurbineSystem& sy
       signals.push_back({force_stem + std::to_string(i + 1), "N", "ground",
                          "force on the tower top, " + ground_ways()[static_cast<std::size_t>(i)],
                          "", 0, false});
-  signals.push_back({pitch_name, "rad", "blades", "of all blades, toward feather", "", 0, true});
+  if (!turbine.blades.empty())
+    signals.push_back({pitch_name, "rad", "blades", "of all blades, toward feather", "", 0, true});
   for (std::size_t k = 1; k <= turbine.blades.size(); ++k)
     signals.push_back({pitch_name + ("_" + std::to_string(k)), "rad", "blade " + std::to_string(k),
                        "toward feather", pitch_name, static_cast<int>(k), true});

@@ -308,8 +308,18 @@ class Turbines(ProgramTest):
         self.refuse("floquet", "case.yaml", words="shaft.speed is 0")
         for setting, words in (("shaft.speed=1", "there are no blades"),
                                ("loads=[{beam: blades, at: 1, force: [0, 0, 1]}]", "no blades"),
-                               ("nacelle={mass: 5, yaw: {joint: free}}", "yaw axis")):
+                               ("nacelle={mass: 5, yaw: {joint: free}}", "yaw axis"),
+                               ("linearize={inputs: [pitch]}", "unknown input \"pitch\""),
+                               ("linearize={blade_stations: [0.5]}", "there are no blades")):
             self.refuse("check", "case.yaml", "--set", setting, words=words)
+        self.succeed("check", "case.yaml", "--set", "linearize={tower_stations: [0.5]}")
+        for setting in ("pitch_deg: {table: [[0, 0], [1, 2]]}", "speed: {table: [[0, 1], [1, 2]]}",
+                        "events: [{at: 0.5, pitch: {to_deg: 3, rate_deg: 8}}]",
+                        "events: [{at: 0.5, brake: 1000}]", "output: {blade_stations: [0.5]}"):
+            with self.subTest(setting):
+                self.refuse("transient", "case.yaml", "--set",
+                            f"transient={{duration: 1, step: 0.05, start: undeformed, {setting}}}",
+                            words="there are no blades")
 
     def test_lay_ups_alone_are_refused_in_one_line(self):
         text = SECOND.read_text(encoding="utf-8")
