@@ -6,6 +6,7 @@
 #   tests/drivers/*.sh, *.py                    -> the program as its users run it
 #   tests/layering/                             -> rules of the source tree
 #   tests/fuzz/<name>_harness.cpp               -> fuzz_<name>, a little of scripts/fuzz
+#   tests/dump/                                 -> dump_system, for scripts/compare_trees
 set(samara_program ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/samara)
 
 # Debian's own interpreter, which has h5py and numpy, whatever else is first in PATH.
@@ -159,6 +160,8 @@ samara_add_tests(io unit "samara::io;samara_external_files")
 samara_add_tests(decks unit "samara::decks;samara_external_files")
 samara_add_tests(verification verification "samara::io;samara_external_files")
 samara_add_fuzz_tests("samara::decks;samara_external_files")
+add_executable(dump_system ${PROJECT_SOURCE_DIR}/tests/dump/dump.cpp)
+target_link_libraries(dump_system PRIVATE samara::io samara_external_files)
 samara_add_scripts(layering tree "")
 if(TARGET samara)
   samara_add_scripts(drivers program program_)
