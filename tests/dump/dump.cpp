@@ -49,7 +49,12 @@ class Dump {
   explicit Dump(const std::string& path)
       : input_(io::read_case(path, {})),
         system_(model::build_turbine(input_.turbine), PETSC_COMM_SELF) {
-    for (const system::Unknown& unknown : system_.unknowns()) names_.push_back(unknown.name);
+    // Unknowns that stand for nothing have one name.
+    std::map<std::string, int> found;
+    for (const system::Unknown& unknown : system_.unknowns()) {
+      const int number = ++found[unknown.name];
+      names_.push_back(unknown.name + (number > 1 ? " " + std::to_string(number) : ""));
+    }
   }
 
   void run() {
@@ -88,7 +93,7 @@ class Dump {
       for (PetscInt k = 0; k < count; ++k) {
         const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(columns[k])];
         if (values[k] != 0.0)
-          put(kind, name(i) + "\t" + unknown.name, values[k] * size_of(unknown));
+          put(kind, name(i) + "\t" + name(columns[k]), values[k] * size_of(unknown));
       }
       petsc::check(MatRestoreRow(matrix.get(), i, &count, &columns, &values));
     }
