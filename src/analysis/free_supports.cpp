@@ -8,7 +8,7 @@ std::vector<system::NeutralCoordinate> find_free_supports(const system::Periodic
     const system::Unknown& unknown = system.unknowns()[i];
     const auto at = static_cast<PetscInt>(i);
     if (unknown.is_free)
-      found.push_back({unknown.name, at, at, unknown.unit == "rad" ? "N m" : "N"});
+      found.push_back({unknown.name(), at, at, unknown.unit == "rad" ? "N m" : "N"});
   }
   return found;
 }

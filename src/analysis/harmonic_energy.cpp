@@ -95,8 +95,8 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors
   std::vector<std::size_t> loads(static_cast<std::size_t>(shares), 0);
   for (const EnergyGroup& group : system.energy_groups()) {
     if (group.kind != EnergyGroup::Kind::kinetic) continue;
-    auto found = std::find(parts_.begin(), parts_.end(), group.part);
-    if (found == parts_.end()) found = parts_.insert(parts_.end(), group.part);
+    auto found = std::find(parts_.begin(), parts_.end(), group.owner.part);
+    if (found == parts_.end()) found = parts_.insert(parts_.end(), group.owner.part);
     if (group.unknowns.empty()) continue;
     const std::vector<std::vector<Image>> images = sectors_of(group, sectors, before);
     const int alike = count_alike(images);

@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -61,41 +62,40 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::complex<d
   return groups;
 }
 
-/// The joint that turns most: the free position of the largest mean square.
-std::string moving_joint(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
-  std::string name;
+/// The joint that turns most: the position of the largest mean square.
+std::optional<system::Owner> moving_joint(const system::PeriodicSystem& system,
+                                          const Eigen::MatrixXcd& shape) {
+  std::optional<system::Owner> joint;
   double largest = 0.0;
   for (std::size_t i = 0; i < system.rows().size(); ++i) {
     const system::Unknown& unknown = system.unknowns()[i];
-    const bool joint = unknown.name.ends_with(" angle");
+    if (unknown.owner.kind != system::PartKind::joint ||
+        unknown.role != system::UnknownRole::position)
+      continue;
     const double size = shape.row(static_cast<Eigen::Index>(i)).squaredNorm();
-    const bool support = unknown.name.find(" support theta") != std::string::npos;
-    if (!(joint || support) || size <= largest) continue;
+    if (size <= largest) continue;
     largest = size;
-    const std::string beam = unknown.name.substr(0, unknown.name.find(' '));
-    if (joint)
-      name = unknown.name.substr(0, unknown.name.size() - std::string(" angle").size());
-    else if (unknown.is_free)
-      name = beam + " hinge";
-    else
-      name = beam == "tower" ? "foundation" : beam + " support";
+    joint = unknown.owner;
   }
-  return name;
+  return joint;
 }
 
 /// Of a system that does not know its motions: by the strain energy.
-std::string strained_motion(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
-                            const Mode& mode, double zero) {
+system::Motion strained_motion(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
+                               const Mode& mode, double zero) {
   const std::map<std::string, double> strain = strain_energies(system, shape);
-  const auto largest_entry =
+  const auto largest =
       std::max_element(strain.begin(), strain.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
-  const std::string joint = moving_joint(system, shape);
-  if (!joint.empty() &&
-      (std::abs(mode.exponent) < zero || (mode.resolved && is_rigid_body(system, shape, mode))))
-    return joint;
-  if (largest_entry == strain.end()) return joint.empty() ? "mode" : joint;
-  return largest_entry->first;
+  const std::optional<system::Owner> joint = moving_joint(system, shape);
+  const bool is_rigid =
+      std::abs(mode.exponent) < zero || (mode.resolved && is_rigid_body(system, shape, mode));
+  if (joint && (is_rigid || largest == strain.end())) return {*joint};
+  for (const EnergyGroup& group : system.energy_groups())
+    if (largest != strain.end() && group.kind == EnergyGroup::Kind::strain &&
+        motion_name(group) == largest->first)
+      return {group.owner, group.direction};
+  return {{system::PartKind::body, "mode"}};
 }
 
 const char* word_of(int n, int blades) {
@@ -107,15 +107,10 @@ const char* word_of(int n, int blades) {
 
 /// What a mode is called, piece by piece.
 struct Name {
-  std::string part, motion;
+  system::Motion motion;
   std::string together;  ///< of the blades
-  std::string text() const { return part + (motion.empty() ? "" : " " + motion) + together; }
+  std::string text() const { return motion.name() + together; }
 };
-
-/// Ways to bend, between which modes of equal exponents cannot choose.
-bool bends(const std::string& motion) {
-  return motion == "flap" || motion == "lead-lag" || motion == "fore-aft" || motion == "lateral";
-}
 
 /// Modes of equal exponents mix at will: what their names differ in says nothing. Other harmonics
 /// keep them apart over a blade passage, where half a turn, say, gives one the opposite sign.
@@ -130,19 +125,21 @@ void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vect
     harmonics.push_back(sectors > 1 ? mode.harmonic : 0);
   }
   for (const std::vector<std::size_t>& equal : groups_of(exponents, apart, harmonics)) {
-    std::map<std::string, std::set<std::string>> motions;  // of each part
-    std::map<std::pair<std::string, bool>, int> count;
+    std::map<std::string, std::set<std::string>> directions;  // of each part that bends
+    std::map<std::string, int> bending;                       // modes of the part
+    std::map<std::string, int> count;                         // modes of the motion
     for (const std::size_t m : equal) {
-      if (bends(names[m].motion)) motions[names[m].part].insert(names[m].motion);
-      ++count[{names[m].part + names[m].motion, false}];
-      if (bends(names[m].motion)) ++count[{names[m].part, true}];
+      const system::Motion& motion = names[m].motion;
+      ++count[motion.name()];
+      if (!motion.bends) continue;
+      directions[motion.owner.part].insert(motion.direction);
+      ++bending[motion.owner.part];
     }
     for (const std::size_t m : equal) {
       Name& name = names[m];
-      const bool bending = bends(name.motion);
-      const int alike =
-          bending ? count[{name.part, true}] : count[{name.part + name.motion, false}];
-      if (bending && motions[name.part].size() > 1) name.motion = "bending";
+      const std::string& part = name.motion.owner.part;
+      const int alike = name.motion.bends ? bending[part] : count[name.motion.name()];
+      if (name.motion.bends && directions[part].size() > 1) name.motion.direction = "bending";
       if (!canonical && alike > 1) name.together = "";
     }
   }
@@ -230,7 +227,7 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
                    const Mode& mode) {
   double strained = 0.0;
   for (const EnergyGroup& group : system.energy_groups())
-    if (group.kind == EnergyGroup::Kind::strain && group.part != "joint")
+    if (group.kind == EnergyGroup::Kind::strain && group.owner.kind != system::PartKind::joint)
       strained +=
           (1.0 + group.damping * std::abs(mode.exponent)) * mean_strain_energy(group, shape);
   return strained < elastic_share * (strained + mode.kinetic_energy);
@@ -257,12 +254,11 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   std::vector<Name> names;
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     if (leading.empty()) {
-      names.push_back({strained_motion(system, set.shapes[m], set.modes[m], zero), "", ""});
+      names.push_back({strained_motion(system, set.shapes[m], set.modes[m], zero), ""});
       continue;
     }
     const int component = leading[m].component;
-    names.push_back(
-        {leading[m].part, leading[m].name, component < 0 ? "" : word_of(component, set.blades)});
+    names.push_back({leading[m].motion, component < 0 ? "" : word_of(component, set.blades)});
   }
   const bool canonical = has_canonical_shapes(system) && set.shape_times.size() == 1;
   unite_degenerate(set, sectors, canonical, names);
@@ -270,7 +266,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
     Mode& mode = set.modes[m];
     mode.label = names[m].text();
     const double frequency = mode.exponent.imag();
-    const bool in_blades = names[m].part.starts_with("blade");
+    const bool in_blades = names[m].motion.owner.instance > 0;
     const bool is_clear = leading.empty() || leading[m].is_clear;
     if (set.rotor_speed == 0.0 || frequency <= zero || (!in_blades && is_clear))
       mode.fixed_frame_frequency = frequency;

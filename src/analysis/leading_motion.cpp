@@ -26,10 +26,6 @@ constexpr double dominant_part = 0.5;
 /// Share of the kinetic energy at a harmonic, from which on it may be that of the mode.
 constexpr double clear_part = 0.2;
 
-std::string text_of(const system::Motion& motion) {
-  return motion.part + (motion.name.empty() ? "" : " " + motion.name);
-}
-
 /// Whether an exponent is none but for rounding and the step.
 bool is_at_rest(const Mode& mode, const ModeSet& set) {
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
@@ -150,8 +146,7 @@ double energy_alike(const std::vector<system::Motion>& motions, std::size_t moti
                     const Eigen::VectorXd& energies) {
   double sum = 0.0;
   for (std::size_t i = 0; i < motions.size(); ++i)
-    if (motions[i].part == motions[motion].part && motions[i].name == motions[motion].name)
-      sum += energies(static_cast<Eigen::Index>(i));
+    if (motions[i].is_alike(motions[motion])) sum += energies(static_cast<Eigen::Index>(i));
   return sum;
 }
 
@@ -197,12 +192,12 @@ Leading find_leading(const system::PeriodicSystem& system,
   std::map<std::string, double> shares;
   if (energies.sum() > 0.0)
     for (std::size_t i = 0; i < motions.size(); ++i)
-      shares[text_of(motions[i])] += energies(static_cast<Eigen::Index>(i)) / energies.sum();
+      shares[motions[i].name()] += energies(static_cast<Eigen::Index>(i)) / energies.sum();
   const auto leading = [&] {
     Leading found{0, is_dominant};
     double most = 0.0;
     for (std::size_t i = 0; i < motions.size(); ++i) {
-      const double share = shares[text_of(motions[i])];
+      const double share = shares[motions[i].name()];
       if (!(share > most)) continue;
       found.motion = i;
       most = share;
@@ -211,8 +206,8 @@ Leading find_leading(const system::PeriodicSystem& system,
   };
   if (is_at_rest(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
   // A joint that drifts: what bends with it has little of the motion, however much it strains.
-  const std::string& mover = motions[leading().motion].part;
-  if (mode.exponent.imag() == 0.0 && mover != "blade" && mover != "tower") return leading();
+  const bool is_beam = motions[leading().motion].owner.kind == system::PartKind::beam;
+  if (mode.exponent.imag() == 0.0 && !is_beam) return leading();
   for (const auto& [name, energy] :
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
     shares[name] += energy / (part * mode.kinetic_energy);
@@ -228,10 +223,10 @@ Leading find_leading(const system::PeriodicSystem& system,
 /// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
 /// blade is 2 pi n / B ahead of the one behind it. Empty where nothing moves.
 Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int blades,
-                                  const std::string& name, const Eigen::MatrixXcd& shape) {
+                                  const system::Motion& one, const Eigen::MatrixXcd& shape) {
   std::vector<const system::Motion*> alike;
   for (const system::Motion& motion : motions)
-    if (motion.blade > 0 && motion.name == name) alike.push_back(&motion);
+    if (motion.is_alike(one)) alike.push_back(&motion);
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(blades);
   if (static_cast<int>(alike.size()) != blades) return {};
   for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i)
@@ -250,7 +245,7 @@ Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, in
 
 int blades_of(const std::vector<system::Motion>& motions) {
   int blades = 0;
-  for (const system::Motion& motion : motions) blades = std::max(blades, motion.blade);
+  for (const system::Motion& motion : motions) blades = std::max(blades, motion.owner.instance);
   return blades;
 }
 
@@ -270,11 +265,11 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
     const Leading found = find_leading(system, motions, set, m, named, sectors, in_time);
     const system::Motion& motion = motions[found.motion];
     const int shift = found.shift.value_or(0);
-    LeadingMotion one{motion.part, motion.name, -1, mode.harmonic + shift, found.shift.has_value()};
-    if (motion.blade > 0 && together && mode.exponent.imag() > zero) {
+    LeadingMotion one{motion, -1, mode.harmonic + shift, found.shift.has_value()};
+    if (motion.owner.instance > 0 && together && mode.exponent.imag() > zero) {
       Eigen::Index largest = 0;
       const Eigen::VectorXd shares = multiblade_shares(
-          motions, blades, motion.name,
+          motions, blades, motion,
           shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]));
       if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share)
         one.component = static_cast<int>(largest);

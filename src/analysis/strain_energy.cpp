@@ -1,7 +1,6 @@
 #include "strain_energy.hpp"
 
 #include <complex>
-#include <string_view>
 
 #include "samara/analysis/identification.hpp"
 
@@ -9,8 +8,6 @@ namespace samara::analysis {
 namespace {
 
 using system::EnergyGroup;
-
-constexpr std::string_view shear = " shear";
 
 Eigen::MatrixXd weight_of(const EnergyGroup& group) {
   const auto n = static_cast<Eigen::Index>(group.unknowns.size());
@@ -43,12 +40,8 @@ std::map<std::string, double> strain_energies(const system::PeriodicSystem& syst
                                               const Eigen::MatrixXcd& shape) {
   std::map<std::string, double> strain;
   for (const EnergyGroup& group : system.energy_groups())
-    if (group.kind == EnergyGroup::Kind::strain) {
-      std::string name = group.motion;
-      if (name.ends_with(shear)) name.resize(name.size() - shear.size());
-      if (group.part != "joint" && group.part != "support") name = group.part + " " + name;
-      strain[name] += mean_strain_energy(group, shape);
-    }
+    if (group.kind == EnergyGroup::Kind::strain)
+      strain[motion_name(group)] += mean_strain_energy(group, shape);
   return strain;
 }
 

@@ -13,7 +13,7 @@ namespace samara::analysis {
 /// Mean over the instants of a shape, in its scale.
 double mean_strain_energy(const system::EnergyGroup& group, const Eigen::MatrixXcd& shape);
 
-/// Mean strain energy by name; shear belongs to the bending that it makes.
+/// Mean strain energy by the name of the motion that it restores.
 std::map<std::string, double> strain_energies(const system::PeriodicSystem& system,
                                               const Eigen::MatrixXcd& shape);
 

@@ -636,7 +636,7 @@ class Integration {
       const Eigen::Map<const Eigen::VectorXd> values(view.data(), system_.size());
       Eigen::Index worst = 0;
       values.cwiseAbs().maxCoeff(&worst);
-      text << "; what changes most: " << system_.unknowns()[static_cast<std::size_t>(worst)].name;
+      text << "; what changes most: " << system_.unknowns()[static_cast<std::size_t>(worst)].name();
     }
     if (factor_failure_.reason != PC_NOERROR) text << "; " << factor_failure_.words;
     if (error_) {

@@ -60,18 +60,6 @@ std::string now_in_utc() {
   return text.data();
 }
 
-const char* word_of(system::UnknownRole role) {
-  switch (role) {
-    case system::UnknownRole::position:
-      return "position";
-    case system::UnknownRole::velocity:
-      return "velocity";
-    case system::UnknownRole::internal:
-      return "internal";
-  }
-  return "";
-}
-
 double per_rev(const Mode& mode, double rotor_speed) { return mode.exponent.imag() / rotor_speed; }
 
 double hertz(const Mode& mode) { return mode.exponent.imag() / (2.0 * std::numbers::pi); }
@@ -342,9 +330,9 @@ void ResultFile::write_model(const system::TurbineSystem& system) {
   std::vector<std::string> units;
   std::vector<std::string> roles;
   for (const system::Unknown& unknown : system.unknowns()) {
-    names.push_back(unknown.name);
+    names.push_back(unknown.name());
     units.push_back(unknown.unit);
-    roles.emplace_back(word_of(unknown.role));
+    roles.emplace_back(system::word_of(unknown.role));
   }
   Hdf5File& file = storage_->file;
   file.write("/model/unknowns/name", names,
@@ -641,7 +629,7 @@ void write_trim_table(const std::string& path, const system::PeriodicSystem& sys
   for (const std::string& name : harmonic_names(trim.solution.harmonics())) text << ',' << name;
   text << '\n';
   for (std::size_t i = 0; i < system.unknowns().size(); ++i) {
-    text << system.unknowns()[i].name << ',' << system.unknowns()[i].unit;
+    text << system.unknowns()[i].name() << ',' << system.unknowns()[i].unit;
     for (Eigen::Index k = 0; k < trim.solution.coefficients().cols(); ++k)
       text << ',' << trim.solution.coefficients()(static_cast<Eigen::Index>(i), k);
     text << '\n';
@@ -653,7 +641,7 @@ void write_static_table(const std::string& path, const system::PeriodicSystem& s
                         const analysis::StaticPath& states) {
   std::ostringstream text = exact_text();
   text << static_table_start << "residual";
-  for (const system::Unknown& unknown : system.unknowns()) text << ',' << unknown.name;
+  for (const system::Unknown& unknown : system.unknowns()) text << ',' << unknown.name();
   text << '\n';
   for (const analysis::StaticState& state : states.states) {
     text << state.factor << ',' << state.newton_steps << ',' << state.residual;

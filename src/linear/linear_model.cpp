@@ -92,11 +92,11 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
   const auto d = static_cast<std::size_t>(subspace_.degrees_of_freedom());
   if (balance_.size() != d + reactions_.size())
     throw InternalError("balances, degrees of freedom and reactions differ in number");
-  for (const char* behind : {"", " rate"})
+  for (const char* behind : {"", rate_word})
     for (std::size_t i = 0; i < d; ++i) {
       const system::Unknown& unknown =
           system.unknowns()[static_cast<std::size_t>(subspace_.coordinates()[i])];
-      states_.push_back({unknown.name + behind, unknown.unit + (*behind == '\0' ? "" : "/s"),
+      states_.push_back({unknown.name() + behind, unknown.unit + (*behind == '\0' ? "" : "/s"),
                          subspace_.scale()[i]});
     }
   for (std::size_t i = 0; i < input_output.inputs().size(); ++i) {

@@ -13,15 +13,6 @@
 namespace samara::linear {
 namespace {
 
-/// "blade 1 point 3 M2" -> 1 and " point 3 M2"; 0 of what belongs to no blade.
-std::pair<int, std::string> blade_of(const std::string& name) {
-  const std::string stem = "blade ";
-  if (!name.starts_with(stem)) return {0, name};
-  std::size_t end = 0;
-  const int blade = std::stoi(name.substr(stem.size()), &end);
-  return {blade, name.substr(stem.size() + end)};
-}
-
 int binomial(int p, int q) { return p == 2 && q == 1 ? 2 : 1; }
 
 }  // namespace
@@ -52,7 +43,7 @@ std::vector<std::string> Multiblade::words(int blades) {
 
 Multiblade::Multiblade(const LinearModel& model) : model_(model) {
   for (const system::Unknown& unknown : model.system().unknowns())
-    blades_ = std::max(blades_, blade_of(unknown.name).first);
+    blades_ = std::max(blades_, unknown.owner.instance);
   if (blades_ < 3)
     throw InputError(
         "linearize.forms: multiblade coordinates are for three and more blades; hint: "
@@ -76,18 +67,19 @@ void Multiblade::find_state_families() {
   const analysis::ConsistentSubspace& subspace = model_.subspace();
   const std::vector<PetscInt>& coordinates = subspace.coordinates();
   const int d = subspace.degrees_of_freedom();
-  std::vector<std::string> stems;                     // in the order of the coordinates
-  std::map<std::string, std::map<int, int>> members;  // by stem and blade
+  std::vector<std::string> families;                  // in the order of the coordinates
+  std::map<std::string, std::map<int, int>> members;  // by family and blade
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const auto at = static_cast<std::size_t>(coordinates[i]);
-    const auto [blade, stem] = blade_of(model_.system().unknowns()[at].name);
-    if (blade == 0) continue;
-    if (!members.contains(stem)) stems.push_back(stem);
-    members[stem][blade] = static_cast<int>(i);
+    const system::Unknown& unknown =
+        model_.system().unknowns()[static_cast<std::size_t>(coordinates[i])];
+    if (unknown.owner.instance == 0) continue;
+    const std::string family = unknown.family();
+    if (!members.contains(family)) families.push_back(family);
+    members[family][unknown.owner.instance] = static_cast<int>(i);
   }
-  for (const std::string& stem : stems) {
+  for (const std::string& name : families) {
     Family family;
-    for (const auto& [blade, place] : members[stem]) {
+    for (const auto& [blade, place] : members[name]) {
       family.members.push_back(place);
       family.scales.push_back(subspace.scale()[static_cast<std::size_t>(place)]);
     }
@@ -95,7 +87,7 @@ void Multiblade::find_state_families() {
       throw InputError(
           "linearize.forms: multiblade coordinates are for blades with the same "
           "states, \"" +
-          stem + "\" is not one of all");
+          name + "\" is not one of all");
     for (int derivative = 0; derivative < 2; ++derivative) {
       family.derivative = derivative;
       family.first = static_cast<int>(state_families_.size()) - derivative;
@@ -104,7 +96,7 @@ void Multiblade::find_state_families() {
       for (std::size_t j = 0; j < names.size(); ++j) {
         ModelState& state = states_[static_cast<std::size_t>(family.members[j])];
         state = first;
-        state.name = names[j] + blade_of(first.name).second;
+        state.name = names[j] + " " + name + (derivative > 0 ? rate_word : "");
       }
       state_families_.push_back(family);
       for (int& place : family.members) place += d;

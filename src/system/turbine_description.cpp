@@ -41,10 +41,14 @@ constexpr std::array<NamedUnknown, block> point_unknowns{{{"u1", "m"},
                                                           {"M2", "N m"},
                                                           {"M3", "N m"}}};
 
-/// What the directions of a blade's root are called.
-constexpr std::array<const char*, 6> root_motions{"blade support",    "blade support",
-                                                  "blade support",    "blade pitch hinge",
-                                                  "blade flap hinge", "blade lag hinge"};
+/// Directions of a blade's root.
+constexpr std::array<const char*, 6> root_motions{"support",     "support",    "support",
+                                                  "pitch hinge", "flap hinge", "lag hinge"};
+
+const Owner tower(PartKind::beam, "tower");
+Owner body_owner(const char* name) { return {PartKind::body, name}; }
+Owner joint_owner(const std::string& name) { return {PartKind::joint, name}; }
+Owner blade_owner(int k) { return {PartKind::beam, "blade", k + 1}; }
 
 UnknownRole role_at(int i) {
   return i < 6 ? UnknownRole::position : i < 12 ? UnknownRole::velocity : UnknownRole::internal;
@@ -72,34 +76,39 @@ class Describer {
   }
 
  private:
-  void name_block(int first, const std::string& place) {
+  static Frame frame_of(const Owner& beam) {
+    return beam.instance > 0 ? Frame::rotating : Frame::fixed;
+  }
+
+  void describe_block(int first, const Owner& beam, const std::string& place) {
     for (int i = 0; i < block; ++i) {
       const auto at = static_cast<std::size_t>(first + i);
-      const auto local = static_cast<std::size_t>(i);
-      result_.unknowns[at] = {place + " " + point_unknowns[local].name, point_unknowns[local].unit,
-                              role_at(i)};
+      const NamedUnknown& named = point_unknowns[static_cast<std::size_t>(i)];
+      result_.unknowns[at] = {beam, place, named.name, named.unit, role_at(i), frame_of(beam)};
       result_.rows[at] = row_role_at(i);
     }
   }
 
-  void name_root(int first, const std::string& place) {
+  void describe_root(int first, const Owner& beam) {
     for (int i = 0; i < 6; ++i) {
       const auto at = static_cast<std::size_t>(first + i);
       const NamedUnknown& named = point_unknowns[static_cast<std::size_t>(12 + i)];
-      result_.unknowns[at] = {place + " root " + named.name, named.unit, UnknownRole::internal};
-      result_.rows[at] = RowRole::balance;
+      result_.unknowns[at] = {beam,       "root",          named.name,
+                              named.unit, role_at(12 + i), frame_of(beam)};
+      result_.rows[at] = row_role_at(12 + i);
     }
   }
 
   /// Point masses count from 1, whatever the root stands on.
-  void name_mass_node(const model::Beam& beam, int m, int first) {
-    if (beam.mass_nodes[static_cast<std::size_t>(m)].end == 0)
-      name_block(first, beam.name + " support");
-    else
-      name_block(first, beam.name + " mass " + std::to_string(beam.has_support ? m : m + 1));
+  void describe_mass_node(const model::Beam& beam, const Owner& owner, int m, int first) {
+    const bool is_root = beam.mass_nodes[static_cast<std::size_t>(m)].end == 0;
+    describe_block(first, owner,
+                   is_root ? "support" : "mass " + std::to_string(beam.has_support ? m : m + 1));
+    if (is_root) describe_support(beam, owner, first);
+    add_mass(first, beam.mass_nodes[static_cast<std::size_t>(m)].mass, owner);
   }
 
-  void describe_support(const model::Beam& beam, int first, int blade, Frame frame) {
+  void describe_support(const model::Beam& beam, const Owner& owner, int first) {
     for (int i = 0; i < 6; ++i) {
       if (beam.support.free[static_cast<std::size_t>(i)]) {
         result_.rows[static_cast<std::size_t>(first + i)] = RowRole::balance;
@@ -108,25 +117,23 @@ class Describer {
       if (beam.support.is_elastic(i))
         result_.groups.push_back(
             {EnergyGroup::Kind::strain,
-             "support",
-             blade == 0 ? "foundation" : root_motions[static_cast<std::size_t>(i)],
-             blade,
-             frame,
+             {PartKind::support, owner == tower ? "foundation" : owner.part, owner.instance},
+             owner == tower ? "" : root_motions[static_cast<std::size_t>(i)],
+             frame_of(owner),
              {first + 12 + i},
              {beam.support.compliance(i, i)},
              beam.support.damping});
     }
   }
 
-  void describe_end_support(const model::Beam& beam, int tip, int blade) {
+  void describe_end_support(const model::Beam& beam, int tip, const Owner& blade) {
     for (int i = 0; i < 6; ++i) {
       if (beam.end_support.rigid[static_cast<std::size_t>(i)])
         result_.rows[static_cast<std::size_t>(tip + 12 + i)] = RowRole::constraint;
       if (beam.end_support.stiffness(i, i) > 0.0)
         result_.groups.push_back({EnergyGroup::Kind::strain,
-                                  "support",
-                                  "blade end support",
-                                  blade,
+                                  {PartKind::support, blade.part, blade.instance},
+                                  "end support",
                                   Frame::rotating,
                                   {tip + i},
                                   {beam.end_support.stiffness(i, i)}});
@@ -135,27 +142,24 @@ class Describer {
 
   void describe_blade(int k) {
     const model::Beam& beam = turbine_.blades[static_cast<std::size_t>(k)];
+    const Owner blade = blade_owner(k);
     for (int p = 0; p < beam.point_count(); ++p) {
-      name_block(layout_.blade_point(k, p), beam.name + " point " + std::to_string(p + 1));
-      add_energies(beam, p, layout_.blade_point(k, p), "blade", k + 1, Frame::rotating,
-                   {"axial", "lead-lag shear", "flap shear", "torsion", "flap", "lead-lag"});
+      describe_block(layout_.blade_point(k, p), blade, "point " + std::to_string(p + 1));
+      add_energies(beam, p, layout_.blade_point(k, p), blade,
+                   {"axial", "lead-lag", "flap", "torsion", "flap", "lead-lag"});
     }
-    for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
-      const int first = layout_.blade_mass(k, static_cast<int>(m));
-      name_mass_node(beam, static_cast<int>(m), first);
-      if (beam.mass_nodes[m].end == 0) describe_support(beam, first, k + 1, Frame::rotating);
-      add_mass(first, beam.mass_nodes[m].mass, "blade", k + 1, Frame::rotating);
-    }
-    name_block(layout_.blade_tip(k), beam.name + " tip");
-    describe_end_support(beam, layout_.blade_tip(k), k + 1);
-    name_root(layout_.blade_root(k), beam.name);
-    add_mass(layout_.blade_tip(k), beam.tip_mass, "blade", k + 1, Frame::rotating);
+    for (int m = 0; m < static_cast<int>(beam.mass_nodes.size()); ++m)
+      describe_mass_node(beam, blade, m, layout_.blade_mass(k, m));
+    describe_block(layout_.blade_tip(k), blade, "tip");
+    describe_end_support(beam, layout_.blade_tip(k), blade);
+    describe_root(layout_.blade_root(k), blade);
+    add_mass(layout_.blade_tip(k), beam.tip_mass, blade);
   }
 
   /// A rigid mass whose velocities are those of the block at `first`.
-  void add_mass(int first, const Matrix6& mass, const std::string& part, int blade, Frame frame) {
+  void add_mass(int first, const Matrix6& mass, const Owner& beam) {
     if (mass(0, 0) == 0.0) return;
-    EnergyGroup group{EnergyGroup::Kind::kinetic, part, "", blade, frame, {}, {}};
+    EnergyGroup group{EnergyGroup::Kind::kinetic, beam, "", frame_of(beam), {}, {}};
     for (int i = 0; i < 6; ++i) group.unknowns.push_back(first + 6 + i);
     group.weight.assign(mass.data(), mass.data() + mass.size());
     result_.groups.push_back(group);
@@ -165,26 +169,23 @@ class Describer {
   void describe_tower() {
     const model::Beam& beam = turbine_.tower;
     for (int p = 0; p < beam.point_count(); ++p) {
-      name_block(layout_.tower_point(p), "tower point " + std::to_string(p + 1));
-      add_energies(beam, p, layout_.tower_point(p), "tower", 0, Frame::fixed,
-                   {"axial", "lateral shear", "fore-aft shear", "torsion", "fore-aft", "lateral"});
+      describe_block(layout_.tower_point(p), tower, "point " + std::to_string(p + 1));
+      add_energies(beam, p, layout_.tower_point(p), tower,
+                   {"axial", "lateral", "fore-aft", "torsion", "fore-aft", "lateral"});
     }
-    for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
-      const int first = layout_.tower_mass(static_cast<int>(m));
-      name_mass_node(beam, static_cast<int>(m), first);
-      if (beam.mass_nodes[m].end == 0) describe_support(beam, first, 0, Frame::fixed);
-      add_mass(first, beam.mass_nodes[m].mass, "tower", 0, Frame::fixed);
-    }
-    name_block(layout_.tower_tip(), "tower top");
-    add_mass(layout_.tower_tip(), beam.tip_mass, "tower", 0, Frame::fixed);
-    name_root(layout_.tower_root(), "tower");
+    for (int m = 0; m < static_cast<int>(beam.mass_nodes.size()); ++m)
+      describe_mass_node(beam, tower, m, layout_.tower_mass(m));
+    describe_block(layout_.tower_tip(), tower, "top");
+    add_mass(layout_.tower_tip(), beam.tip_mass, tower);
+    describe_root(layout_.tower_root(), tower);
   }
 
-  void add_energies(const model::Beam& beam, int p, int first, const std::string& part, int blade,
-                    Frame frame, const std::array<const char*, 6>& motions) {
+  /// `directions`: those that strains and curvatures belong to, shear to the bending that it makes.
+  void add_energies(const model::Beam& beam, int p, int first, const Owner& owner,
+                    const std::array<const char*, 6>& directions) {
     const elements::BeamPoint& point = beam.points[static_cast<std::size_t>(p)];
     const double length = beam.point_length(p);
-    EnergyGroup kinetic{EnergyGroup::Kind::kinetic, part, "", blade, frame, {}, {}};
+    EnergyGroup kinetic{EnergyGroup::Kind::kinetic, owner, "", frame_of(owner), {}, {}};
     for (int i = 0; i < 6; ++i) kinetic.unknowns.push_back(first + 6 + i);
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) kinetic.weight.push_back(length * point.mass(i, j));
@@ -192,32 +193,32 @@ class Describer {
     for (int i = 0; i < 6; ++i) {
       if (point.compliance(i, i) <= 0.0) continue;
       result_.groups.push_back({EnergyGroup::Kind::strain,
-                                part,
-                                motions[static_cast<std::size_t>(i)],
-                                blade,
-                                frame,
+                                owner,
+                                directions[static_cast<std::size_t>(i)],
+                                frame_of(owner),
                                 {first + 12 + i},
                                 {length * point.compliance(i, i)},
                                 point.damping(i)});
     }
   }
 
-  void name_joint(int first, const std::string& name, bool free) {
+  void describe_joint(int first, const std::string& name, Frame frame, bool free) {
     const auto at = static_cast<std::size_t>(first);
-    result_.unknowns[at] = {name + " angle", "rad", UnknownRole::position};
-    result_.unknowns[at + 1] = {name + " speed", "rad/s", UnknownRole::velocity};
+    const Owner joint = joint_owner(name);
+    result_.unknowns[at] = {joint, "", "angle", "rad", UnknownRole::position, frame};
+    result_.unknowns[at + 1] = {joint, "", "speed", "rad/s", UnknownRole::velocity, frame};
     result_.rows[at] = free ? RowRole::kinematic : RowRole::constraint;
     result_.rows[at + 1] = free ? RowRole::balance : RowRole::kinematic;
   }
 
   void describe_joints() {
     const elements::RigidChain& chain = turbine_.chain;
-    name_joint(layout_.yaw(), "yaw", chain.yaw.free);
-    name_joint(layout_.teeter(), "teeter", chain.teeter.free);
-    name_joint(layout_.shaft_torsion(), "shaft torsion", chain.torsion.free);
-    name_joint(layout_.generator(), "generator", chain.generator.free);
+    describe_joint(layout_.yaw(), "yaw", Frame::fixed, chain.yaw.free);
+    describe_joint(layout_.teeter(), "teeter", Frame::rotating, chain.teeter.free);
+    describe_joint(layout_.shaft_torsion(), "shaft torsion", Frame::rotating, chain.torsion.free);
+    describe_joint(layout_.generator(), "generator", Frame::rotating, chain.generator.free);
     for (const int i : layout_.padding()) {
-      result_.unknowns[static_cast<std::size_t>(i)] = {"padding", "", UnknownRole::position};
+      result_.unknowns[static_cast<std::size_t>(i)] = {{PartKind::law, "padding"}, "", "", ""};
       result_.rows[static_cast<std::size_t>(i)] = RowRole::constraint;
     }
     if (chain.yaw.free && chain.yaw.stiffness == 0.0)
@@ -276,7 +277,7 @@ class Describer {
   void add_rigid_energies() {
     const elements::RigidChain& chain = turbine_.chain;
     const Matrix6 carried = carried_mass();
-    EnergyGroup group{EnergyGroup::Kind::kinetic, "nacelle", "", 0, Frame::fixed, {}, {}};
+    EnergyGroup group{EnergyGroup::Kind::kinetic, body_owner("nacelle"), "", Frame::fixed, {}, {}};
     if (turbine_.has_tower) {
       const int top = layout_.tower_tip();  // V = (U6 U7 U8), omega = (U3 U4 U1)
       group.unknowns = {top + 7, top + 8, top + 6, top + 10, top + 11, layout_.yaw() + 1};
@@ -293,9 +294,8 @@ class Describer {
       const double inertia = e.dot((chain.hub.inertia - chain.hub.mass * across * across) * e);
       if (inertia > 0.0)
         result_.groups.push_back({EnergyGroup::Kind::kinetic,
-                                  "hub",
-                                  "teeter",
-                                  0,
+                                  body_owner("hub"),
+                                  "",
                                   Frame::rotating,
                                   {layout_.teeter() + 1},
                                   {inertia}});
@@ -303,9 +303,8 @@ class Describer {
     const auto add_shaft = [this](int speed, double shaft_inertia) {
       if (shaft_inertia > 0.0)
         result_.groups.push_back({EnergyGroup::Kind::kinetic,
-                                  "drivetrain",
+                                  body_owner("drivetrain"),
                                   "",
-                                  0,
                                   Frame::rotating,
                                   {speed},
                                   {shaft_inertia}});
@@ -325,9 +324,8 @@ class Describer {
     const elements::RigidChain& chain = turbine_.chain;
     if (chain.generator_inertia == 0.0) return;
     EnergyGroup group{EnergyGroup::Kind::kinetic,
-                      "drivetrain",
+                      body_owner("drivetrain"),
                       "",
-                      0,
                       Frame::rotating,
                       {layout_.generator() + 1},
                       {}};
@@ -351,9 +349,8 @@ class Describer {
   void add_spring(const elements::Hinge& hinge, const std::string& name, Frame frame, int angle) {
     if (!hinge.free || hinge.stiffness == 0.0) return;
     result_.groups.push_back({EnergyGroup::Kind::strain,
-                              "joint",
-                              name,
-                              0,
+                              joint_owner(name),
+                              "",
                               frame,
                               {angle},
                               {hinge.stiffness},

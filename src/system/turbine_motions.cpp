@@ -16,6 +16,8 @@ using Vector6c = Eigen::Matrix<Complex, 6, 1>;
 struct Directions {
   std::array<const char*, 4> names;
   std::array<int, 6> motion;
+
+  const char* name(int i) const { return names[static_cast<std::size_t>(i)]; }
 };
 /// About b2 a beam bends along b3, and about b3 along b2.
 constexpr std::array<int, 6> bending{0, 1, 2, 3, 2, 1};
@@ -26,6 +28,8 @@ constexpr Directions root_directions{{"support", "pitch hinge", "flap hinge", "l
                                      {0, 0, 0, 1, 2, 3}};
 constexpr Directions foundation_directions{{"", "", "", ""}, {0, 0, 0, 0, 0, 0}};
 constexpr int motions_a_beam = 4;
+/// Of the four motions of a beam, in all lists of names.
+constexpr bool bends(int i) { return i == 1 || i == 2; }
 
 enum Joint { yaw, teeter, torsion, generator, joints };
 constexpr std::array<const char*, joints> joint_names{"yaw", "teeter", "shaft torsion",
@@ -367,13 +371,12 @@ std::vector<Motion> motions_of(const model::Turbine& turbine, const model::Layou
     const model::Beam& beam = turbine.blades[k];
     const int blade = static_cast<int>(k);
     for (int i = 0; i < motions_a_beam; ++i) {
-      Motion motion{
-          "blade", blade_directions.names[static_cast<std::size_t>(i)], blade + 1, {}, {}};
+      Motion motion{{PartKind::beam, "blade", blade + 1}, blade_directions.name(i), bends(i)};
       add_positions(beam, layout, blade, i, motion);
       motions.push_back(motion);
     }
     for (int i = 0; i < motions_a_beam; ++i) {
-      Motion motion{"blade", root_directions.names[static_cast<std::size_t>(i)], blade + 1, {}, {}};
+      Motion motion{{PartKind::support, "blade", blade + 1}, root_directions.name(i)};
       for (int j = 0; beam.has_support && j < 6; ++j) {
         if (root_directions.motion[static_cast<std::size_t>(j)] != i) continue;
         motion.unknowns.push_back(layout.blade_mass(blade, 0) + j);
@@ -383,11 +386,12 @@ std::vector<Motion> motions_of(const model::Turbine& turbine, const model::Layou
     }
   }
   if (turbine.has_tower) {
-    for (const char* name : tower_directions.names) motions.push_back({"tower", name, 0, {}, {}});
-    for (const char* name : foundation_directions.names)
-      motions.push_back({"foundation", name, 0, {}, {}});
+    for (int i = 0; i < motions_a_beam; ++i)
+      motions.push_back({{PartKind::beam, "tower"}, tower_directions.name(i), bends(i)});
+    for (int i = 0; i < motions_a_beam; ++i)
+      motions.push_back({{PartKind::support, "foundation"}, foundation_directions.name(i)});
   }
-  for (const char* name : joint_names) motions.push_back({name, "", 0, {}, {}});
+  for (const char* name : joint_names) motions.push_back({{PartKind::joint, name}});
   return motions;
 }
 

@@ -202,7 +202,7 @@ BOOST_AUTO_TEST_CASE(nonlinear_state_obeys_constraints_and_kinematics) {
     const double value = std::abs(view[static_cast<PetscInt>(i)]);
     if (system.rows()[i] == RowRole::constraint) BOOST_TEST(value < 1e-10);
     if (system.rows()[i] == RowRole::kinematic)  // differences: step^2 and rounding / step
-      BOOST_TEST(value < 1e-7, system.unknowns()[i].name << " " << value);
+      BOOST_TEST(value < 1e-7, system.unknowns()[i].name() << " " << value);
   }
 }
 

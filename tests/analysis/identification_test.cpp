@@ -29,36 +29,25 @@ class Described final : public SmallSystem {
       add_velocity(name + " V");
       add(name + " M2", UnknownRole::internal, RowRole::balance);
       add(name + " M3", UnknownRole::internal, RowRole::balance);
-      groups_.push_back(
-          {EnergyGroup::Kind::kinetic, "blade", "", blade, Frame::rotating, {first + 1}, {2.0}});
-      groups_.push_back(
-          {EnergyGroup::Kind::strain, "blade", "flap", blade, Frame::rotating, {first + 2}, {1.0}});
-      groups_.push_back({EnergyGroup::Kind::strain,
-                         "blade",
-                         "lead-lag",
-                         blade,
-                         Frame::rotating,
-                         {first + 3},
-                         {1.0}});
+      const Owner owner(PartKind::beam, "blade", blade);
+      add_energy(EnergyGroup::Kind::kinetic, owner, "", {first + 1}, {2.0});
+      add_energy(EnergyGroup::Kind::strain, owner, "flap", {first + 2}, {1.0});
+      add_energy(EnergyGroup::Kind::strain, owner, "lead-lag", {first + 3}, {1.0});
     }
     const auto first = static_cast<PetscInt>(unknowns_.size());  // 8
     add_position("tower u");
     add_velocity("tower V");
     add_velocity("tower Omega");
     add("tower M", UnknownRole::internal, RowRole::balance);
-    groups_.push_back({EnergyGroup::Kind::kinetic,
-                       "tower",
-                       "",
-                       0,
-                       Frame::fixed,
-                       {first + 1, first + 2},
-                       {3.0, 0.5, 0.5, 1.0}});
-    groups_.push_back(
-        {EnergyGroup::Kind::strain, "tower", "fore-aft", 0, Frame::fixed, {first + 3}, {1.0}});
-    add_position("yaw angle");
-    add_velocity("yaw speed");
-    add_position("teeter angle");
-    add_velocity("teeter speed");
+    const Owner tower(PartKind::beam, "tower");
+    add_energy(EnergyGroup::Kind::kinetic, tower, "", {first + 1, first + 2}, {3.0, 0.5, 0.5, 1.0});
+    add_energy(EnergyGroup::Kind::strain, tower, "fore-aft", {first + 3}, {1.0});
+    for (const char* joint : {"yaw", "teeter"}) {
+      add_position("angle");
+      unknowns_.back().owner = Owner(PartKind::joint, joint);
+      add_velocity("speed");
+      unknowns_.back().owner = Owner(PartKind::joint, joint);
+    }
   }
   void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd&,
                    Eigen::MatrixXd&) const override {}
@@ -168,13 +157,8 @@ class Body final : public SmallSystem {
       unknowns.push_back(static_cast<PetscInt>(unknowns_.size()));
       add_velocity("V" + std::to_string(i));
     }
-    groups_.push_back({EnergyGroup::Kind::kinetic,
-                       "body",
-                       "",
-                       0,
-                       Frame::fixed,
-                       unknowns,
-                       {weight.data(), weight.data() + weight.size()}});
+    add_energy(EnergyGroup::Kind::kinetic, {PartKind::body, "body"}, "", unknowns,
+               {weight.data(), weight.data() + weight.size()});
   }
   void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd&,
                    Eigen::MatrixXd&) const override {}

@@ -18,6 +18,8 @@ namespace samara::test {
 
 using system::EnergyGroup;
 using system::Frame;
+using system::Owner;
+using system::PartKind;
 using system::RowRole;
 using system::UnknownRole;
 
@@ -76,7 +78,7 @@ class SmallSystem : public system::PeriodicSystem {
  protected:
   /// Adds an unknown and the row in its place; velocities and positions are differential.
   void add(const std::string& name, UnknownRole role, RowRole row) {
-    unknowns_.push_back({name, "", role});
+    unknowns_.push_back({Owner(PartKind::body, ""), "", name, "", role});
     rows_.push_back(row);
     differential_.push_back(role != UnknownRole::internal);
     symmetry_.source.push_back(static_cast<PetscInt>(symmetry_.source.size()));
@@ -87,7 +89,18 @@ class SmallSystem : public system::PeriodicSystem {
   }
   void add_velocity(const std::string& name) { add(name, UnknownRole::velocity, RowRole::balance); }
   void add_kinetic(const std::string& part, PetscInt unknown, double mass) {
-    groups_.push_back({EnergyGroup::Kind::kinetic, part, "", 0, Frame::fixed, {unknown}, {mass}});
+    add_energy(EnergyGroup::Kind::kinetic, {PartKind::body, part}, "", {unknown}, {mass});
+  }
+  void add_energy(EnergyGroup::Kind kind, const Owner& owner, const std::string& direction,
+                  const std::vector<PetscInt>& unknowns, const std::vector<double>& weight) {
+    EnergyGroup group;
+    group.kind = kind;
+    group.owner = owner;
+    group.direction = direction;
+    group.frame = owner.instance > 0 ? Frame::rotating : Frame::fixed;
+    group.unknowns = unknowns;
+    group.weight = weight;
+    groups_.push_back(group);
   }
 
   double period_ = 0.0;
@@ -214,8 +227,8 @@ class TurningMass final : public SmallSystem {
     add_position("y");
     add_velocity("V1");
     add_velocity("V2");
-    groups_.push_back(
-        {EnergyGroup::Kind::kinetic, "mass", "", 0, Frame::rotating, {2, 3}, {1.0, 0.0, 0.0, 1.0}});
+    add_energy(EnergyGroup::Kind::kinetic, {PartKind::body, "mass"}, "", {2, 3},
+               {1.0, 0.0, 0.0, 1.0});
   }
   void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
                    Eigen::MatrixXd& M) const override {
@@ -249,13 +262,9 @@ class GroundResonance final : public SmallSystem {
       add_position(i < blades ? "zeta " + std::to_string(i + 1) : i == blades ? "x" : "y");
     for (int i = 0; i < coordinates(); ++i) add_velocity("speed " + std::to_string(i + 1));
     for (int i = 0; i < coordinates(); ++i)
-      groups_.push_back({EnergyGroup::Kind::kinetic,
-                         i < blades ? "blade" : "hub",
-                         "",
-                         i < blades ? i + 1 : 0,
-                         i < blades ? Frame::rotating : Frame::fixed,
-                         {static_cast<PetscInt>(coordinates() + i)},
-                         {1.0}});
+      add_energy(EnergyGroup::Kind::kinetic,
+                 i < blades ? Owner(PartKind::body, "blade", i + 1) : Owner(PartKind::body, "hub"),
+                 "", {static_cast<PetscInt>(coordinates() + i)}, {1.0});
     // Blade k + 1 of P z is blade k of z.
     symmetry_.sectors = blades;
     for (int k = 0; k < blades; ++k)

@@ -52,8 +52,8 @@ class Dump {
     // Unknowns that stand for nothing have one name.
     std::map<std::string, int> found;
     for (const system::Unknown& unknown : system_.unknowns()) {
-      const int number = ++found[unknown.name];
-      names_.push_back(unknown.name + (number > 1 ? " " + std::to_string(number) : ""));
+      const int number = ++found[unknown.name()];
+      names_.push_back(unknown.name() + (number > 1 ? " " + std::to_string(number) : ""));
     }
   }
 
@@ -147,8 +147,8 @@ class Dump {
           energy +=
               view[group.unknowns[i]] * group.weight[i * n + j] * view[group.unknowns[j]] / 2.0;
       const std::string word = group.kind == system::EnergyGroup::Kind::kinetic ? "T" : "U";
-      sums[word + "\t" + group.part + "\t" + group.motion + "\t" + std::to_string(group.blade) +
-           "\t" + name(group.unknowns.front())] += energy;
+      sums[word + "\t" + group.owner.part + "\t" + group.direction + "\t" +
+           std::to_string(group.owner.instance) + "\t" + name(group.unknowns.front())] += energy;
     }
     for (const auto& [names, energy] : sums) put(before + "energy", names, energy);
   }

@@ -203,12 +203,12 @@ BOOST_AUTO_TEST_CASE(reference_state_is_undeformed_and_satisfies_constraints_and
       for (int i = 0; i < system.size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
         const system::Unknown& unknown = system.unknowns()[at];
-        const bool prescribed =
-            choice.prescribed && (unknown.name == "yaw angle" || unknown.name == "teeter angle");
+        const bool prescribed = choice.prescribed &&
+                                (unknown.name() == "yaw angle" || unknown.name() == "teeter angle");
         if (unknown.role != system::UnknownRole::velocity && !prescribed)
-          BOOST_TEST(z(i) == 0.0, unknown.name);
+          BOOST_TEST(z(i) == 0.0, unknown.name());
         if (system.rows()[at] != system::RowRole::balance)
-          BOOST_TEST(std::abs(r(i)) < rounding, unknown.name);
+          BOOST_TEST(std::abs(r(i)) < rounding, unknown.name());
       }
     }
   }

@@ -187,8 +187,8 @@ std::string find_outside(const Places& inner, const Places& outer,
                          const system::PeriodicSystem& system) {
   for (const auto& [i, j] : inner)
     if (outer.count({i, j}) == 0)
-      return "row of " + system.unknowns()[static_cast<std::size_t>(i)].name + ", column of " +
-             system.unknowns()[static_cast<std::size_t>(j)].name;
+      return "row of " + system.unknowns()[static_cast<std::size_t>(i)].name() + ", column of " +
+             system.unknowns()[static_cast<std::size_t>(j)].name();
   return "";
 }
 
@@ -203,7 +203,7 @@ std::pair<double, double> check_pattern(const system::TurbineSystem& system) {
   std::vector<bool> has_rate(static_cast<std::size_t>(system.size()), false);
   for (const auto& [i, j] : found.M) has_rate[static_cast<std::size_t>(j)] = true;
   for (std::size_t i = 0; i < has_rate.size(); ++i)
-    BOOST_TEST(system.differential()[i] == has_rate[i], system.unknowns()[i].name);
+    BOOST_TEST(system.differential()[i] == has_rate[i], system.unknowns()[i].name());
   Places filled = found.K;
   filled.insert(found.M.begin(), found.M.end());
   return {static_cast<double>(declared.size()), static_cast<double>(filled.size())};

@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(weight_appears_in_the_loads) {
   const auto& unknowns = system->unknowns();
   const auto row = [&](const std::string& name) {
     for (std::size_t i = 0; i < unknowns.size(); ++i)
-      if (unknowns[i].name == name) return static_cast<Eigen::Index>(i);
+      if (unknowns[i].name() == name) return static_cast<Eigen::Index>(i);
     BOOST_FAIL("no unknown " + name);
     return Eigen::Index{0};
   };

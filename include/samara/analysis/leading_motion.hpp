@@ -16,7 +16,7 @@ int blades_of(const std::vector<system::Motion>& motions);
 
 /// The motion that a mode is named after: that with most kinetic and strain energy.
 struct LeadingMotion {
-  std::string part, name;
+  system::Motion motion;
   /// How the blades do it together: in n each is 2 pi n / B ahead of the one behind it, -1: none of
   /// them clearly.
   int component = -1;

@@ -53,9 +53,12 @@ struct InputColumn {
   int derivative = 0;
 };
 
+/// Behind the name of a coordinate whose rate is a state.
+inline constexpr char rate_word[] = " rate";
+
 /// A state: unknown = scale times state.
 struct ModelState {
-  std::string name;  ///< of the unknown, with " rate" behind it in the second half
+  std::string name;  ///< of the unknown, with rate_word behind it in the second half
   std::string unit;  ///< of the unknown
   double scale = 1.0;
 };

@@ -11,59 +11,9 @@
 
 #include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
+#include "samara/system/metadata.hpp"
 
 namespace samara::system {
-
-/// What an unknown is in the mechanics of the system.
-enum class UnknownRole {
-  position,  ///< displacement, rotation, joint coordinate
-  velocity,  ///< velocity, generalized speed
-  internal,  ///< force, moment, reaction
-};
-
-/// What a row says.
-enum class RowRole {
-  constraint,  ///< position level, without rates: strain, curvature, a locked joint
-  kinematic,   ///< velocity = rate of position
-  balance,     ///< force and moment
-};
-
-enum class Frame { fixed, rotating };
-
-struct Unknown {
-  std::string name;  ///< "blade 1 point 3 theta2"
-  std::string unit;
-  UnknownRole role = UnknownRole::position;
-  /// A position that constraints tie others to, free itself: that of a hinge. Its row, in the same
-  /// place, is the load on a support that is not there.
-  bool is_free = false;
-};
-
-/// Unknowns that belong together, with their share of an energy e = z^T weight z / 2. Kinetic:
-/// inertial velocities, components in the part's own frame. Strain: internal loads.
-struct EnergyGroup {
-  enum class Kind { kinetic, strain };
-  Kind kind = Kind::kinetic;
-  std::string part;    ///< "tower", "nacelle", "hub", "blade"
-  std::string motion;  ///< "fore-aft", "lateral", "torsion", "flap", "lead-lag", "yaw", ...
-  int blade = 0;       ///< from 1; 0 = no blade
-  Frame frame = Frame::fixed;
-  std::vector<PetscInt> unknowns;
-  std::vector<double> weight;  ///< row by row, unknowns x unknowns, symmetric
-  double damping = 0.0;  ///< mu [s] of a strain: its load is the elastic one times 1 + mu d/dt
-};
-
-/// A way in which a system moves: a part deforms in a direction, or a joint or a support turns or
-/// gives way. The motions together make any position of the system.
-struct Motion {
-  std::string part;  ///< "blade", "tower", or the motion's own where a joint moves
-  std::string name;  ///< "flap", "fore-aft", "flap hinge"; empty where the part says it all
-  int blade = 0;     ///< from 1; 0 = no blade
-  /// Positions of a blade in this direction, in the order of every other blade, and their masses or
-  /// inertias.
-  std::vector<PetscInt> unknowns;
-  std::vector<double> weight;
-};
 
 /// Kinetic energy by motion, about one state (docs/theory.md, section 5.6).
 class MotionEnergies {
@@ -77,35 +27,6 @@ class MotionEnergies {
   /// `whole`: with `z_dot` the rates of all positions as well, the sum is the kinetic energy.
   virtual Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
                              const Eigen::Ref<const Eigen::VectorXcd>& whole) const = 0;
-};
-
-/// An element of a mesh. The motion z exp(lambda t) has half a sum of squares of the signals
-/// (constant + |lambda| rate) z as the energy of what the element's polynomials leave out, of which
-/// twice the kinetic energy of the whole motion is the relative error of lambda (docs/theory.md,
-/// section 5.9).
-struct MeshError {
-  std::vector<PetscInt> unknowns;
-  Eigen::MatrixXd constant;  ///< signals x unknowns
-  Eigen::MatrixXd rate;      ///< signals x unknowns, times |lambda| [rad/s]
-  /// unknowns x unknowns, symmetric: half of z* remainder z is the energy of sections between the
-  /// element's points that these leave out, of either sign.
-  Eigen::MatrixXd remainder;
-};
-
-/// A coordinate whose mean nothing restores, and the row of the load that would hold it.
-struct NeutralCoordinate {
-  std::string name;  ///< "yaw"
-  PetscInt unknown = 0;
-  PetscInt row = 0;
-  std::string unit;  ///< of the load: "N m"
-};
-
-/// z~(t) = P z(t + T/Q): entry i of P z is sign[i] z[source[i]] (docs/theory.md, section 5).
-struct RotorSymmetry {
-  int sectors = 1;        ///< Q
-  std::string broken_by;  ///< why a rotor of several blades does not repeat; empty if it does
-  std::vector<PetscInt> source;
-  std::vector<double> sign;
 };
 
 class PeriodicSystem {
