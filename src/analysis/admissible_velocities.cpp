@@ -47,10 +47,12 @@ void AdmissibleVelocities::classify(double t, Vec z) {
     for (Eigen::SparseMatrix<double>::InnerIterator it(K, static_cast<Eigen::Index>(j)); it; ++it)
       is_constrained = is_constrained ||
                        system_.rows()[static_cast<std::size_t>(it.row())] == RowRole::constraint;
-    columns_.push_back(role == UnknownRole::position   ? Column::position
-                       : role == UnknownRole::velocity ? Column::velocity
-                       : is_constrained                ? Column::elastic
-                                                       : Column::reaction);
+    columns_.push_back(role == UnknownRole::position    ? Column::position
+                       : role == UnknownRole::velocity  ? Column::velocity
+                       : role == UnknownRole::state     ? Column::state
+                       : role == UnknownRole::auxiliary ? Column::auxiliary
+                       : is_constrained                 ? Column::elastic
+                                                        : Column::reaction);
     if (columns_.back() == Column::position || columns_.back() == Column::elastic) ++freedom;
     if (columns_.back() == Column::velocity) ++velocities;
     if (system_.rows()[j] == RowRole::constraint) --freedom;
@@ -58,22 +60,30 @@ void AdmissibleVelocities::classify(double t, Vec z) {
   is_restricted_ = velocities > freedom;
 }
 
-/// From K and M, in the columns rates of positions and of elastic loads, velocities, impulses:
-///     constraint   K_p   K_e    0     0
-///     kinematic    M_p    0    K_v    0
-///     balance       0     0    M_v   K_r
+/// From K and M, in the columns rates of positions and of elastic loads, velocities, impulses,
+/// rates of states, and auxiliaries, which are not asked for:
+///     constraint   K_p   K_e    0     0   K_x    0
+///     kinematic    M_p    0    K_v    0    0     0
+///     balance       0     0    M_v   K_r   0     0
+///     evolution     0     0     0     0   M_x    0
+///     definition    0     0     0     0    0    K_a
 void AdmissibleVelocities::build() {
   const auto row = [this](PetscInt i) { return system_.rows()[static_cast<std::size_t>(i)]; };
   const auto column = [this](PetscInt j) { return columns_[static_cast<std::size_t>(j)]; };
   MatrixEntries(matrix_.get()).for_each([&](PetscInt i, PetscInt j, PetscScalar& value) {
     if (row(i) == RowRole::constraint) return;
-    if (column(j) != (row(i) == RowRole::kinematic ? Column::velocity : Column::reaction))
-      value = 0.0;
+    const bool is_kept = row(i) == RowRole::kinematic    ? column(j) == Column::velocity
+                         : row(i) == RowRole::balance    ? column(j) == Column::reaction
+                         : row(i) == RowRole::definition ? column(j) == Column::auxiliary
+                                                         : false;
+    if (!is_kept) value = 0.0;
   });
   std::vector<PetscScalar> kept;
   for (PetscInt i = 0; i < system_.size(); ++i) {
-    const Column wanted = row(i) == RowRole::kinematic ? Column::position : Column::velocity;
-    if (row(i) == RowRole::constraint) continue;
+    if (row(i) == RowRole::constraint || row(i) == RowRole::definition) continue;
+    const Column wanted = row(i) == RowRole::kinematic ? Column::position
+                          : row(i) == RowRole::balance ? Column::velocity
+                                                       : Column::state;
     PetscInt count = 0;
     const PetscInt* at = nullptr;
     const PetscScalar* values = nullptr;
@@ -99,6 +109,7 @@ Jumps AdmissibleVelocities::correct(double t, Vec z, const Eigen::VectorXd& jump
   };
   system_.residual(t, z, rates_.get(), r_.get());
   take(r_.get(), 0, RowRole::kinematic, -1.0);
+  take(r_.get(), 0, RowRole::evolution, -1.0);
   if (!system_.constraints_are_autonomous())
     for (const double side : {-1.0, 1.0}) {
       system_.residual(t + side * interval_, z, rates_.get(), r_.get());

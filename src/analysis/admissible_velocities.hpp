@@ -34,7 +34,7 @@ class AdmissibleVelocities {
   Jumps correct(double t, Vec z, const Eigen::VectorXd& jump);
 
  private:
-  enum class Column { position, velocity, elastic, reaction };
+  enum class Column { position, velocity, elastic, reaction, state, auxiliary };
 
   void classify(double t, Vec z);
   void build();

@@ -21,6 +21,7 @@ constexpr double least_pivot = 1e-9;
 ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution)
     : system_(system), solution_(solution) {
+  require_roles(system);
   const auto n = static_cast<std::size_t>(system.size());
   const SparseTangents at_start = tangents_on(system, solution, 0.0);
   for (std::size_t i = 0; i < n; ++i)
@@ -62,10 +63,67 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
       velocities_.push_back(static_cast<PetscInt>(i));
     if (system.unknowns()[i].role == system::UnknownRole::internal && !carried_[i])
       reactions_.push_back(static_cast<PetscInt>(i));
+    if (system.unknowns()[i].role == system::UnknownRole::position)
+      positions_.push_back(static_cast<PetscInt>(i));
+    if (system.unknowns()[i].role == system::UnknownRole::auxiliary)
+      auxiliaries_.push_back(static_cast<PetscInt>(i));
   }
-  if (kinematic_.size() != velocities_.size())
-    throw InternalError("kinematic rows and velocities differ in number");
+  find_states(at_start.M);
   fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
+}
+
+/// A state's evolution row stands in its place. Definition rows have no rates.
+void ConsistentSubspace::find_states(const Eigen::SparseMatrix<double>& M) {
+  for (std::size_t i = 0; i < system_.rows().size(); ++i) {
+    if (system_.rows()[i] != system::RowRole::evolution) continue;
+    states_.push_back(static_cast<PetscInt>(i));
+    evolution_.push_back(static_cast<PetscInt>(i));
+    state_scale_.push_back(system_.unknowns()[i].scale);
+  }
+  if (states_.empty() && auxiliaries_.empty()) return;
+  const std::vector<std::vector<PetscInt>> pattern = system_.pattern();
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const auto contains_it = [&](PetscInt row) {
+      return std::ranges::binary_search(pattern[static_cast<std::size_t>(row)], states_[i]);
+    };
+    if (std::ranges::any_of(constraints_, contains_it))
+      driving_.push_back(static_cast<PetscInt>(i));
+  }
+  for (Eigen::Index j = 0; j < M.outerSize(); ++j)
+    for (Sparse::InnerIterator it(M, j); it; ++it) {
+      const auto row = static_cast<std::size_t>(it.row());
+      const system::RowRole role = system_.rows()[row];
+      if (it.value() != 0.0 &&
+          (role == system::RowRole::definition || role == system::RowRole::constraint))
+        throw InternalError(std::string("the ") + word_of(role) + " row of \"" +
+                            system_.unknowns()[row].name() + "\" contains the rate of \"" +
+                            system_.unknowns()[static_cast<std::size_t>(j)].name() + '"');
+    }
+}
+
+/// Rates of the states that constraint rows contain, of states that are the columns of z: from
+/// their own evolution rows, which are free of velocities and loads (require_roles), so that they
+/// are known before the velocities are.
+Eigen::MatrixXd ConsistentSubspace::driving_rates(const Eigen::SparseMatrix<double>& K,
+                                                  const Eigen::SparseMatrix<double>& M,
+                                                  const Eigen::MatrixXd& z) const {
+  std::vector<PetscInt> driving;
+  for (const PetscInt i : driving_) driving.push_back(states_[static_cast<std::size_t>(i)]);
+  std::vector<PetscInt> others = positions_;
+  others.insert(others.end(), states_.begin(), states_.end());
+  const Sparse inertia = rows_of(M, driving);
+  for (Eigen::Index j = 0; j < inertia.outerSize(); ++j)
+    for (Sparse::InnerIterator it(inertia, j); it; ++it)
+      if (it.value() != 0.0 && !std::ranges::binary_search(driving, static_cast<PetscInt>(j)))
+        throw InternalError(
+            "the evolution row of \"" +
+            system_
+                .unknowns()[static_cast<std::size_t>(driving[static_cast<std::size_t>(it.row())])]
+                .name() +
+            "\", a state in a constraint row, contains the rate of \"" +
+            system_.unknowns()[static_cast<std::size_t>(j)].name() + '"');
+  return SparseSolver(part(M, driving, driving), "evolution rows")
+      .solve(-(part(K, driving, others) * z(others, Eigen::all)));
 }
 
 /// Places in eta of a coordinate and all its images under the rotor's symmetry, the first first.
@@ -152,14 +210,30 @@ Eigen::MatrixXd ConsistentSubspace::coordinates_of(const Eigen::MatrixXd& z) con
   return eta;
 }
 
+Eigen::MatrixXd ConsistentSubspace::states_of(const Eigen::MatrixXd& z) const {
+  Eigen::MatrixXd xi(first_order(), z.cols());
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    xi.row(static_cast<Eigen::Index>(i)) = z.row(states_[i]) / state_scale_[i];
+  return xi;
+}
+
+/// Of a unit of each entry of eta and of xi: positions, internal loads in eta, and states.
+
 Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
   const SparseTangents tangents = tangents_on(system_, solution_, t);
   const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
-  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(system_.size(), d);
+  const auto n_1 = static_cast<Eigen::Index>(first_order());
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(system_.size(), d + n_1);
   for (Eigen::Index i = 0; i < d; ++i)
     z(coordinates_[static_cast<std::size_t>(i)], i) = scale_[static_cast<std::size_t>(i)];
-  const Eigen::MatrixXd strained = part(tangents.K, constraints_, coordinates_) *
-                                   Eigen::Map<const Eigen::VectorXd>(scale_.data(), d).asDiagonal();
+  for (Eigen::Index i = 0; i < n_1; ++i)
+    z(states_[static_cast<std::size_t>(i)], d + i) = state_scale_[static_cast<std::size_t>(i)];
+  Eigen::MatrixXd strained(static_cast<Eigen::Index>(constraints_.size()), d + n_1);
+  strained.leftCols(d) = part(tangents.K, constraints_, coordinates_) *
+                         Eigen::Map<const Eigen::VectorXd>(scale_.data(), d).asDiagonal();
+  strained.rightCols(n_1) =
+      part(tangents.K, constraints_, states_) *
+      Eigen::Map<const Eigen::VectorXd>(state_scale_.data(), n_1).asDiagonal();
   const Eigen::MatrixXd tied =
       SparseSolver(part(tangents.K, constraints_, tied_), "constraints").solve(-strained);
   for (std::size_t i = 0; i < tied_.size(); ++i)
@@ -169,28 +243,34 @@ Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
 
 Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
   const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
+  const auto n_1 = static_cast<Eigen::Index>(first_order());
   const Eigen::Index n = system_.size();
-  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(n, 2 * d);
-  Eigen::MatrixXd z_dot = Eigen::MatrixXd::Zero(n, 2 * d);
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(n, 2 * d + n_1);
+  Eigen::MatrixXd z_dot = Eigen::MatrixXd::Zero(n, 2 * d + n_1);  // of positions
   const Eigen::MatrixXd Z = positions(t);
-  z.leftCols(d) = Z;
-  z_dot.rightCols(d) = Z;
-  if (!fixed_constraints_)
-    z_dot.leftCols(d) = (positions(t + rate_step) - positions(t - rate_step)) / (2.0 * rate_step);
-
-  std::vector<PetscInt> position_unknowns;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i)
-    if (system_.unknowns()[i].role == system::UnknownRole::position)
-      position_unknowns.push_back(static_cast<PetscInt>(i));
-  const SparseTangents tangents = tangents_on(system_, solution_, t);
-  Eigen::MatrixXd p(static_cast<Eigen::Index>(position_unknowns.size()), 2 * d);
-  Eigen::MatrixXd p_dot(p.rows(), 2 * d);
-  for (std::size_t i = 0; i < position_unknowns.size(); ++i) {
-    p.row(static_cast<Eigen::Index>(i)) = z.row(position_unknowns[i]);
-    p_dot.row(static_cast<Eigen::Index>(i)) = z_dot.row(position_unknowns[i]);
+  z.leftCols(d) = Z.leftCols(d);
+  z.rightCols(n_1) = Z.rightCols(n_1);
+  z_dot.middleCols(d, d) = Z.leftCols(d);
+  if (!fixed_constraints_) {
+    const Eigen::MatrixXd Z_dot =
+        (positions(t + rate_step) - positions(t - rate_step)) / (2.0 * rate_step);
+    z_dot.leftCols(d) = Z_dot.leftCols(d);
+    z_dot.rightCols(n_1) = Z_dot.rightCols(n_1);
   }
-  const Eigen::MatrixXd right = part(tangents.K, kinematic_, position_unknowns) * p +
-                                part(tangents.M, kinematic_, position_unknowns) * p_dot;
+  const SparseTangents tangents = tangents_on(system_, solution_, t);
+  if (!driving_.empty()) {
+    const Eigen::MatrixXd rates = driving_rates(tangents.K, tangents.M, z);
+    for (std::size_t i = 0; i < driving_.size(); ++i) {
+      const auto place = static_cast<std::size_t>(driving_[i]);
+      z_dot +=
+          Z.col(d + driving_[i]) * (rates.row(static_cast<Eigen::Index>(i)) / state_scale_[place]);
+    }
+  }
+  const Eigen::MatrixXd p = z(positions_, Eigen::all);
+  const Eigen::MatrixXd p_dot = z_dot(positions_, Eigen::all);
+  Eigen::MatrixXd right = part(tangents.K, kinematic_, positions_) * p +
+                          part(tangents.M, kinematic_, positions_) * p_dot;
+  if (n_1 > 0) right += part(tangents.K, kinematic_, states_) * z(states_, Eigen::all);
   const Eigen::MatrixXd v =
       SparseSolver(part(tangents.K, kinematic_, velocities_), "kinematic rows").solve(-right);
   for (std::size_t i = 0; i < velocities_.size(); ++i)
@@ -201,10 +281,14 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
 Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
                                              double rate_step) const {
   const Eigen::Index d = degrees_of_freedom();
-  Eigen::MatrixXd state(2 * d, z.cols());
+  const Eigen::Index n_1 = first_order();
+  Eigen::MatrixXd state(2 * d + n_1, z.cols());
   state.topRows(d) = coordinates_of(z);
-  const Eigen::MatrixXd at_rest = basis(t, rate_step)(velocities_, Eigen::seqN(0, d));
-  const Eigen::MatrixXd moving = z(velocities_, Eigen::all) - multiply(at_rest, state.topRows(d));
+  state.bottomRows(n_1) = states_of(z);
+  const Eigen::MatrixXd all = basis(t, rate_step)(velocities_, Eigen::all);
+  const Eigen::MatrixXd at_rest = all.leftCols(d);
+  Eigen::MatrixXd moving = z(velocities_, Eigen::all) - multiply(at_rest, state.topRows(d));
+  if (n_1 > 0) moving -= multiply(all.rightCols(n_1), state.bottomRows(n_1));
 
   // D p_dot + D_eta eta_dot = 0, velocities V of these rates, and M (V - moving) + E_y y = 0 in the
   // balance rows, with the impulses y of the reactions.
@@ -259,12 +343,38 @@ Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
   right.bottomRows(balances) = row_scale.tail(balances).asDiagonal() * (inertia * moving);
   const Eigen::MatrixXd found =
       SparseSolver(row_scale.asDiagonal() * matrix, "momenta").solve(right);
-  state.bottomRows(d) = found.middleRows(static_cast<Eigen::Index>(tied_.size()), d);
+  state.middleRows(d, d) = found.middleRows(static_cast<Eigen::Index>(tied_.size()), d);
   return state;
 }
 
-void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
-                                    const Eigen::VectorXd& eta_dot, Vec z) const {
+/// Rates of the states that constraint rows contain, into theirs of `rates`: their evolution rows
+/// are linear in them.
+void ConsistentSubspace::find_driving_rates(double t, Vec z, Eigen::MatrixXd& rates) const {
+  std::vector<PetscInt> driving;
+  for (const PetscInt i : driving_) driving.push_back(states_[static_cast<std::size_t>(i)]);
+  const petsc::Handle<Vec> z_dot = system_.make_state();
+  const petsc::Handle<Vec> r = system_.make_state();
+  const petsc::Handle<Mat> jacobian = system_.make_jacobian();
+  const petsc::Handle<Mat> mass = system_.make_mass();
+  system_.residual(t, z, z_dot.get(), r.get());
+  system_.tangents(t, z, z_dot.get(), 0.0, jacobian.get(), mass.get());
+  Eigen::VectorXd right(static_cast<Eigen::Index>(driving.size()));
+  {
+    const petsc::ReadView view(r.get());
+    for (std::size_t i = 0; i < driving.size(); ++i)
+      right(static_cast<Eigen::Index>(i)) = -view[driving[i]];
+  }
+  const Eigen::MatrixXd found =
+      SparseSolver(part(to_sparse(mass.get()), driving, driving), "evolution rows").solve(right);
+  for (std::size_t i = 0; i < driving.size(); ++i)
+    rates(driving[i], 0) = found(static_cast<Eigen::Index>(i), 0);
+}
+
+void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& reduced, Vec z) const {
+  const Eigen::Index d = degrees_of_freedom();
+  const Eigen::VectorXd eta = reduced.head(d);
+  const Eigen::VectorXd eta_dot = reduced.segment(d, d);
+  const Eigen::VectorXd xi = reduced.tail(first_order());
   constexpr int most_steps = 30;
   constexpr double tolerance = 1e-13;
   const auto n = static_cast<Eigen::Index>(system_.size());
@@ -282,6 +392,8 @@ void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
     const petsc::WriteView view(z);
     for (std::size_t i = 0; i < coordinates_.size(); ++i)
       view[coordinates_[i]] = scale_[i] * eta(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      view[states_[i]] = state_scale_[i] * xi(static_cast<Eigen::Index>(i));
   }
   Eigen::SparseMatrix<double> K;
   for (int step = 0;; ++step) {
@@ -303,9 +415,11 @@ void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& eta,
   Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(n, 1);
   for (std::size_t i = 0; i < coordinates_.size(); ++i)
     rates(coordinates_[i], 0) = scale_[i] * eta_dot(static_cast<Eigen::Index>(i));
-  const Eigen::MatrixXd strained =
+  if (!driving_.empty()) find_driving_rates(t, z, rates);
+  Eigen::MatrixXd strained =
       part(K, constraints_, coordinates_) *
       (Eigen::Map<const Eigen::VectorXd>(scale_.data(), eta_dot.size()).cwiseProduct(eta_dot));
+  if (!driving_.empty()) strained += part(K, constraints_, states_) * rates(states_, Eigen::all);
   const Eigen::MatrixXd tied =
       SparseSolver(part(K, constraints_, tied_), "constraints").solve(-strained);
   for (std::size_t i = 0; i < tied_.size(); ++i)

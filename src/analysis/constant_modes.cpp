@@ -14,6 +14,7 @@
 #include "samara/base/error.hpp"
 
 #include "energy_coordinates.hpp"
+#include "state_parts.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -39,6 +40,7 @@ constexpr double split_to_shift = 1e-5;
 
 struct Spectrum {
   std::vector<Complex> exponents;
+  std::vector<int> states;  ///< see leading_states()
   Eigen::MatrixXcd shapes;  ///< size x modes
 };
 
@@ -66,8 +68,8 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
 }
 
 /// y of (K + sigma M) y = M x is a consistent state where x is one, with the rate sigma y - x: in
-/// (eta, eta_dot) the map from x to y is (sigma - A)^-1, and a state with exponent lambda becomes
-/// itself times 1 / (sigma - lambda). `rate`: of the energy coordinates.
+/// (eta, eta_dot, xi) the map from x to y is (sigma - A)^-1, and a state with exponent lambda
+/// becomes itself times 1 / (sigma - lambda). `rate`: of the energy coordinates.
 Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                        const ConsistentSubspace& subspace, double sigma, double rate) {
   const petsc::Handle<Vec> z = system.make_state();
@@ -82,15 +84,17 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   solver.factor(jacobian.get());
   const Eigen::Index d = subspace.degrees_of_freedom();
   Eigen::MatrixXd states = subspace.basis(0.0, 1e-3 / sigma);
-  const EnergyCoordinates coordinates(system, states, rate);
+  const EnergyCoordinates coordinates(system, states, d, rate);
   coordinates.divide(states);
   Eigen::MatrixXd shapes = M * states;
   solver.solve(shapes);
-  Eigen::MatrixXd images(2 * d, 2 * d);
+  Eigen::MatrixXd images(subspace.size(), subspace.size());
   images.topRows(d) = subspace.coordinates_of(shapes);
-  images.bottomRows(d) = sigma * images.topRows(d) - subspace.coordinates_of(states);
+  images.middleRows(d, d) = sigma * images.topRows(d) - subspace.coordinates_of(states);
+  images.bottomRows(subspace.first_order()) = subspace.states_of(shapes);
   const Eigen::MatrixXd map = coordinates.of(images);
   const Eigenpairs pairs = dense_eigenpairs(map, "modes_");
+  const std::vector<int> states_of_pairs = leading_states(pairs, 2 * d, find_state_parts(system));
   Spectrum spectrum;
   spectrum.shapes.resize(system.size(), 0);
   for (std::size_t i = 0; i < pairs.values.size(); ++i) {
@@ -99,6 +103,7 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
     const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
     const auto keep = [&](Complex value, const Eigen::VectorXcd& combination) {
       spectrum.exponents.push_back(value);
+      spectrum.states.push_back(states_of_pairs[i]);
       spectrum.shapes.conservativeResize(system.size(), spectrum.shapes.cols() + 1);
       spectrum.shapes.col(spectrum.shapes.cols() - 1) = shapes * combination;
     };
@@ -164,7 +169,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
                             const PeriodicSolution& solution) {
   require_constant(system, solution);
   const ConsistentSubspace subspace(system, solution);
-  if (subspace.degrees_of_freedom() == 0)
+  if (subspace.size() == 0)
     throw InputError("modes: nothing can move, all strains and joints are rigid");
   const double speed = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const double rate = speed > 0.0 ? speed : 1.0;
@@ -201,7 +206,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   };
   collect(border);
   // A mode at the border that the two shifts see on different sides is lost or found twice.
-  if (exponents != 2 * subspace.degrees_of_freedom()) collect(-1.0);
+  if (exponents != subspace.size()) collect(-1.0);
   std::vector<Complex> exponents_found;
   std::vector<Eigen::MatrixXcd> shapes;
   for (const Found& found : order) {
@@ -209,11 +214,12 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     shapes.emplace_back(found.spectrum->found.shapes.col(found.column));
   }
   choose_shapes(system, exponents_found, shapes);
+  const StateParts state_parts = find_state_parts(system);
   HarmonicEnergy energy(system);
   const Eigen::VectorXcd one = Eigen::VectorXcd::Ones(1);
   const std::vector<system::MeshError> elements = system.mesh_errors();
   ModeSet set;
-  set.states = 2 * subspace.degrees_of_freedom();
+  set.states = subspace.size();
   set.degrees_of_freedom = subspace.degrees_of_freedom();
   set.rotor_speed = speed;
   set.conservative = system.is_conservative();
@@ -227,8 +233,10 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     Eigen::VectorXd participation;
     energy.take(shape.real(), real);
     energy.take(shape.imag(), imaginary);
-    describe_energy(energy.energies(real.data(), imaginary.data(), one), energy.part_names(), mode,
-                    participation);
+    const int state = found.spectrum->found.states[static_cast<std::size_t>(found.column)];
+    if (state >= 0) mode.state = state_parts.owners[static_cast<std::size_t>(state)];
+    describe_energy(energy.energies(real.data(), imaginary.data(), one), energy.part_names(), state,
+                    mode, participation);
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
     mode.exponent = exponents_found[i];

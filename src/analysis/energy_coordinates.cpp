@@ -18,8 +18,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& metric, double fallback) {
 }  // namespace
 
 EnergyCoordinates::EnergyCoordinates(const system::PeriodicSystem& system,
-                                     const Eigen::MatrixXd& basis, double rate) {
-  const Eigen::Index d = basis.cols() / 2;
+                                     const Eigen::MatrixXd& basis, Eigen::Index d, double rate) {
   Eigen::MatrixXd kinetic = Eigen::MatrixXd::Zero(d, d);
   Eigen::MatrixXd strain = Eigen::MatrixXd::Zero(d, d);
   for (const system::EnergyGroup& group : system.energy_groups()) {
@@ -37,14 +36,15 @@ EnergyCoordinates::EnergyCoordinates(const system::PeriodicSystem& system,
 void EnergyCoordinates::divide(Eigen::MatrixXd& columns) const {
   const Eigen::Index d = eta_.rows();
   eta_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(columns.leftCols(d));
-  rate_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(columns.rightCols(d));
+  rate_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(columns.middleCols(d, d));
 }
 
 Eigen::MatrixXd EnergyCoordinates::of(const Eigen::MatrixXd& states) const {
   const Eigen::Index d = eta_.rows();
   Eigen::MatrixXd result(states.rows(), states.cols());
   result.topRows(d) = eta_.triangularView<Eigen::Upper>() * states.topRows(d);
-  result.bottomRows(d) = rates(states.bottomRows(d));
+  result.middleRows(d, d) = rates(states.middleRows(d, d));
+  result.bottomRows(states.rows() - 2 * d) = states.bottomRows(states.rows() - 2 * d);
   return result;
 }
 

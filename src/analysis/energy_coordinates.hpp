@@ -8,19 +8,21 @@
 
 namespace samara::analysis {
 
-/// (eta, eta_dot) in coordinates whose sum of squares is twice the energy; a motion with `rate`
-/// counts where nothing is restored. A map that keeps energy is orthogonal in them, so that each of
-/// its eigenvalues is as accurate as rounding allows, however stiff some strains are.
+/// (eta, eta_dot, xi), the first two in coordinates whose sum of squares is twice the energy; a
+/// motion with `rate` counts where nothing is restored. A map that keeps energy is orthogonal in
+/// them, so that each of its eigenvalues is as accurate as rounding allows, however stiff some
+/// strains are. First-order states have no energy: xi stays as it is.
 class EnergyCoordinates {
  public:
   EnergyCoordinates() = default;
-  /// `basis`: size x 2 d, states of a unit of each eta and eta_dot; `rate` [rad/s].
+  /// `basis`: states of a unit of each of d entries of eta, d of eta_dot, and of xi; `rate`
+  /// [rad/s].
   EnergyCoordinates(const system::PeriodicSystem& system, const Eigen::MatrixXd& basis,
-                    double rate);
+                    Eigen::Index d, double rate);
 
-  /// From columns per unit of (eta, eta_dot), in place, to columns per unit of these.
+  /// From columns per unit of (eta, eta_dot, xi), in place, to columns per unit of these.
   void divide(Eigen::MatrixXd& columns) const;
-  /// Of states (eta, eta_dot), 2 d x columns.
+  /// Of states (eta, eta_dot, xi), 2 d + n_1 x columns.
   Eigen::MatrixXd of(const Eigen::MatrixXd& states) const;
   /// Of eta_dot alone, d x columns.
   Eigen::MatrixXd rates(const Eigen::MatrixXd& eta_dot) const {

@@ -21,6 +21,7 @@
 #include "energy_coordinates.hpp"
 #include "ranks.hpp"
 #include "signal_history.hpp"
+#include "state_parts.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -74,7 +75,7 @@ class Analysis {
         span_(steps / sectors),
         dt_(system.period() / steps),
         speed_(2.0 * std::numbers::pi / system.period()),
-        states_(2 * subspace_.degrees_of_freedom()),
+        states_(subspace_.size()),
         history_(system, sectors, span_, states_, ranks),
         stride_(std::max(1, (steps + shape_samples - 1) / shape_samples)) {}
 
@@ -103,7 +104,7 @@ class Analysis {
   void integrate() {
     const Eigen::Index d = subspace_.degrees_of_freedom();
     Eigen::MatrixXd start = subspace_.basis(0.0, 0.5 * dt_);
-    coordinates_ = EnergyCoordinates(system_, start, speed_);
+    coordinates_ = EnergyCoordinates(system_, start, d, speed_);
     coordinates_.divide(start);
     for (Eigen::Index j = ranks_.rank; j < states_; j += ranks_.size) own_.push_back(j);
     Eigen::MatrixXd z = start(Eigen::all, own_);
@@ -114,7 +115,7 @@ class Analysis {
     };
     FirstSteps first;
     for (auto& step : first) step = propagator();
-    smooth_velocities(start.rightCols(d), first, z);
+    smooth_velocities(start.middleCols(d, d), first, z);
     const std::unique_ptr<StepPropagator> others = propagator();
     for (long k = 0; k <= span_; ++k) {
       if (k == span_) take_states(z);
@@ -135,7 +136,7 @@ class Analysis {
   /// Those that smooth the velocities.
   using FirstSteps = std::array<std::unique_ptr<StepPropagator>, alternating_weights.size() - 1>;
 
-  /// The map over a sector, P (eta, eta_dot) in the coordinates of the start: its columns.
+  /// The map over a sector, P (eta, eta_dot, xi) in the coordinates of the start: its columns.
   void take_states(const Eigen::MatrixXd& z) {
     map_.setZero(states_, states_);
     map_(Eigen::all, own_) =
@@ -163,33 +164,35 @@ class Analysis {
         if (m > 0 && pass > 0) steps[m - 1]->repeat(moved);
         change(velocities, Eigen::all) -= alternating_weights[m] * moved(velocities, Eigen::all);
       }
-      const Eigen::MatrixXd rates =
-          subspace_.state_of(0.0, change, 0.5 * dt_).bottomRows(subspace_.degrees_of_freedom());
+      const Eigen::MatrixXd rates = subspace_.state_of(0.0, change, 0.5 * dt_)
+                                        .middleRows(admissible.cols(), admissible.cols());
       z(velocities, Eigen::all) += change(velocities, Eigen::all) -
                                    admissible(velocities, Eigen::all) * coordinates_.rates(rates);
     }
   }
 
-  /// P on eta: the coordinates are unknowns, each by a scale of its own, and P renames and signs
-  /// unknowns.
-  Eigen::MatrixXd turned(const Eigen::MatrixXd& pairs) const {
-    if (sectors_ == 1) return pairs;
+  /// P on (eta, eta_dot, xi): their entries are unknowns, each by a scale of its own, and P renames
+  /// and signs unknowns.
+  Eigen::MatrixXd turned(const Eigen::MatrixXd& reduced) const {
+    if (sectors_ == 1) return reduced;
     const system::RotorSymmetry& symmetry = system_.symmetry();
-    const std::vector<PetscInt>& coordinates = subspace_.coordinates();
-    const std::vector<double>& scale = subspace_.scale();
-    const auto d = static_cast<Eigen::Index>(coordinates.size());
-    Eigen::MatrixXd result(pairs.rows(), pairs.cols());
-    for (Eigen::Index i = 0; i < d; ++i) {
-      const auto unknown = static_cast<std::size_t>(coordinates[static_cast<std::size_t>(i)]);
-      const auto found =
-          std::find(coordinates.begin(), coordinates.end(), symmetry.source[unknown]);
-      if (found == coordinates.end()) throw InternalError("a coordinate without its image");
-      const auto source = found - coordinates.begin();
-      const double factor = symmetry.sign[unknown] * scale[static_cast<std::size_t>(source)] /
-                            scale[static_cast<std::size_t>(i)];
-      result.row(i) = factor * pairs.row(source);
-      result.row(d + i) = factor * pairs.row(d + source);
-    }
+    const Eigen::Index d = subspace_.degrees_of_freedom();
+    Eigen::MatrixXd result(reduced.rows(), reduced.cols());
+    const auto turn = [&](const std::vector<PetscInt>& unknowns, const std::vector<double>& scale,
+                          const std::vector<Eigen::Index>& places) {
+      for (std::size_t i = 0; i < unknowns.size(); ++i) {
+        const auto unknown = static_cast<std::size_t>(unknowns[i]);
+        const auto found = std::find(unknowns.begin(), unknowns.end(), symmetry.source[unknown]);
+        if (found == unknowns.end()) throw InternalError("a coordinate without its image");
+        const auto source = static_cast<std::size_t>(found - unknowns.begin());
+        const double factor = symmetry.sign[unknown] * scale[source] / scale[i];
+        for (const Eigen::Index place : places)
+          result.row(place + static_cast<Eigen::Index>(i)) =
+              factor * reduced.row(place + static_cast<Eigen::Index>(source));
+      }
+    };
+    turn(subspace_.coordinates(), subspace_.scale(), {0, d});
+    turn(subspace_.states(), subspace_.state_scale(), {2 * d});
     return result;
   }
 
@@ -214,9 +217,10 @@ class Analysis {
     return unwarped(principal + Complex(0.0, k * speed_), dt_);
   }
 
-  void keep(Complex multiplier, const Eigen::VectorXcd& vector, double condition) {
+  void keep(Complex multiplier, const Eigen::VectorXcd& vector, double condition, int state) {
     multipliers_.push_back(multiplier);
     conditions_.push_back(condition);
+    leading_states_.push_back(state);
     vectors_.conservativeResize(states_, vectors_.cols() + 1);
     vectors_.col(vectors_.cols() - 1) = vector;
   }
@@ -224,6 +228,9 @@ class Analysis {
   void solve_eigenproblem() {
     const Eigenpairs pairs = dense_eigenpairs(map_, "floquet_");
     const Eigen::VectorXd conditions = condition_numbers(pairs);
+    const StateParts parts = find_state_parts(system_);
+    const std::vector<int> states =
+        leading_states(pairs, 2 * subspace_.degrees_of_freedom(), parts);
     double largest = 1.0;
     for (const Complex value : pairs.values) largest = std::max(largest, std::abs(value));
     for (std::size_t i = 0; i < pairs.values.size(); ++i) {
@@ -238,10 +245,10 @@ class Analysis {
       const Complex exponent = principal_exponent(pairs.values[i]);
       if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
         // A double zero that rounding has split into a pair: two real rows, as on another day.
-        keep(pairs.values[i].real(), real_part(vector), condition);
-        keep(pairs.values[i].real(), real_part(vector), condition);
+        keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
+        keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
       } else {
-        keep(pairs.values[i], vector, condition);
+        keep(pairs.values[i], vector, condition, states[i]);
       }
     }
     if (ranks_.size > 1) {  // one rank decides
@@ -251,7 +258,9 @@ class Analysis {
       MPI_Bcast(&set_.deflated_rate, 1, MPI_DOUBLE, 0, ranks_.comm);
       multipliers_.resize(static_cast<std::size_t>(count));
       conditions_.resize(static_cast<std::size_t>(count));
+      leading_states_.resize(static_cast<std::size_t>(count));
       MPI_Bcast(conditions_.data(), count, MPI_DOUBLE, 0, ranks_.comm);
+      MPI_Bcast(leading_states_.data(), count, MPI_INT, 0, ranks_.comm);
       vectors_.conservativeResize(states_, count);
       MPI_Bcast(multipliers_.data(), 2 * count, MPI_DOUBLE, 0, ranks_.comm);
       MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0, ranks_.comm);
@@ -260,6 +269,8 @@ class Analysis {
     for (std::size_t i = 0; i < set_.modes.size(); ++i) {
       exponents_.push_back(principal_exponent(multipliers_[i]));
       set_.modes[i].multiplier = std::pow(multipliers_[i], sectors_);
+      if (leading_states_[i] >= 0)
+        set_.modes[i].state = parts.owners[static_cast<std::size_t>(leading_states_[i])];
     }
   }
 
@@ -285,7 +296,7 @@ class Analysis {
     const auto count = static_cast<Eigen::Index>(set_.modes.size());
     const Eigen::MatrixXd& signals = history_.values();
     HarmonicEnergy& energy = history_.energy();
-    const auto parts = static_cast<Eigen::Index>(energy.part_names().size());
+    const Eigen::Index parts = energy.columns();
     set_.participation.setZero(count, steps_);
     const Eigen::Index batch = std::max<Eigen::Index>(
         1, batch_values / std::max<Eigen::Index>(1, 2 * history_.most_rows()));
@@ -309,6 +320,7 @@ class Analysis {
       Eigen::VectorXd participation;
       for (const Eigen::Index mode : modes) {
         describe_energy(energies.middleCols((mode - first) * parts, parts), energy.part_names(),
+                        leading_states_[static_cast<std::size_t>(mode)],
                         set_.modes[static_cast<std::size_t>(mode)], participation);
         set_.participation.row(mode) = participation;
       }
@@ -321,7 +333,8 @@ class Analysis {
   void find_displacements() {
     std::vector<Eigen::Index> modes;
     for (std::size_t m = 0; m < set_.modes.size(); ++m)
-      if (is_zero(exponents_[m]) && set_.modes[m].kinetic_energy < rest_energy)
+      if (is_zero(exponents_[m]) && set_.modes[m].kinetic_energy < rest_energy &&
+          !set_.modes[m].state)
         modes.push_back(static_cast<Eigen::Index>(m));
     if (modes.empty()) return;
     Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), own_weights_of(modes));
@@ -389,17 +402,19 @@ class Analysis {
     return whole;
   }
 
-  /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega) and velocities, at the first middle
-  /// of a step and the one a sector later.
+  /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega), velocities and states, at the first
+  /// middle of a step and the one a sector later.
   double closure(const Eigen::Ref<const Eigen::VectorXcd>& begin,
                  const Eigen::Ref<const Eigen::VectorXcd>& end, Complex multiplier) const {
     double size = 0.0;
     double defect = 0.0;
     for (Eigen::Index i = 0; i < system_.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const system::UnknownRole role = system_.unknowns()[at].role;
-      if (role == system::UnknownRole::internal || !system_.differential()[at]) continue;
-      const double weight = role == system::UnknownRole::position ? speed_ * speed_ : 1.0;
+      const system::Unknown& unknown = system_.unknowns()[at];
+      if (unknown.role == system::UnknownRole::internal || !system_.differential()[at]) continue;
+      const double weight = unknown.role == system::UnknownRole::position
+                                ? speed_ * speed_
+                                : std::pow(unknown.scale, -2);
       size += weight * std::norm(begin(i));
       const Complex image =
           sectors_ == 1 ? end(i) : system_.symmetry().sign[at] * end(system_.symmetry().source[at]);
@@ -692,6 +707,7 @@ class Analysis {
   Eigen::MatrixXd map_;               ///< of these, over a sector
   std::vector<Complex> multipliers_;  ///< of the sector
   std::vector<double> conditions_;    ///< of these
+  std::vector<int> leading_states_;   ///< see the function of this name; before rounding is dropped
   std::vector<Complex> exponents_;    ///< principal
   Eigen::MatrixXcd vectors_;
   ModeSet set_;  ///< the result as it comes to be; the first rank has the shapes

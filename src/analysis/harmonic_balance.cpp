@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <sstream>
 
@@ -110,7 +111,12 @@ class Balance {
   /// harmonics.
   petsc::Handle<Mat> make_matrix() {
     std::vector<Eigen::Triplet<double>> places;
-    const std::vector<std::vector<PetscInt>> rows = system_.pattern();
+    std::vector<std::vector<PetscInt>> rows = system_.pattern();
+    if (rows.empty()) {  // the system does not know
+      std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
+      std::iota(all.begin(), all.end(), PetscInt{0});
+      rows.assign(all.size(), all);
+    }
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (const PetscInt j : rows[i]) places.emplace_back(static_cast<PetscInt>(i), j, 1.0);
     // The load that holds a coordinate stands in the place of its mean.
@@ -509,6 +515,42 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
   return largest;
 }
 
+double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution) {
+  std::vector<PetscInt> rows;
+  for (std::size_t i = 0; i < system.rows().size(); ++i)
+    if (system.rows()[i] == system::RowRole::evolution ||
+        system.rows()[i] == system::RowRole::definition)
+      rows.push_back(static_cast<PetscInt>(i));
+  if (rows.empty()) return 0.0;
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Vec> r = system.make_state();
+  const petsc::Handle<Mat> jacobian = system.make_jacobian();
+  const petsc::Handle<Mat> mass = system.make_mass();
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(system.size());
+  Eigen::VectorXd residuals = sizes;
+  const auto values_of = [&system](Vec vector) -> Eigen::VectorXd {
+    const petsc::ReadView view(vector);
+    return Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+  };
+  const int samples = 2 * std::max(sample_count(solution.harmonics()), 16);
+  for (int k = 0; k < samples; ++k) {
+    const double t = system.period() * k / samples;
+    solution.evaluate(t, z.get(), z_dot.get());
+    system.residual(t, z.get(), z_dot.get(), r.get());
+    system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+    const Eigen::VectorXd terms =
+        to_sparse(jacobian.get()).cwiseAbs() * values_of(z.get()).cwiseAbs() +
+        to_sparse(mass.get()).cwiseAbs() * values_of(z_dot.get()).cwiseAbs();
+    sizes = sizes.cwiseMax(terms);
+    residuals = residuals.cwiseMax(values_of(r.get()).cwiseAbs());
+  }
+  double largest = 0.0;
+  for (const PetscInt i : rows)
+    if (residuals(i) > 0.0) largest = std::max(largest, residuals(i) / sizes(i));
+  return largest;
+}
+
 void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
   for (std::size_t i = 0; i < system.unknowns().size(); ++i)
     if (system.unknowns()[i].role == system::UnknownRole::internal)
@@ -517,6 +559,7 @@ void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
           trim.solution.coefficients().row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
   trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
   trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
+  trim.state_residual = state_residual(system, trim.solution);
 }
 
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,

@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "state_parts.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -93,21 +95,17 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors
   };
   std::vector<Entry> entries;
   std::vector<std::size_t> loads(static_cast<std::size_t>(shares), 0);
-  for (const EnergyGroup& group : system.energy_groups()) {
-    if (group.kind != EnergyGroup::Kind::kinetic) continue;
-    auto found = std::find(parts_.begin(), parts_.end(), group.owner.part);
-    if (found == parts_.end()) found = parts_.insert(parts_.end(), group.owner.part);
-    if (group.unknowns.empty()) continue;
+  const auto add = [&](const EnergyGroup& group, Eigen::Index column) {
     const std::vector<std::vector<Image>> images = sectors_of(group, sectors, before);
     const int alike = count_alike(images);
-    if (alike == 0) continue;
+    if (alike == 0) return;
     const Eigen::MatrixXd root = std::sqrt(static_cast<double>(alike)) * energy_root(group);
     const auto least = std::min_element(loads.begin(), loads.end());
     *least += static_cast<std::size_t>(root.rows());
-    if (least - loads.begin() != share) continue;
+    if (least - loads.begin() != share) return;
     for (Eigen::Index r = 0; r < root.rows(); ++r) {
       const auto signal = static_cast<Eigen::Index>(part_of_.size());
-      part_of_.push_back(found - parts_.begin());
+      part_of_.push_back(column);
       for (int q = 0; q < sectors; ++q)
         for (Eigen::Index c = 0; c < root.cols(); ++c) {
           const Image& image = images[static_cast<std::size_t>(q)][static_cast<std::size_t>(c)];
@@ -115,6 +113,23 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors
             entries.push_back({signal, q, image.unknown, root(r, c) * image.sign});
         }
     }
+  };
+  for (const EnergyGroup& group : system.energy_groups()) {
+    if (group.kind != EnergyGroup::Kind::kinetic) continue;
+    auto found = std::find(parts_.begin(), parts_.end(), group.owner.part);
+    if (found == parts_.end()) found = parts_.insert(parts_.end(), group.owner.part);
+    if (!group.unknowns.empty()) add(group, found - parts_.begin());
+  }
+  const StateParts states = find_state_parts(system);
+  columns_ = static_cast<Eigen::Index>(parts_.size() + states.owners.size());
+  std::size_t state = 0;
+  for (std::size_t i = 0; i < system.unknowns().size() && !states.owners.empty(); ++i) {
+    const system::Unknown& unknown = system.unknowns()[i];
+    if (unknown.role != system::UnknownRole::state) continue;
+    EnergyGroup group;
+    group.unknowns = {static_cast<PetscInt>(i)};
+    group.weight = {std::pow(unknown.scale, -2)};
+    add(group, static_cast<Eigen::Index>(parts_.size() + states.part_of[state++]));
   }
   const auto rows = static_cast<Eigen::Index>(part_of_.size());
   std::vector<Eigen::Triplet<double>> triplets;
@@ -129,7 +144,7 @@ const Eigen::MatrixXd& HarmonicEnergy::energies(const double* real, const double
   const auto rows = static_cast<Eigen::Index>(part_of_.size());
   const Eigen::Index instants = factors.size();
   const Eigen::Index samples = instants * sectors_;
-  energies_.setZero(samples, static_cast<Eigen::Index>(parts_.size()));
+  energies_.setZero(samples, columns_);
   if (rows == 0) return energies_;
   if (!transform_ || transform_->input().cols() != samples)
     transform_ =
@@ -152,27 +167,31 @@ const Eigen::MatrixXd& HarmonicEnergy::energies(const double* real, const double
 }
 
 void describe_energy(const Eigen::MatrixXd& energies, const std::vector<std::string>& parts,
-                     Mode& mode, Eigen::VectorXd& participation) {
+                     int state, Mode& mode, Eigen::VectorXd& participation) {
   const Eigen::Index samples = energies.rows();
-  const double total = energies.sum();
+  const auto count = static_cast<Eigen::Index>(parts.size());
+  mode.kinetic_energy = energies.leftCols(count).sum();
+  mode.harmonic = 0;
+  mode.parts.clear();
+  const double share = mode.kinetic_energy > 0.0 ? 1.0 / mode.kinetic_energy : 0.0;
+  for (Eigen::Index p = 0; p < count; ++p)
+    mode.parts.push_back({parts[static_cast<std::size_t>(p)], share * energies.col(p).sum()});
+  // Those that name the mode.
+  const auto leading = energies.middleCols(state < 0 ? 0 : count + state, state < 0 ? count : 1);
+  const double total = leading.sum();
   const double scale = total > 0.0 ? 1.0 / total : 0.0;
   const Eigen::Index half = samples / 2;
-  const Eigen::VectorXd by_harmonic = energies.rowwise().sum();
+  const Eigen::VectorXd by_harmonic = leading.rowwise().sum();
   participation.resize(samples);
   participation.head(half) = scale * by_harmonic.tail(half);
   participation.tail(samples - half) = scale * by_harmonic.head(samples - half);
-  mode.kinetic_energy = total;
-  mode.harmonic = 0;
-  mode.parts.clear();
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    mode.parts.push_back({parts[p], scale * energies.col(static_cast<Eigen::Index>(p)).sum()});
-  if (parts.empty() || !(total > 0.0)) return;
+  if (!(total > 0.0)) return;
   Eigen::Index dominant = 0;
-  energies.colwise().sum().maxCoeff(&dominant);
+  leading.colwise().sum().maxCoeff(&dominant);
   const auto energy_at = [&](Eigen::Index k) {
-    return energies(k >= 0 ? k : k + samples, dominant);
+    return leading(k >= 0 ? k : k + samples, dominant);
   };
-  const double least = energies.col(dominant).maxCoeff() * (1.0 - tie);
+  const double least = leading.col(dominant).maxCoeff() * (1.0 - tie);
   // Among ties the smallest k >= 0, else the largest negative one.
   Eigen::Index chosen = samples;
   for (Eigen::Index k = 0; k < samples - half && chosen == samples; ++k)

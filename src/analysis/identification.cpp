@@ -253,6 +253,10 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   std::vector<Name> names;
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
+    if (set.modes[m].state) {
+      names.push_back({{*set.modes[m].state}, ""});
+      continue;
+    }
     if (leading.empty()) {
       names.push_back({strained_motion(system, set.shapes[m], set.modes[m], zero), ""});
       continue;
@@ -267,7 +271,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
     mode.label = names[m].text();
     const double frequency = mode.exponent.imag();
     const bool in_blades = names[m].motion.owner.instance > 0;
-    const bool is_clear = leading.empty() || leading[m].is_clear;
+    const bool is_clear = leading.empty() || mode.state || leading[m].is_clear;
     if (set.rotor_speed == 0.0 || frequency <= zero || (!in_blades && is_clear))
       mode.fixed_frame_frequency = frequency;
     else if (set.blades > 2 && is_clear && !names[m].together.empty()) {

@@ -261,6 +261,10 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
   MotionsInTime in_time(system, solution);
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     const Mode& mode = set.modes[m];
+    if (mode.state) {
+      leading.push_back({{*mode.state}, -1, mode.harmonic, true});
+      continue;
+    }
     const NamedShape named = named_shape(set, m);
     const Leading found = find_leading(system, motions, set, m, named, sectors, in_time);
     const system::Motion& motion = motions[found.motion];

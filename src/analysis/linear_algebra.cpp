@@ -183,10 +183,13 @@ Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, do
   const auto role = [&system](Eigen::Index i) {
     return system.unknowns()[static_cast<std::size_t>(i)].role;
   };
+  const auto size = [&system](Eigen::Index i) {
+    return system.unknowns()[static_cast<std::size_t>(i)].scale;
+  };
   std::vector<double> inertia(n, 0.0);  // largest term of a balance row that is no internal load
   for (Eigen::Index j = 0; j < entries.outerSize(); ++j) {
     if (role(j) == system::UnknownRole::internal) continue;
-    const double column = role(j) == system::UnknownRole::velocity ? rate : 1.0;
+    const double column = role(j) == system::UnknownRole::velocity ? rate : size(j);
     for (Eigen::SparseMatrix<double>::InnerIterator it(entries, j); it; ++it) {
       double& largest = inertia[static_cast<std::size_t>(it.row())];
       largest = std::max(largest, std::abs(it.value()) * column);
@@ -207,7 +210,7 @@ Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, do
     for (Eigen::Index j = 0; j < entries.outerSize(); ++j) {
       const double column = role(j) == system::UnknownRole::internal   ? load
                             : role(j) == system::UnknownRole::velocity ? rate
-                                                                       : 1.0;
+                                                                       : size(j);
       columns[static_cast<PetscInt>(j)] = column;
       for (Eigen::SparseMatrix<double>::InnerIterator it(entries, j); it; ++it) {
         double& largest = row_largest[static_cast<std::size_t>(it.row())];

@@ -56,17 +56,21 @@ class Shooting {
   Trim run() {
     system_.reference_state(0.0, z_.get());
     start_ = values_of(z_.get());
-    eta_ = subspace().coordinates_of(start_);
+    const ConsistentSubspace& space = subspace();
+    eta_ = space.coordinates_of(start_);
     eta_rate_ = Eigen::VectorXd::Zero(eta_.size());
+    xi_ = space.states_of(start_);
     for (int revolution = 1; revolution <= most_revolutions; ++revolution) {
       put(start_, z_.get());
-      subspace().find_state(0.0, eta_, eta_rate_ * speed_, z_.get());
+      Eigen::VectorXd reduced(2 * eta_.size() + xi_.size());
+      reduced << eta_, eta_rate_ * speed_, xi_;
+      subspace().find_state(0.0, reduced, z_.get());
       start_ = values_of(z_.get());
       const double change = revolve_and_correct();
       std::ostringstream text;
       text << "trim: shooting, revolution " << revolution << ", correction " << change;
       observer_.note(text.str());
-      if (change < tolerance_ * std::max(1.0, eta_.norm())) return result(revolution);
+      if (change < tolerance_ * std::max({1.0, eta_.norm(), xi_.norm()})) return result(revolution);
     }
     throw ConvergenceError("trim: shooting does not converge in " +
                            std::to_string(most_revolutions) +
@@ -82,20 +86,23 @@ class Shooting {
     return *subspace_;
   }
 
-  /// One revolution from start_; corrects eta_, eta_rate_ and the loads; returns the correction.
+  /// One revolution from start_; corrects eta_, eta_rate_, xi_ and the loads; returns the
+  /// correction.
   double revolve_and_correct() {
     ConsistentSubspace& space = subspace();
     const Eigen::Index d = space.degrees_of_freedom();
+    const Eigen::Index n_1 = space.first_order();
+    const Eigen::Index reduced = space.size();
     const auto& neutral = system_.neutral_coordinates();
     const auto held = static_cast<Eigen::Index>(neutral.size());
     const Eigen::Index n = system_.size();
     LinearizedStep linearized(system_, space.carried(), dt_, false, "shooting_");
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, 2 * d + held);
-    columns.leftCols(2 * d) = space.basis(0.0, 0.5 * dt_);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, reduced + held);
+    columns.leftCols(reduced) = space.basis(0.0, 0.5 * dt_);
     columns.middleCols(d, d) *= speed_;
-    Eigen::MatrixXd forcing = Eigen::MatrixXd::Zero(n, 2 * d + held);
+    Eigen::MatrixXd forcing = Eigen::MatrixXd::Zero(n, reduced + held);
     for (Eigen::Index h = 0; h < held; ++h)
-      forcing(neutral[static_cast<std::size_t>(h)].row, 2 * d + h) = -1.0;
+      forcing(neutral[static_cast<std::size_t>(h)].row, reduced + h) = -1.0;
 
     Eigen::VectorXd z = start_;
     Eigen::VectorXd middle = start_;
@@ -105,10 +112,14 @@ class Shooting {
     Eigen::VectorXd eta_states[2];
     eta_columns[0] = space.coordinates_of(columns);
     eta_states[0] = space.coordinates_of(z);
+    const Eigen::MatrixXd xi_columns = space.states_of(columns);
+    const Eigen::VectorXd xi_start = space.states_of(z);
     Eigen::VectorXd means = Eigen::VectorXd::Zero(held);
-    Eigen::MatrixXd mean_columns = Eigen::MatrixXd::Zero(held, 2 * d + held);
+    Eigen::MatrixXd mean_columns = Eigen::MatrixXd::Zero(held, reduced + held);
     Eigen::MatrixXd last_columns;
+    Eigen::MatrixXd last_xi_columns;
     Eigen::VectorXd last_state;
+    Eigen::VectorXd last_xi;
     for (int k = 0; k <= steps_; ++k) {
       if (k < steps_) ends_.col(k) = z;
       advance(k, z, middle, linearized);
@@ -128,24 +139,29 @@ class Shooting {
       if (k == steps_ - 1) {
         last_columns = space.coordinates_of(columns);
         last_state = space.coordinates_of(z);
+        last_xi_columns = space.states_of(columns);
+        last_xi = space.states_of(z);
       }
       observer_.progress("shooting", k + 1, steps_ + 1);
     }
-    // Two consecutive instants repeat, and the means of the neutral coordinates vanish.
+    // Two consecutive instants of eta and one of xi repeat, and the means of the neutral
+    // coordinates vanish.
     const Eigen::MatrixXd rate_columns =
         (space.coordinates_of(columns) - last_columns - eta_columns[1] + eta_columns[0]) /
         (dt_ * speed_);
     const Eigen::VectorXd rate_state =
         (space.coordinates_of(z) - last_state - eta_states[1] + eta_states[0]) / (dt_ * speed_);
-    Eigen::MatrixXd jacobian(2 * d + held, 2 * d + held);
-    Eigen::VectorXd defect(2 * d + held);
-    jacobian << last_columns - eta_columns[0], rate_columns, mean_columns;
-    defect << last_state - eta_states[0], rate_state, means;
+    Eigen::MatrixXd jacobian(reduced + held, reduced + held);
+    Eigen::VectorXd defect(reduced + held);
+    jacobian << last_columns - eta_columns[0], rate_columns, last_xi_columns - xi_columns,
+        mean_columns;
+    defect << last_state - eta_states[0], rate_state, last_xi - xi_start, means;
     const Eigen::VectorXd correction = jacobian.fullPivLu().solve(-defect);
     eta_ += correction.head(d);
     eta_rate_ += correction.segment(d, d);
+    xi_ += correction.segment(2 * d, n_1);
     loads_ += correction.tail(held);
-    return correction.head(2 * d).norm();
+    return correction.head(reduced).norm();
   }
 
   /// Newton on one step of the nonlinear equations: rows with rates at the middle, rows without at
@@ -182,9 +198,12 @@ class Shooting {
       linearized.solve(change);
       middle += change.col(0);
       double largest = 0.0;
-      for (Eigen::Index i = 0; i < z.size(); ++i)
-        if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
-          largest = std::max(largest, std::abs(change(i, 0)));
+      for (Eigen::Index i = 0; i < z.size(); ++i) {
+        const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(i)];
+        if (unknown.role == system::UnknownRole::position ||
+            unknown.role == system::UnknownRole::state)
+          largest = std::max(largest, std::abs(change(i, 0)) / unknown.scale);
+      }
       if (largest < step_tolerance) break;
       if (iteration == most_step_iterations)
         throw ConvergenceError("trim: shooting, step " + std::to_string(k) +
@@ -240,6 +259,7 @@ class Shooting {
   Eigen::VectorXd loads_;           ///< that hold the neutral coordinates
   Eigen::VectorXd start_;           ///< z at t = 0
   Eigen::VectorXd eta_, eta_rate_;  ///< rate per radian of rotor azimuth
+  Eigen::VectorXd xi_;
   Eigen::MatrixXd ends_, middles_;  ///< z at the steps' starts and middles
   std::unique_ptr<PeriodicSolution> solution_;
   std::unique_ptr<ConsistentSubspace> subspace_;

@@ -405,15 +405,19 @@ class Integration {
         constraints_.push_back(static_cast<PetscInt>(i));
   }
 
-  /// Steps by the error of the positions: internal loads and, beside rigid strains, velocities are
-  /// rough where the step changes, and would cut it for nothing.
+  /// Whether the error of an unknown chooses the steps.
+  static bool is_followed(const system::Unknown& unknown) {
+    return unknown.role == system::UnknownRole::position ||
+           unknown.role == system::UnknownRole::state;
+  }
+
+  /// Steps by the error of the positions and of first-order states: internal loads and, beside
+  /// rigid strains, velocities are rough where the step changes, and would cut it for nothing.
   void make_adaptive(TSAdapt adapt) {
     petsc::check(TSAdaptSetType(adapt, TSADAPTBASIC));
     petsc::check(TSAdaptSetClip(adapt, least_growth, largest_growth));
     const std::vector<system::Unknown>& unknowns = system_.unknowns();
-    const auto count = std::count_if(unknowns.begin(), unknowns.end(), [](const auto& unknown) {
-      return unknown.role == system::UnknownRole::position;
-    });
+    const auto count = std::count_if(unknowns.begin(), unknowns.end(), is_followed);
     // TS takes the mean square over all unknowns, most of which are left out here.
     const double tolerance =
         options_.step_tolerance *
@@ -422,8 +426,7 @@ class Integration {
     {
       const petsc::WriteView view(tolerances_.get());
       for (std::size_t i = 0; i < unknowns.size(); ++i)
-        view[static_cast<PetscInt>(i)] =
-            unknowns[i].role == system::UnknownRole::position ? tolerance : left_out;
+        view[static_cast<PetscInt>(i)] = is_followed(unknowns[i]) ? tolerance : left_out;
     }
     petsc::check(TSSetTolerances(ts_.get(), tolerance, tolerances_.get(), tolerance, nullptr));
   }
@@ -700,6 +703,7 @@ class Integration {
 
 TransientRun run_transient(const system::PeriodicSystem& system, const TransientStart& start,
                            const TransientOptions& options, TransientObserver& observer) {
+  require_roles(system);
   return Integration(system, start, options, observer).run();
 }
 

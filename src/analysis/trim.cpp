@@ -24,6 +24,9 @@ double allowed_residual(const Trim& trim, double relative) {
   return relative * std::max(trim.load_level, 1.0);
 }
 
+/// Of evolution and definition rows, relative to their terms: below it a constant is the solution.
+constexpr double state_rounding = 1e-9;
+
 /// With Q identical blades the tower sees multiples of Q. Leaving out the multiple next above H
 /// while the blades keep H leaves its load unbalanced: H + 1 must not be a multiple of Q.
 bool is_closed(int harmonics, int sectors) { return sectors < 2 || (harmonics + 1) % sectors != 0; }
@@ -126,7 +129,9 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
     text << "trim: " << harmonics << " harmonics, residual between the samples "
          << trim.residual_between;
     observer.note(text.str());
-    if (trim.residual_between <= allowed_residual(trim, options.auto_tolerance)) return trim;
+    if (trim.residual_between <= allowed_residual(trim, options.auto_tolerance) &&
+        trim.state_residual <= options.auto_tolerance)
+      return trim;
     last = std::move(trim);
   }
   throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(auto_harmonics) +
@@ -148,6 +153,7 @@ void add_held_loads(const system::PeriodicSystem& system, const std::vector<Held
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer) {
   const petsc::Stage stage("trim");
+  require_roles(system);
   if (system.period() == 0.0) return solve_at_rest(system, options.tolerance);
   // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
   // Loads and motions that oscillate are no constant, and might vanish at all of its samples.
@@ -155,7 +161,8 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                                            ? try_constant(system, options)
                                            : std::nullopt;
   if (constant && constant->residual_between <= allowed_residual(*constant, rounding) &&
-      constant->residual <= allowed_residual(*constant, rounding))
+      constant->residual <= allowed_residual(*constant, rounding) &&
+      constant->state_residual <= state_rounding)
     return *constant;
   if (options.method == TrimMethod::shooting)
     return solve_shooting(system, options.steps, options.tolerance, observer);

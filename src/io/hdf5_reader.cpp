@@ -13,6 +13,8 @@ namespace {
 
 /// Bytes of one read at the most (2 GB): larger data are read slice by slice.
 constexpr std::size_t most_bytes = std::size_t{1} << 31;
+/// Of texts, which nobody has as many of as of numbers.
+constexpr std::size_t most_text_bytes = std::size_t{64} << 20;
 
 constexpr unsigned most_rank = 32;
 
@@ -136,8 +138,8 @@ std::vector<double> Hdf5Reader::read_numbers(const Item& item, std::size_t count
 std::vector<std::string> Hdf5Reader::read_texts(const Item& item, std::size_t count) const {
   const Hdf5Id type = type_of(item);
   if (H5Tget_class(type.get()) != H5T_STRING) refuse(item.place, "does not hold text");
-  std::vector<std::string> words(count);
-  if (count == 0) return words;
+  if (count == 0) return {};
+  if (count > most_text_bytes / sizeof(std::string)) refuse(item.place, "has too many texts");
   const auto read = [&](void* target) {
     const hid_t id = item.id.get();
     check(item.is_attribute ? H5Aread(id, type.get(), target)
@@ -151,8 +153,10 @@ std::vector<std::string> Hdf5Reader::read_texts(const Item& item, std::size_t co
     return found->second;
   }
   const std::size_t width = H5Tget_size(type.get());
-  if (width == 0 || width > most_bytes / count) refuse(item.place, "has texts of too many bytes");
+  if (width == 0 || width > most_text_bytes / count)
+    refuse(item.place, "has texts of too many bytes");
   std::string table(count * width, '\0');
+  std::vector<std::string> words(count);
   read(table.data());
   const bool is_padded_by_blanks = H5Tget_strpad(type.get()) == H5T_STR_SPACEPAD;
   for (std::size_t i = 0; i < count; ++i) {

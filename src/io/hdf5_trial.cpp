@@ -22,9 +22,10 @@ namespace {
 /// Of one dataset or attribute, that is read at once.
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-/// Processor time of the child [s]; a whole file of 10 MB takes some hundredths of it.
+/// Processor time of the child [s]; a whole file takes some hundredths of it. A damaged one may keep
+/// the library busy without end.
 std::size_t most_seconds(std::size_t file_size) {
-  return 3 + std::min<std::size_t>(file_size / 10'000'000, 60);
+  return 1 + std::min<std::size_t>(file_size / 5'000'000, 120);
 }
 
 /// Memory of the child: metadata have no more bytes than their file, whatever they say of their

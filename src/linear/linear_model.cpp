@@ -81,6 +81,10 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
       input_output_(input_output),
       solution_(solution),
       subspace_(system, solution) {
+  if (subspace_.first_order() > 0 || !subspace_.auxiliaries().empty())
+    throw InputError(
+        "linearize: not for a system with first-order states or auxiliaries; hint: floquet and "
+        "transient take them");
   std::vector<bool> is_known(static_cast<std::size_t>(system.size()), false);
   for (const PetscInt i : subspace_.coordinates()) is_known[static_cast<std::size_t>(i)] = true;
   for (const PetscInt i : subspace_.tied()) is_known[static_cast<std::size_t>(i)] = true;

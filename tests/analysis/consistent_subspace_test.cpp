@@ -23,6 +23,12 @@ analysis::PeriodicSolution trim_of(const system::PeriodicSystem& system) {
   return analysis::find_trim(system, options, observer).solution;
 }
 
+Eigen::VectorXd joined(const Eigen::VectorXd& eta, const Eigen::VectorXd& eta_dot) {
+  Eigen::VectorXd both(eta.size() + eta_dot.size());
+  both << eta, eta_dot;
+  return both;
+}
+
 /// Largest entry of the rows of one role in `sum`, relative to the largest of the row in `terms`,
 /// what was added up for it.
 double defect(const system::PeriodicSystem& system, RowRole role, const Eigen::MatrixXd& sum,
@@ -167,7 +173,7 @@ BOOST_AUTO_TEST_CASE(nonlinear_state_obeys_constraints_and_kinematics) {
     eta(i) += 0.02 * std::sin(static_cast<double>(i));
     eta_dot(i) = 0.1 * std::cos(static_cast<double>(i));
   }
-  subspace.find_state(t, eta, eta_dot, z.get());
+  subspace.find_state(t, joined(eta, eta_dot), z.get());
   Eigen::VectorXd state;
   {
     const petsc::ReadView view(z.get());
@@ -185,7 +191,7 @@ BOOST_AUTO_TEST_CASE(nonlinear_state_obeys_constraints_and_kinematics) {
   for (const double side : {1.0, -1.0}) {
     const petsc::Handle<Vec> near = system.make_state();
     petsc::check(VecCopy(z.get(), near.get()));
-    subspace.find_state(t + side * step, eta + side * step * eta_dot, eta_dot, near.get());
+    subspace.find_state(t + side * step, joined(eta + side * step * eta_dot, eta_dot), near.get());
     const petsc::ReadView view(near.get());
     rate += side / (2.0 * step) * Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
   }

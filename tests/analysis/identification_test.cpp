@@ -75,7 +75,7 @@ Identified identify(const Described& system, const Eigen::MatrixXcd& history) {
     const Eigen::MatrixXd part =
         energy.energies(real.data(), imaginary.data(), Eigen::VectorXcd::Ones(history.cols()));
     energies = share == 0 ? part : energies + part;
-    describe_energy(energies, energy.part_names(), result.mode, result.participation);
+    describe_energy(energies, energy.part_names(), -1, result.mode, result.participation);
   }
   return result;
 }

@@ -2,6 +2,7 @@
 // them through the same interface as a turbine.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -48,6 +49,29 @@ class SmallSystem : public system::PeriodicSystem {
   petsc::Handle<Mat> make_jacobian() const override { return make_matrix(); }
   petsc::Handle<Mat> make_mass() const override { return make_matrix(); }
 
+  /// Where states or auxiliaries are declared: from the tangents at some states and times.
+  std::vector<std::vector<PetscInt>> pattern() const override {
+    const auto n = static_cast<Eigen::Index>(size());
+    const auto is_first_order = [](const system::Unknown& unknown) {
+      return unknown.role == UnknownRole::state || unknown.role == UnknownRole::auxiliary;
+    };
+    if (std::ranges::none_of(unknowns_, is_first_order)) return {};
+    Eigen::MatrixXd sizes = Eigen::MatrixXd::Zero(n, n);
+    for (const double t : {0.1, 0.53, 1.7}) {
+      const Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(n, 0.3, 0.9 + t);
+      Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+      Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
+      tangents_at(t, z, 0.5 * z, K, M);
+      sizes += K.cwiseAbs() + M.cwiseAbs();
+    }
+    std::vector<std::vector<PetscInt>> columns(static_cast<std::size_t>(n));
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        if (sizes(i, j) > 0.0)
+          columns[static_cast<std::size_t>(i)].push_back(static_cast<PetscInt>(j));
+    return columns;
+  }
+
   void residual(double t, Vec z, Vec z_dot, Vec r) const override {
     const Eigen::VectorXd value = residual_at(t, copy(z), copy(z_dot));
     const petsc::WriteView view(r);
@@ -80,7 +104,7 @@ class SmallSystem : public system::PeriodicSystem {
   void add(const std::string& name, UnknownRole role, RowRole row) {
     unknowns_.push_back({Owner(PartKind::body, ""), "", name, "", role});
     rows_.push_back(row);
-    differential_.push_back(role != UnknownRole::internal);
+    differential_.push_back(role != UnknownRole::internal && role != UnknownRole::auxiliary);
     symmetry_.source.push_back(static_cast<PetscInt>(symmetry_.source.size()));
     symmetry_.sign.push_back(1.0);
   }
@@ -88,6 +112,13 @@ class SmallSystem : public system::PeriodicSystem {
     add(name, UnknownRole::position, RowRole::kinematic);
   }
   void add_velocity(const std::string& name) { add(name, UnknownRole::velocity, RowRole::balance); }
+  void add_state(const std::string& part, const std::string& name, int instance = 0) {
+    add(name, UnknownRole::state, RowRole::evolution);
+    unknowns_.back().owner = Owner(PartKind::law, part, instance);
+  }
+  void add_auxiliary(const std::string& name) {
+    add(name, UnknownRole::auxiliary, RowRole::definition);
+  }
   void add_kinetic(const std::string& part, PetscInt unknown, double mass) {
     add_energy(EnergyGroup::Kind::kinetic, {PartKind::body, part}, "", {unknown}, {mass});
   }

@@ -383,6 +383,17 @@ class Touched(FaultTest):
         self.refuse("transient", "case.yaml", "-o", "y.h5", "--set",
                     "transient={duration: 0.1, step: 0.01, start: bad.h5}", words=["event_time"])
 
+    def test_texts_without_end_take_no_memory(self):
+        for kind in ("S1", h5py.string_dtype()):
+            def change(file, kind=kind):
+                del file["transient/channel_name"]
+                file.create_dataset("transient/channel_name", shape=(1 << 28,), dtype=kind)
+
+            with self.subTest(kind=kind):
+                self.replace("good.h5", change)
+                self.refuse("loads", "bad.h5",
+                            words=["/transient/channel_name", "has too many texts"])
+
     def test_any_item_of_any_kind_is_read_or_refused(self):
         random_numbers = random.Random(os.environ.get("SAMARA_SEED", "7"))
         for source in ("good.h5", "parts.h5", "trim.h5"):

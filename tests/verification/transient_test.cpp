@@ -221,7 +221,9 @@ TransientStart released(const system::PeriodicSystem& system, const analysis::Tr
     const petsc::WriteView view(z.get());
     Eigen::Map<Eigen::VectorXd>(view.data(), start.z.size()) = start.z;
   }
-  subspace.find_state(0.0, eta, Eigen::VectorXd::Zero(eta.size()), z.get());
+  Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(subspace.size());
+  at_rest.head(eta.size()) = eta;
+  subspace.find_state(0.0, at_rest, z.get());
   start.z = values_of(z.get());
   start.z_dot.resize(0);
   return start;
@@ -355,7 +357,9 @@ blades:
     const petsc::WriteView view(z.get());
     Eigen::Map<Eigen::VectorXd>(view.data(), start.z.size()) = start.z;
   }
-  subspace.find_state(0.0, eta, Eigen::VectorXd::Zero(eta.size()), z.get());
+  Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(subspace.size());
+  at_rest.head(eta.size()) = eta;
+  subspace.find_state(0.0, at_rest, z.get());
   start.z = values_of(z.get());
   start.z_dot.resize(0);
 

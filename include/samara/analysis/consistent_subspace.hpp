@@ -3,7 +3,8 @@
 // Strain and joint constraints tie positions to each other and to the internal loads of elastic
 // strains. Everything that moves is therefore a function of eta: the internal loads of the elastic
 // strains, and the positions in no constraint. Their number is the number of degrees of freedom d;
-// it is counted, not guessed from a rank.
+// it is counted, not guessed from a rank. First-order states xi, n_1 of them, stand beside eta and
+// its rate: a reduced state is (eta, eta_dot, xi).
 #pragma once
 
 #include <vector>
@@ -24,12 +25,28 @@ class ConsistentSubspace {
 
   int degrees_of_freedom() const { return static_cast<int>(coordinates_.size()); }
 
+  /// n_1
+  int first_order() const { return static_cast<int>(states_.size()); }
+  /// 2 d + n_1
+  int size() const { return 2 * degrees_of_freedom() + first_order(); }
+
   /// The unknowns that are eta.
   const std::vector<PetscInt>& coordinates() const { return coordinates_; }
   /// Entry i of eta is unknown coordinates()[i] divided by scale()[i].
   const std::vector<double>& scale() const { return scale_; }
 
-  /// What constraint rows determine from eta: positions, and internal loads of beams held twice.
+  /// The unknowns that are xi, each divided by its Unknown::scale.
+  const std::vector<PetscInt>& states() const { return states_; }
+  const std::vector<double>& state_scale() const { return state_scale_; }
+  const std::vector<PetscInt>& evolution_rows() const { return evolution_; }
+  /// What is no state and has no memory: internal loads that no constraint row contains,
+  /// auxiliaries.
+  const std::vector<PetscInt>& reactions() const { return reactions_; }
+  const std::vector<PetscInt>& auxiliaries() const { return auxiliaries_; }
+  const std::vector<PetscInt>& balance_rows() const { return balance_; }
+
+  /// What constraint rows determine from eta and xi: positions, and internal loads of beams held
+  /// twice.
   const std::vector<PetscInt>& tied() const { return tied_; }
   const std::vector<PetscInt>& constraint_rows() const { return constraints_; }
   const std::vector<PetscInt>& kinematic_rows() const { return kinematic_; }
@@ -38,30 +55,36 @@ class ConsistentSubspace {
 
   /// eta of the columns of z, scaled: d x columns.
   Eigen::MatrixXd coordinates_of(const Eigen::MatrixXd& z) const;
+  /// xi of the columns of z, scaled: n_1 x columns.
+  Eigen::MatrixXd states_of(const Eigen::MatrixXd& z) const;
 
-  /// The consistent state next to each column of z at time t: eta, and below it the eta_dot that
-  /// impulses of the reactions alone would leave of its velocities (2 d x columns; size x columns).
-  /// Velocities that no rate of eta makes are orthogonal to the others in the metric of the kinetic
-  /// energy and vanish. `rate_step` [s]: as for basis().
+  /// The consistent state next to each column of z at time t: eta, below it the eta_dot that
+  /// impulses of the reactions alone would leave of its velocities, then xi (2 d + n_1 x columns;
+  /// size x columns). Velocities that no rate of eta makes are orthogonal to the others in the
+  /// metric of the kinetic energy and vanish. `rate_step` [s]: as for basis().
   /// @throws InternalError where velocities without inertia are left to the reactions
   Eigen::MatrixXd state_of(double t, const Eigen::MatrixXd& z, double rate_step) const;
 
   /// Unknowns whose values at a step's ends belong to the state: x, and internal loads in eta.
   const std::vector<bool>& carried() const { return carried_; }
 
-  /// Basis of the consistent states at time t: n x 2 d, first eta = unit at eta_dot = 0, then
-  /// eta_dot = unit at eta = 0. `rate_step` [s]: over which the change of the constraints in time
-  /// is differenced.
+  /// Basis of the consistent states at time t: n x (2 d + n_1), a unit of each entry of eta, of
+  /// eta_dot and of xi where all others are 0. `rate_step` [s]: over which the change of the
+  /// constraints in time is differenced.
   Eigen::MatrixXd basis(double t, double rate_step) const;
 
-  /// The nonlinear state with the given eta and eta_dot: solves the constraint rows for the tied
+  /// The nonlinear state with the given (eta, eta_dot, xi): solves the constraint rows for the tied
   /// positions and the kinematic rows for the velocities, from `z` as a start, into `z`.
   /// @throws ConvergenceError
-  void find_state(double t, const Eigen::VectorXd& eta, const Eigen::VectorXd& eta_dot,
-                  Vec z) const;
+  void find_state(double t, const Eigen::VectorXd& reduced, Vec z) const;
 
  private:
   Eigen::MatrixXd positions(double t) const;
+  Eigen::MatrixXd driving_rates(const Eigen::SparseMatrix<double>& K,
+                                const Eigen::SparseMatrix<double>& M,
+                                const Eigen::MatrixXd& z) const;
+  void find_states(const Eigen::SparseMatrix<double>& M);
+  void find_driving_rates(double t, Vec z, Eigen::MatrixXd& rates) const;
   std::vector<std::size_t> images_of(std::size_t coordinate) const;
   void tie_coordinates(const Eigen::SparseMatrix<double>& K);
 
@@ -76,6 +99,12 @@ class ConsistentSubspace {
   std::vector<PetscInt> kinematic_;    ///< rows
   std::vector<PetscInt> velocities_;   ///< unknowns
   std::vector<PetscInt> balance_;      ///< rows
+  std::vector<PetscInt> evolution_;    ///< rows
+  std::vector<PetscInt> positions_;    ///< unknowns
+  std::vector<PetscInt> states_;       ///< unknowns of first order
+  std::vector<double> state_scale_;    ///< xi = z / scale
+  std::vector<PetscInt> driving_;      ///< states that constraint rows contain: their places in xi
+  std::vector<PetscInt> auxiliaries_;  ///< unknowns
   std::vector<PetscInt> reactions_;    ///< internal loads that no constraint row contains
   bool fixed_constraints_ = false;
 };

@@ -25,7 +25,11 @@ class HarmonicEnergy {
   explicit HarmonicEnergy(const system::PeriodicSystem& system, int sectors = 1, int share = 0,
                           int shares = 1);
 
+  /// Of the kinetic energy.
   const std::vector<std::string>& part_names() const { return parts_; }
+  /// Columns of energies(): these parts, and behind them those of first-order states
+  /// (find_state_parts), which have half the sum of their squares in the place of an energy.
+  Eigen::Index columns() const { return columns_; }
   Eigen::Index signals() const { return signals_.rows(); }
 
   /// Signals (signals x columns) of states (system size x columns).
@@ -33,7 +37,7 @@ class HarmonicEnergy {
     signals.noalias() = signals_ * states;
   }
 
-  /// Mean energy by harmonic (k = 0 ... floor((n - 1) / 2), then the negative ones) and part of
+  /// Mean energy by harmonic (k = 0 ... floor((n - 1) / 2), then the negative ones) and column of
   /// (real + i imaginary) factors, where real and imaginary are the signals of an instant after
   /// those of the one before, and `factors` one number an instant of the sector.
   const Eigen::MatrixXd& energies(const double* real, const double* imaginary,
@@ -41,6 +45,7 @@ class HarmonicEnergy {
 
  private:
   std::vector<std::string> parts_;
+  Eigen::Index columns_ = 0;
   int sectors_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> signals_;  ///< sector after sector
   std::vector<Eigen::Index> part_of_;                     ///< of a signal of one sector
@@ -52,10 +57,11 @@ class HarmonicEnergy {
 /// signals of which half the sum of squares is the energy.
 Eigen::MatrixXd energy_root(const system::EnergyGroup& group);
 
-/// From energies by harmonic and part to the mode's energy, its parts' shares (in the order of the
-/// names), the dominant harmonic of the part with most energy and `participation`, the share of
-/// every harmonic k = -floor(n/2) ...
+/// From energies by harmonic and column to the mode's energy, its parts' shares (in the order of
+/// the names), the dominant harmonic of the part with most energy and `participation`, the share of
+/// every harmonic k = -floor(n/2) ... The last two are those of the state part `state` where that
+/// is not negative.
 void describe_energy(const Eigen::MatrixXd& energies, const std::vector<std::string>& parts,
-                     Mode& mode, Eigen::VectorXd& participation);
+                     int state, Mode& mode, Eigen::VectorXd& participation);
 
 }  // namespace samara::analysis

@@ -4,10 +4,13 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "samara/system/periodic_system.hpp"
 
 namespace samara::analysis {
 
@@ -40,7 +43,9 @@ struct Mode {
   /// tangents: relative difference of the exponent found with two shifts.
   double residual = 0.0;
   std::vector<PartShare> parts;  ///< descending
-  double kinetic_energy = 0.0;   ///< mean, of the shape as it is scaled [J]
+  /// The part whose first-order states it is a mode of, rather than of a motion.
+  std::optional<system::Owner> state;
+  double kinetic_energy = 0.0;  ///< mean, of the shape as it is scaled [J]
 };
 
 /// Error of an exponent, relative to its modulus.

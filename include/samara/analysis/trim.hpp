@@ -38,6 +38,8 @@ struct Trim {
   }
   /// Harmonics tried and the residual between the samples that each left (more than one: auto).
   std::vector<std::pair<int, double>> history = {};
+  /// Largest evolution or definition row, at the samples and between them, relative to its terms.
+  double state_residual = 0.0;
 };
 
 /// Harmonics that `harmonics: auto` tries, at the most.

@@ -68,6 +68,8 @@ struct Unknown {
   /// A position that constraints tie others to, free itself: that of a hinge. Its row, in the same
   /// place, is the load on a support that is not there.
   bool is_free = false;
+  /// Of a state: a usual size. Differences of states are measured by it.
+  double scale = 1.0;
 
   /// "blade 1 point 3 theta2"
   std::string name() const;
@@ -126,7 +128,9 @@ struct MeshError {
   Eigen::MatrixXd remainder;
 };
 
-/// A coordinate whose mean nothing restores, and the row of the load that would hold it.
+/// A coordinate whose mean nothing restores, and the row of the load that would hold it. Where an
+/// integral of its rate already gives this load, the row is the evolution row of the integral: the
+/// mean of that row says nothing new, and the "load" is the offset of the rate that it leaves.
 struct NeutralCoordinate {
   std::string name;  ///< "yaw"
   PetscInt unknown = 0;

@@ -75,8 +75,8 @@ class PeriodicSystem {
   /// Preallocated for M alone.
   virtual petsc::Handle<Mat> make_mass() const = 0;
   /// Columns of each row, ascending, in which K or M may have an entry: elsewhere both are zero at
-  /// all states and times. All columns where a system does not know better.
-  virtual std::vector<std::vector<PetscInt>> pattern() const;
+  /// all states and times. Empty where a system does not know: it has no first-order states then.
+  virtual std::vector<std::vector<PetscInt>> pattern() const { return {}; }
 
   /// The same system without gravity and prescribed loads. Both residuals are linear in the loads:
   /// (1 - f) times this one's plus f times the loaded one's is that of a load factor f.
@@ -98,5 +98,14 @@ class PeriodicSystem {
   /// K + shift M into `jacobian`, and M into `mass` where it is not null.
   virtual void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian, Mat mass) const = 0;
 };
+
+/// Whether the unknowns and rows of a system are what their roles say (docs/theory.md, section 4):
+/// as many velocities as kinematic rows; a state's evolution row and an auxiliary's definition row
+/// in its own place; and from the declared pattern, so that no state is ever lost,
+/// - constraint rows contain positions, internal loads, and of the rest only states whose own
+///   evolution row contains no velocity, internal load or auxiliary;
+/// - kinematic rows contain no internal load and no auxiliary.
+/// @throws InternalError with the names of the row and of the unknown
+void require_roles(const PeriodicSystem& system);
 
 }  // namespace samara::system

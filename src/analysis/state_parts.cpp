@@ -1,0 +1,40 @@
+#include "state_parts.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+namespace samara::analysis {
+
+StateParts find_state_parts(const system::PeriodicSystem& system) {
+  StateParts parts;
+  for (const system::Unknown& unknown : system.unknowns()) {
+    if (unknown.role != system::UnknownRole::state) continue;
+    const auto found = std::ranges::find(parts.owners, unknown.owner.part, &system::Owner::part);
+    parts.part_of.push_back(static_cast<std::size_t>(found - parts.owners.begin()));
+    if (found == parts.owners.end()) parts.owners.push_back(unknown.owner);
+  }
+  return parts;
+}
+
+std::vector<int> leading_states(const Eigenpairs& pairs, Eigen::Index motion,
+                                const StateParts& parts) {
+  std::vector<int> leading(pairs.values.size(), -1);
+  if (parts.owners.empty()) return leading;
+  const Eigen::MatrixXcd left = pairs.vectors.partialPivLu().inverse();
+  for (std::size_t m = 0; m < leading.size(); ++m) {
+    const auto column = static_cast<Eigen::Index>(m);
+    const Eigen::VectorXcd factors =
+        left.row(column).transpose().cwiseProduct(pairs.vectors.col(column));
+    Eigen::VectorXcd sums = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(parts.owners.size()));
+    for (std::size_t i = 0; i < parts.part_of.size(); ++i)
+      sums(static_cast<Eigen::Index>(parts.part_of[i])) +=
+          factors(motion + static_cast<Eigen::Index>(i));
+    Eigen::Index largest = 0;
+    if (sums.cwiseAbs().maxCoeff(&largest) > std::abs(factors.head(motion).sum()))
+      leading[m] = static_cast<int>(largest);
+  }
+  return leading;
+}
+
+}  // namespace samara::analysis
