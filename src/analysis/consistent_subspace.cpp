@@ -77,7 +77,6 @@ void ConsistentSubspace::find_states(const Eigen::SparseMatrix<double>& M) {
   for (std::size_t i = 0; i < system_.rows().size(); ++i) {
     if (system_.rows()[i] != system::RowRole::evolution) continue;
     states_.push_back(static_cast<PetscInt>(i));
-    evolution_.push_back(static_cast<PetscInt>(i));
     state_scale_.push_back(system_.unknowns()[i].scale);
   }
   if (states_.empty() && auxiliaries_.empty()) return;
@@ -93,12 +92,21 @@ void ConsistentSubspace::find_states(const Eigen::SparseMatrix<double>& M) {
     for (Sparse::InnerIterator it(M, j); it; ++it) {
       const auto row = static_cast<std::size_t>(it.row());
       const system::RowRole role = system_.rows()[row];
+      const bool is_state =
+          system_.unknowns()[static_cast<std::size_t>(j)].role == system::UnknownRole::state;
       if (it.value() != 0.0 &&
-          (role == system::RowRole::definition || role == system::RowRole::constraint))
+          (role == system::RowRole::definition || role == system::RowRole::constraint ||
+           (role == system::RowRole::kinematic && is_state)))
         throw InternalError(std::string("the ") + word_of(role) + " row of \"" +
                             system_.unknowns()[row].name() + "\" contains the rate of \"" +
                             system_.unknowns()[static_cast<std::size_t>(j)].name() + '"');
     }
+}
+
+std::vector<PetscInt> ConsistentSubspace::driving() const {
+  std::vector<PetscInt> unknowns;
+  for (const PetscInt i : driving_) unknowns.push_back(states_[static_cast<std::size_t>(i)]);
+  return unknowns;
 }
 
 /// Rates of the states that constraint rows contain, of states that are the columns of z: from
@@ -107,8 +115,7 @@ void ConsistentSubspace::find_states(const Eigen::SparseMatrix<double>& M) {
 Eigen::MatrixXd ConsistentSubspace::driving_rates(const Eigen::SparseMatrix<double>& K,
                                                   const Eigen::SparseMatrix<double>& M,
                                                   const Eigen::MatrixXd& z) const {
-  std::vector<PetscInt> driving;
-  for (const PetscInt i : driving_) driving.push_back(states_[static_cast<std::size_t>(i)]);
+  const std::vector<PetscInt> driving = this->driving();
   std::vector<PetscInt> others = positions_;
   others.insert(others.end(), states_.begin(), states_.end());
   const Sparse inertia = rows_of(M, driving);
@@ -350,8 +357,7 @@ Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
 /// Rates of the states that constraint rows contain, into theirs of `rates`: their evolution rows
 /// are linear in them.
 void ConsistentSubspace::find_driving_rates(double t, Vec z, Eigen::MatrixXd& rates) const {
-  std::vector<PetscInt> driving;
-  for (const PetscInt i : driving_) driving.push_back(states_[static_cast<std::size_t>(i)]);
+  const std::vector<PetscInt> driving = this->driving();
   const petsc::Handle<Vec> z_dot = system_.make_state();
   const petsc::Handle<Vec> r = system_.make_state();
   const petsc::Handle<Mat> jacobian = system_.make_jacobian();

@@ -62,6 +62,16 @@ Dense solve_scaled(const Dense& matrix, const Dense& right) {
 
 }  // namespace
 
+/// Columns of what is linear in (eta, eta_dot, eta_ddot, xi, xi_dot, u, u_dot, u_ddot).
+struct LinearModel::Columns {
+  Eigen::Index d, n_1, inputs;
+
+  Eigen::Index xi() const { return 3 * d; }
+  Eigen::Index xi_dot() const { return 3 * d + n_1; }
+  Eigen::Index u() const { return 3 * d + 2 * n_1; }
+  Eigen::Index all() const { return u() + 3 * inputs; }
+};
+
 struct LinearModel::Tangents {
   Sparse K, M;
   Dense R, R_rate;
@@ -81,20 +91,24 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
       input_output_(input_output),
       solution_(solution),
       subspace_(system, solution) {
-  if (subspace_.first_order() > 0 || !subspace_.auxiliaries().empty())
-    throw InputError(
-        "linearize: not for a system with first-order states or auxiliaries; hint: floquet and "
-        "transient take them");
-  std::vector<bool> is_known(static_cast<std::size_t>(system.size()), false);
-  for (const PetscInt i : subspace_.coordinates()) is_known[static_cast<std::size_t>(i)] = true;
-  for (const PetscInt i : subspace_.tied()) is_known[static_cast<std::size_t>(i)] = true;
-  for (std::size_t i = 0; i < is_known.size(); ++i) {
-    if (system.rows()[i] == system::RowRole::balance) balance_.push_back(static_cast<PetscInt>(i));
-    if (system.unknowns()[i].role == system::UnknownRole::internal && !is_known[i])
-      reactions_.push_back(static_cast<PetscInt>(i));
+  const std::vector<PetscInt>& tied = subspace_.tied();
+  for (std::size_t i = 0; i < system.rows().size(); ++i) {
+    const auto at = static_cast<PetscInt>(i);
+    const system::RowRole row = system.rows()[i];
+    const system::UnknownRole role = system.unknowns()[i].role;
+    if (row == system::RowRole::balance || row == system::RowRole::evolution ||
+        row == system::RowRole::definition)
+      dynamic_.push_back(at);
+    const bool is_known =
+        std::ranges::find(subspace_.coordinates(), at) != subspace_.coordinates().end() ||
+        std::ranges::find(tied, at) != tied.end();
+    if (role == system::UnknownRole::auxiliary ||
+        (role == system::UnknownRole::internal && !is_known))
+      algebraic_.push_back(at);
   }
   const auto d = static_cast<std::size_t>(subspace_.degrees_of_freedom());
-  if (balance_.size() != d + reactions_.size())
+  const auto n_1 = static_cast<std::size_t>(subspace_.first_order());
+  if (dynamic_.size() != d + n_1 + algebraic_.size())
     throw InternalError("balances, degrees of freedom and reactions differ in number");
   for (const char* behind : {"", rate_word})
     for (std::size_t i = 0; i < d; ++i) {
@@ -103,6 +117,11 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
       states_.push_back({unknown.name() + behind, unknown.unit + (*behind == '\0' ? "" : "/s"),
                          subspace_.scale()[i]});
     }
+  for (std::size_t i = 0; i < n_1; ++i) {
+    const system::Unknown& unknown =
+        system.unknowns()[static_cast<std::size_t>(subspace_.states()[i])];
+    states_.push_back({unknown.name(), unknown.unit, unknown.scale});
+  }
   for (std::size_t i = 0; i < input_output.inputs().size(); ++i) {
     const bool is_motion = input_output.inputs()[i].is_motion;
     for (int derivative = 0; derivative < (is_motion ? 3 : 1); ++derivative)
@@ -137,7 +156,9 @@ Eigen::VectorXd LinearModel::operating_outputs(double t) const {
 }
 
 /// Positions from the constraint rows, velocities from the kinematic rows, and their rates from
-/// these rows differentiated in time: no difference of a solution is ever taken.
+/// these rows differentiated in time: no difference of a solution is ever taken. Rates of
+/// first-order states are columns beside the states; of those in constraint rows the second rates
+/// come from their evolution rows, differentiated.
 LinearModel::Motion LinearModel::motion_at(double t) const {
   const Tangents now = tangents_at(t);
   Jet<Sparse> K{now.K, 0.0 * now.K, 0.0 * now.K};
@@ -161,19 +182,25 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
   }
 
   const auto d = static_cast<Eigen::Index>(subspace_.degrees_of_freedom());
+  const auto n_1 = static_cast<Eigen::Index>(subspace_.first_order());
   const Eigen::Index m = now.R.cols();
   const Eigen::Index n = system_.size();
+  const Columns at{d, n_1, m};
   const std::vector<PetscInt>& coordinates = subspace_.coordinates();
   const std::vector<PetscInt>& tied = subspace_.tied();
   const std::vector<PetscInt>& constraints = subspace_.constraint_rows();
   const std::vector<PetscInt>& kinematic = subspace_.kinematic_rows();
   const std::vector<PetscInt>& velocities = subspace_.velocities();
 
-  // Z, Z_dot, Z_ddot of positions = Z eta.
-  Jet<Dense> Z{Dense::Zero(n, d), Dense::Zero(n, d), Dense::Zero(n, d)};
+  // Z, Z_dot, Z_ddot of positions = Z (eta, xi).
+  Jet<Dense> Z{Dense::Zero(n, d + n_1), Dense::Zero(n, d + n_1), Dense::Zero(n, d + n_1)};
   for (Eigen::Index i = 0; i < d; ++i)
     Z.value(coordinates[static_cast<std::size_t>(i)], i) =
         subspace_.scale()[static_cast<std::size_t>(i)];
+  const std::vector<PetscInt>& states = subspace_.states();
+  for (Eigen::Index i = 0; i < n_1; ++i)
+    Z.value(states[static_cast<std::size_t>(i)], d + i) =
+        subspace_.state_scale()[static_cast<std::size_t>(i)];
   const Jet<Sparse> D{rows_of(K.value, constraints), rows_of(K.first, constraints),
                       rows_of(K.second, constraints)};
   const SparseSolver positions(part(K.value, constraints, tied), "constraints");
@@ -182,16 +209,38 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
   Z.second(tied, Eigen::all) = positions.solve(-(2.0 * (D.first * Z.first) + D.second * Z.value));
 
   Motion motion{
-      Dense::Zero(n, 3 * (d + m)), Dense::Zero(n, 3 * (d + m)), now.K, now.M, now.R, now.R_rate};
+      Dense::Zero(n, at.all()), Dense::Zero(n, at.all()), now.K, now.M, now.R, now.R_rate};
   Dense& z = motion.z;
   Dense& z_dot = motion.z_dot;
-  z.leftCols(d) = Z.value;
-  z_dot.leftCols(d) = Z.first;
-  z_dot.middleCols(d, d) = Z.value;
-  Dense z_ddot = Dense::Zero(n, 3 * (d + m));
-  z_ddot.leftCols(d) = Z.second;
-  z_ddot.middleCols(d, d) = 2.0 * Z.first;
-  z_ddot.middleCols(2 * d, d) = Z.value;
+  z.leftCols(d) = Z.value.leftCols(d);
+  z_dot.leftCols(d) = Z.first.leftCols(d);
+  z_dot.middleCols(d, d) = Z.value.leftCols(d);
+  z.middleCols(at.xi(), n_1) = Z.value.rightCols(n_1);
+  z_dot.middleCols(at.xi(), n_1) = Z.first.rightCols(n_1);
+  z_dot.middleCols(at.xi_dot(), n_1) = Z.value.rightCols(n_1);
+  Dense z_ddot = Dense::Zero(n, at.all());
+  z_ddot.leftCols(d) = Z.second.leftCols(d);
+  z_ddot.middleCols(d, d) = 2.0 * Z.first.leftCols(d);
+  z_ddot.middleCols(2 * d, d) = Z.value.leftCols(d);
+  z_ddot.middleCols(at.xi(), n_1) = Z.second.rightCols(n_1);
+  z_ddot.middleCols(at.xi_dot(), n_1) = 2.0 * Z.first.rightCols(n_1);
+  const std::vector<PetscInt> driving = subspace_.driving();
+  if (!driving.empty()) {
+    // E x_ddot + E_dot x_dot + (K z)' + (R u)' = 0, where K has positions and states alone.
+    Dense right = rows_of(M_first, driving) * z_dot + rows_of(K.first, driving) * z +
+                  rows_of(K.value, driving) * z_dot;
+    right.middleCols(at.u(), m) += R_first(driving, Eigen::all);
+    right.middleCols(at.u() + m, m) +=
+        now.R(driving, Eigen::all) + R_rate_first(driving, Eigen::all);
+    right.middleCols(at.u() + 2 * m, m) += now.R_rate(driving, Eigen::all);
+    const Dense second =
+        SparseSolver(part(now.M, driving, driving), "evolution rows").solve(-right);
+    for (std::size_t i = 0; i < driving.size(); ++i) {
+      const auto place = std::ranges::find(states, driving[i]) - states.begin();
+      z_ddot += Z.value.col(d + place) * (second.row(static_cast<Eigen::Index>(i)) /
+                                          subspace_.state_scale()[static_cast<std::size_t>(place)]);
+    }
+  }
 
   // K z + M z_dot + R u + R' u_dot = 0 in the kinematic rows, and its rate.
   const SparseSolver speeds(part(K.value, kinematic, velocities), "kinematic rows");
@@ -199,14 +248,14 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
   const Sparse M_rows = rows_of(now.M, kinematic);
   const auto input = [&](const Dense& matrix) { return Dense(matrix(kinematic, Eigen::all)); };
   Dense right = K_rows * z + M_rows * z_dot;
-  right.middleCols(3 * d, m) += input(now.R);
-  right.middleCols(3 * d + m, m) += input(now.R_rate);
+  right.middleCols(at.u(), m) += input(now.R);
+  right.middleCols(at.u() + m, m) += input(now.R_rate);
   z(velocities, Eigen::all) = speeds.solve(-right);
   right = rows_of(K.first, kinematic) * z + K_rows * z_dot + rows_of(M_first, kinematic) * z_dot +
           M_rows * z_ddot;
-  right.middleCols(3 * d, m) += input(R_first);
-  right.middleCols(3 * d + m, m) += input(now.R) + input(R_rate_first);
-  right.middleCols(3 * d + 2 * m, m) += input(now.R_rate);
+  right.middleCols(at.u(), m) += input(R_first);
+  right.middleCols(at.u() + m, m) += input(now.R) + input(R_rate_first);
+  right.middleCols(at.u() + 2 * m, m) += input(now.R_rate);
   z_dot(velocities, Eigen::all) = speeds.solve(-right);
   return motion;
 }
@@ -214,48 +263,60 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
 StateSpace LinearModel::state_space(double t) const {
   const Motion motion = motion_at(t);
   const auto d = static_cast<Eigen::Index>(subspace_.degrees_of_freedom());
+  const auto n_1 = static_cast<Eigen::Index>(subspace_.first_order());
   const Eigen::Index m = motion.R.cols();
+  const Columns at{d, n_1, m};
 
-  // The balances: square in accelerations of eta and reactions.
-  Dense known = rows_of(motion.K, balance_) * motion.z + rows_of(motion.M, balance_) * motion.z_dot;
-  known.middleCols(3 * d, m) += motion.R(balance_, Eigen::all);
-  known.middleCols(3 * d + m, m) += motion.R_rate(balance_, Eigen::all);
+  // The rows with rates and those of auxiliaries: square in accelerations of eta, what has no
+  // memory, and rates of xi.
+  Dense known = rows_of(motion.K, dynamic_) * motion.z + rows_of(motion.M, dynamic_) * motion.z_dot;
+  known.middleCols(at.u(), m) += motion.R(dynamic_, Eigen::all);
+  known.middleCols(at.u() + m, m) += motion.R_rate(dynamic_, Eigen::all);
+  const auto algebraic = static_cast<Eigen::Index>(algebraic_.size());
   Dense matrix(known.rows(), known.rows());
   matrix.leftCols(d) = known.middleCols(2 * d, d);
-  matrix.rightCols(matrix.cols() - d) = part(motion.K, balance_, reactions_);
-  const auto without = [d](const Dense& all) {  // (eta, eta_dot, u, u_dot, u_ddot)
-    Dense rest(all.rows(), all.cols() - d);
-    rest << all.leftCols(2 * d), all.rightCols(all.cols() - 3 * d);
+  matrix.middleCols(d, algebraic) = part(motion.K, dynamic_, algebraic_);
+  matrix.rightCols(n_1) = known.middleCols(at.xi_dot(), n_1);
+  const auto without = [&](const Dense& all) {  // (eta, eta_dot, xi, u, u_dot, u_ddot)
+    Dense rest(all.rows(), 2 * d + n_1 + 3 * m);
+    rest << all.leftCols(2 * d), all.middleCols(at.xi(), n_1), all.rightCols(3 * m);
     return rest;
   };
   const Dense found = solve_scaled(matrix, -without(known));
   const Dense acceleration = found.topRows(d);
+  const Dense xi_dot = found.bottomRows(n_1);
 
   Dense z = without(motion.z);
-  z(reactions_, Eigen::all) = found.bottomRows(found.rows() - d);
-  const Dense z_dot =
-      without(motion.z_dot) + multiply(motion.z_dot.middleCols(2 * d, d), acceleration);
+  Dense z_dot = without(motion.z_dot) + multiply(motion.z_dot.middleCols(2 * d, d), acceleration);
+  if (n_1 > 0) {
+    z += multiply(motion.z.middleCols(at.xi_dot(), n_1), xi_dot);
+    z_dot += multiply(motion.z_dot.middleCols(at.xi_dot(), n_1), xi_dot);
+  }
+  z(algebraic_, Eigen::all) = found.middleRows(d, algebraic);
 
   const petsc::Handle<Vec> state = system_.make_state();
   const petsc::Handle<Vec> rate = system_.make_state();
   solution_.evaluate(t, state.get(), rate.get());
   const system::OutputTangents slopes = input_output_.output_tangents(t, state.get(), rate.get());
   Dense y = multiply(slopes.by_state, z) + multiply(slopes.by_rate, z_dot);
-  y.middleCols(2 * d, m) += slopes.by_input;
+  const Eigen::Index size = 2 * d + n_1;
+  y.middleCols(size, m) += slopes.by_input;
 
   StateSpace result;
-  result.A = Dense::Zero(2 * d, 2 * d);
-  result.A.topRightCorner(d, d).setIdentity();
-  result.A.bottomRows(d) = acceleration.leftCols(2 * d);
-  result.C = y.leftCols(2 * d);
+  result.A = Dense::Zero(size, size);
+  result.A.block(0, d, d, d).setIdentity();
+  result.A.middleRows(d, d) = acceleration.leftCols(size);
+  result.A.bottomRows(n_1) = xi_dot.leftCols(size);
+  result.C = y.leftCols(size);
   const auto count = static_cast<Eigen::Index>(columns_.size());
-  result.B = Dense::Zero(2 * d, count);
+  result.B = Dense::Zero(size, count);
   result.D.resize(y.rows(), count);
   for (Eigen::Index j = 0; j < count; ++j) {
     const InputColumn& column = columns_[static_cast<std::size_t>(j)];
     const Eigen::Index from =
-        2 * d + column.derivative * m + static_cast<Eigen::Index>(column.input);
-    result.B.col(j).tail(d) = acceleration.col(from);
+        size + column.derivative * m + static_cast<Eigen::Index>(column.input);
+    result.B.col(j).segment(d, d) = acceleration.col(from);
+    result.B.col(j).tail(n_1) = xi_dot.col(from);
     result.D.col(j) = y.col(from);
   }
   return result;

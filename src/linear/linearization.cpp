@@ -205,8 +205,8 @@ class Linearizer {
 
   void add_lyapunov_floquet() {
     const LyapunovFloquet floquet(periodic_.series, speed_, azimuths_,
-                                  options_.lyapunov_floquet_states,
-                                  options_.lyapunov_floquet_steps);
+                                  options_.lyapunov_floquet_states, options_.lyapunov_floquet_steps,
+                                  model_.subspace().first_order());
     if (!floquet.remark().empty()) observer_.note("note: " + floquet.remark());
     Remembered maps([&floquet](double psi) { return floquet.transformation(psi); });
     result_.forms.push_back(over_azimuth(

@@ -100,16 +100,19 @@ int LyapunovFloquet::Block::states() const {
 }
 
 LyapunovFloquet::LyapunovFloquet(const AzimuthSeries& series, double rotor_speed, int azimuths,
-                                 int states, int steps)
+                                 int states, int steps, int first_order)
     : series_(series),
       speed_(rotor_speed),
       intervals_(std::max(azimuths, 1)),
       steps_(2 * ((steps / 2 + intervals_ - 1) / intervals_)),
+      positions_((series.mean().A.rows() - first_order) / 2),
       scale_(series.mean().A.rows()) {
-  // Half of the states are the rates of the others: in these units none is much faster than one.
-  const Index half = scale_.size() / 2;
-  const double rate = std::sqrt(series.mean().A.bottomLeftCorner(half, half).norm());
-  scale_ << Eigen::VectorXd::Ones(half), Eigen::VectorXd::Constant(half, std::max(rate, speed_));
+  // Rates are those of the positions: in these units none is much faster than one.
+  const double rate =
+      std::sqrt(series.mean().A.block(positions_, 0, positions_, positions_).norm());
+  scale_ << Eigen::VectorXd::Ones(positions_),
+      Eigen::VectorXd::Constant(positions_, std::max(rate, speed_)),
+      Eigen::VectorXd::Ones(first_order);
   MatrixXd monodromy = MatrixXd::Identity(scale_.size(), scale_.size());
   MatrixXd coarse = monodromy;
   for (int i = 0; i < intervals_; ++i) {
@@ -208,15 +211,19 @@ void LyapunovFloquet::follow(Block& block) const {
 /// Exponents are known but for multiples of i Omega. Taken is the one next to the mean frequency of
 /// the motion: P then changes least.
 void LyapunovFloquet::choose_branch(Block& block) const {
-  const Index half = scale_.size() / 2;
   double turning = 0.0;
   double size = 0.0;
   for (int i = 0; i < intervals_; ++i) {
     const MatrixXcd& V = block.V[static_cast<std::size_t>(i)];
-    turning += (V.topRows(half).conjugate().array() * V.bottomRows(half).array()).sum().imag();
-    size += V.topRows(half).squaredNorm();
+    turning +=
+        (V.topRows(positions_).conjugate().array() * V.middleRows(positions_, positions_).array())
+            .sum()
+            .imag();
+    size += V.topRows(positions_).squaredNorm();
   }
-  const double shift = std::round((turning / size - mean_of(block.exponent).imag()) / speed_);
+  // Of first-order states alone there is no motion whose frequency chooses.
+  const double shift =
+      size > 0.0 ? std::round((turning / size - mean_of(block.exponent).imag()) / speed_) : 0.0;
   block.exponent.diagonal().array() += imaginary * shift * speed_;
   for (int i = 0; i <= intervals_; ++i) {
     const Complex phase = std::exp(-imaginary * shift * (turn * i / intervals_));
@@ -233,8 +240,11 @@ void LyapunovFloquet::choose_branch(Block& block) const {
 void LyapunovFloquet::choose_scale(Block& block) const {
   Complex largest = 0.0;
   for (const MatrixXcd& V : block.V)
-    for (const Complex entry : V.topRows(scale_.size() / 2).reshaped())
-      if (std::abs(entry) > std::abs(largest)) largest = entry;
+    for (Index i = 0; i < V.rows(); ++i) {
+      if (i >= positions_ && i < 2 * positions_) continue;
+      for (const Complex entry : V.row(i))
+        if (std::abs(entry) > std::abs(largest)) largest = entry;
+    }
   if (block.kind == Block::Kind::positive) largest = largest.real();
   for (MatrixXcd& V : block.V) V /= largest;
   for (MatrixXcd& W : block.W) W *= largest;

@@ -65,41 +65,49 @@ Multiblade::Multiblade(const LinearModel& model) : model_(model) {
 
 void Multiblade::find_state_families() {
   const analysis::ConsistentSubspace& subspace = model_.subspace();
-  const std::vector<PetscInt>& coordinates = subspace.coordinates();
   const int d = subspace.degrees_of_freedom();
-  std::vector<std::string> families;                  // in the order of the coordinates
-  std::map<std::string, std::map<int, int>> members;  // by family and blade
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+  add_state_families(subspace.coordinates(), 0, d);
+  add_state_families(subspace.states(), 2 * d, 0);
+}
+
+/// Families of the states from `first` on, and of their rates where these stand `rates` places
+/// behind them.
+void Multiblade::add_state_families(const std::vector<PetscInt>& unknowns, int first, int rates) {
+  using Key = std::pair<std::string, std::string>;  // part and family
+  std::vector<Key> families;                        // in the order of the states
+  std::map<Key, std::map<int, int>> members;        // by blade
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const system::Unknown& unknown =
-        model_.system().unknowns()[static_cast<std::size_t>(coordinates[i])];
+        model_.system().unknowns()[static_cast<std::size_t>(unknowns[i])];
     if (unknown.owner.instance == 0) continue;
-    const std::string family = unknown.family();
+    const Key family(unknown.owner.part, unknown.family());
     if (!members.contains(family)) families.push_back(family);
-    members[family][unknown.owner.instance] = static_cast<int>(i);
+    members[family][unknown.owner.instance] = first + static_cast<int>(i);
   }
-  for (const std::string& name : families) {
+  for (const Key& key : families) {
+    const std::string& name = key.second;
     Family family;
-    for (const auto& [blade, place] : members[name]) {
+    for (const auto& [blade, place] : members[key]) {
       family.members.push_back(place);
-      family.scales.push_back(subspace.scale()[static_cast<std::size_t>(place)]);
+      family.scales.push_back(states_[static_cast<std::size_t>(place)].scale);
     }
     if (static_cast<int>(family.members.size()) != blades_)
       throw InputError(
           "linearize.forms: multiblade coordinates are for blades with the same "
           "states, \"" +
           name + "\" is not one of all");
-    for (int derivative = 0; derivative < 2; ++derivative) {
+    for (int derivative = 0; derivative < (rates > 0 ? 2 : 1); ++derivative) {
       family.derivative = derivative;
       family.first = static_cast<int>(state_families_.size()) - derivative;
       const std::vector<std::string> names = words(blades_);
-      const ModelState first = states_[static_cast<std::size_t>(family.members.front())];
+      const ModelState of_first = states_[static_cast<std::size_t>(family.members.front())];
       for (std::size_t j = 0; j < names.size(); ++j) {
         ModelState& state = states_[static_cast<std::size_t>(family.members[j])];
-        state = first;
+        state = of_first;
         state.name = names[j] + " " + name + (derivative > 0 ? rate_word : "");
       }
       state_families_.push_back(family);
-      for (int& place : family.members) place += d;
+      for (int& place : family.members) place += rates;
     }
   }
 }

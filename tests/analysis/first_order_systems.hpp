@@ -190,7 +190,8 @@ class SpeedControl final : public FirstOrderSystem {
     add_state("controller", "filtered speed");
     add_state("controller", "integral");
     add_kinetic("rotor", 1, J);
-    // The integral takes the torque: what the mean of the angle would need is an offset of its rate.
+    // The integral takes the torque: what the mean of the angle would need is an offset of its
+    // rate.
     neutral_.push_back({"rotor", 0, 3, "rad/s"});
   }
   void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
@@ -219,6 +220,64 @@ class SpeedControl final : public FirstOrderSystem {
 
  private:
   static constexpr double J = 4.0, c = -0.2, w = 3.0, P = 1.5, I = 0.8;
+};
+
+/// A joint that an actuator drives by a gear whose ratio changes in time: p = g(t) x_1 with
+/// g = 1 + 0.3 cos t, x_1' = x_2, x_2' = w^2 (h u - x_1) - 2 zeta w x_2, m (u + L p)'' + k u = 0.
+class PeriodicJoint final : public SmallSystem {
+ public:
+  PeriodicJoint() {
+    period_ = 2.0 * pi;
+    autonomous_ = false;
+    add("p", UnknownRole::position, RowRole::constraint);
+    add_position("u");
+    add("p'", UnknownRole::velocity, RowRole::kinematic);
+    add_velocity("u'");
+    add("R", UnknownRole::internal, RowRole::balance);
+    add_state("actuator", "value");
+    add_state("actuator", "rate");
+    add_energy(EnergyGroup::Kind::kinetic, {PartKind::body, "mass"}, "", {2, 3},
+               {m * L * L, m * L, m * L, m});
+  }
+  void tangents_at(double t, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
+                   Eigen::MatrixXd& M) const override {
+    K(0, 0) = 1.0;
+    K(0, 5) = -gain(t);
+    K(1, 3) = 1.0;
+    M(1, 1) = -1.0;
+    K(2, 2) = 1.0;
+    M(2, 0) = -1.0;
+    M(3, 3) = m;
+    M(3, 2) = m * L;
+    K(3, 1) = k;
+    M(4, 2) = m * L * L;
+    M(4, 3) = m * L;
+    K(4, 4) = -1.0;
+    M(5, 5) = 1.0;
+    K(5, 6) = -1.0;
+    M(6, 6) = 1.0;
+    K(6, 6) = 2.0 * zeta * w;
+    K(6, 5) = w * w;
+    K(6, 1) = -w * w * h;
+  }
+  /// Of u, u', x_1, x_2: u'' = -k u / m - L (g'' x_1 + 2 g' x_2 + g x_2').
+  Eigen::MatrixXd explicit_form(double t) const {
+    const Eigen::RowVector4d x_2(w * w * h, 0.0, -w * w, -2.0 * zeta * w);
+    Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+    A(0, 1) = 1.0;
+    A(1, 0) = -k / m;
+    A(1, 2) = L * 0.3 * std::cos(t);
+    A(1, 3) = 2.0 * L * 0.3 * std::sin(t);
+    A.row(1) -= L * gain(t) * x_2;
+    A(2, 3) = 1.0;
+    A.row(3) = x_2;
+    return A;
+  }
+  static constexpr int states = 4;
+
+ private:
+  static double gain(double t) { return 1.0 + 0.3 * std::cos(t); }
+  static constexpr double m = 2.0, k = 5.0, L = 0.6, w = 3.0, zeta = 0.4, h = 0.25;
 };
 
 /// x' = (-1 + 2 cos t) x: no coordinate of second order. The multiplier is exp(-2 pi).

@@ -59,7 +59,8 @@ void require_exponents(const analysis::ModeSet& set, const std::vector<Complex>&
 /// z(T) of z' = A(t) z from the unit states, by the classical Runge-Kutta method.
 template <class System>
 Eigen::MatrixXd monodromy_of(const System& system, int steps) {
-  Eigen::MatrixXd z = Eigen::MatrixXd::Identity(system.size(), system.size());
+  const Eigen::Index n = system.explicit_form(0.0).rows();
+  Eigen::MatrixXd z = Eigen::MatrixXd::Identity(n, n);
   const double h = system.period() / steps;
   for (int k = 0; k < steps; ++k) {
     const double t = k * h;
@@ -99,6 +100,26 @@ BOOST_AUTO_TEST_CASE(a_periodic_lag_alone_has_the_multiplier_of_its_mean) {
     BOOST_TEST(error > 0.1 * set.modes[0].step_error);
   }
   BOOST_TEST(std::abs(found[1] + (found[1] - found[0]) / 3.0 + 1.0) < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(a_state_drives_a_joint_through_a_constraint_that_changes_in_time) {
+  const PeriodicJoint system;
+  const Eigen::VectorXcd exact = monodromy_of(system, 4000).eigenvalues();
+  const analysis::ModeSet coarse = floquet_of(system, 400).set;
+  const analysis::ModeSet fine = floquet_of(system, 800).set;
+  BOOST_TEST(fine.found == 4);
+  const auto nearest = [](const analysis::ModeSet& set, Complex multiplier) {
+    Complex best = 10.0;
+    for (const analysis::Mode& mode : set.modes)
+      for (const Complex one : {mode.multiplier, std::conj(mode.multiplier)})
+        if (std::abs(one - multiplier) < std::abs(best - multiplier)) best = one;
+    return best;
+  };
+  for (const Complex multiplier : exact) {
+    const Complex a = nearest(coarse, multiplier);
+    const Complex b = nearest(fine, multiplier);
+    BOOST_TEST(std::abs(b + (b - a) / 3.0 - multiplier) < 1e-6, multiplier << " " << a << " " << b);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(states_of_blades_repeat_from_blade_to_blade) {

@@ -7,6 +7,7 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/system/turbine_system.hpp"
 
+#include "first_order_systems.hpp"
 #include "turbines.hpp"
 
 using namespace samara;
@@ -72,6 +73,17 @@ BOOST_AUTO_TEST_CASE(ranks_do_not_change_the_modes_of_a_coupled_turbine) {
 
 BOOST_AUTO_TEST_CASE(ranks_do_not_change_the_modes_under_gravity_over_the_full_period) {
   require_same(run(lee_turbine({2, 1, 2, 2}, 9.80665), {201, analysis::FloquetPeriod::full}));
+}
+
+BOOST_AUTO_TEST_CASE(ranks_do_not_change_the_modes_of_first_order_states) {
+  const RotorWithLags system(3);
+  const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(system.size(), 1), system.period());
+  for (const auto period : {analysis::FloquetPeriod::full, analysis::FloquetPeriod::blade}) {
+    analysis::Observer observer;
+    const analysis::FloquetOptions options{240, period};
+    require_same({find_floquet_modes(system, rest, options, PETSC_COMM_SELF, observer),
+                  find_floquet_modes(system, rest, options, PETSC_COMM_WORLD, observer)});
+  }
 }
 
 BOOST_AUTO_TEST_CASE(mode_shapes_are_on_the_first_rank) {

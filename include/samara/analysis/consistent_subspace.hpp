@@ -38,12 +38,8 @@ class ConsistentSubspace {
   /// The unknowns that are xi, each divided by its Unknown::scale.
   const std::vector<PetscInt>& states() const { return states_; }
   const std::vector<double>& state_scale() const { return state_scale_; }
-  const std::vector<PetscInt>& evolution_rows() const { return evolution_; }
-  /// What is no state and has no memory: internal loads that no constraint row contains,
-  /// auxiliaries.
-  const std::vector<PetscInt>& reactions() const { return reactions_; }
-  const std::vector<PetscInt>& auxiliaries() const { return auxiliaries_; }
-  const std::vector<PetscInt>& balance_rows() const { return balance_; }
+  /// Those of them that constraint rows contain.
+  std::vector<PetscInt> driving() const;
 
   /// What constraint rows determine from eta and xi: positions, and internal loads of beams held
   /// twice.
@@ -99,7 +95,6 @@ class ConsistentSubspace {
   std::vector<PetscInt> kinematic_;    ///< rows
   std::vector<PetscInt> velocities_;   ///< unknowns
   std::vector<PetscInt> balance_;      ///< rows
-  std::vector<PetscInt> evolution_;    ///< rows
   std::vector<PetscInt> positions_;    ///< unknowns
   std::vector<PetscInt> states_;       ///< unknowns of first order
   std::vector<double> state_scale_;    ///< xi = z / scale

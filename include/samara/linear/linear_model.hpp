@@ -58,7 +58,7 @@ inline constexpr char rate_word[] = " rate";
 
 /// A state: unknown = scale times state.
 struct ModelState {
-  std::string name;  ///< of the unknown, with rate_word behind it in the second half
+  std::string name;  ///< of the unknown, with rate_word behind it where it is the rate
   std::string unit;  ///< of the unknown
   double scale = 1.0;
 };
@@ -69,7 +69,7 @@ class LinearModel {
   LinearModel(const system::PeriodicSystem& system, const system::InputOutput& input_output,
               const analysis::PeriodicSolution& solution);
 
-  /// x = (eta, eta_dot), as ConsistentSubspace has them.
+  /// x = (eta, eta_dot, xi), as ConsistentSubspace has them.
   const std::vector<ModelState>& states() const { return states_; }
   const std::vector<InputColumn>& input_columns() const { return columns_; }
   const system::PeriodicSystem& system() const { return system_; }
@@ -84,6 +84,7 @@ class LinearModel {
   Eigen::VectorXd operating_outputs(double t) const;
 
  private:
+  struct Columns;
   struct Tangents;
   struct Motion;
   Tangents tangents_at(double t) const;
@@ -93,8 +94,8 @@ class LinearModel {
   const system::InputOutput& input_output_;
   const analysis::PeriodicSolution& solution_;
   analysis::ConsistentSubspace subspace_;
-  std::vector<PetscInt> balance_;    ///< rows
-  std::vector<PetscInt> reactions_;  ///< internal loads that constraints do not determine
+  std::vector<PetscInt> dynamic_;    ///< rows: balances, evolutions and definitions
+  std::vector<PetscInt> algebraic_;  ///< auxiliaries, and loads that constraints do not determine
   std::vector<ModelState> states_;
   std::vector<InputColumn> columns_;
 };

@@ -18,10 +18,11 @@ class LyapunovFloquet {
   /// Integrates over a revolution, by way of `azimuths` equally spaced ones, at which the forms
   /// below then cost nothing, in `steps` steps at the least; half as many tell how large the error
   /// is. Of the slowest modes that are resolved so, `states` coordinates at the most; 0: all.
-  /// `series` must live on.
+  /// `series` must live on; the last `first_order` of its states are xi, the others eta and its
+  /// rate.
   /// @throws InputError where there are none, or less than `states`
   LyapunovFloquet(const AzimuthSeries& series, double rotor_speed, int azimuths, int states,
-                  int steps = default_steps);
+                  int steps = default_steps, int first_order = 0);
 
   static constexpr int default_steps = 512;
 
@@ -73,6 +74,7 @@ class LyapunovFloquet {
   double speed_;
   int intervals_;
   int steps_;                                 ///< an interval
+  Eigen::Index positions_;                    ///< entries of eta
   Eigen::VectorXd scale_;                     ///< x over what is integrated
   std::vector<Eigen::MatrixXd> propagators_;  ///< over the intervals
   std::vector<Block> blocks_;

@@ -40,6 +40,7 @@ class Multiblade {
   using SignalKey = std::pair<std::string, int>;  ///< family, empty: of none; derivative
 
   void find_state_families();
+  void add_state_families(const std::vector<PetscInt>& unknowns, int first, int rates);
   void find_signal_families(const std::vector<SignalKey>& keys,
                             std::vector<system::Signal>& signals,
                             std::vector<Family>& families) const;
