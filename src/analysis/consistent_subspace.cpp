@@ -68,12 +68,12 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
     if (system.unknowns()[i].role == system::UnknownRole::auxiliary)
       auxiliaries_.push_back(static_cast<PetscInt>(i));
   }
-  find_states(at_start.M);
+  find_states(at_start);
   fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
 }
 
 /// A state's evolution row stands in its place. Definition rows have no rates.
-void ConsistentSubspace::find_states(const Eigen::SparseMatrix<double>& M) {
+void ConsistentSubspace::find_states(const SparseTangents& at_start) {
   for (std::size_t i = 0; i < system_.rows().size(); ++i) {
     if (system_.rows()[i] != system::RowRole::evolution) continue;
     states_.push_back(static_cast<PetscInt>(i));
@@ -88,6 +88,15 @@ void ConsistentSubspace::find_states(const Eigen::SparseMatrix<double>& M) {
     if (std::ranges::any_of(constraints_, contains_it))
       driving_.push_back(static_cast<PetscInt>(i));
   }
+  SparseSolver(part(at_start.M, states_, states_), "evolution rows");
+  require_no_rates(at_start.M);
+  if (system_.period() > 0.0)
+    for (const double turn : {0.12, 0.31, 0.47, 0.78})
+      require_no_rates(tangents_on(system_, solution_, turn * system_.period()).M);
+}
+
+/// Of constraint and definition rows, and of states in kinematic rows.
+void ConsistentSubspace::require_no_rates(const Eigen::SparseMatrix<double>& M) const {
   for (Eigen::Index j = 0; j < M.outerSize(); ++j)
     for (Sparse::InnerIterator it(M, j); it; ++it) {
       const auto row = static_cast<std::size_t>(it.row());

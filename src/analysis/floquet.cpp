@@ -486,8 +486,8 @@ class Analysis {
       for (std::size_t m = 0; m < set_.modes.size(); ++m) {
         Mode mode = set_.modes[m];
         mode.exponent = exponents_[m];
-        const bool real =
-            exponents_[m].imag() == 0.0 && is_rigid_body(system_, set_.shapes[m], mode);
+        const bool real = exponents_[m].imag() == 0.0 && !mode.state &&
+                          is_rigid_body(system_, set_.shapes[m], mode);
         if ((!is_zero(exponents_[m]) && !real) || fast_share(m) > largest_fast_share)
           harmonics(static_cast<Eigen::Index>(m)) = set_.modes[m].harmonic;
       }

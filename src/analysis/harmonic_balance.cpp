@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -14,6 +15,9 @@
 
 namespace samara::analysis {
 namespace {
+
+/// Of Unknown::scale: a state counts with it at the least where its residual is measured.
+constexpr double least_state = 1e-3;
 
 /// A scaled residual that is rounding.
 constexpr double vanished = 1e-13;
@@ -515,7 +519,8 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
   return largest;
 }
 
-double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution) {
+double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                      const std::vector<HeldCoordinate>& loads) {
   std::vector<PetscInt> rows;
   for (std::size_t i = 0; i < system.rows().size(); ++i)
     if (system.rows()[i] == system::RowRole::evolution ||
@@ -533,15 +538,24 @@ double state_residual(const system::PeriodicSystem& system, const PeriodicSoluti
     const petsc::ReadView view(vector);
     return Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
   };
+  Eigen::VectorXd least = Eigen::VectorXd::Zero(system.size());
+  for (Eigen::Index i = 0; i < least.size(); ++i) {
+    const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
+    if (unknown.role == system::UnknownRole::state ||
+        unknown.role == system::UnknownRole::auxiliary)
+      least(i) = least_state * unknown.scale;
+  }
+  const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const int samples = 2 * std::max(sample_count(solution.harmonics()), 16);
   for (int k = 0; k < samples; ++k) {
     const double t = system.period() * k / samples;
     solution.evaluate(t, z.get(), z_dot.get());
     system.residual(t, z.get(), z_dot.get(), r.get());
+    add_held_loads(system, loads, r.get());
     system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
     const Eigen::VectorXd terms =
-        to_sparse(jacobian.get()).cwiseAbs() * values_of(z.get()).cwiseAbs() +
-        to_sparse(mass.get()).cwiseAbs() * values_of(z_dot.get()).cwiseAbs();
+        to_sparse(jacobian.get()).cwiseAbs() * values_of(z.get()).cwiseAbs().cwiseMax(least) +
+        to_sparse(mass.get()).cwiseAbs() * values_of(z_dot.get()).cwiseAbs().cwiseMax(rate * least);
     sizes = sizes.cwiseMax(terms);
     residuals = residuals.cwiseMax(values_of(r.get()).cwiseAbs());
   }
@@ -559,7 +573,7 @@ void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
           trim.solution.coefficients().row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
   trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
   trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
-  trim.state_residual = state_residual(system, trim.solution);
+  trim.state_residual = state_residual(system, trim.solution, trim.held);
 }
 
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,

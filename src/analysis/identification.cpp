@@ -237,9 +237,14 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     Eigen::MatrixXcd& shape = set.shapes[m];
     double largest = 0.0;
-    for (Eigen::Index i = 0; i < shape.rows(); ++i)
-      if (system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
-        largest = std::max(largest, shape.row(i).cwiseAbs().maxCoeff());
+    const std::optional<system::Owner>& state = set.modes[m].state;
+    for (Eigen::Index i = 0; i < shape.rows(); ++i) {
+      const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
+      const bool counts =
+          state ? unknown.role == system::UnknownRole::state && unknown.owner.part == state->part
+                : unknown.role == system::UnknownRole::position;
+      if (counts) largest = std::max(largest, shape.row(i).cwiseAbs().maxCoeff() / unknown.scale);
+    }
     if (!(largest > 0.0)) continue;
     shape /= largest;
     set.modes[m].kinetic_energy /= largest * largest;

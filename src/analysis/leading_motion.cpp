@@ -206,7 +206,8 @@ Leading find_leading(const system::PeriodicSystem& system,
   };
   if (is_at_rest(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
   // A joint that drifts: what bends with it has little of the motion, however much it strains.
-  const bool is_beam = motions[leading().motion].owner.kind == system::PartKind::beam;
+  const system::Owner& mover = motions[leading().motion].owner;
+  const bool is_beam = mover.kind == system::PartKind::beam || mover.instance > 0;
   if (mode.exponent.imag() == 0.0 && !is_beam) return leading();
   for (const auto& [name, energy] :
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))

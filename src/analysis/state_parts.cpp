@@ -24,8 +24,9 @@ std::vector<int> leading_states(const Eigenpairs& pairs, Eigen::Index motion,
   const Eigen::MatrixXcd left = pairs.vectors.partialPivLu().inverse();
   for (std::size_t m = 0; m < leading.size(); ++m) {
     const auto column = static_cast<Eigen::Index>(m);
-    const Eigen::VectorXcd factors =
-        left.row(column).transpose().cwiseProduct(pairs.vectors.col(column));
+    Eigen::VectorXcd factors = left.row(column).transpose().cwiseProduct(pairs.vectors.col(column));
+    // Defective exponents have no left eigenvectors of their own.
+    if (!factors.allFinite()) factors = pairs.vectors.col(column).cwiseAbs2();
     Eigen::VectorXcd sums = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(parts.owners.size()));
     for (std::size_t i = 0; i < parts.part_of.size(); ++i)
       sums(static_cast<Eigen::Index>(parts.part_of[i])) +=

@@ -77,7 +77,7 @@ struct LinearModel::Tangents {
   Dense R, R_rate;
 };
 
-/// Columns of w = (eta, eta_dot, eta_ddot, u, u_dot, u_ddot): all of z and z_dot but the reactions.
+/// By Columns: all of z and z_dot but reactions and auxiliaries.
 struct LinearModel::Motion {
   Dense z, z_dot;
   Sparse K, M;
@@ -91,7 +91,9 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
       input_output_(input_output),
       solution_(solution),
       subspace_(system, solution) {
-  const std::vector<PetscInt>& tied = subspace_.tied();
+  std::vector<bool> is_known(static_cast<std::size_t>(system.size()), false);
+  for (const PetscInt i : subspace_.coordinates()) is_known[static_cast<std::size_t>(i)] = true;
+  for (const PetscInt i : subspace_.tied()) is_known[static_cast<std::size_t>(i)] = true;
   for (std::size_t i = 0; i < system.rows().size(); ++i) {
     const auto at = static_cast<PetscInt>(i);
     const system::RowRole row = system.rows()[i];
@@ -99,11 +101,8 @@ LinearModel::LinearModel(const system::PeriodicSystem& system,
     if (row == system::RowRole::balance || row == system::RowRole::evolution ||
         row == system::RowRole::definition)
       dynamic_.push_back(at);
-    const bool is_known =
-        std::ranges::find(subspace_.coordinates(), at) != subspace_.coordinates().end() ||
-        std::ranges::find(tied, at) != tied.end();
     if (role == system::UnknownRole::auxiliary ||
-        (role == system::UnknownRole::internal && !is_known))
+        (role == system::UnknownRole::internal && !is_known[i]))
       algebraic_.push_back(at);
   }
   const auto d = static_cast<std::size_t>(subspace_.degrees_of_freedom());

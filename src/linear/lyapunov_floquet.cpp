@@ -17,6 +17,9 @@
 namespace samara::linear {
 namespace {
 
+/// Of the sum of squares of first-order states: a motion below it is round-off.
+constexpr double no_motion = 1e-20;
+
 using analysis::exponential;
 using analysis::multiply;
 using Complex = std::complex<double>;
@@ -213,6 +216,7 @@ void LyapunovFloquet::follow(Block& block) const {
 void LyapunovFloquet::choose_branch(Block& block) const {
   double turning = 0.0;
   double size = 0.0;
+  double states = 0.0;
   for (int i = 0; i < intervals_; ++i) {
     const MatrixXcd& V = block.V[static_cast<std::size_t>(i)];
     turning +=
@@ -220,10 +224,12 @@ void LyapunovFloquet::choose_branch(Block& block) const {
             .sum()
             .imag();
     size += V.topRows(positions_).squaredNorm();
+    states += V.bottomRows(V.rows() - 2 * positions_).squaredNorm();
   }
   // Of first-order states alone there is no motion whose frequency chooses.
-  const double shift =
-      size > 0.0 ? std::round((turning / size - mean_of(block.exponent).imag()) / speed_) : 0.0;
+  const double shift = size > no_motion * states
+                           ? std::round((turning / size - mean_of(block.exponent).imag()) / speed_)
+                           : 0.0;
   block.exponent.diagonal().array() += imaginary * shift * speed_;
   for (int i = 0; i <= intervals_; ++i) {
     const Complex phase = std::exp(-imaginary * shift * (turn * i / intervals_));

@@ -80,7 +80,9 @@ void Multiblade::add_state_families(const std::vector<PetscInt>& unknowns, int f
     const system::Unknown& unknown =
         model_.system().unknowns()[static_cast<std::size_t>(unknowns[i])];
     if (unknown.owner.instance == 0) continue;
-    const Key family(unknown.owner.part, unknown.family());
+    const bool is_blade = unknown.owner.kind == system::PartKind::beam;
+    const Key family(unknown.owner.part,
+                     (is_blade ? "" : unknown.owner.part + " ") + unknown.family());
     if (!members.contains(family)) families.push_back(family);
     members[family][unknown.owner.instance] = first + static_cast<int>(i);
   }

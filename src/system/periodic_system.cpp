@@ -1,6 +1,7 @@
 #include "samara/system/periodic_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace samara::system {
@@ -31,6 +32,8 @@ void require_counts(const PeriodicSystem& system) {
     if ((unknown.role == UnknownRole::state) != (row == RowRole::evolution) ||
         (unknown.role == UnknownRole::auxiliary) != (row == RowRole::definition))
       throw InternalError(words_of(unknown) + " has " + words_of(system, i) + " in its place");
+    if (!(unknown.scale > 0.0) || !std::isfinite(unknown.scale))
+      throw InternalError(words_of(unknown) + " has a scale that is not positive");
     const bool has_rate = system.differential()[i];
     if (unknown.role == UnknownRole::state && !has_rate)
       throw InternalError(words_of(unknown) + " has no rate in any row");

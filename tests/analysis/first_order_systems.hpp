@@ -280,6 +280,43 @@ class PeriodicJoint final : public SmallSystem {
   static constexpr double m = 2.0, k = 5.0, L = 0.6, w = 3.0, zeta = 0.4, h = 0.25;
 };
 
+/// A filter that only measures, and rests: m u'' + c u' + k u = f, T x' + x = u'.
+class RateFilter final : public FirstOrderSystem {
+ public:
+  explicit RateFilter(double period) : FirstOrderSystem(period) {
+    add_position("u");
+    add_velocity("v");
+    add_state("filter", "x");
+    unknowns_[2].scale = 0.1;
+    add_kinetic("mass", 1, m);
+  }
+  Eigen::VectorXd residual_at(double t, const Eigen::VectorXd& z,
+                              const Eigen::VectorXd& z_dot) const override {
+    Eigen::VectorXd r = FirstOrderSystem::residual_at(t, z, z_dot);
+    r(1) -= 3.7;
+    return r;
+  }
+  void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
+                   Eigen::MatrixXd& M) const override {
+    K << 0.0, 1.0, 0.0, k, c, 0.0, 0.0, -1.0, 1.0;
+    M.diagonal() << -1.0, m, T;
+  }
+  std::vector<std::complex<double>> exponents() const override {
+    std::vector<std::complex<double>> roots = roots_of({k, c, m});
+    roots.emplace_back(-1.0 / T);
+    return roots;
+  }
+  std::vector<int> explicit_unknowns() const override { return {0, 1, 2}; }
+  Eigen::MatrixXd explicit_form() const override {
+    Eigen::Matrix3d A;
+    A << 0.0, 1.0, 0.0, -k / m, -c / m, 0.0, 0.0, 1.0 / T, -1.0 / T;
+    return A;
+  }
+
+ private:
+  static constexpr double m = 2.0, c = 0.3, k = 5.0, T = 0.9;
+};
+
 /// x' = (-1 + 2 cos t) x: no coordinate of second order. The multiplier is exp(-2 pi).
 class PeriodicLag final : public SmallSystem {
  public:

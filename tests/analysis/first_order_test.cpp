@@ -320,3 +320,27 @@ BOOST_AUTO_TEST_CASE(trims_have_the_amplitudes_of_the_linear_solution) {
     }
   }
 }
+
+BOOST_AUTO_TEST_CASE(a_filter_that_rests_is_balanced_and_has_a_shape_of_its_own) {
+  const RateFilter system(1.3);
+  for (const bool automatic : {false, true}) {
+    analysis::TrimOptions options;
+    options.automatic = automatic;
+    options.least_harmonics = 1;  // a constant is not tried
+    analysis::Observer observer;
+    const analysis::Trim trim = find_trim(system, options, observer);
+    BOOST_TEST(trim.solution.coefficients()(0, 0) == 3.7 / 5.0,
+               boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(trim.state_residual < 1e-9);
+  }
+  for (const analysis::ModeSet& set :
+       {find_constant_modes(system, rest(system)), floquet_of(system, 60).set}) {
+    require_exponents(set, system.exponents(), 1e-9);
+    for (std::size_t m = 0; m < set.modes.size(); ++m) {
+      if (set.modes[m].label != "filter") continue;
+      BOOST_TEST(set.shapes[m].row(2).cwiseAbs().maxCoeff() == 0.1,
+                 boost::test_tools::tolerance(1e-12));
+      BOOST_TEST(set.modes[m].kinetic_energy < 1e-12);
+    }
+  }
+}

@@ -134,6 +134,6 @@ BOOST_AUTO_TEST_CASE(multiblade_coordinates_make_states_of_blades_constant) {
   BOOST_TEST((model.state_space(0.0).A - model.state_space(0.7).A).norm() > 0.1);
   for (const double t : {0.7, 2.9})
     BOOST_TEST((multiblade.transform(t, model.state_space(t)).A - first).norm() < 1e-12);
-  BOOST_TEST(multiblade.states()[8].name == "mean x");
+  BOOST_TEST(multiblade.states()[8].name == "mean lag x");
   BOOST_TEST(multiblade.states()[12].name == "inflow h");
 }

@@ -13,6 +13,7 @@
 #include <Eigen/SparseCore>
 
 #include "samara/analysis/periodic_solution.hpp"
+#include "samara/analysis/sparse_parts.hpp"
 #include "samara/system/periodic_system.hpp"
 
 namespace samara::analysis {
@@ -79,7 +80,8 @@ class ConsistentSubspace {
   Eigen::MatrixXd driving_rates(const Eigen::SparseMatrix<double>& K,
                                 const Eigen::SparseMatrix<double>& M,
                                 const Eigen::MatrixXd& z) const;
-  void find_states(const Eigen::SparseMatrix<double>& M);
+  void find_states(const SparseTangents& at_start);
+  void require_no_rates(const Eigen::SparseMatrix<double>& M) const;
   void find_driving_rates(double t, Vec z, Eigen::MatrixXd& rates) const;
   std::vector<std::size_t> images_of(std::size_t coordinate) const;
   void tie_coordinates(const Eigen::SparseMatrix<double>& K);

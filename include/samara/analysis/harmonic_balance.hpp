@@ -16,9 +16,11 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
 double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                         const std::vector<HeldCoordinate>& loads, double shift);
 
-/// Largest of the evolution and definition rows over a period, relative to the largest sum of the
-/// moduli of its terms; 0 where there are none.
-double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution);
+/// Largest of the evolution and definition rows over a period under these loads, relative to the
+/// largest sum of the moduli of its terms, states and auxiliaries counting with a thousandth of
+/// their Unknown::scale at the least; 0 where there are none.
+double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                      const std::vector<HeldCoordinate>& loads);
 
 /// Fills in the residuals and the load level of a solved trim.
 void finish_trim(const system::PeriodicSystem& system, Trim& trim);

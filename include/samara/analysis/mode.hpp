@@ -80,7 +80,8 @@ struct ModeSet {
   Eigen::MatrixXd participation;
   int first_harmonic = 0;
   /// Periodic mode shapes Z(t) exp(-lambda t): per mode, size x samples, at `shape_times` [s];
-  /// the largest position is 1 m or 1 rad. Empty for a mode that is not resolved.
+  /// the largest position is 1 m or 1 rad, of a mode of states the largest state its scale. Empty
+  /// for a mode that is not resolved.
   std::vector<Eigen::MatrixXcd> shapes;
   std::vector<double> shape_times;
 };
