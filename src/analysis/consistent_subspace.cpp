@@ -88,7 +88,7 @@ void ConsistentSubspace::find_states(const SparseTangents& at_start) {
     if (std::ranges::any_of(constraints_, contains_it))
       driving_.push_back(static_cast<PetscInt>(i));
   }
-  SparseSolver(part(at_start.M, states_, states_), "evolution rows");
+  const SparseSolver regular(part(at_start.M, states_, states_), "evolution rows");
   require_no_rates(at_start.M);
   if (system_.period() > 0.0)
     for (const double turn : {0.12, 0.31, 0.47, 0.78})

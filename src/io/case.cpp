@@ -502,8 +502,10 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
-  if (const YamlNode* node = map.find("transient")) read_transient(*node, turbine, result.transient, errors);
-  if (const YamlNode* node = map.find("linearize")) read_linearize(*node, turbine, result.linearize, errors);
+  if (const YamlNode* node = map.find("transient"))
+    read_transient(*node, turbine, result.transient, errors);
+  if (const YamlNode* node = map.find("linearize"))
+    read_linearize(*node, turbine, result.linearize, errors);
   map.finish();
   check_teeter(root, turbine, errors);
   if (turbine.shaft.speed == 0.0) return;

@@ -22,8 +22,8 @@ namespace {
 /// Of one dataset or attribute, that is read at once.
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-/// Processor time of the child [s]; a whole file takes some hundredths of it. A damaged one may keep
-/// the library busy without end.
+/// Processor time of the child [s]; a whole file takes some hundredths of it. A damaged one may
+/// keep the library busy without end.
 std::size_t most_seconds(std::size_t file_size) {
   return 1 + std::min<std::size_t>(file_size / 5'000'000, 120);
 }

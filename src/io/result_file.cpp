@@ -339,7 +339,10 @@ void ResultFile::write_model(const system::TurbineSystem& system) {
              {"", no_frame, "the unknowns in their order", {unknown_axis}});
   file.write("/model/unknowns/unit", units, {"", no_frame, "unit of each unknown", {unknown_axis}});
   file.write("/model/unknowns/role", roles,
-             {"", no_frame, "position, velocity, internal (force, moment), state or auxiliary", {unknown_axis}});
+             {"",
+              no_frame,
+              "position, velocity, internal (force, moment), state or auxiliary",
+              {unknown_axis}});
   write_value("/model/rotor_speed", system.turbine().speed, {"rad/s", "about +s2", "Omega"});
   write_value("/model/azimuth", system.turbine().azimuth,
               {"rad", "about +s2", "of blade 1 at t = 0"});
