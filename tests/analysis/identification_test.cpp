@@ -167,7 +167,7 @@ class Body final : public SmallSystem {
 BOOST_AUTO_TEST_CASE(energy_of_a_body_is_that_of_its_mass_matrix) {
   std::minstd_rand random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto fill = [&](Eigen::MatrixXd m) {
+  const auto fill = [&](const Eigen::MatrixXd& m) {
     return m.unaryExpr([&](double) { return uniform(random); }).eval();
   };
   std::vector<Eigen::MatrixXd> weights;

@@ -48,7 +48,7 @@ struct BadlyScaled {
 };
 
 /// The largest distance of a value of `a` to what is left of `b`, each of which serves once.
-double distance_of_sets(std::vector<Complex> a, std::vector<Complex> b) {
+double distance_of_sets(const std::vector<Complex>& a, std::vector<Complex> b) {
   double worst = 0.0;
   for (const Complex value : a) {
     if (b.empty()) return 1e300;
