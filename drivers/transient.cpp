@@ -115,9 +115,12 @@ void require_transient(const io::Case& input) {
   };
   const model::TurbineDefinition& turbine = input.turbine;
   const bool is_free = turbine.shaft.generator.kind == model::JointKind::free;
-  const bool has_blades = turbine.blades.count > 0;
-  if (!has_blades && input.transient.speed) refuse("speed", "there are no blades, nothing turns");
-  if (!has_blades && input.transient.pitch) refuse("pitch_deg", "there are no blades");
+  const auto require_blades = [&](const std::string& key) {
+    if (turbine.blades.count == 0)
+      refuse(key, "there are no blades; hint: loads and nacelle.yaw move a tower alone");
+  };
+  if (input.transient.speed) require_blades("speed");
+  if (input.transient.pitch) require_blades("pitch_deg");
   if (input.transient.speed && is_free)
     refuse("speed",
            "the generator is free, its torque makes the speed; hint: "
@@ -129,7 +132,7 @@ void require_transient(const io::Case& input) {
   for (std::size_t i = 0; i < input.transient.events.size(); ++i) {
     const system::TurbineEvent& event = input.transient.events[i];
     const std::string place = "events[" + std::to_string(i) + "]";
-    if (!has_blades) refuse(place, "there are no blades, nothing turns and nothing pitches");
+    require_blades(place);
     if (!is_free && (event.brake > 0.0 || event.generator_off))
       refuse(place,
              "the generator is locked and takes any torque; hint: "

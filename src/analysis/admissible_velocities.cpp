@@ -67,23 +67,33 @@ void AdmissibleVelocities::classify(double t, Vec z) {
 ///     balance       0     0    M_v   K_r   0     0
 ///     evolution     0     0     0     0   M_x    0
 ///     definition    0     0     0     0    0    K_a
+AdmissibleVelocities::Kept AdmissibleVelocities::kept_by(RowRole row) {
+  switch (row) {
+    case RowRole::constraint:
+      break;  // all of K
+    case RowRole::kinematic:
+      return {Column::velocity, Column::position};
+    case RowRole::balance:
+      return {Column::reaction, Column::velocity};
+    case RowRole::evolution:
+      return {Column::none, Column::state};
+    case RowRole::definition:
+      return {Column::auxiliary, Column::none};
+  }
+  return {};
+}
+
 void AdmissibleVelocities::build() {
   const auto row = [this](PetscInt i) { return system_.rows()[static_cast<std::size_t>(i)]; };
   const auto column = [this](PetscInt j) { return columns_[static_cast<std::size_t>(j)]; };
   MatrixEntries(matrix_.get()).for_each([&](PetscInt i, PetscInt j, PetscScalar& value) {
     if (row(i) == RowRole::constraint) return;
-    const bool is_kept = row(i) == RowRole::kinematic    ? column(j) == Column::velocity
-                         : row(i) == RowRole::balance    ? column(j) == Column::reaction
-                         : row(i) == RowRole::definition ? column(j) == Column::auxiliary
-                                                         : false;
-    if (!is_kept) value = 0.0;
+    if (column(j) != kept_by(row(i)).of_K) value = 0.0;
   });
   std::vector<PetscScalar> kept;
   for (PetscInt i = 0; i < system_.size(); ++i) {
-    if (row(i) == RowRole::constraint || row(i) == RowRole::definition) continue;
-    const Column wanted = row(i) == RowRole::kinematic ? Column::position
-                          : row(i) == RowRole::balance ? Column::velocity
-                                                       : Column::state;
+    const Column wanted = kept_by(row(i)).of_M;
+    if (wanted == Column::none) continue;
     PetscInt count = 0;
     const PetscInt* at = nullptr;
     const PetscScalar* values = nullptr;

@@ -34,7 +34,13 @@ class AdmissibleVelocities {
   Jumps correct(double t, Vec z, const Eigen::VectorXd& jump);
 
  private:
-  enum class Column { position, velocity, elastic, reaction, state, auxiliary };
+  enum class Column { none, position, velocity, elastic, reaction, state, auxiliary };
+  /// The columns of K and of M that a row keeps.
+  struct Kept {
+    Column of_K = Column::none;
+    Column of_M = Column::none;
+  };
+  static Kept kept_by(system::RowRole row);
 
   void classify(double t, Vec z);
   void build();

@@ -65,8 +65,6 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
       reactions_.push_back(static_cast<PetscInt>(i));
     if (system.unknowns()[i].role == system::UnknownRole::position)
       positions_.push_back(static_cast<PetscInt>(i));
-    if (system.unknowns()[i].role == system::UnknownRole::auxiliary)
-      auxiliaries_.push_back(static_cast<PetscInt>(i));
   }
   find_states(at_start);
   fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
@@ -79,14 +77,15 @@ void ConsistentSubspace::find_states(const SparseTangents& at_start) {
     states_.push_back(static_cast<PetscInt>(i));
     state_scale_.push_back(system_.unknowns()[i].scale);
   }
-  if (states_.empty() && auxiliaries_.empty()) return;
+  if (states_.empty() && !std::ranges::count(system_.rows(), system::RowRole::definition)) return;
   const std::vector<std::vector<PetscInt>> pattern = system_.pattern();
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const auto contains_it = [&](PetscInt row) {
       return std::ranges::binary_search(pattern[static_cast<std::size_t>(row)], states_[i]);
     };
-    if (std::ranges::any_of(constraints_, contains_it))
-      driving_.push_back(static_cast<PetscInt>(i));
+    if (std::ranges::none_of(constraints_, contains_it)) continue;
+    driving_.push_back(states_[i]);
+    driving_places_.push_back(static_cast<Eigen::Index>(i));
   }
   const SparseSolver regular(part(at_start.M, states_, states_), "evolution rows");
   require_no_rates(at_start.M);
@@ -107,39 +106,41 @@ void ConsistentSubspace::require_no_rates(const Eigen::SparseMatrix<double>& M) 
           (role == system::RowRole::definition || role == system::RowRole::constraint ||
            (role == system::RowRole::kinematic && is_state)))
         throw InternalError(std::string("the ") + word_of(role) + " row of \"" +
-                            system_.unknowns()[row].name() + "\" contains the rate of \"" +
-                            system_.unknowns()[static_cast<std::size_t>(j)].name() + '"');
+                            name_of(static_cast<PetscInt>(it.row())) +
+                            "\" contains the rate of \"" + name_of(static_cast<PetscInt>(j)) + '"');
     }
 }
 
-std::vector<PetscInt> ConsistentSubspace::driving() const {
-  std::vector<PetscInt> unknowns;
-  for (const PetscInt i : driving_) unknowns.push_back(states_[static_cast<std::size_t>(i)]);
-  return unknowns;
-}
-
-/// Rates of the states that constraint rows contain, of states that are the columns of z: from
-/// their own evolution rows, which are free of velocities and loads (require_roles), so that they
-/// are known before the velocities are.
+/// Rates of xi, of states that are the columns of z: of those that constraint rows contain, the
+/// others are zero here. From their own evolution rows, which are free of velocities and loads
+/// (require_roles), so that they are known before the velocities are.
 Eigen::MatrixXd ConsistentSubspace::driving_rates(const Eigen::SparseMatrix<double>& K,
                                                   const Eigen::SparseMatrix<double>& M,
                                                   const Eigen::MatrixXd& z) const {
-  const std::vector<PetscInt> driving = this->driving();
   std::vector<PetscInt> others = positions_;
   others.insert(others.end(), states_.begin(), states_.end());
-  const Sparse inertia = rows_of(M, driving);
+  const Sparse inertia = rows_of(M, driving_);
   for (Eigen::Index j = 0; j < inertia.outerSize(); ++j)
     for (Sparse::InnerIterator it(inertia, j); it; ++it)
-      if (it.value() != 0.0 && !std::ranges::binary_search(driving, static_cast<PetscInt>(j)))
-        throw InternalError(
-            "the evolution row of \"" +
-            system_
-                .unknowns()[static_cast<std::size_t>(driving[static_cast<std::size_t>(it.row())])]
-                .name() +
-            "\", a state in a constraint row, contains the rate of \"" +
-            system_.unknowns()[static_cast<std::size_t>(j)].name() + '"');
-  return SparseSolver(part(M, driving, driving), "evolution rows")
-      .solve(-(part(K, driving, others) * z(others, Eigen::all)));
+      if (it.value() != 0.0 && !std::ranges::binary_search(driving_, static_cast<PetscInt>(j)))
+        throw InternalError("the evolution row of \"" +
+                            name_of(driving_[static_cast<std::size_t>(it.row())]) +
+                            "\", a state in a constraint row, contains the rate of \"" +
+                            name_of(static_cast<PetscInt>(j)) + '"');
+  return spread_rates(SparseSolver(part(M, driving_, driving_), "evolution rows")
+                          .solve(-(part(K, driving_, others) * z(others, Eigen::all))));
+}
+
+Eigen::MatrixXd ConsistentSubspace::spread_rates(const Eigen::MatrixXd& rates) const {
+  Eigen::MatrixXd xi_dot = Eigen::MatrixXd::Zero(first_order(), rates.cols());
+  for (std::size_t i = 0; i < driving_.size(); ++i)
+    xi_dot.row(driving_places_[i]) = rates.row(static_cast<Eigen::Index>(i)) /
+                                     state_scale_[static_cast<std::size_t>(driving_places_[i])];
+  return xi_dot;
+}
+
+std::string ConsistentSubspace::name_of(PetscInt unknown) const {
+  return system_.unknowns()[static_cast<std::size_t>(unknown)].name();
 }
 
 /// Places in eta of a coordinate and all its images under the rotor's symmetry, the first first.
@@ -234,7 +235,6 @@ Eigen::MatrixXd ConsistentSubspace::states_of(const Eigen::MatrixXd& z) const {
 }
 
 /// Of a unit of each entry of eta and of xi: positions, internal loads in eta, and states.
-
 Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
   const SparseTangents tangents = tangents_on(system_, solution_, t);
   const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
@@ -274,14 +274,7 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
     z_dot.rightCols(n_1) = Z_dot.rightCols(n_1);
   }
   const SparseTangents tangents = tangents_on(system_, solution_, t);
-  if (!driving_.empty()) {
-    const Eigen::MatrixXd rates = driving_rates(tangents.K, tangents.M, z);
-    for (std::size_t i = 0; i < driving_.size(); ++i) {
-      const auto place = static_cast<std::size_t>(driving_[i]);
-      z_dot +=
-          Z.col(d + driving_[i]) * (rates.row(static_cast<Eigen::Index>(i)) / state_scale_[place]);
-    }
-  }
+  if (!driving_.empty()) z_dot += Z.rightCols(n_1) * driving_rates(tangents.K, tangents.M, z);
   const Eigen::MatrixXd p = z(positions_, Eigen::all);
   const Eigen::MatrixXd p_dot = z_dot(positions_, Eigen::all);
   Eigen::MatrixXd right = part(tangents.K, kinematic_, positions_) * p +
@@ -366,23 +359,20 @@ Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
 /// Rates of the states that constraint rows contain, into theirs of `rates`: their evolution rows
 /// are linear in them.
 void ConsistentSubspace::find_driving_rates(double t, Vec z, Eigen::MatrixXd& rates) const {
-  const std::vector<PetscInt> driving = this->driving();
   const petsc::Handle<Vec> z_dot = system_.make_state();
   const petsc::Handle<Vec> r = system_.make_state();
   const petsc::Handle<Mat> jacobian = system_.make_jacobian();
   const petsc::Handle<Mat> mass = system_.make_mass();
   system_.residual(t, z, z_dot.get(), r.get());
   system_.tangents(t, z, z_dot.get(), 0.0, jacobian.get(), mass.get());
-  Eigen::VectorXd right(static_cast<Eigen::Index>(driving.size()));
+  Eigen::VectorXd right(static_cast<Eigen::Index>(driving_.size()));
   {
     const petsc::ReadView view(r.get());
-    for (std::size_t i = 0; i < driving.size(); ++i)
-      right(static_cast<Eigen::Index>(i)) = -view[driving[i]];
+    for (std::size_t i = 0; i < driving_.size(); ++i)
+      right(static_cast<Eigen::Index>(i)) = -view[driving_[i]];
   }
-  const Eigen::MatrixXd found =
-      SparseSolver(part(to_sparse(mass.get()), driving, driving), "evolution rows").solve(right);
-  for (std::size_t i = 0; i < driving.size(); ++i)
-    rates(driving[i], 0) = found(static_cast<Eigen::Index>(i), 0);
+  rates(driving_, 0) =
+      SparseSolver(part(to_sparse(mass.get()), driving_, driving_), "evolution rows").solve(right);
 }
 
 void ConsistentSubspace::find_state(double t, const Eigen::VectorXd& reduced, Vec z) const {

@@ -200,8 +200,7 @@ class Shooting {
       double largest = 0.0;
       for (Eigen::Index i = 0; i < z.size(); ++i) {
         const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(i)];
-        if (unknown.role == system::UnknownRole::position ||
-            unknown.role == system::UnknownRole::state)
+        if (unknown.is_coordinate())
           largest = std::max(largest, std::abs(change(i, 0)) / unknown.scale);
       }
       if (largest < step_tolerance) break;

@@ -405,19 +405,13 @@ class Integration {
         constraints_.push_back(static_cast<PetscInt>(i));
   }
 
-  /// Whether the error of an unknown chooses the steps.
-  static bool is_followed(const system::Unknown& unknown) {
-    return unknown.role == system::UnknownRole::position ||
-           unknown.role == system::UnknownRole::state;
-  }
-
   /// Steps by the error of the positions and of first-order states: internal loads and, beside
   /// rigid strains, velocities are rough where the step changes, and would cut it for nothing.
   void make_adaptive(TSAdapt adapt) {
     petsc::check(TSAdaptSetType(adapt, TSADAPTBASIC));
     petsc::check(TSAdaptSetClip(adapt, least_growth, largest_growth));
     const std::vector<system::Unknown>& unknowns = system_.unknowns();
-    const auto count = std::count_if(unknowns.begin(), unknowns.end(), is_followed);
+    const auto count = std::ranges::count_if(unknowns, &system::Unknown::is_coordinate);
     // TS takes the mean square over all unknowns, most of which are left out here.
     const double tolerance =
         options_.step_tolerance *
@@ -426,7 +420,7 @@ class Integration {
     {
       const petsc::WriteView view(tolerances_.get());
       for (std::size_t i = 0; i < unknowns.size(); ++i)
-        view[static_cast<PetscInt>(i)] = is_followed(unknowns[i]) ? tolerance : left_out;
+        view[static_cast<PetscInt>(i)] = unknowns[i].is_coordinate() ? tolerance : left_out;
     }
     petsc::check(TSSetTolerances(ts_.get(), tolerance, tolerances_.get(), tolerance, nullptr));
   }

@@ -476,11 +476,12 @@ class Importer {
                                       "components.drivetrain.elastic_properties_mb",
                                       "components.nacelle.elastic_properties_mb"});
     const std::string mass = choose_in(block, ".mass", ".system_mass");
-    if (!mass.empty()) draft_.nacelle_mass = number({mass}, Fate::taken, "nacelle.mass");
-    if (!mass.empty())
+    if (!mass.empty()) {
+      draft_.nacelle_mass = number({mass}, Fate::taken, "nacelle.mass");
       note("nacelle.mass", "without the yaw bearing");
-    else if (!is_stated("nacelle.mass"))
+    } else if (!is_stated("nacelle.mass")) {
       missing("the mass of the nacelle (components.drivetrain.elastic_properties)", "nacelle.mass");
+    }
     apply_stated("nacelle.mass", draft_.nacelle_mass);
     if (draft_.nacelle_mass < 0.0)
       errors_.add(path_,

@@ -223,7 +223,7 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
   z_ddot.middleCols(2 * d, d) = Z.value.leftCols(d);
   z_ddot.middleCols(at.xi(), n_1) = Z.second.rightCols(n_1);
   z_ddot.middleCols(at.xi_dot(), n_1) = 2.0 * Z.first.rightCols(n_1);
-  const std::vector<PetscInt> driving = subspace_.driving();
+  const std::vector<PetscInt>& driving = subspace_.driving();
   if (!driving.empty()) {
     // E x_ddot + E_dot x_dot + (K z)' + (R u)' = 0, where K has positions and states alone.
     Dense right = rows_of(M_first, driving) * z_dot + rows_of(K.first, driving) * z +
@@ -234,11 +234,7 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
     right.middleCols(at.u() + 2 * m, m) += now.R_rate(driving, Eigen::all);
     const Dense second =
         SparseSolver(part(now.M, driving, driving), "evolution rows").solve(-right);
-    for (std::size_t i = 0; i < driving.size(); ++i) {
-      const auto place = std::ranges::find(states, driving[i]) - states.begin();
-      z_ddot += Z.value.col(d + place) * (second.row(static_cast<Eigen::Index>(i)) /
-                                          subspace_.state_scale()[static_cast<std::size_t>(place)]);
-    }
+    z_ddot += Z.value.rightCols(n_1) * subspace_.spread_rates(second);
   }
 
   // K z + M z_dot + R u + R' u_dot = 0 in the kinematic rows, and its rate.

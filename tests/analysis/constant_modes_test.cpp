@@ -13,10 +13,6 @@ using Complex = std::complex<double>;
 
 namespace {
 
-analysis::PeriodicSolution rest(const system::PeriodicSystem& system) {
-  return {Eigen::MatrixXd::Zero(system.size(), 1), system.period()};
-}
-
 /// Two masses on a line at rest, one of them held by an elastic strain: m1 p'' + F = k (q - p),
 /// p = f F, m2 q'' = k (p - q).
 class TwoMasses final : public SmallSystem {

@@ -123,10 +123,10 @@ class StateInKinematics final : public FirstOrderSystem {
   static constexpr double m = 2.0, c = 0.3, k = 5.0, a = 0.7, b = 0.4;
 };
 
-/// A joint that an actuator drives: p = x_1 in a constraint row, x_1' = x_2,
+/// A joint that an actuator drives by a gain: p = g x_1 in a constraint row, x_1' = x_2,
 /// x_2' = w^2 (h u - x_1) - 2 zeta w x_2; a mass on a spring at the arm L: m (u + L p)'' + k u = 0.
-/// The reaction R holds the joint.
-class DrivenJoint final : public FirstOrderSystem {
+/// The reaction R holds the joint. Here g = 1.
+class DrivenJoint : public FirstOrderSystem {
  public:
   explicit DrivenJoint(double period) : FirstOrderSystem(period) {
     add("p", UnknownRole::position, RowRole::constraint);
@@ -139,10 +139,10 @@ class DrivenJoint final : public FirstOrderSystem {
     add_energy(EnergyGroup::Kind::kinetic, {PartKind::body, "mass"}, "", {2, 3},
                {m * L * L, m * L, m * L, m});
   }
-  void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
+  void tangents_at(double t, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
                    Eigen::MatrixXd& M) const override {
-    K(0, 0) = 1.0;  // p - x_1
-    K(0, 5) = -1.0;
+    K(0, 0) = 1.0;  // p - g x_1
+    K(0, 5) = -gain(t);
     K(1, 3) = 1.0;  // u' is the rate of u
     M(1, 1) = -1.0;
     K(2, 2) = 1.0;
@@ -176,7 +176,8 @@ class DrivenJoint final : public FirstOrderSystem {
     return A;
   }
 
- private:
+ protected:
+  virtual double gain(double) const { return 1.0; }
   static constexpr double m = 2.0, k = 5.0, L = 0.6, w = 3.0, zeta = 0.4, h = 0.25;
 };
 
@@ -222,45 +223,13 @@ class SpeedControl final : public FirstOrderSystem {
   static constexpr double J = 4.0, c = -0.2, w = 3.0, P = 1.5, I = 0.8;
 };
 
-/// A joint that an actuator drives by a gear whose ratio changes in time: p = g(t) x_1 with
-/// g = 1 + 0.3 cos t, x_1' = x_2, x_2' = w^2 (h u - x_1) - 2 zeta w x_2, m (u + L p)'' + k u = 0.
-class PeriodicJoint final : public SmallSystem {
+/// The same joint with a gain that changes in time: g = 1 + 0.3 cos t.
+class PeriodicJoint final : public DrivenJoint {
  public:
-  PeriodicJoint() {
-    period_ = 2.0 * pi;
-    autonomous_ = false;
-    add("p", UnknownRole::position, RowRole::constraint);
-    add_position("u");
-    add("p'", UnknownRole::velocity, RowRole::kinematic);
-    add_velocity("u'");
-    add("R", UnknownRole::internal, RowRole::balance);
-    add_state("actuator", "value");
-    add_state("actuator", "rate");
-    add_energy(EnergyGroup::Kind::kinetic, {PartKind::body, "mass"}, "", {2, 3},
-               {m * L * L, m * L, m * L, m});
-  }
-  void tangents_at(double t, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
-                   Eigen::MatrixXd& M) const override {
-    K(0, 0) = 1.0;
-    K(0, 5) = -gain(t);
-    K(1, 3) = 1.0;
-    M(1, 1) = -1.0;
-    K(2, 2) = 1.0;
-    M(2, 0) = -1.0;
-    M(3, 3) = m;
-    M(3, 2) = m * L;
-    K(3, 1) = k;
-    M(4, 2) = m * L * L;
-    M(4, 3) = m * L;
-    K(4, 4) = -1.0;
-    M(5, 5) = 1.0;
-    K(5, 6) = -1.0;
-    M(6, 6) = 1.0;
-    K(6, 6) = 2.0 * zeta * w;
-    K(6, 5) = w * w;
-    K(6, 1) = -w * w * h;
-  }
+  PeriodicJoint() : DrivenJoint(2.0 * pi) { autonomous_ = false; }
+
   /// Of u, u', x_1, x_2: u'' = -k u / m - L (g'' x_1 + 2 g' x_2 + g x_2').
+  using DrivenJoint::explicit_form;
   Eigen::MatrixXd explicit_form(double t) const {
     const Eigen::RowVector4d x_2(w * w * h, 0.0, -w * w, -2.0 * zeta * w);
     Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
@@ -273,11 +242,9 @@ class PeriodicJoint final : public SmallSystem {
     A.row(3) = x_2;
     return A;
   }
-  static constexpr int states = 4;
 
  private:
-  static double gain(double t) { return 1.0 + 0.3 * std::cos(t); }
-  static constexpr double m = 2.0, k = 5.0, L = 0.6, w = 3.0, zeta = 0.4, h = 0.25;
+  double gain(double t) const override { return 1.0 + 0.3 * std::cos(t); }
 };
 
 /// A filter that only measures, and rests: m u'' + c u' + k u = f, T x' + x = u'.

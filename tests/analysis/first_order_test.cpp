@@ -20,10 +20,6 @@ using Complex = std::complex<double>;
 
 namespace {
 
-analysis::PeriodicSolution rest(const system::PeriodicSystem& system) {
-  return {Eigen::MatrixXd::Zero(system.size(), 1), system.period()};
-}
-
 analysis::Floquet floquet_of(const system::PeriodicSystem& system, int steps,
                              analysis::FloquetPeriod period = analysis::FloquetPeriod::full) {
   analysis::Observer observer;
@@ -245,13 +241,6 @@ class Silent final : public analysis::TransientObserver {
   bool sample(const analysis::TransientSample&) override { return true; }
 };
 
-Eigen::VectorXd values_of(Vec vector) {
-  const petsc::ReadView view(vector);
-  PetscInt size = 0;
-  VecGetSize(vector, &size);
-  return Eigen::Map<const Eigen::VectorXd>(view.data(), size);
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(transients_follow_the_exponential_of_the_explicit_form) {
@@ -264,7 +253,7 @@ BOOST_AUTO_TEST_CASE(transients_follow_the_exponential_of_the_explicit_form) {
       reduced(i) = 0.2 + 0.1 * static_cast<double>(i);
     const petsc::Handle<Vec> z = system->make_state();
     subspace.find_state(0.0, reduced, z.get());
-    const Eigen::VectorXd start = values_of(z.get());
+    const Eigen::VectorXd start = system->values_of(z.get());
     const std::vector<int> unknowns = system->explicit_unknowns();
     const Eigen::MatrixXd change = system->explicit_form() * duration;
     const Eigen::VectorXd exact = change.exp() * Eigen::VectorXd(start(unknowns));
@@ -310,7 +299,8 @@ BOOST_AUTO_TEST_CASE(trims_have_the_amplitudes_of_the_linear_solution) {
         trim.solution.evaluate(t, z.get(), z_dot.get());
         const Eigen::VectorXd exact =
             (amplitudes * std::polar(1.0, 2.0 * pi * t / system.period())).real();
-        difference = std::max(difference, (values_of(z.get()) - exact).cwiseAbs().maxCoeff());
+        difference =
+            std::max(difference, (system.values_of(z.get()) - exact).cwiseAbs().maxCoeff());
       }
       const bool is_series = method == analysis::TrimMethod::harmonic_balance;
       BOOST_TEST(difference < (is_series ? 1e-9 : 1e-3) * amplitudes.norm(),

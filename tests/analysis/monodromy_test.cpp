@@ -10,14 +10,6 @@ using namespace samara::test;
 using analysis::PeriodicSolution;
 using analysis::StepPropagator;
 
-namespace {
-
-PeriodicSolution rest(const system::PeriodicSystem& system) {
-  return {Eigen::MatrixXd::Zero(system.size(), 1), system.period()};
-}
-
-}  // namespace
-
 BOOST_AUTO_TEST_CASE(a_step_is_the_midpoint_rule) {
   // (I - dt/2 A_m) z_f = (I + dt/2 A_m) z_i with A at the middle of the step.
   const Mathieu system(2.5, 1.0);

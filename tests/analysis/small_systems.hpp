@@ -11,6 +11,7 @@
 
 #include <Eigen/Dense>
 
+#include "samara/analysis/periodic_solution.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -73,7 +74,7 @@ class SmallSystem : public system::PeriodicSystem {
   }
 
   void residual(double t, Vec z, Vec z_dot, Vec r) const override {
-    const Eigen::VectorXd value = residual_at(t, copy(z), copy(z_dot));
+    const Eigen::VectorXd value = residual_at(t, values_of(z), values_of(z_dot));
     const petsc::WriteView view(r);
     Eigen::Map<Eigen::VectorXd>(view.data(), value.size()) = value;
   }
@@ -82,9 +83,15 @@ class SmallSystem : public system::PeriodicSystem {
     const auto n = static_cast<Eigen::Index>(size());
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
-    tangents_at(t, copy(z), copy(z_dot), K, M);
+    tangents_at(t, values_of(z), values_of(z_dot), K, M);
     put(K + shift * M, jacobian);
     if (mass != nullptr) put(M, mass);
+  }
+
+  /// Of a vector of the system's size.
+  Eigen::VectorXd values_of(Vec vector) const {
+    const petsc::ReadView view(vector);
+    return Eigen::Map<const Eigen::VectorXd>(view.data(), size());
   }
 
   /// r, and K and M (both come as zeros).
@@ -144,10 +151,6 @@ class SmallSystem : public system::PeriodicSystem {
   std::vector<system::NeutralCoordinate> neutral_;
 
  private:
-  Eigen::VectorXd copy(Vec vector) const {
-    const petsc::ReadView view(vector);
-    return Eigen::Map<const Eigen::VectorXd>(view.data(), size());
-  }
   petsc::Handle<Mat> make_matrix() const {
     petsc::Handle<Mat> matrix;
     petsc::check(MatCreateSeqAIJ(PETSC_COMM_SELF, size(), size(), size(), nullptr, matrix.fill()));
@@ -161,6 +164,11 @@ class SmallSystem : public system::PeriodicSystem {
     petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   }
 };
+
+/// The steady state z = 0.
+inline analysis::PeriodicSolution rest(const system::PeriodicSystem& system) {
+  return {Eigen::MatrixXd::Zero(system.size(), 1), system.period()};
+}
 
 /// x'' + (a - 2 q cos 2t) x = 0, T = pi: unknowns x, v.
 class Mathieu final : public SmallSystem {

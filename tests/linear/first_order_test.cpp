@@ -47,10 +47,6 @@ class OneRow final : public system::InputOutput {
   std::vector<system::Signal> inputs_, outputs_;
 };
 
-analysis::PeriodicSolution rest(const system::PeriodicSystem& system) {
-  return {Eigen::MatrixXd::Zero(system.size(), 1), system.period()};
-}
-
 /// z of (K + s M) z = f with a unit load on a row.
 Eigen::VectorXcd exact_response(const SmallSystem& system, PetscInt row, Complex s) {
   const auto n = static_cast<Eigen::Index>(system.size());

@@ -7,6 +7,7 @@
 // its rate: a reduced state is (eta, eta_dot, xi).
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -40,7 +41,10 @@ class ConsistentSubspace {
   const std::vector<PetscInt>& states() const { return states_; }
   const std::vector<double>& state_scale() const { return state_scale_; }
   /// Those of them that constraint rows contain.
-  std::vector<PetscInt> driving() const;
+  const std::vector<PetscInt>& driving() const { return driving_; }
+  /// Rates of xi (n_1 x columns) where those of driving() are the rows of `rates`, unknowns per
+  /// second; zero of the others.
+  Eigen::MatrixXd spread_rates(const Eigen::MatrixXd& rates) const;
 
   /// What constraint rows determine from eta and xi: positions, and internal loads of beams held
   /// twice.
@@ -83,6 +87,7 @@ class ConsistentSubspace {
   void find_states(const SparseTangents& at_start);
   void require_no_rates(const Eigen::SparseMatrix<double>& M) const;
   void find_driving_rates(double t, Vec z, Eigen::MatrixXd& rates) const;
+  std::string name_of(PetscInt unknown) const;
   std::vector<std::size_t> images_of(std::size_t coordinate) const;
   void tie_coordinates(const Eigen::SparseMatrix<double>& K);
 
@@ -100,9 +105,9 @@ class ConsistentSubspace {
   std::vector<PetscInt> positions_;    ///< unknowns
   std::vector<PetscInt> states_;       ///< unknowns of first order
   std::vector<double> state_scale_;    ///< xi = z / scale
-  std::vector<PetscInt> driving_;      ///< states that constraint rows contain: their places in xi
-  std::vector<PetscInt> auxiliaries_;  ///< unknowns
-  std::vector<PetscInt> reactions_;    ///< internal loads that no constraint row contains
+  std::vector<PetscInt> driving_;      ///< states that constraint rows contain
+  std::vector<Eigen::Index> driving_places_;  ///< of these in xi
+  std::vector<PetscInt> reactions_;           ///< internal loads that no constraint row contains
   bool fixed_constraints_ = false;
 };
 

@@ -32,9 +32,10 @@ struct Trim {
   double residual_between = 0.0;  ///< largest balance row between the samples [N, N m]
   double load_level = 0.0;        ///< largest internal load of the solution [N, N m]
   std::vector<HeldCoordinate> held = {};
-  /// The larger residual, relative to the largest load or 1 N, 1 N m.
+  /// The larger residual, relative to the largest load or 1 N, 1 N m, or that of states if larger.
   double imbalance() const {
-    return std::max(residual, residual_between) / std::max(load_level, 1.0);
+    return std::max(std::max(residual, residual_between) / std::max(load_level, 1.0),
+                    state_residual);
   }
   /// Harmonics tried and the residual between the samples that each left (more than one: auto).
   std::vector<std::pair<int, double>> history = {};

@@ -71,6 +71,10 @@ struct Unknown {
   /// Of a state: a usual size. Differences of states are measured by it.
   double scale = 1.0;
 
+  /// A position or a first-order state: what the error of a solution is measured by, each over its
+  /// scale.
+  bool is_coordinate() const { return role == UnknownRole::position || role == UnknownRole::state; }
+
   /// "blade 1 point 3 theta2"
   std::string name() const;
   /// Without the number of its owner: equal for the same unknown of every blade.
