@@ -126,11 +126,11 @@ TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStati
 
 void TurbineChannels::place_sections(const ChannelCatalogue& catalogue) {
   size_ = catalogue.section_slot(0, 0);
-  const std::vector<PlacedBeam>& beams = system_.equations().beams();
+  const std::vector<components::PlacedBeam>& beams = system_.equations().beams();
   for (std::size_t b = 0; b < beams.size(); ++b) {
     const model::Beam& beam = *beams[b].beam;
-    const std::vector<double>& places =
-        ChannelCatalogue::stations_of(beam, beams[b].on_hub() ? stations_.blade : stations_.tower);
+    const std::vector<double>& places = ChannelCatalogue::stations_of(
+        beam, b < system_.turbine().blades.size() ? stations_.blade : stations_.tower);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const int slot = catalogue.section_slot(static_cast<int>(b), i);
       size_ = slot + section_slots;
@@ -144,6 +144,14 @@ void TurbineChannels::place_sections(const ChannelCatalogue& catalogue) {
 }
 
 namespace {
+
+template <class T>
+using Block = Eigen::Matrix<T, model::Layout::block, 1>;
+
+template <class T>
+Block<T> block_at(const std::vector<T>& z, int first) {
+  return Eigen::Map<const Block<T>>(z.data() + first);
+}
 
 /// The quantities of channel_catalogue.hpp.
 template <class T>
@@ -159,11 +167,7 @@ class Quantities {
   const T& operator[](int slot) const { return values_[static_cast<std::size_t>(slot)]; }
 
   void add_chain(double t, const std::vector<T>& z, const std::vector<T>& z_dot) {
-    const auto plain = [](const T& value, int) { return value; };
-    elements::HubMotion<T> hub;
-    elements::ChainReport<T> chain;
-    elements::rigid_chain(turbine_.chain, equations_.chain_state<T>(t, z, z_dot, plain, inputs_),
-                          hub, &chain);
+    const elements::ChainReport<T> chain = equations_.report<T>(t, z, z_dot, inputs_);
     constexpr double turn = 2.0 * std::numbers::pi;
     put(azimuth_slot, chain.azimuth - T(turn * std::floor(real_of(chain.azimuth) / turn)));
     put(rotor_speed, chain.shaft_rate);
@@ -196,8 +200,8 @@ class Quantities {
     put(first + root_moment, along_beam<T>(moment));
     put(first + coned_force, along_beam<T>(to_cone * force));
     put(first + coned_moment, along_beam<T>(to_cone * moment));
-    const auto tip = TurbineResidual::at(z, layout_.blade_tip(k));
-    const auto tip_dot = TurbineResidual::at(z_dot, layout_.blade_tip(k));
+    const auto tip = block_at(z, layout_.blade_tip(k));
+    const auto tip_dot = block_at(z_dot, layout_.blade_tip(k));
     const Vec3<T> u = tip.template segment<3>(0);
     const Vec3<T> V = tip.template segment<3>(6);
     const Vec3<T> Omega = tip.template segment<3>(9);
@@ -216,8 +220,8 @@ class Quantities {
     Vec3<T> move = Vec3<T>::Zero();
     Vec3<T> turn = Vec3<T>::Zero();
     for (const auto& [p, weight] : station) {
-      const auto state = TurbineResidual::at(z, place[static_cast<std::size_t>(p)]);
-      const auto rates = TurbineResidual::at(z_dot, place[static_cast<std::size_t>(p)]);
+      const auto state = block_at(z, place[static_cast<std::size_t>(p)]);
+      const auto rates = block_at(z_dot, place[static_cast<std::size_t>(p)]);
       const Vector6& damping = beam.points[static_cast<std::size_t>(p)].damping;
       for (int i = 0; i < 6; ++i) load(i) += (state(12 + i) + rates(12 + i) * damping(i)) * weight;
       move += Vec3<T>(state.template segment<3>(0)) * T(weight);
@@ -236,7 +240,7 @@ class Quantities {
   }
 
   /// The rotation vector of a place in element e, whatever its rotations count from.
-  Vec3<T> turned_by(const model::Beam& beam, int e, const TurbineResidual::State<T>& state) const {
+  Vec3<T> turned_by(const model::Beam& beam, int e, const Block<T>& state) const {
     const Vec3<T> theta = state.template segment<3>(3);
     const Matrix3& reference = beam.reference(e);
     if (reference.isIdentity(0.0)) return rotation_vector<T>(theta);
@@ -256,7 +260,7 @@ class Quantities {
   }
 
   void add_tower(const elements::ChainReport<T>& chain, const std::vector<T>& z) {
-    const auto top = TurbineResidual::at(z, layout_.tower_tip());
+    const auto top = block_at(z, layout_.tower_tip());
     const Vec3<T> theta = top.template segment<3>(3);
     const Vec6<T> base = Eigen::Map<const Vec6<T>>(z.data() + layout_.tower_root());
     put(top_move, along_beam<T>(top.template head<3>()));
@@ -279,7 +283,7 @@ class Quantities {
   }
 
   const TurbineInputs<T>& inputs_;
-  const TurbineResidual& equations_;
+  const TurbineEquations& equations_;
   const model::Turbine& turbine_;
   const model::Layout& layout_;
   std::vector<T> values_;
@@ -296,7 +300,8 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
   quantities.add_chain(t, z, z_dot);
   for (int k = 0; k < blades; ++k) quantities.add_blade(t, k, z, z_dot);
   for (const Section& section : sections_) {
-    const PlacedBeam& placed = system_.equations().beams()[static_cast<std::size_t>(section.beam)];
+    const components::PlacedBeam& placed =
+        system_.equations().beams()[static_cast<std::size_t>(section.beam)];
     quantities.add_section(section.slot, *placed.beam, placed.points, section.place, z, z_dot);
   }
   for (std::size_t i = 0; i < picks_.size(); ++i)

@@ -8,8 +8,6 @@
 #include "mesh_error.hpp"
 #include "turbine_description.hpp"
 #include "turbine_motions.hpp"
-#include "turbine_pattern.hpp"
-#include "turbine_tangents.hpp"
 
 namespace samara::system {
 namespace {
@@ -30,23 +28,23 @@ class TurbineSystem::Assembly {
         layout(equations.layout()),
         description(describe(turbine, layout)),
         comm(communicator),
-        pattern(find_pattern(equations)),
-        tangents(equations) {
+        plan(*equations.plan()),
+        tangents(equations.plan()) {
     find_range();
     place_mass();
   }
 
-  TurbineResidual equations;
+  TurbineEquations equations;
   const model::Turbine& turbine;
   const model::Layout& layout;
   TurbineDescription description;
   MPI_Comm comm;
-  TurbinePattern pattern;
+  const components::TangentPlan& plan;
   std::vector<bool> differential;
   std::vector<std::size_t> mass_offsets;  ///< of M's places into its blocks, row by row
   PetscInt first_row = 0;
   PetscInt last_row = 0;
-  mutable TurbineTangents tangents;
+  mutable components::Tangents tangents;
   mutable petsc::Handle<VecScatter> gather;
   mutable petsc::Handle<Vec> whole;
 
@@ -79,8 +77,8 @@ class TurbineSystem::Assembly {
     const auto put = [&values](int first, const Matrix3& reference) {
       Eigen::Map<Vector3>(values.data() + first + 3) = math::parameters_of(reference.transpose());
     };
-    for (const PlacedBeam& placed : equations.beams()) {
-      if (placed.changes.empty()) continue;
+    for (const components::PlacedBeam& placed : equations.beams()) {
+      if (placed.find_changes().empty()) continue;
       const model::Beam& beam = *placed.beam;
       for (int p = 0; p < beam.point_count(); ++p)
         put(placed.points[static_cast<std::size_t>(p)], beam.reference(p / beam.order));
@@ -92,7 +90,7 @@ class TurbineSystem::Assembly {
 
   /// Writes the own part of a state with its rotations counted as in `target`, or from the
   /// undeformed state where that is null.
-  void recount(std::vector<double> values, const TurbineResidual* target, Vec z) const {
+  void recount(std::vector<double> values, const TurbineEquations* target, Vec z) const {
     const auto rewrite = [&values](int first, const Matrix3& from, const Matrix3& to) {
       if (from == to) return;
       const Eigen::Map<Vector3> theta(values.data() + first + 3);
@@ -101,7 +99,7 @@ class TurbineSystem::Assembly {
           math::parameters_of(attitude * to.transpose());
     };
     for (std::size_t b = 0; b < equations.beams().size(); ++b) {
-      const PlacedBeam& placed = equations.beams()[b];
+      const components::PlacedBeam& placed = equations.beams()[b];
       const model::Beam& beam = *placed.beam;
       const auto to = [&](int e) -> Matrix3 {
         return target == nullptr ? Matrix3(Matrix3::Identity())
@@ -135,19 +133,11 @@ class TurbineSystem::Assembly {
   /// Where M's places are in its blocks.
   void place_mass() {
     differential.assign(static_cast<std::size_t>(layout.size()), false);
-    for (int row = 0; row < layout.size(); ++row) {
-      const std::vector<int>& blocks =
-          tangents.M().columns()[static_cast<std::size_t>(row / block)];
-      for (const int column : pattern.M[static_cast<std::size_t>(row)]) {
-        const auto found = std::lower_bound(blocks.begin(), blocks.end(), column / block);
-        if (found == blocks.end() || *found != column / block)
-          throw InternalError("a place of M is in no block");
-        mass_offsets.push_back(
-            tangents.M().offset(row / block, static_cast<int>(found - blocks.begin())) +
-            static_cast<std::size_t>(column % block * block + row % block));
+    for (int row = 0; row < layout.size(); ++row)
+      for (const int column : plan.M[static_cast<std::size_t>(row)]) {
+        mass_offsets.push_back(tangents.M().place(row, column));
         differential[static_cast<std::size_t>(column)] = true;
       }
-    }
   }
 
  public:
@@ -169,7 +159,7 @@ TurbineSystem::~TurbineSystem() = default;
 
 const model::Turbine& TurbineSystem::turbine() const { return assembly_->turbine; }
 const model::Layout& TurbineSystem::layout() const { return assembly_->layout; }
-const TurbineResidual& TurbineSystem::equations() const { return assembly_->equations; }
+const TurbineEquations& TurbineSystem::equations() const { return assembly_->equations; }
 MPI_Comm TurbineSystem::comm() const { return assembly_->comm; }
 PetscInt TurbineSystem::size() const { return assembly_->layout.size(); }
 
@@ -216,7 +206,7 @@ bool TurbineSystem::is_conservative() const {
     return false;
   for (const elements::Hinge* hinge : {&chain.yaw, &chain.teeter, &chain.torsion, &chain.generator})
     if (hinge->free && hinge->damping != 0.0) return false;
-  for (const PlacedBeam& placed : assembly_->equations.beams()) {
+  for (const components::PlacedBeam& placed : assembly_->equations.beams()) {
     if (placed.beam->has_support && placed.beam->support.damping != 0.0) return false;
     if (placed.beam->has_drag) return false;
     for (const elements::BeamPoint& point : placed.beam->points)
@@ -232,9 +222,10 @@ bool TurbineSystem::is_conservative() const {
   const elements::TorqueLine& generator = chain.generator_torque;
   if (chain.generator.free && (generator.slope != 0.0 || !generator.table.empty())) return false;
   if (chain.brake_torque != 0.0) return false;
-  for (const PlacedBeam& placed : assembly_->equations.beams())
+  for (const components::PlacedBeam& placed : assembly_->equations.beams())
     for (const model::BeamLoad& load : placed.beam->loads)
-      if (load.follower || !load.load.tail<3>().isZero(0.0) || (placed.on_hub() && hub_moves))
+      if (load.follower || !load.load.tail<3>().isZero(0.0) ||
+          (placed.end == components::BeamEnd::free && hub_moves))
         return false;
   return true;
 }
@@ -287,7 +278,7 @@ petsc::Handle<Mat> TurbineSystem::make_mass() const {
   std::vector<PetscInt> outside;
   for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i) {
     PetscInt own = 0;
-    const auto& row = assembly.pattern.M[static_cast<std::size_t>(i)];
+    const auto& row = assembly.plan.M[static_cast<std::size_t>(i)];
     for (const PetscInt j : row)
       if (j >= assembly.first_row && j < assembly.last_row) ++own;
     inside.push_back(own);
@@ -300,7 +291,7 @@ petsc::Handle<Mat> TurbineSystem::make_mass() const {
   petsc::check(MatSeqAIJSetPreallocation(matrix.get(), 0, inside.data()));
   petsc::check(MatMPIAIJSetPreallocation(matrix.get(), 0, inside.data(), 0, outside.data()));
   for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i) {  // sets the pattern
-    const auto& row = assembly.pattern.M[static_cast<std::size_t>(i)];
+    const auto& row = assembly.plan.M[static_cast<std::size_t>(i)];
     const std::vector<double> zeros(row.size(), 0.0);
     petsc::check(MatSetValues(matrix.get(), 1, &i, static_cast<PetscInt>(row.size()), row.data(),
                               zeros.data(), INSERT_VALUES));
@@ -311,7 +302,7 @@ petsc::Handle<Mat> TurbineSystem::make_mass() const {
 }
 
 std::vector<std::vector<PetscInt>> TurbineSystem::pattern() const {
-  const TurbinePattern& pattern = assembly_->pattern;
+  const components::TangentPlan& pattern = assembly_->plan;
   std::vector<std::vector<PetscInt>> columns(pattern.K.size());
   for (std::size_t i = 0; i < columns.size(); ++i)
     std::set_union(pattern.K[i].begin(), pattern.K[i].end(), pattern.M[i].begin(),
@@ -367,12 +358,12 @@ std::unique_ptr<PeriodicSystem> TurbineSystem::counted_from(Vec z) const {
   const Assembly& assembly = *assembly_;
   const std::vector<double> values = assembly.gathered(z);
   const auto rotation = [&values](int first) {
-    return Vector3(TurbineResidual::at(values, first).segment<3>(3));
+    return Vector3(Eigen::Map<const Vector3>(values.data() + first + 3));
   };
   model::Turbine turned = turbine();
   bool any = false;
   for (std::size_t k = 0; k < turned.blades.size(); ++k) {
-    const PlacedBeam& placed = assembly.equations.beams()[k];
+    const components::PlacedBeam& placed = assembly.equations.beams()[k];
     model::Beam& beam = turned.blades[k];
     double largest = rotation(placed.tip).norm();
     for (const int first : placed.points) largest = std::max(largest, rotation(first).norm());
@@ -407,7 +398,7 @@ void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {
 void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,
                              Mat mass) const {
   const Assembly& assembly = *assembly_;
-  assembly.tangents.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot));
+  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), assembly.tangents);
   std::vector<double>& K = assembly.tangents.K().values();
   const std::vector<double>& M = assembly.tangents.M().values();
   if (mass != nullptr && !assembly.parallel()) {
@@ -420,7 +411,7 @@ void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacob
     std::size_t entry = 0;
     std::vector<PetscScalar> row_values;
     for (PetscInt i = 0; i < size(); ++i) {
-      const auto& columns = assembly.pattern.M[static_cast<std::size_t>(i)];
+      const auto& columns = assembly.plan.M[static_cast<std::size_t>(i)];
       const bool own = i >= assembly.first_row && i < assembly.last_row;
       row_values.clear();
       for (std::size_t c = 0; c < columns.size(); ++c)

@@ -13,7 +13,8 @@ ROOMS = {  # room: the rooms it may include, itself always
     "petsc": ["base"],
     "elements": ["base", "math"],
     "model": ["base", "math", "elements"],
-    "system": ["base", "math", "petsc", "elements", "model"],
+    "components": ["base", "math", "petsc", "elements", "model"],
+    "system": ["base", "math", "petsc", "elements", "model", "components"],
     "analysis": ["base", "math", "petsc"],
     "linear": ["base", "math", "petsc", "analysis"],
     "loads": ["base"],
@@ -29,7 +30,7 @@ HEADERS = {"analysis": SYSTEMS, "linear": SYSTEMS}
 LIBRARIES = [  # pattern of its headers, the rooms that may include them
     (re.compile(r"yaml-cpp/"), ["io"]),
     (re.compile(r"(.*/)?(hdf5(_hl)?|H5\w+)\.h$"), ["io"]),
-    (re.compile(r"(.*/)?(petsc|slepc)\w*\.(h|hpp)$"), ["petsc", "system", "analysis", "linear"]),
+    (re.compile(r"(.*/)?(petsc|slepc)\w*\.(h|hpp)$"), ["petsc", "components", "system", "analysis", "linear"]),
 ]
 
 INCLUDE = re.compile(r"^\s*#\s*include\s*(?:[<\"]([^>\"]*)[>\"]|(\S.*))")

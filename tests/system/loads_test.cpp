@@ -89,14 +89,14 @@ Eigen::VectorXcd complex_residual(const system::TurbineSystem& system, double t,
 }
 
 /// First row of the force balance of node n, counted from the root.
-int force_row(const system::PlacedBeam& placed, int n) {
+int force_row(const components::PlacedBeam& placed, int n) {
   const int order = placed.beam->order;
   return n == 0 ? placed.force_rows(0, 0) : placed.force_rows(n - 1, (n - 1) % order + 1);
 }
 
 /// First rows of the force balances of a blade's nodes, root to tip.
 std::vector<int> force_rows(const system::TurbineSystem& system, int blade) {
-  const system::PlacedBeam& placed = system.equations().beams()[static_cast<std::size_t>(blade)];
+  const components::PlacedBeam& placed = system.equations().beams()[static_cast<std::size_t>(blade)];
   std::vector<int> rows;
   for (int n = 0; n <= placed.beam->point_count(); ++n) rows.push_back(force_row(placed, n));
   return rows;
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(follower_loads_turn_with_the_deformed_section_and_its_twist
     const sample::RandomState state = sample::random_state(system, 2);
     const model::LoadDefinition at_point = load_of(tower, tower ? 0 : 1, 0.25, 0.25, true);
     const model::LoadDefinition at_tip = load_of(tower, tower ? 0 : 1, 1.0, 1.0, true);
-    const system::PlacedBeam& placed = system.equations().beams()[tower ? 2 : 0];
+    const components::PlacedBeam& placed = system.equations().beams()[tower ? 2 : 0];
     const auto turned = [&](int first, double twist, const Vector3& v) {
       return Vector3(sample::turned(Vector3(state.z.segment<3>(first + 3))) *
                      sample::turned(Vector3::UnitX(), -twist) * v);

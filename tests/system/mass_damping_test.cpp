@@ -46,7 +46,7 @@ Vector3 values_of(const JetVector& v) { return {v(0).value, v(1).value, v(2).val
 Vector3 rates_of(const JetVector& v) { return {v(0).rate, v(1).rate, v(2).rate}; }
 
 /// What the damping adds to the residual of a beam, against what it should be.
-void check_beam(const system::PlacedBeam& placed, const sample::RandomState& state,
+void check_beam(const components::PlacedBeam& placed, const sample::RandomState& state,
                 const Eigen::VectorXd& added, const Vector3& alpha) {
   const model::Beam& beam = *placed.beam;
   const auto count = static_cast<Eigen::Index>(beam.point_count());
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(forces_and_reactions_dissipate_by_the_motion_against_the_ro
         const sample::RandomState state = sample::random_state(damped, 11);
         const Eigen::VectorXd added = sample::residual_of(damped, 0.4, state.z, state.z_dot) -
                                       sample::residual_of(without, 0.4, state.z, state.z_dot);
-        for (const system::PlacedBeam& placed : damped.equations().beams())
+        for (const components::PlacedBeam& placed : damped.equations().beams())
           check_beam(placed, state, added, alpha);
         BOOST_TEST(sample::tangent_error(damped, 0.4, state) < 1e-11);
       }

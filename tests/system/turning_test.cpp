@@ -53,7 +53,7 @@ struct Sample {
           math::direction_cosines<double>(Vector3(z.segment<3>(first + 3))).transpose();
       z.segment<3>(first + 3) = math::parameters_of(attitude * reference.transpose());
     };
-    for (const system::PlacedBeam& placed : target.equations().beams()) {
+    for (const components::PlacedBeam& placed : target.equations().beams()) {
       const model::Beam& beam = *placed.beam;
       for (int p = 0; p < beam.point_count(); ++p)
         rewrite(placed.points[static_cast<std::size_t>(p)], beam.reference(p / beam.order));
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(forces_momenta_and_strains_do_not_know_how_rotations_are_co
         sample::residual_of(*sample.counted.system, 0.4, sample.anew(), still);
     Eigen::VectorXd difference = (anew - plain).cwiseAbs();
     double changed = 0.0;
-    for (const system::PlacedBeam& placed : sample.system.equations().beams()) {
+    for (const components::PlacedBeam& placed : sample.system.equations().beams()) {
       std::vector<int> blocks = placed.points;
       blocks.insert(blocks.end(), placed.masses.begin(), placed.masses.end());
       blocks.push_back(placed.tip);

@@ -69,6 +69,27 @@ void kinematic_rows(const Vector3& x, const Matrix3& turned, const Vec6<T>& posi
         turned.transpose().cast<T>() * relative;
 }
 
+/// {gamma; kappa} = S^-1 {F; M} of (4).
+template <class T>
+Vec6<T> section_strain(const BeamPoint& point, const Vec6<T>& FM) {
+  Vec6<T> strain;
+  for (int i = 0; i < 6; ++i) {
+    strain(i) = T(0);
+    for (int j = 0; j < 6; ++j)
+      if (point.compliance(i, j) != 0.0) strain(i) += FM(j) * point.compliance(i, j);
+  }
+  return strain;
+}
+
+/// PointTerms::turn alone.
+template <class T>
+Vec3<T> beam_point_turn(const BeamPoint& point, const Vec3<T>& theta, const Vec6<T>& FM) {
+  const Matrix3 turned = point.reference * point.C_ab;
+  const Vec3<T> kappa = section_strain(point, FM).template tail<3>();
+  const Vec3<T> kappa_a = turned.cast<T>() * kappa;
+  return math::inverse_tangent_times(theta, kappa_a);
+}
+
 /// All terms of one Gauss point at the state z, z_dot (18 each).
 template <class T>
 PointTerms<T> beam_point_terms(const BeamPoint& point, const Eigen::Matrix<T, point_size, 1>& z,
@@ -83,18 +104,16 @@ PointTerms<T> beam_point_terms(const BeamPoint& point, const Eigen::Matrix<T, po
   const Matrix3 turned = point.reference * point.C_ab;
   const Mat3<T> R = C.transpose() * turned.cast<T>();  // B components to a components
 
-  Vec6<T> strain;  // {gamma; kappa} = S^-1 {F; M}  (4)
+  const Vec6<T> strain = section_strain(point, FM);
   Vec6<T> momentum;
   Vec6<T> momentum_dot;
   Vec6<T> weight;  // I6 {g_B; 0}
   const Vec3<T> g_B = R.transpose() * a.gravity;
   for (int i = 0; i < 6; ++i) {
-    strain(i) = T(0);
     momentum(i) = T(0);
     momentum_dot(i) = T(0);
     weight(i) = T(0);
     for (int j = 0; j < 6; ++j) {
-      if (point.compliance(i, j) != 0.0) strain(i) += FM(j) * point.compliance(i, j);
       if (point.mass(i, j) == 0.0) continue;
       momentum(i) += z(6 + j) * point.mass(i, j);  // (3)
       momentum_dot(i) += z_dot(6 + j) * point.mass(i, j);

@@ -59,7 +59,7 @@ class TurbineChannels {
  private:
   /// A station that is asked for.
   struct Section {
-    int beam = 0;  ///< of TurbineResidual::beams()
+    int beam = 0;  ///< of TurbineEquations::beams()
     int slot = 0;
     std::vector<std::pair<int, double>> place;  ///< Gauss points and their factors
   };

@@ -1,9 +1,4 @@
 // The turbine as a periodic system: assembles beams and rigid bodies into Vec and Mat.
-//
-// Rows, block by block. A Gauss point's block has the strain and curvature balance of the node
-// before it, its own kinematic rows and the force and moment balance of the node behind it; a beam
-// end has the strain and curvature of the last node, its kinematic rows and what its load must be
-// (Kane's rows at the tower top); the root reactions have the force and moment of the first node.
 #pragma once
 
 #include <memory>
@@ -11,7 +6,7 @@
 #include "samara/model/layout.hpp"
 #include "samara/model/turbine.hpp"
 #include "samara/system/periodic_system.hpp"
-#include "samara/system/turbine_residual.hpp"
+#include "samara/system/turbine_equations.hpp"
 
 namespace samara::system {
 
@@ -24,7 +19,7 @@ class TurbineSystem final : public PeriodicSystem {
   const model::Turbine& turbine() const;
   const model::Layout& layout() const;
   /// The equations behind residual(), also at complex states.
-  const TurbineResidual& equations() const;
+  const TurbineEquations& equations() const;
 
   MPI_Comm comm() const override;
   PetscInt size() const override;

@@ -1,11 +1,13 @@
-#include "block_matrix.hpp"
+#include "samara/components/block_matrix.hpp"
 
 #include <algorithm>
 #include <string>
 
+#include <Eigen/Core>
+
 #include "samara/base/error.hpp"
 
-namespace samara::system {
+namespace samara::components {
 
 BlockMatrix::BlockMatrix(std::vector<std::vector<int>> columns) : columns_(std::move(columns)) {
   std::size_t count = 0;
@@ -16,15 +18,14 @@ BlockMatrix::BlockMatrix(std::vector<std::vector<int>> columns) : columns_(std::
   values_.assign(count * block * block, 0.0);
 }
 
-void BlockMatrix::clear() { std::fill(values_.begin(), values_.end(), 0.0); }
-
-BlockMatrix::Block BlockMatrix::at(int i, int j) {
-  const std::vector<int>& row = columns_[static_cast<std::size_t>(i)];
-  const auto found = std::lower_bound(row.begin(), row.end(), j);
-  if (found == row.end() || *found != j)
-    throw InternalError("no block (" + std::to_string(i) + ", " + std::to_string(j) +
-                        ") in the pattern");
-  return Block(values_.data() + offset(i, static_cast<int>(found - row.begin())));
+std::size_t BlockMatrix::place(int row, int column) const {
+  const std::vector<int>& blocks = columns_[static_cast<std::size_t>(row / block)];
+  const auto found = std::lower_bound(blocks.begin(), blocks.end(), column / block);
+  if (found == blocks.end() || *found != column / block)
+    throw InternalError("no block has row " + std::to_string(row) + ", column " +
+                        std::to_string(column));
+  return offset(row / block, static_cast<int>(found - blocks.begin())) +
+         static_cast<std::size_t>(column % block * block + row % block);
 }
 
 void BlockMatrix::copy_to(Mat matrix) const {
@@ -58,4 +59,4 @@ void BlockMatrix::copy_to(Mat matrix) const {
   petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
 }
 
-}  // namespace samara::system
+}  // namespace samara::components

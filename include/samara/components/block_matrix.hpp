@@ -3,31 +3,28 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "samara/petsc/handle.hpp"
 
-namespace samara::system {
+namespace samara::components {
 
 class BlockMatrix {
  public:
   static constexpr int block = 18;
-  using Block = Eigen::Map<Eigen::Matrix<double, block, block>>;  // column-major, as BAIJ
 
   /// `columns[i]`: block columns of block row i, ascending.
   explicit BlockMatrix(std::vector<std::vector<int>> columns);
 
   int rows() const { return static_cast<int>(columns_.size()); }
   const std::vector<std::vector<int>>& columns() const { return columns_; }
-  void clear();
 
-  /// The block at (i, j). @throws InternalError where the pattern has none.
-  Block at(int i, int j);
+  /// Position in values() of the entry of a row and column of the whole matrix.
+  /// @throws InternalError where no block has it
+  std::size_t place(int row, int column) const;
 
   /// Writes the rows that `matrix` (BAIJ or MPIBAIJ, this pattern) owns.
   void copy_to(Mat matrix) const;
 
-  /// All values, block after block.
+  /// All values, block after block, each column by column, as BAIJ has them.
   const std::vector<double>& values() const { return values_; }
   std::vector<double>& values() { return values_; }
   /// Position in values() of the first entry of block (i, columns()[i][n]).
@@ -41,4 +38,4 @@ class BlockMatrix {
   std::vector<double> values_;
 };
 
-}  // namespace samara::system
+}  // namespace samara::components

@@ -1,0 +1,66 @@
+// How a function of a component is tied to the unknowns and rows of a system. Residual, tangents
+// and their pattern come from the same function, evaluated with other scalars (residual.hpp,
+// tangents.hpp, pattern.hpp).
+#pragma once
+
+#include <vector>
+
+namespace samara::components {
+
+/// Consecutive arguments of a function.
+struct Argument {
+  enum class Kind {
+    unknowns,
+    rates,  ///< of unknowns
+    port,   ///< all values of a port
+    zeros,  ///< where there is nothing: constants
+  };
+  Kind kind = Kind::zeros;
+  int first = 0;  ///< unknown, or number of the port
+  int count = 0;
+};
+
+inline Argument unknowns(int first, int count) { return {Argument::Kind::unknowns, first, count}; }
+inline Argument rates(int first, int count) { return {Argument::Kind::rates, first, count}; }
+inline Argument port_values(int port, int count) { return {Argument::Kind::port, port, count}; }
+inline Argument zeros(int count) { return {Argument::Kind::zeros, 0, count}; }
+
+/// Row `row` + i gets weight y(value + i) + other_weight y(other + i), y the values of the
+/// function.
+struct Share {
+  int row = 0;
+  int count = 0;  ///< 1 to 3, in one block
+  int value = 0;
+  double weight = 1.0;
+  int other = 0;
+  double other_weight = 0.0;
+};
+
+/// Row `row` + i gets weight z(column + i): a constant entry of K.
+struct LinearShare {
+  int row = 0;
+  int column = 0;
+  int count = 0;
+  double weight = 1.0;
+};
+
+/// Value i of the port gets y(value + i). A port is the sum of what is provided to it.
+struct Provision {
+  int port = 0;
+  int value = 0;
+};
+
+/// Where a function stands in a system.
+struct Connections {
+  std::vector<Argument> arguments;
+  std::vector<Share> shares;
+  std::vector<Provision> provisions;
+};
+
+/// Whether tangents may be kept as long as the arguments are the same.
+enum class Memory {
+  none,          ///< the function depends on time as well
+  of_arguments,  ///< it depends on its arguments alone
+};
+
+}  // namespace samara::components

@@ -1,0 +1,33 @@
+// Inputs of a turbine (docs/theory.md, section 10).
+#pragma once
+
+#include <vector>
+
+#include "samara/math/rotation.hpp"
+#include "samara/math/types.hpp"
+
+namespace samara::components {
+
+/// What acts on a turbine from outside beside its loads (docs/theory.md, section 10).
+template <class T>
+struct TurbineInputs {
+  std::vector<T> pitch;       ///< of each blade beside its own, toward feather [rad]; empty: none
+  std::vector<T> pitch_rate;  ///< [rad/s], as many
+  T generator_torque = T(0);  ///< against the turning, on a free generator [N m]
+  T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
+  Vec3<T> top_force = Vec3<T>::Zero();      ///< on the tower top along n1 n2 n3 [N]
+  Vec3<T> base_velocity = Vec3<T>::Zero();  ///< of the tower's foot along n1 n2 n3 [m/s]
+  Vec3<T> base_turn = Vec3<T>::Zero();      ///< of the tower's foot about n1 n2 n3, small [rad]
+  Vec3<T> base_rate = Vec3<T>::Zero();      ///< of these angles [rad/s]
+
+  /// Components in the axes of the tower's foot, in their order (n3, n1, n2), of what has the
+  /// components `ground` in them where the foot is not turned.
+  Vec3<T> at_foot(const Vec3<T>& ground) const {
+    return math::turn_about<T>(Vector3::UnitX(), base_turn(2)).transpose() *
+           (math::turn_about<T>(Vector3::UnitZ(), base_turn(1)).transpose() *
+            (math::turn_about<T>(Vector3::UnitY(), base_turn(0)).transpose() * ground));
+  }
+  Vec3<T> up() const { return at_foot(Vec3<T>::UnitX()); }
+};
+
+}  // namespace samara::components

@@ -1,0 +1,141 @@
+// Where the tangents of the functions that components state have entries: found once, at no state
+// in particular, by the same functions with a scalar that knows what it depends on.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/components/function.hpp"
+#include "samara/math/dependence.hpp"
+
+namespace samara::components {
+
+/// What the values of a port depend on.
+struct PortColumn {
+  int unknown = 0;
+  bool is_rate = false;
+  bool operator==(const PortColumn&) const = default;
+};
+
+/// Places of all entries of K and M, and the way of each function's derivatives to them.
+struct TangentPlan {
+  static constexpr int most_port_values = 16;
+
+  /// Consecutive entries of up to three rows: columns of the derivatives, or of those of a port, to
+  /// columns of a block.
+  struct Entries {
+    int from = 0;
+    int count = 0;
+    bool is_rate = false;
+    int unknown = 0;         ///< of the first column
+    std::size_t offset = 0;  ///< of the first entry in the values of K or M
+  };
+  /// What a share has through a port.
+  struct Carried {
+    int argument = 0;  ///< first of the port's values
+    int port = 0;
+    std::vector<Entries> entries;
+  };
+  struct SharePlan {
+    std::vector<Entries> entries;
+    std::vector<Carried> carried;
+  };
+  /// The columns of a port that a function's arguments are.
+  struct ProvisionPlan {
+    struct Direct {
+      int argument = 0;
+      int column = 0;
+    };
+    struct Through {
+      int argument = 0;
+      int port = 0;
+      std::vector<int> columns;  ///< of each column of the port that the argument is
+    };
+    std::vector<Direct> direct;
+    std::vector<Through> through;
+  };
+  struct Call {
+    int arguments = 0;
+    int values = 0;
+    std::vector<SharePlan> shares;
+    std::vector<ProvisionPlan> provisions;
+    bool is_idle = true;  ///< without derivatives and without provisions
+  };
+  /// A constant entry of K.
+  struct Constant {
+    std::size_t offset = 0;
+    double value = 0.0;
+  };
+
+  std::vector<int> port_sizes;
+  std::vector<std::vector<PortColumn>> port_columns;
+  std::vector<Call> calls;  ///< in the order in which the functions are stated
+  std::vector<Constant> constants;
+  std::vector<std::vector<int>> K;       ///< columns of each row, ascending
+  std::vector<std::vector<int>> M;       ///< the same
+  std::vector<std::vector<int>> blocks;  ///< block columns of each block row of both, ascending
+};
+
+class Pattern {
+ public:
+  /// `size`: of the system.
+  Pattern(int size, const std::vector<int>& port_sizes);
+
+  static constexpr bool has_inputs = false;  ///< they are zero
+  static double time() { return 0.0; }
+  /// Any number: 0 at time() is no reason to leave out what it multiplies.
+  static double varying(double) { return std::numeric_limits<double>::quiet_NaN(); }
+  template <class Place>
+  static void require_rotation(int, const Place&) {}
+
+  void add(const std::vector<LinearShare>& shares);
+
+  template <int n, int m, class Function>
+  void add(const Connections& connections, const Function& function, Memory = Memory::none) {
+    static_assert(n <= math::Dependence::most_quantities);
+    Eigen::Matrix<math::Dependence, n, 1> x;
+    begin(connections, n, x.data());
+    const Eigen::Matrix<math::Dependence, m, 1> y = function(x);
+    end(connections, m, y.data());
+  }
+
+  /// The plan of all functions that have been stated.
+  TangentPlan finish();
+
+ private:
+  struct Port {
+    /// Constants; those that depend on unknowns are told by their columns.
+    std::vector<math::Dependence> values;
+    std::vector<std::set<int>> columns;  ///< of each value: places in the plan's columns
+  };
+  /// What an argument of the present function stands for.
+  struct Source {
+    Argument::Kind kind = Argument::Kind::zeros;
+    int first = 0;  ///< unknown, or port
+    int index = 0;  ///< of the port's value
+    int start = 0;  ///< first argument of the port's values
+  };
+
+  void begin(const Connections& connections, int n, math::Dependence* x);
+  void end(const Connections& connections, int m, const math::Dependence* y);
+  void add_share(const Share& share, const math::Dependence* y);
+  void add_provision(const Provision& provision, const math::Dependence* y);
+  int place_of(int port, const PortColumn& column);
+  std::set<int>& row(int row, bool is_rate);
+  static void append(std::vector<TangentPlan::Entries>& entries, int from,
+                     const PortColumn& column);
+
+  TangentPlan plan_;
+  std::vector<std::set<int>> K_;
+  std::vector<std::set<int>> M_;
+  std::vector<Port> ports_;
+  std::vector<Source> sources_;  ///< of the present function
+  std::vector<LinearShare> linear_;
+  std::vector<std::vector<Share>> shares_;  ///< of each call
+};
+
+}  // namespace samara::components

@@ -1,0 +1,103 @@
+// The residual of the functions that components state, at doubles, or at complex numbers to
+// differentiate by a complex step.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/base/error.hpp"
+#include "samara/components/function.hpp"
+#include "samara/components/inputs.hpp"
+#include "samara/math/rotation.hpp"
+#include "samara/math/scalar.hpp"
+
+namespace samara::components {
+
+template <class T>
+class Residual {
+ public:
+  /// r(t, z, z_dot, u) into `r`, which must be zero; all vectors of one size. `port_sizes`: number
+  /// of values of each port.
+  Residual(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+           const TurbineInputs<T>& inputs, const std::vector<int>& port_sizes, std::vector<T>& r)
+      : t_(t), z_(z), z_dot_(z_dot), inputs_(inputs), r_(r) {
+    for (const int size : port_sizes)
+      ports_.push_back(Eigen::Matrix<T, Eigen::Dynamic, 1>::Zero(size));
+  }
+
+  static constexpr bool has_inputs = true;
+  double time() const { return t_; }
+  /// A number that changes with time.
+  static double varying(double value) { return value; }
+  const TurbineInputs<T>& inputs() const { return inputs_; }
+
+  /// @throws DomainError beyond 170 degrees, with the words of `place()`
+  template <class Place>
+  void require_rotation(int first, const Place& place) const {
+    double square = 0.0;
+    for (int i = 0; i < 3; ++i) square += std::pow(math::plain_value(z_[at(first + i)]), 2);
+    if (!(std::sqrt(square) < math::largest_rodrigues_length))
+      throw DomainError(place() + ": rotation beyond 170 degrees");
+  }
+
+  void add(const std::vector<LinearShare>& shares) {
+    for (const LinearShare& share : shares)
+      for (int i = 0; i < share.count; ++i)
+        r_[at(share.row + i)] += z_[at(share.column + i)] * share.weight;
+  }
+
+  /// `function`: of n arguments, m values.
+  template <int n, int m, class Function>
+  void add(const Connections& connections, const Function& function, Memory = Memory::none) {
+    const Eigen::Matrix<T, m, 1> y = function(gather<n>(connections));
+    for (const Share& share : connections.shares) {
+      for (int i = 0; i < share.count; ++i)
+        r_[at(share.row + i)] += y(share.value + i) * share.weight;
+      if (share.other_weight == 0.0) continue;
+      for (int i = 0; i < share.count; ++i)
+        r_[at(share.row + i)] += y(share.other + i) * share.other_weight;
+    }
+    for (const Provision& provision : connections.provisions) {
+      auto& port = ports_[at(provision.port)];
+      port += y.segment(provision.value, port.size());
+    }
+  }
+
+  template <int n>
+  Eigen::Matrix<T, n, 1> gather(const Connections& connections) const {
+    Eigen::Matrix<T, n, 1> x;
+    int place = 0;
+    for (const Argument& argument : connections.arguments)
+      for (int i = 0; i < argument.count; ++i) x(place++) = value_of(argument, i);
+    return x;
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  T value_of(const Argument& argument, int i) const {
+    switch (argument.kind) {
+      case Argument::Kind::unknowns:
+        return z_[at(argument.first + i)];
+      case Argument::Kind::rates:
+        return z_dot_[at(argument.first + i)];
+      case Argument::Kind::port:
+        return ports_[at(argument.first)](i);
+      case Argument::Kind::zeros:
+        break;
+    }
+    return T(0);
+  }
+
+  double t_;
+  const std::vector<T>& z_;
+  const std::vector<T>& z_dot_;
+  const TurbineInputs<T>& inputs_;
+  std::vector<T>& r_;
+  std::vector<Eigen::Matrix<T, Eigen::Dynamic, 1>> ports_;
+};
+
+}  // namespace samara::components

@@ -1,0 +1,435 @@
+#include "samara/components/beam.hpp"
+
+#include "samara/elements/beam_drag.hpp"
+#include "samara/elements/beam_load.hpp"
+#include "samara/elements/beam_tip.hpp"
+
+namespace samara::components {
+namespace {
+
+using elements::Attachment;
+using elements::PointTerms;
+constexpr int block = elements::point_size;
+
+// Arguments of a point or an end: z, z_dot, motion of the root.
+constexpr int end_arguments = 2 * block + 9;
+// Values of a point, threes.
+constexpr int force_flux = 0;
+constexpr int force_load = 3;
+constexpr int moment_flux = 6;
+constexpr int moment_load = 9;
+constexpr int stretch = 12;
+constexpr int turn = 15;
+constexpr int velocity = 18;
+constexpr int spin = 21;
+constexpr int point_values = 24;
+// Of an end: motion and balance.
+constexpr int end_velocity = 0;
+constexpr int end_spin = 3;
+constexpr int end_balance = 6;
+constexpr int end_values = 12;
+// Of the root on its support: the same, the law of the springs and the load on what carries them.
+constexpr int support_law = 12;
+constexpr int support_root = 18;
+constexpr int support_values = 24;
+// Of a change of reference: rotation and section load of each point of the element before it.
+constexpr int most_points = 6;
+constexpr int change_arguments = 9 * most_points;
+// Of damping in proportion to the mass: u, u_dot; u, theta of the root and their rates.
+constexpr int drag_arguments = 18;
+
+template <class T>
+using EndArguments = Eigen::Matrix<T, end_arguments, 1>;
+template <class T>
+using State = Eigen::Matrix<T, block, 1>;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+template <class T>
+State<T> state_of(const EndArguments<T>& x) {
+  return x.template head<block>();
+}
+template <class T>
+State<T> rates_of(const EndArguments<T>& x) {
+  return x.template segment<block>(block);
+}
+template <class T>
+Attachment<T> attachment_of(const EndArguments<T>& x) {
+  return {x.template segment<3>(2 * block), x.template segment<3>(2 * block + 3),
+          x.template segment<3>(2 * block + 6)};
+}
+
+}  // namespace
+
+// ---- places ------------------------------------------------------------------------------------
+
+std::array<double, 2> PlacedBeam::node_weights(int a, int p) const {
+  const auto j = at(p % beam->order);
+  const double w = beam->functions.weights[j];
+  return {w * beam->functions.slope[at(a)][j],
+          w * beam->element_length(p / beam->order) * beam->functions.value[at(a)][j]};
+}
+
+int PlacedBeam::mass_at(int e) const {
+  for (std::size_t m = 0; m < beam->mass_nodes.size(); ++m)
+    if (beam->mass_nodes[m].end == e) return masses[m];
+  return -1;
+}
+
+int PlacedBeam::strain_rows(int p, int a) const {
+  const int e = p / beam->order;
+  if (a == beam->order) {
+    if (e + 1 == beam->elements) return tip;
+    const int mass = mass_at(e + 1);
+    if (mass >= 0) return mass;
+  }
+  return points[at(e * beam->order + a)];
+}
+
+int PlacedBeam::force_rows(int p, int a) const {
+  const int e = p / beam->order;
+  if (a == 0) {
+    const int mass = mass_at(e);
+    if (mass >= 0) return mass + 12;
+    if (e == 0) return root;
+  }
+  return points[at(e * beam->order + a - 1)] + 12;
+}
+
+std::vector<ReferenceChange> PlacedBeam::find_changes() const {
+  std::vector<ReferenceChange> changes;
+  for (int e = 0; e < beam->elements; ++e) {
+    const Matrix3 before = beam->reference_before(e);
+    if (before == beam->reference(e)) continue;
+    changes.push_back({e, points[at(e * beam->order)] + 3, mass_at(e),
+                       math::parameters_of(before * beam->reference(e).transpose())});
+  }
+  return changes;
+}
+
+// ---- connections -------------------------------------------------------------------------------
+
+Beam::Beam(const PlacedBeam& placed, double speed)
+    : placed_(placed), speed_(speed), changes_(placed.find_changes()) {
+  const model::Beam& beam = *placed_.beam;
+  if (!changes_.empty()) end_reference_ = math::parameters_of(beam.reference(beam.elements - 1));
+  connect_points();
+  connect_ends();
+  connect_changes();
+  connect_loads();
+  if (beam.has_drag) connect_drag();
+}
+
+void Beam::connect_points() {
+  for (int p = 0; p < placed_.beam->point_count(); ++p) {
+    const int first = placed_.points[at(p)];
+    Connections point;
+    point.arguments = {unknowns(first, block), rates(first, block), motion_of_root()};
+    point.shares = {{first + 6, 3, velocity}, {first + 9, 3, spin}};
+    for (int node = 0; node <= placed_.beam->order; ++node) {
+      const auto [slope, value] = placed_.node_weights(node, p);
+      const int strain = placed_.strain_rows(p, node);
+      const int force = placed_.force_rows(p, node);
+      linear_.push_back({strain, first, 6, -slope});
+      point.shares.push_back({strain, 3, stretch, -value});
+      point.shares.push_back({strain + 3, 3, turn, -value});
+      point.shares.push_back({force, 3, force_flux, slope, force_load, value});
+      point.shares.push_back({force + 3, 3, moment_flux, slope, moment_load, value});
+    }
+    points_.push_back(point);
+  }
+}
+
+/// `point`: the last one before the end, whose balance has the section load there.
+Connections Beam::connect_end(int first, int point, bool has_balance) {
+  linear_.push_back({first, first, 6, 1.0});
+  linear_.push_back({placed_.points[at(point)] + 12, first + 12, 6, -1.0});
+  Connections end;
+  end.arguments = {unknowns(first, block), rates(first, block), motion_of_root()};
+  end.shares = {{first + 6, 3, end_velocity}, {first + 9, 3, end_spin}};
+  if (!has_balance) return end;
+  end.shares.push_back({first + 12, 3, end_balance});
+  end.shares.push_back({first + 15, 3, end_balance + 3});
+  return end;
+}
+
+void Beam::connect_ends() {
+  const model::Beam& beam = *placed_.beam;
+  linear_.push_back({placed_.root, placed_.root, 6, 1.0});
+  tip_ = connect_end(placed_.tip, beam.point_count() - 1, placed_.end == BeamEnd::free);
+  for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+    const int next = beam.mass_nodes[m].end * beam.order;  // the first point behind it
+    if (next == 0)
+      connect_support();
+    else
+      masses_.push_back(connect_end(placed_.masses[m], next - 1, true));
+    linear_.push_back({placed_.points[at(next)], placed_.masses[m], 6, -1.0});
+  }
+}
+
+void Beam::connect_support() {
+  const int first = placed_.masses.front();
+  Connections support;
+  support.arguments = {unknowns(first, block), rates(first, block), motion_of_root()};
+  support.shares = {{first, 3, support_law},
+                    {first + 3, 3, support_law + 3},
+                    {placed_.root, 3, support_root, -1.0},
+                    {placed_.root + 3, 3, support_root + 3, -1.0},
+                    {first + 6, 3, end_velocity},
+                    {first + 9, 3, end_spin},
+                    {first + 12, 3, end_balance},
+                    {first + 15, 3, end_balance + 3}};
+  masses_.push_back(support);
+}
+
+void Beam::connect_changes() {
+  const int order = placed_.beam->order;
+  for (const ReferenceChange& change : changes_) {
+    Connections connections;
+    int count = 0;
+    if (change.mass >= 0) {
+      connections.arguments = {unknowns(change.mass + 3, 3)};
+      count = 3;
+    } else if (change.element > 0) {
+      for (int p = (change.element - 1) * order; p < change.element * order; ++p) {
+        connections.arguments.push_back(unknowns(placed_.points[at(p)] + 3, 3));
+        connections.arguments.push_back(unknowns(placed_.points[at(p)] + 12, 6));
+      }
+      count = 9 * order;
+    }
+    connections.arguments.push_back(zeros(change_arguments - count));
+    connections.shares = {{change.row, 3, 0}};
+    change_connections_.push_back(connections);
+  }
+}
+
+void Beam::connect_loads() {
+  const model::Beam& beam = *placed_.beam;
+  const auto add = [](Connections& connections, int row, double weight) {
+    connections.shares.push_back({row, 3, 0, -weight});
+    connections.shares.push_back({row + 3, 3, 3, -weight});
+  };
+  for (const model::BeamLoad& load : beam.loads) {
+    // A dead load is the same everywhere: one part. A follower has one for each place.
+    const auto part_at = [&](int first, const Matrix3& C_ab) -> Connections& {
+      if (load.follower || loads_.empty() || loads_.back().load != &load) {
+        loads_.push_back({&load, C_ab, {}});
+        loads_.back().connections.arguments = {load.follower ? unknowns(first + 3, 3) : zeros(3)};
+      }
+      return loads_.back().connections;
+    };
+    if (load.at_tip)
+      add(part_at(placed_.tip, beam.reference(beam.elements - 1) * load.tip_axes),
+          placed_.end_rows(), 1.0);
+    for (std::size_t e = 0; e < load.weights.size(); ++e) {
+      const int start = (load.first_element + static_cast<int>(e)) * beam.order;
+      for (int j = 0; j < beam.order; ++j) {
+        const elements::BeamPoint& point = beam.points[at(start + j)];
+        Connections& part = part_at(placed_.points[at(start + j)], point.reference * point.C_ab);
+        for (int node = 0; node <= beam.order; ++node)
+          add(part, placed_.force_rows(start, node), load.weights[e](node, j));
+      }
+    }
+  }
+  if (placed_.end != BeamEnd::carries) return;
+  end_force_.arguments = {zeros(1)};
+  end_force_.shares = {{placed_.end_rows(), 3, 0, -1.0}};
+}
+
+void Beam::connect_drag() {
+  const model::Beam& beam = *placed_.beam;
+  for (int p = 0; p < beam.point_count(); ++p) {
+    const int first = placed_.points[at(p)];
+    Connections drag;
+    drag.arguments = {unknowns(first, 3), rates(first, 3)};
+    if (beam.has_support) {
+      drag.arguments.push_back(unknowns(placed_.masses.front(), 6));
+      drag.arguments.push_back(rates(placed_.masses.front(), 6));
+    } else {
+      drag.arguments.push_back(zeros(12));
+    }
+    for (int node = 0; node <= beam.order; ++node)
+      drag.shares.push_back({placed_.force_rows(p, node), 3, 0, -placed_.node_weights(node, p)[1]});
+    drag.shares.push_back({placed_.root_rows(), 3, 0, beam.point_length(p)});
+    drag.shares.push_back({placed_.root_rows() + 3, 3, 3, beam.point_length(p)});
+    drag_.push_back(drag);
+  }
+}
+
+// ---- equations ---------------------------------------------------------------------------------
+
+template <class System>
+void Beam::state(System& system) const {
+  system.add(linear_);
+  state_points(system);
+  state_ends(system);
+  state_changes(system);
+  state_loads(system);
+  if (placed_.beam->has_drag) state_drag(system);
+}
+
+template <class System>
+void Beam::state_points(System& system) const {
+  const model::Beam& beam = *placed_.beam;
+  for (int p = 0; p < beam.point_count(); ++p) {
+    system.require_rotation(placed_.points[at(p)] + 3,
+                            [&] { return beam.name + " point " + std::to_string(p + 1); });
+    const elements::BeamPoint& point = beam.points[at(p)];
+    const auto terms_of = [&point]<class T>(const EndArguments<T>& x) {
+      const PointTerms<T> terms =
+          elements::beam_point_terms<T>(point, state_of<T>(x), rates_of<T>(x), attachment_of<T>(x));
+      Eigen::Matrix<T, point_values, 1> y;
+      y << terms.force_flux, terms.force_load, terms.moment_flux, terms.moment_load, terms.stretch,
+          terms.turn, terms.velocity, terms.spin;
+      return y;
+    };
+    system.template add<end_arguments, point_values>(points_[at(p)], terms_of,
+                                                     Memory::of_arguments);
+  }
+}
+
+/// The boundary quantities of a beam: reactions at the root, the loads and the motion at the tip,
+/// and where a mass sits between two elements, the end of one and the start of the other.
+template <class System>
+void Beam::state_ends(System& system) const {
+  const model::Beam& beam = *placed_.beam;
+  const auto add_end = [&](const Connections& connections, const Vector3& x_end,
+                           const Matrix3& reference, const Matrix6& mass, bool is_held) {
+    const auto terms_of = [&]<class T>(const EndArguments<T>& x) {
+      const State<T> z = state_of<T>(x);
+      const elements::TipTerms<T> terms = elements::beam_tip_terms<T>(
+          x_end, reference, mass, z, rates_of<T>(x), attachment_of<T>(x));
+      Vec6<T> balance;
+      balance << terms.force, terms.moment;
+      if (is_held)
+        balance = elements::end_support_rows<T>(beam.end_support, end_reference_,
+                                                z.template head<6>(), Vec6<T>(balance));
+      Eigen::Matrix<T, end_values, 1> y;
+      y << terms.velocity, terms.spin, balance;
+      return y;
+    };
+    system.template add<end_arguments, end_values>(connections, terms_of, Memory::of_arguments);
+  };
+  system.require_rotation(placed_.tip + 3, [&] { return beam.name + " tip"; });
+  add_end(tip_, beam.tip, beam.reference(beam.elements - 1), beam.tip_mass,
+          placed_.end == BeamEnd::free && !beam.end_support.is_none());
+  for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+    const model::MassNode& node = beam.mass_nodes[m];
+    if (node.end == 0) {
+      state_support(system);
+      continue;
+    }
+    system.require_rotation(placed_.masses[m] + 3, [&] {
+      return beam.name + " mass " + std::to_string(beam.has_support ? m : m + 1);
+    });
+    add_end(masses_[m], node.x, beam.reference(node.end - 1), node.mass, false);
+  }
+}
+
+/// The root on its body and springs: their law, the motion of the body, its balance.
+template <class System>
+void Beam::state_support(System& system) const {
+  const model::Beam& beam = *placed_.beam;
+  system.require_rotation(placed_.masses.front() + 3, [&] { return beam.name + " root"; });
+  const auto terms_of = [&]<class T>(const EndArguments<T>& x) {
+    State<T> node = state_of<T>(x);
+    const State<T> rates = rates_of<T>(x);
+    const elements::RootSupportTerms<T> held =
+        elements::root_support_terms<T>(beam.support, node, rates);
+    node.template segment<6>(12) = held.load;
+    const elements::TipTerms<T> terms =
+        elements::beam_tip_terms<T>(Vector3::Zero(), Matrix3::Identity(),
+                                    beam.mass_nodes.front().mass, node, rates, attachment_of<T>(x));
+    Eigen::Matrix<T, support_values, 1> y;
+    y << terms.velocity, terms.spin, terms.force, terms.moment, held.law, held.root;
+    return y;
+  };
+  system.template add<end_arguments, support_values>(masses_.front(), terms_of,
+                                                     Memory::of_arguments);
+}
+
+/// What the plain sums of the curvature balances miss where references differ.
+template <class System>
+void Beam::state_changes(System& system) const {
+  const model::Beam& beam = *placed_.beam;
+  for (std::size_t i = 0; i < changes_.size(); ++i) {
+    const ReferenceChange& change = changes_[i];
+    const auto missed = [&]<class T>(const Eigen::Matrix<T, change_arguments, 1>& x) {
+      Vec3<T> before = Vec3<T>::Zero();  // the rotation at the start: the root has none
+      if (change.mass >= 0) {
+        before = x.template head<3>();
+      } else if (change.element > 0) {
+        for (int j = 0; j < beam.order; ++j) {
+          const int p = (change.element - 1) * beam.order + j;
+          const auto [slope, value] = placed_.node_weights(beam.order, p);
+          const Vec3<T> theta = x.template segment<3>(9 * j);
+          before +=
+              theta * T(slope) + elements::beam_point_turn<T>(beam.points[at(p)], theta,
+                                                              x.template segment<6>(9 * j + 3)) *
+                                     T(value);
+        }
+      }
+      return Vec3<T>(before - math::compose<T>(before, change.turn.cast<T>()));
+    };
+    system.template add<change_arguments, 3>(change_connections_[i], missed, Memory::of_arguments);
+  }
+}
+
+/// The prescribed loads: -f, -m of the force and moment balances.
+template <class System>
+void Beam::state_loads(System& system) const {
+  for (const LoadPart& part : loads_) {
+    const model::BeamLoad& load = *part.load;
+    const double now = load.history.factor(system.time(), speed_);
+    const double factor = load.history.is_constant() ? now : system.varying(now);
+    Vector6 value;
+    for (int i = 0; i < 6; ++i) value(i) = load.load(i) == 0.0 ? 0.0 : factor * load.load(i);
+    const auto turned = [&]<class T>(const Vec3<T>& theta) {
+      Vec6<T> given = value.cast<T>();
+      if (load.follower) given = elements::follower_load<T>(theta, part.C_ab, value);
+      if constexpr (System::has_inputs) {
+        if (load.follower || placed_.end == BeamEnd::free) return given;
+        const TurbineInputs<T>& inputs = system.inputs();  // dead: fixed in the ground
+        const Vec3<T> force = inputs.at_foot(given.template head<3>());
+        const Vec3<T> moment = inputs.at_foot(given.template tail<3>());
+        given << force, moment;
+      }
+      return given;
+    };
+    system.template add<3, 6>(part.connections, turned);
+  }
+  if (placed_.end != BeamEnd::carries) return;
+  const auto end_force = [&system]<class T>(const Eigen::Matrix<T, 1, 1>&) {
+    Vec3<T> force = Vec3<T>::Zero();
+    if constexpr (System::has_inputs) {
+      const Vec3<T>& given = system.inputs().top_force;
+      force << given(2), given(0), given(1);
+    }
+    return force;
+  };
+  system.template add<1, 3>(end_force_, end_force);
+}
+
+/// Damping in proportion to the mass, on the sections, and its reaction on the root.
+template <class System>
+void Beam::state_drag(System& system) const {
+  const model::Beam& beam = *placed_.beam;
+  for (int p = 0; p < beam.point_count(); ++p) {
+    const elements::BeamPoint& point = beam.points[at(p)];
+    const auto terms_of = [&]<class T>(const Eigen::Matrix<T, drag_arguments, 1>& x) {
+      const elements::RootMotion<T> root{x.template segment<3>(6), x.template segment<3>(9),
+                                         x.template segment<3>(12), x.template segment<3>(15)};
+      const elements::DragTerms<T> drag = elements::beam_drag_terms<T>(
+          point.x, point.drag, x.template head<3>(), x.template segment<3>(3),
+          beam.has_support ? &root : nullptr);
+      Vec6<T> y;
+      y << drag.force, drag.moment;
+      return y;
+    };
+    system.template add<drag_arguments, 6>(drag_[at(p)], terms_of, Memory::of_arguments);
+  }
+}
+
+template class Stated<Beam>;
+
+}  // namespace samara::components
