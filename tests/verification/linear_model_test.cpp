@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(eigenvalues_of_constant_state_spaces_are_those_of_modes) {
       if (mode.exponent != 0.0 && std::abs(mode.exponent) < 1e3) wanted.push_back(mode.exponent);
     const std::vector<Complex> found = eigenvalues_of(linear.model.state_space(0.1).A);
     BOOST_TEST(found.size() == 2u * static_cast<std::size_t>(set.degrees_of_freedom));
-    BOOST_TEST(worst_distance(wanted, found, 1.0) < 5e-9);  // round-off: BLAS adds in its own order
+    BOOST_TEST(worst_distance(wanted, found, 1.0) < 2e-8);  // round-off: BLAS adds in its own order
   }
 }
 
