@@ -26,7 +26,8 @@ function(samara_add_program)
   if(sources)
     add_executable(samara ${sources})
     target_link_libraries(samara PRIVATE samara::decks samara::io samara::linear samara::loads
-                                         samara::analysis samara::system samara::model samara::elements samara::math samara::petsc
+                                         samara::analysis samara::turbine samara::components
+                                         samara::system samara::model samara::elements samara::math samara::petsc
                                          samara::base)
   endif()
 endfunction()

@@ -6,7 +6,7 @@
 
 #include "samara/model/beam_modes.hpp"
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "history_recorder.hpp"
@@ -159,7 +159,7 @@ std::string unusual_figures(const model::TurbineDefinition& definition) {
   return text.empty() ? text : "\n" + text;
 }
 
-std::string facts(const io::Case& input, const system::TurbineSystem& system,
+std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
   const model::Turbine& turbine = system.turbine();
@@ -249,7 +249,7 @@ std::string facts(const io::Case& input, const system::TurbineSystem& system,
 
 void run_check(const Job& job) {
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   if (petsc::Session::rank() != 0) return;
   if (job.input.transient.is_given) find_channels(job.input, system);
   if (job.input.linearize.is_given) make_input_output(job.input, system);

@@ -1,7 +1,7 @@
 // The sub-commands, one file each.
 #pragma once
 
-#include "samara/system/turbine_input_output.hpp"
+#include "samara/turbine/turbine_input_output.hpp"
 
 #include "command_line.hpp"
 #include "job.hpp"
@@ -21,8 +21,8 @@ void run_import(const CommandLine& line);
 void run_export(const CommandLine& line);
 
 /// The inputs and outputs of the linear model. @throws InputError where there is none of a name
-system::TurbineInputOutput make_input_output(const io::Case& input,
-                                             const system::TurbineSystem& system);
+turbine::TurbineInputOutput make_input_output(const io::Case& input,
+                                              const turbine::TurbineSystem& system);
 
 /// Floquet's theory needs a period.
 void require_speed(const io::Case& input);

@@ -5,7 +5,7 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
@@ -41,7 +41,7 @@ void require_speed(const io::Case& input) {
 void run_floquet(const Job& job) {
   analysis::require_whole_spectrum("floquet_");
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);

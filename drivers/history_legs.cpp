@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "samara/system/turbine_events.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_events.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -34,7 +34,7 @@ model::Turbine turbine_after(const io::TransientCase& transient, model::Turbine 
     if (std::isfinite(fired[i])) order.push_back(i);
   std::ranges::stable_sort(order, {}, [&fired](std::size_t i) { return fired[i]; });
   for (const std::size_t i : order)
-    turbine = system::apply_event(turbine, transient.events[i], fired[i]);
+    turbine = turbine::apply_event(turbine, transient.events[i], fired[i]);
   return turbine;
 }
 
@@ -89,7 +89,7 @@ double HistoryLegs::on_grid(double time) const {
 
 analysis::TransientRun HistoryLegs::run_leg(std::optional<double> stop,
                                             const std::vector<std::size_t>& watch) {
-  const system::TurbineSystem system(turbine_, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine_, PETSC_COMM_SELF);
   recorder_.begin_leg(system, watch);
   analysis::TransientOptions options = transient_.options;
   options.stop_at = stop;
@@ -111,9 +111,9 @@ void HistoryLegs::pass(Crossing crossing, const analysis::TransientRun& leg) {
 }
 
 void HistoryLegs::fire(std::size_t i) {
-  const system::TurbineEvent& event = transient_.events[i];
+  const turbine::TurbineEvent& event = transient_.events[i];
   fired_[i] = start_.time;
-  turbine_ = system::apply_event(turbine_, event, start_.time);
+  turbine_ = turbine::apply_event(turbine_, event, start_.time);
   if (!event.generator_off) return;
   for (analysis::HeldCoordinate& held : start_.held)
     if (held.name == "generator") held.load = 0.0;

@@ -17,15 +17,16 @@ void Extent::add(double value) {
   ++rows;
 }
 
-system::TurbineChannels find_channels(const io::Case& input, const system::TurbineSystem& system) {
+turbine::TurbineChannels find_channels(const io::Case& input,
+                                       const turbine::TurbineSystem& system) {
   const io::TransientCase& transient = input.transient;
   for (std::size_t i = 0; i < transient.events.size(); ++i)
-    if (const system::EventTrigger& trigger = transient.events[i].trigger; !trigger.time)
+    if (const turbine::EventTrigger& trigger = transient.events[i].trigger; !trigger.time)
       at_place(input.path + ": transient.events[" + std::to_string(i) + "].when.channel", [&] {
-        return system::TurbineChannels(system, transient.stations, {trigger.channel});
+        return turbine::TurbineChannels(system, transient.stations, {trigger.channel});
       });
   return at_place(input.path + ": transient.output.channels", [&] {
-    return system::TurbineChannels(system, transient.stations, transient.channels);
+    return turbine::TurbineChannels(system, transient.stations, transient.channels);
   });
 }
 
@@ -36,7 +37,7 @@ HistoryRecorder::HistoryRecorder(const io::TransientCase& transient, io::History
       progress_(progress),
       steps_(std::lround(transient.options.duration / transient.options.step)) {}
 
-void HistoryRecorder::begin_leg(const system::TurbineSystem& system,
+void HistoryRecorder::begin_leg(const turbine::TurbineSystem& system,
                                 const std::vector<std::size_t>& watched) {
   channels_.emplace(system, transient_.stations, transient_.channels);
   values_.resize(channels_->channels().size());
@@ -71,7 +72,7 @@ bool HistoryRecorder::find_crossing(const analysis::TransientSample& sample) {
   std::vector<double> now(levels_.size());
   watch_->evaluate(sample.t, sample.z, sample.z_dot, now);
   for (std::size_t i = 0; i < now.size(); ++i) {
-    const system::EventTrigger& trigger = transient_.events[watched_[i]].trigger;
+    const turbine::EventTrigger& trigger = transient_.events[watched_[i]].trigger;
     if (!trigger.holds(now[i])) continue;
     double time = sample.t;
     if (has_level_ && now[i] != levels_[i])

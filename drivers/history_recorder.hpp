@@ -8,8 +8,8 @@
 #include "samara/analysis/transient.hpp"
 #include "samara/io/case.hpp"
 #include "samara/io/history_file.hpp"
-#include "samara/system/turbine_channels.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_channels.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "progress.hpp"
 
@@ -33,7 +33,7 @@ struct Crossing {
 };
 
 /// The channels of the history; those of events must exist, too. @throws InputError
-system::TurbineChannels find_channels(const io::Case& input, const system::TurbineSystem& system);
+turbine::TurbineChannels find_channels(const io::Case& input, const turbine::TurbineSystem& system);
 
 /// Writes the history while it grows, and watches for events.
 class HistoryRecorder final : public analysis::TransientObserver {
@@ -42,7 +42,7 @@ class HistoryRecorder final : public analysis::TransientObserver {
   HistoryRecorder(const io::TransientCase& transient, io::HistoryFile& file, Progress& progress);
 
   /// What follows is of this system, with these events still to come. The system must live on.
-  void begin_leg(const system::TurbineSystem& system, const std::vector<std::size_t>& watched);
+  void begin_leg(const turbine::TurbineSystem& system, const std::vector<std::size_t>& watched);
 
   bool sample(const analysis::TransientSample& sample) override;
   void checkpoint(const analysis::TransientStart& point) override { file_.write_checkpoint(point); }
@@ -60,8 +60,8 @@ class HistoryRecorder final : public analysis::TransientObserver {
   const io::TransientCase& transient_;
   io::HistoryFile& file_;
   Progress& progress_;
-  std::optional<system::TurbineChannels> channels_;
-  std::optional<system::TurbineChannels> watch_;
+  std::optional<turbine::TurbineChannels> channels_;
+  std::optional<turbine::TurbineChannels> watch_;
   std::vector<std::size_t> watched_;
   std::vector<double> levels_;  ///< of the watched channels at the last sample
   bool has_level_ = false;

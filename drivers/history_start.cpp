@@ -49,7 +49,7 @@ void set_azimuth(model::Turbine& turbine, double azimuth) {
 }
 
 io::HistoryCheckpoint checkpoint_of(const std::string& path, const io::HistoryReader& history,
-                                    const system::TurbineSystem& system, Progress& progress) {
+                                    const turbine::TurbineSystem& system, Progress& progress) {
   if (history.content().checkpoints.empty())
     throw InputError(history.damage().empty()
                          ? path +
@@ -63,7 +63,7 @@ io::HistoryCheckpoint checkpoint_of(const std::string& path, const io::HistoryRe
   return last;
 }
 
-HistoryStart restart(const Job& job, const system::TurbineSystem& system, Progress& progress) {
+HistoryStart restart(const Job& job, const turbine::TurbineSystem& system, Progress& progress) {
   const io::HistoryReader history(job.restart_path);
   const io::HistoryContent& content = history.content();
   require_same_model(job.restart_path, content.model, job.input.model_text);
@@ -135,7 +135,7 @@ bool is_generator_lost(const io::TransientCase& transient, const std::vector<dou
 
 /// The end of a history: with it t = 0 comes.
 HistoryStart start_behind(const std::string& path, const io::Case& before, const io::Case& input,
-                          const system::TurbineSystem& system, Progress& progress) {
+                          const turbine::TurbineSystem& system, Progress& progress) {
   const io::HistoryReader history(path);
   const io::HistoryContent& content = history.content();
   model::Turbine there = operated_turbine(before);
@@ -171,7 +171,7 @@ HistoryStart start_behind(const std::string& path, const io::Case& before, const
 }
 
 HistoryStart start_on_steady_state(const std::string& path, const io::Case& before,
-                                   const io::Case& input, const system::TurbineSystem& system,
+                                   const io::Case& input, const turbine::TurbineSystem& system,
                                    Progress& progress) {
   const model::Turbine steady = model::build_turbine(before.turbine);
   HistoryStart start{{}, {}, system.turbine()};
@@ -189,7 +189,7 @@ HistoryStart start_on_steady_state(const std::string& path, const io::Case& befo
 }
 
 HistoryStart start_from(const std::string& path, const io::Case& input,
-                        const system::TurbineSystem& system, Progress& progress) {
+                        const turbine::TurbineSystem& system, Progress& progress) {
   const io::Case before = io::read_result_case(path);
   require_same_model(path, before.model_text, input.model_text, acting_keys);
   const io::ResultKind kind = io::find_result_kind(path);
@@ -208,7 +208,7 @@ HistoryStart start_from(const std::string& path, const io::Case& input,
 
 }  // namespace
 
-HistoryStart find_history_start(const Job& job, const system::TurbineSystem& system,
+HistoryStart find_history_start(const Job& job, const turbine::TurbineSystem& system,
                                 Progress& progress) {
   const io::TransientCase& transient = job.input.transient;
   if (!job.restart_path.empty()) return restart(job, system, progress);
@@ -225,7 +225,7 @@ HistoryStart find_history_start(const Job& job, const system::TurbineSystem& sys
   // What moves in time begins where the steady state is.
   const model::Turbine steady = model::build_turbine(job.input.turbine);
   require_same_motion(job.input.path + ": transient.start: trim", steady, 0.0, system.turbine());
-  const system::TurbineSystem repeating(steady, PETSC_COMM_SELF);
+  const turbine::TurbineSystem repeating(steady, PETSC_COMM_SELF);
   const analysis::Trim trim = analysis::find_trim(repeating, job.input.trim, progress);
   note_roughness(trim, progress);
   return {analysis::start_on(repeating, trim, 0.0), {}, system.turbine()};

@@ -5,7 +5,7 @@
 
 #include "samara/analysis/transient.hpp"
 #include "samara/model/turbine.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "job.hpp"
 #include "progress.hpp"
@@ -22,7 +22,7 @@ struct HistoryStart {
 /// From the checkpoint of --restart, on the trim, undeformed, or from the end of another result, as
 /// the case says. `system`: of the turbine with what the case prescribes in time.
 /// @throws InputError where a result does not fit to the case
-HistoryStart find_history_start(const Job& job, const system::TurbineSystem& system,
+HistoryStart find_history_start(const Job& job, const turbine::TurbineSystem& system,
                                 Progress& progress);
 
 }  // namespace samara::drivers

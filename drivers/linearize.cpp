@@ -4,7 +4,7 @@
 #include "samara/io/whole_file.hpp"
 #include "samara/linear/linearization.hpp"
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_input_output.hpp"
+#include "samara/turbine/turbine_input_output.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
@@ -44,11 +44,11 @@ std::string form_table(const linear::Linearization& linear) {
 
 }  // namespace
 
-system::TurbineInputOutput make_input_output(const io::Case& input,
-                                             const system::TurbineSystem& system) {
+turbine::TurbineInputOutput make_input_output(const io::Case& input,
+                                              const turbine::TurbineSystem& system) {
   const io::LinearizeCase& asked = input.linearize;
   return at_place(input.path + ": linearize", [&] {
-    return system::TurbineInputOutput(system, asked.inputs, asked.stations, asked.outputs);
+    return turbine::TurbineInputOutput(system, asked.inputs, asked.stations, asked.outputs);
   });
 }
 
@@ -61,8 +61,8 @@ void run_linearize(const Job& job) {
                        ": linearize.mat and -o name the same file; give each its own");
   }
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
-  const system::TurbineInputOutput input_output = make_input_output(job.input, system);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineInputOutput input_output = make_input_output(job.input, system);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);

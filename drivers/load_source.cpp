@@ -10,7 +10,7 @@
 #include "samara/io/history_file.hpp"
 #include "samara/io/result_reader.hpp"
 #include "samara/petsc/handle.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "table.hpp"
 #include "trim_accuracy.hpp"
@@ -18,7 +18,7 @@
 namespace samara::drivers {
 namespace {
 
-using system::Channel;
+using turbine::Channel;
 
 /// Names of the channel of harmonics, which has no statistics unless it is asked for.
 constexpr std::array<const char*, 3> azimuth_names{"Azimuth", "LSSTipPxa", "LSSTipPxs"};
@@ -149,11 +149,11 @@ std::vector<std::string> channel_names(const io::LoadOptions& options) {
   return names;
 }
 
-system::TurbineChannels make_channels(const system::TurbineSystem& system,
-                                      const io::TransientCase& transient,
-                                      const io::LoadOptions& options) {
+turbine::TurbineChannels make_channels(const turbine::TurbineSystem& system,
+                                       const io::TransientCase& transient,
+                                       const io::LoadOptions& options) {
   return at_place("--set channels", [&] {
-    return system::TurbineChannels(system, transient.stations, channel_names(options));
+    return turbine::TurbineChannels(system, transient.stations, channel_names(options));
   });
 }
 
@@ -170,12 +170,12 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
     throw InputError(path +
                      ": its rotor stands still and its loads are constant; hint: samara "
                      "transient gives them by channel");
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   if (solution.coefficients().rows() != system.size())
     throw InputError(path + ": its steady state has " +
                      std::to_string(solution.coefficients().rows()) + " unknowns, the model " +
                      std::to_string(system.size()) + "; hint: run samara trim again");
-  const system::TurbineChannels channels = make_channels(system, input.transient, options);
+  const turbine::TurbineChannels channels = make_channels(system, input.transient, options);
   const std::vector<Channel>& all = channels.channels();
   const Columns columns = choose_columns(path, all, options);
   LoadSource source = make_source(path, all, columns);

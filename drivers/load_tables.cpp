@@ -79,7 +79,7 @@ std::string event_table(const io::LoadReport& report) {
   table.add_column("extreme", "", Align::left);
   table.add_column("of", "", Align::left);
   table.add_column("t", "s");
-  for (const system::Channel& channel : report.channels)
+  for (const turbine::Channel& channel : report.channels)
     table.add_column(channel.name, channel.unit);
   for (const loads::ExtremeEvent& event : report.evaluation.events) {
     std::vector<std::string> row{event.is_maximum ? "maximum" : "minimum",
@@ -158,7 +158,7 @@ std::string lifetime_table(const std::vector<io::LoadReport>& reports,
               : "cycles at " + general(options.evaluation.frequency, 4) + " Hz";
   Table table = channel_table();
   add_exponents(table, options);
-  const std::vector<system::Channel>& channels = reports.front().channels;
+  const std::vector<turbine::Channel>& channels = reports.front().channels;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     std::vector<std::string> row{channels[c].name, channels[c].unit};
     for (const double load : lifetime.damage[c]) row.push_back(general(load, digits));

@@ -4,7 +4,7 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
@@ -30,7 +30,7 @@ std::string headline(const io::Case& input, const analysis::ModeSet& set) {
 void run_modes(const Job& job) {
   analysis::require_whole_spectrum("modes_");
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   analysis::TrimOptions options = job.input.trim;

@@ -7,7 +7,7 @@
 #include "samara/analysis/static_path.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
@@ -66,10 +66,10 @@ std::string beam_table(const StaticPath& path, const model::Beam& beam, int tip,
          "\n";
 }
 
-std::string summary(const io::Case& input, const system::TurbineSystem& system,
+std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
                     const StaticPath& path) {
   const model::TurbineDefinition& definition = input.turbine;
-  const model::Layout& layout = system.layout();
+  const turbine::TurbineLayout& layout = system.layout();
   const StaticState& last = path.states.back();
   int newton_steps = 0;
   double residual = 0.0;
@@ -108,9 +108,9 @@ std::string summary(const io::Case& input, const system::TurbineSystem& system,
   return text + "\n";
 }
 
-std::string tables(const system::TurbineSystem& system, const StaticPath& path) {
+std::string tables(const turbine::TurbineSystem& system, const StaticPath& path) {
   const model::Turbine& turbine = system.turbine();
-  const model::Layout& layout = system.layout();
+  const turbine::TurbineLayout& layout = system.layout();
   std::string text;
   for (std::size_t k = 0; k < turbine.blades.size(); ++k)
     text += beam_table(path, turbine.blades[k], layout.blade_tip(static_cast<int>(k)),
@@ -139,7 +139,7 @@ void run_static(const Job& job) {
     *motion = {};
     motion->angle = angle;  // at rest
   }
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const StaticPath path = analysis::find_static_path(system, job.input.statics, progress);

@@ -10,8 +10,8 @@
 #include "samara/io/history_file.hpp"
 #include "samara/io/whole_file.hpp"
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_channels.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_channels.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "history_legs.hpp"
@@ -32,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double steps_a_cycle = 20.0;
 constexpr double least_steps_a_revolution = 40.0;
 
-std::string channel_table(const std::vector<system::Channel>& channels,
+std::string channel_table(const std::vector<turbine::Channel>& channels,
                           const std::vector<Extent>& extents) {
   Table table;
   table.add_column("channel", "", Align::left);
@@ -95,7 +95,7 @@ std::string summary(const io::Case& input, const analysis::TransientRun& run,
 void require_fired(const io::TransientCase& transient, const std::vector<double>& fired) {
   for (std::size_t i = 0; i < fired.size(); ++i) {
     if (std::isfinite(fired[i])) continue;
-    const system::EventTrigger& trigger = transient.events[i].trigger;
+    const turbine::EventTrigger& trigger = transient.events[i].trigger;
     throw InputError("transient.events[" + std::to_string(i) + "] never came: " + trigger.channel +
                      " was never " + (trigger.above ? "above " : "below ") +
                      general(trigger.level, 6) + "; the result is complete without it");
@@ -130,7 +130,7 @@ void require_transient(const io::Case& input) {
   if (input.transient.teeter && turbine.hub.teeter.kind != model::JointKind::prescribed)
     refuse("teeter_deg", "only a joint: prescribed has a motion");
   for (std::size_t i = 0; i < input.transient.events.size(); ++i) {
-    const system::TurbineEvent& event = input.transient.events[i];
+    const turbine::TurbineEvent& event = input.transient.events[i];
     const std::string place = "events[" + std::to_string(i) + "]";
     require_blades(place);
     if (!is_free && (event.brake > 0.0 || event.generator_off))
@@ -158,14 +158,14 @@ void run_transient(const Job& job) {
   const io::TransientCase& transient = job.input.transient;
   if (transient.start == io::TransientOrigin::result && job.restart_path.empty())
     require_other_path(job.result_path, {transient.start_path});
-  const system::TurbineSystem system(operated_turbine(job.input), PETSC_COMM_SELF);
-  const std::vector<system::Channel> channels = find_channels(job.input, system).channels();
+  const turbine::TurbineSystem system(operated_turbine(job.input), PETSC_COMM_SELF);
+  const std::vector<turbine::Channel> channels = find_channels(job.input, system).channels();
   Progress progress(true);
   for (const std::string& note : motion_notes(job.input)) progress.note(note);
   note_steps(job.input, progress);
   const HistoryStart start = find_history_start(job, system, progress);
   const model::Turbine& turbine = start.turbine;
-  const system::TurbineSystem begun(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem begun(turbine, PETSC_COMM_SELF);
   const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
   io::HistoryContent content;
   content.channels = channels;

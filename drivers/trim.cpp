@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
@@ -34,9 +34,9 @@ struct Output {
   double zero = 0.0;    ///< below it a value is rounding
 };
 
-std::vector<Output> outputs_of(const system::TurbineSystem& system, double load_level) {
+std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load_level) {
   const model::Turbine& turbine = system.turbine();
-  const model::Layout& layout = system.layout();
+  const turbine::TurbineLayout& layout = system.layout();
   const double small_load = rounding * std::max(load_level, 1.0);
   std::vector<Output> outputs;
   const auto add_three = [&outputs](const std::string& place, int first, const std::string& unit,
@@ -91,7 +91,7 @@ double largest_value(const analysis::PeriodicSolution& solution, int unknown) {
   return largest;
 }
 
-std::string output_table(const system::TurbineSystem& system, const Trim& trim) {
+std::string output_table(const turbine::TurbineSystem& system, const Trim& trim) {
   const analysis::PeriodicSolution& solution = trim.solution;
   const int shown = std::min(solution.harmonics(), most_harmonics_shown);
   Table table;
@@ -182,7 +182,7 @@ std::string summary(const io::Case& input, const Trim& trim) {
 
 void run_trim(const Job& job) {
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const Trim trim = analysis::find_trim(system, job.input.trim, progress);

@@ -79,6 +79,8 @@ class Equilibrium {
         jacobian_(system.make_jacobian()),
         unloaded_jacobian_(unloaded_->make_jacobian()),
         solver_("static_", equilibrate) {
+    if (count_entries(jacobian_.get()) != count_entries(unloaded_jacobian_.get()))
+      throw InternalError("the tangents with and without loads have entries in different places");
     for (Eigen::Index i = 0; i < size_; ++i) {
       const system::UnknownRole role = system.unknowns()[static_cast<std::size_t>(i)].role;
       if (role == system::UnknownRole::position) positions_.push_back(i);
@@ -236,6 +238,12 @@ class Equilibrium {
     for (std::size_t i = 0; i < rows.size(); ++i)
       picked.row(static_cast<Eigen::Index>(i)) = columns.row(rows[i]);
     return picked;
+  }
+
+  static double count_entries(Mat matrix) {
+    MatInfo info;
+    petsc::check(MatGetInfo(matrix, MAT_GLOBAL_SUM, &info));
+    return info.nz_used;
   }
 
   /// The tangent as it is, with what eases free supports.

@@ -1,8 +1,12 @@
 #include "samara/components/beam.hpp"
 
+#include <algorithm>
+
 #include "samara/elements/beam_drag.hpp"
 #include "samara/elements/beam_load.hpp"
 #include "samara/elements/beam_tip.hpp"
+
+#include "beam_mesh_error.hpp"
 
 namespace samara::components {
 namespace {
@@ -37,6 +41,43 @@ constexpr int most_points = 6;
 constexpr int change_arguments = 9 * most_points;
 // Of damping in proportion to the mass: u, u_dot; u, theta of the root and their rates.
 constexpr int drag_arguments = 18;
+
+using system::EnergyGroup;
+using system::PartKind;
+using system::RowRole;
+using system::UnknownRole;
+
+struct NamedUnknown {
+  const char* name;
+  const char* unit;
+};
+
+constexpr std::array<NamedUnknown, block> point_unknowns{{{"u1", "m"},
+                                                          {"u2", "m"},
+                                                          {"u3", "m"},
+                                                          {"theta1", "rad"},
+                                                          {"theta2", "rad"},
+                                                          {"theta3", "rad"},
+                                                          {"V1", "m/s"},
+                                                          {"V2", "m/s"},
+                                                          {"V3", "m/s"},
+                                                          {"Omega1", "rad/s"},
+                                                          {"Omega2", "rad/s"},
+                                                          {"Omega3", "rad/s"},
+                                                          {"F1", "N"},
+                                                          {"F2", "N"},
+                                                          {"F3", "N"},
+                                                          {"M1", "N m"},
+                                                          {"M2", "N m"},
+                                                          {"M3", "N m"}}};
+
+UnknownRole role_at(int i) {
+  return i < 6 ? UnknownRole::position : i < 12 ? UnknownRole::velocity : UnknownRole::internal;
+}
+
+RowRole row_role_at(int i) {
+  return i < 6 ? RowRole::constraint : i < 12 ? RowRole::kinematic : RowRole::balance;
+}
 
 template <class T>
 using EndArguments = Eigen::Matrix<T, end_arguments, 1>;
@@ -107,11 +148,55 @@ std::vector<ReferenceChange> PlacedBeam::find_changes() const {
   return changes;
 }
 
-// ---- connections -------------------------------------------------------------------------------
+// ---- declaration -------------------------------------------------------------------------------
 
-Beam::Beam(const PlacedBeam& placed, double speed)
-    : placed_(placed), speed_(speed), changes_(placed.find_changes()) {
+Beam::Beam(const BeamSetting& setting) : setting_(setting) { placed_.beam = setting_.mesh; }
+
+/// A chain is eliminated toward what carries it, or what it carries.
+void Beam::place(Registry& registry) {
   const model::Beam& beam = *placed_.beam;
+  placed_.points.assign(at(beam.point_count()), 0);
+  placed_.masses.assign(beam.mass_nodes.size(), 0);
+  std::vector<int*> blocks;  // root to tip
+  auto mass = placed_.masses.begin();
+  auto node = beam.mass_nodes.begin();
+  for (int p = 0; p < beam.point_count(); ++p) {
+    if (node != beam.mass_nodes.end() && node->end * beam.order == p) {
+      blocks.push_back(&*mass++);
+      ++node;
+    }
+    blocks.push_back(&placed_.points[at(p)]);
+  }
+  blocks.push_back(&placed_.tip);
+  if (setting_.end == BeamEnd::free) std::reverse(blocks.begin(), blocks.end());
+  for (int* first : blocks) *first = registry.add_block(setting_.rank);
+  placed_.root = registry.add_shared(setting_.shared_rank, 6);
+  placed_.root_port = registry.add_port(9);
+}
+
+void Beam::describe(Registry& registry) {
+  const model::Beam& beam = *placed_.beam;
+  for (int p = 0; p < beam.point_count(); ++p) {
+    describe_block(registry, placed_.points[at(p)], "point " + std::to_string(p + 1));
+    describe_energies(registry, p);
+  }
+  for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+    const int first = placed_.masses[m];
+    if (beam.mass_nodes[m].end == 0) {
+      describe_block(registry, first, "support");
+      describe_support(registry, first);
+    } else {  // point masses count from 1, whatever the root stands on
+      describe_block(registry, first, "mass " + std::to_string(beam.has_support ? m : m + 1));
+    }
+    describe_mass(registry, first, beam.mass_nodes[m].mass);
+  }
+  describe_block(registry, placed_.tip, setting_.end_name);
+  if (setting_.end == BeamEnd::free) describe_end_support(registry);
+  describe_mass(registry, placed_.tip, beam.tip_mass);
+  describe_root(registry);
+  for (int e = 0; e < beam.elements; ++e) registry.add(find_mesh_error(beam, e, placed_.points));
+
+  changes_ = placed_.find_changes();
   if (!changes_.empty()) end_reference_ = math::parameters_of(beam.reference(beam.elements - 1));
   connect_points();
   connect_ends();
@@ -119,6 +204,97 @@ Beam::Beam(const PlacedBeam& placed, double speed)
   connect_loads();
   if (beam.has_drag) connect_drag();
 }
+
+void Beam::describe_block(Registry& registry, int first, const std::string& place) const {
+  for (int i = 0; i < block; ++i) {
+    const NamedUnknown& named = point_unknowns[at(i)];
+    registry.describe(first + i,
+                      {setting_.owner, place, named.name, named.unit, role_at(i), setting_.frame},
+                      row_role_at(i));
+  }
+}
+
+void Beam::describe_root(Registry& registry) const {
+  for (int i = 12; i < block; ++i) {
+    const NamedUnknown& named = point_unknowns[at(i)];
+    registry.describe(placed_.root + i - 12,
+                      {setting_.owner, "root", named.name, named.unit, role_at(i), setting_.frame},
+                      row_role_at(i));
+  }
+}
+
+void Beam::describe_support(Registry& registry, int first) const {
+  const model::Beam& beam = *placed_.beam;
+  for (int i = 0; i < 6; ++i) {
+    if (beam.support.free[at(i)]) registry.set_free(first + i);
+    if (beam.support.is_elastic(i))
+      registry.add(EnergyGroup{EnergyGroup::Kind::strain,
+                               {PartKind::support, setting_.support_part, setting_.owner.instance},
+                               setting_.support_directions[at(i)],
+                               setting_.frame,
+                               {first + 12 + i},
+                               {beam.support.compliance(i, i)},
+                               beam.support.damping});
+  }
+}
+
+void Beam::describe_end_support(Registry& registry) const {
+  const elements::EndSupport& support = placed_.beam->end_support;
+  for (int i = 0; i < 6; ++i) {
+    if (support.rigid[at(i)]) registry.set_row(placed_.tip + 12 + i, RowRole::constraint);
+    if (support.stiffness(i, i) > 0.0)
+      registry.add(EnergyGroup{EnergyGroup::Kind::strain,
+                               {PartKind::support, setting_.owner.part, setting_.owner.instance},
+                               "end support",
+                               setting_.frame,
+                               {placed_.tip + i},
+                               {support.stiffness(i, i)}});
+  }
+}
+
+/// A rigid mass whose velocities are those of the block at `first`.
+void Beam::describe_mass(Registry& registry, int first, const Matrix6& mass) const {
+  if (mass(0, 0) == 0.0) return;
+  EnergyGroup group{EnergyGroup::Kind::kinetic, setting_.owner, "", setting_.frame, {}, {}};
+  for (int i = 0; i < 6; ++i) group.unknowns.push_back(first + 6 + i);
+  group.weight.assign(mass.data(), mass.data() + mass.size());
+  registry.add(group);
+}
+
+void Beam::describe_energies(Registry& registry, int p) const {
+  const model::Beam& beam = *placed_.beam;
+  const elements::BeamPoint& point = beam.points[at(p)];
+  const int first = placed_.points[at(p)];
+  const double length = beam.point_length(p);
+  EnergyGroup kinetic{EnergyGroup::Kind::kinetic, setting_.owner, "", setting_.frame, {}, {}};
+  for (int i = 0; i < 6; ++i) kinetic.unknowns.push_back(first + 6 + i);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) kinetic.weight.push_back(length * point.mass(i, j));
+  registry.add(kinetic);
+  for (int i = 0; i < 6; ++i)
+    if (point.compliance(i, i) > 0.0)
+      registry.add(EnergyGroup{EnergyGroup::Kind::strain,
+                               setting_.owner,
+                               setting_.directions[at(i)],
+                               setting_.frame,
+                               {first + 12 + i},
+                               {length * point.compliance(i, i)},
+                               point.damping(i)});
+}
+
+/// A dead force has a potential where the axes that it is fixed in move as prescribed; a moment has
+/// none.
+bool Beam::is_conservative() const {
+  const model::Beam& beam = *placed_.beam;
+  if (beam.has_drag || (beam.has_support && beam.support.damping != 0.0)) return false;
+  for (const elements::BeamPoint& point : beam.points)
+    if (!point.damping.isZero(0.0)) return false;
+  for (const model::BeamLoad& load : beam.loads)
+    if (load.follower || setting_.root_moves || !load.load.tail<3>().isZero(0.0)) return false;
+  return true;
+}
+
+// ---- connections -------------------------------------------------------------------------------
 
 void Beam::connect_points() {
   for (int p = 0; p < placed_.beam->point_count(); ++p) {
@@ -156,7 +332,7 @@ Connections Beam::connect_end(int first, int point, bool has_balance) {
 void Beam::connect_ends() {
   const model::Beam& beam = *placed_.beam;
   linear_.push_back({placed_.root, placed_.root, 6, 1.0});
-  tip_ = connect_end(placed_.tip, beam.point_count() - 1, placed_.end == BeamEnd::free);
+  tip_ = connect_end(placed_.tip, beam.point_count() - 1, setting_.end == BeamEnd::free);
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const int next = beam.mass_nodes[m].end * beam.order;  // the first point behind it
     if (next == 0)
@@ -231,7 +407,7 @@ void Beam::connect_loads() {
       }
     }
   }
-  if (placed_.end != BeamEnd::carries) return;
+  if (setting_.end != BeamEnd::carries) return;
   end_force_.arguments = {zeros(1)};
   end_force_.shares = {{placed_.end_rows(), 3, 0, -1.0}};
 }
@@ -312,7 +488,7 @@ void Beam::state_ends(System& system) const {
   };
   system.require_rotation(placed_.tip + 3, [&] { return beam.name + " tip"; });
   add_end(tip_, beam.tip, beam.reference(beam.elements - 1), beam.tip_mass,
-          placed_.end == BeamEnd::free && !beam.end_support.is_none());
+          setting_.end == BeamEnd::free && !beam.end_support.is_none());
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const model::MassNode& node = beam.mass_nodes[m];
     if (node.end == 0) {
@@ -380,7 +556,7 @@ template <class System>
 void Beam::state_loads(System& system) const {
   for (const LoadPart& part : loads_) {
     const model::BeamLoad& load = *part.load;
-    const double now = load.history.factor(system.time(), speed_);
+    const double now = load.history.factor(system.time(), setting_.speed);
     const double factor = load.history.is_constant() ? now : system.varying(now);
     Vector6 value;
     for (int i = 0; i < 6; ++i) value(i) = load.load(i) == 0.0 ? 0.0 : factor * load.load(i);
@@ -388,7 +564,7 @@ void Beam::state_loads(System& system) const {
       Vec6<T> given = value.cast<T>();
       if (load.follower) given = elements::follower_load<T>(theta, part.C_ab, value);
       if constexpr (System::has_inputs) {
-        if (load.follower || placed_.end == BeamEnd::free) return given;
+        if (load.follower || setting_.end == BeamEnd::free) return given;
         const TurbineInputs<T>& inputs = system.inputs();  // dead: fixed in the ground
         const Vec3<T> force = inputs.at_foot(given.template head<3>());
         const Vec3<T> moment = inputs.at_foot(given.template tail<3>());
@@ -398,7 +574,7 @@ void Beam::state_loads(System& system) const {
     };
     system.template add<3, 6>(part.connections, turned);
   }
-  if (placed_.end != BeamEnd::carries) return;
+  if (setting_.end != BeamEnd::carries) return;
   const auto end_force = [&system]<class T>(const Eigen::Matrix<T, 1, 1>&) {
     Vec3<T> force = Vec3<T>::Zero();
     if constexpr (System::has_inputs) {

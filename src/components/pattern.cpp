@@ -184,7 +184,7 @@ void Pattern::add_provision(const Provision& provision, const Dependence* y) {
   plan_.calls.back().is_idle = false;
 }
 
-TangentPlan Pattern::finish() {
+TangentPlan Pattern::finish(const TangentPlan* at_least) {
   plan_.K = sorted(K_);
   plan_.M = sorted(M_);
   std::vector<std::set<int>> blocks(K_.size() / block);
@@ -194,6 +194,8 @@ TangentPlan Pattern::finish() {
     for (const std::set<int>* columns : {&K_[i], &M_[i]})
       for (const int column : *columns) own.insert(column / block);
   }
+  for (std::size_t i = 0; at_least != nullptr && i < blocks.size(); ++i)
+    blocks[i].insert(at_least->blocks[i].begin(), at_least->blocks[i].end());
   plan_.blocks = sorted(blocks);
   const BlockMatrix places(plan_.blocks);
   const auto offset = [&places](int row, int column) { return places.place(row, column); };

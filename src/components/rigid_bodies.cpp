@@ -49,33 +49,33 @@ Matrix6 hub_from_root(const model::BladeRoot& root) {
 
 }  // namespace
 
-RigidBodies::RigidBodies(const model::Turbine& turbine, const PlacedBodies& placed)
-    : turbine_(turbine), placed_(placed), chain_at_any_speed_(turbine.chain) {
+RigidBodies::RigidBodies(const model::Turbine& turbine, const BodiesSetting& setting)
+    : turbine_(turbine), setting_(setting), chain_at_any_speed_(turbine.chain) {
   constexpr double any = std::numeric_limits<double>::quiet_NaN();
   for (elements::TorqueLine* line :
        {&chain_at_any_speed_.generator_torque, &chain_at_any_speed_.rotor_torque})
     if (!line->table.empty()) *line = {any, any, any, {}};
-  const int top = placed_.tower_top;
+}
+
+void RigidBodies::connect() {
+  const int top = tower_top();
   const bool has_top = top >= 0;
   const auto of_top = [&](const Argument& argument) {
     return has_top ? argument : zeros(argument.count);
   };
-  chain_.arguments = {of_top(unknowns(top + 3, 3)),
-                      of_top(unknowns(top + 6, 6)),
-                      unknowns(placed_.joints, joint_unknowns),
-                      of_top(rates(top + 6, 6)),
-                      rates(placed_.joints, joint_unknowns),
-                      of_top(unknowns(top + 12, 6)),
-                      port_values(placed_.load_port, 6)};
+  chain_.arguments = {of_top(unknowns(top + 3, 3)),      of_top(unknowns(top + 6, 6)),
+                      unknowns(joints_, joint_unknowns), of_top(rates(top + 6, 6)),
+                      rates(joints_, joint_unknowns),    of_top(unknowns(top + 12, 6)),
+                      port_values(load_port_, 6)};
   if (has_top) chain_.shares = {{top + 12, 3, top_rows}, {top + 15, 3, top_rows + 3}};
   for (int i = 0; i < joint_unknowns; i += 2)
-    chain_.shares.push_back({placed_.joints + i, 2, joint_rows + i});
-  chain_.provisions = {{placed_.hub_port, hub_motion}};
+    chain_.shares.push_back({joints_ + i, 2, joint_rows + i});
+  chain_.provisions = {{hub_port_, hub_motion}};
   foot_.arguments = {zeros(1)};
-  if (placed_.tower_port >= 0) foot_.provisions = {{placed_.tower_port, 0}};
-  for (std::size_t k = 0; k < placed_.blade_roots.size(); ++k) {
-    loads_.push_back({{unknowns(placed_.blade_roots[k], 6)}, {}, {{placed_.load_port, 0}}});
-    roots_.push_back({{port_values(placed_.hub_port, 9)}, {}, {{placed_.root_ports[k], 0}}});
+  if (has_top) foot_.provisions = {{setting_.tower->placed().root_port, 0}};
+  for (const Beam* blade : setting_.blades) {
+    loads_.push_back({{unknowns(blade->placed().root, 6)}, {}, {{load_port_, 0}}});
+    roots_.push_back({{port_values(hub_port_, 9)}, {}, {{blade->placed().root_port, 0}}});
   }
 }
 
@@ -152,7 +152,7 @@ BladePitch<T> RigidBodies::pitch_of(const System& system, std::size_t k) const {
 
 template <class System>
 void RigidBodies::state(System& system) const {
-  if (placed_.tower_port >= 0) {
+  if (setting_.tower != nullptr) {
     // The tower's axes are (n3, n1, n2).
     const auto foot = [&]<class T>(const Eigen::Matrix<T, 1, 1>&) {
       RootMotion<T> motion = RootMotion<T>::Zero();
@@ -167,7 +167,7 @@ void RigidBodies::state(System& system) const {
       return motion;
     };
     system.template add<1, 9>(foot_, foot);
-    system.require_rotation(placed_.tower_top + 3, [] { return std::string("tower top"); });
+    system.require_rotation(tower_top() + 3, [] { return std::string("tower top"); });
   }
   state_loads(system);
   const elements::RigidChain& chain = chain_in(system);

@@ -5,7 +5,7 @@
 namespace samara::io {
 
 void read_stations(MapReader& map, const model::TurbineDefinition& turbine,
-                   system::ChannelStations& stations) {
+                   turbine::ChannelStations& stations) {
   const auto read = [&map](std::string_view key, bool has_beam, const std::string& missing,
                            std::vector<double>& places) {
     read_numbers(map, key, fraction_of_one, places, "fractions of the length");

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "samara/model/definition.hpp"
-#include "samara/system/turbine_channels.hpp"
+#include "samara/turbine/turbine_channels.hpp"
 
 #include "yaml_reader.hpp"
 
@@ -10,6 +10,6 @@ namespace samara::io {
 
 /// Reads `blade_stations` and `tower_stations`; `turbine` has been read.
 void read_stations(MapReader& map, const model::TurbineDefinition& turbine,
-                   system::ChannelStations& stations);
+                   turbine::ChannelStations& stations);
 
 }  // namespace samara::io

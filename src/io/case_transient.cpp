@@ -89,7 +89,7 @@ void read_curve(MapReader& block, std::string_view key, double unit, bool is_spe
   map.finish();
 }
 
-void read_trigger(MapReader& map, double duration, system::EventTrigger& trigger) {
+void read_trigger(MapReader& map, double duration, turbine::EventTrigger& trigger) {
   const YamlNode* at = map.find("at");
   const YamlNode* when = map.find("when");
   if (at == nullptr && when == nullptr) map.require("at", "a time, or \"when\"");
@@ -118,11 +118,11 @@ void read_trigger(MapReader& map, double duration, system::EventTrigger& trigger
 }
 
 void read_event(const YamlNode& node, const std::string& where, double duration,
-                system::TurbineEvent& event, ErrorList& errors) {
+                turbine::TurbineEvent& event, ErrorList& errors) {
   MapReader map(node, where, errors);
   read_trigger(map, duration, event.trigger);
   if (const YamlNode* entry = map.find("pitch")) {
-    system::PitchAction& action = event.pitch.emplace();
+    turbine::PitchAction& action = event.pitch.emplace();
     MapReader pitch(*entry, map.where("pitch"), errors);
     for (const char* key : {"to_deg", "rate_deg"}) pitch.require(key);
     read_angle(pitch, "to_deg", action.to, half_turn);
@@ -137,7 +137,7 @@ void read_event(const YamlNode& node, const std::string& where, double duration,
   map.finish();
 }
 
-void read_events(MapReader& map, double duration, std::vector<system::TurbineEvent>& events) {
+void read_events(MapReader& map, double duration, std::vector<turbine::TurbineEvent>& events) {
   const YamlNode* list = map.find("events");
   if (list == nullptr) return;
   if (list->kind != YamlNode::Kind::list || list->children.empty()) {

@@ -107,7 +107,7 @@ void write_lines(const HistoryReader& history, char delimiter, WholeFile& file) 
 
 void write_table(const HistoryReader& history, WholeFile& file) {
   std::string head = "time [s]";
-  for (const system::Channel& channel : history.content().channels)
+  for (const turbine::Channel& channel : history.content().channels)
     head += "," + channel.name + " [" + channel.unit + "]";
   file.write(head + "\n");
   write_lines(history, ',', file);
@@ -117,7 +117,7 @@ void write_table(const HistoryReader& history, WholeFile& file) {
 void write_openfast_text(const Origin& origin, const HistoryReader& history, WholeFile& file) {
   std::string names = "Time";
   std::string units = "(s)";
-  for (const system::Channel& channel : history.content().channels) {
+  for (const turbine::Channel& channel : history.content().channels) {
     names += "\t" + channel.name;
     units += "\t(" + channel.unit + ")";
   }
@@ -193,7 +193,7 @@ Packing find_packing(double least, double largest) {
 
 /// Of each channel. @throws InputError where a value is no number
 std::vector<Packing> find_packings(const HistoryReader& history) {
-  const std::vector<system::Channel>& channels = history.content().channels;
+  const std::vector<turbine::Channel>& channels = history.content().channels;
   const std::size_t width = channels.size();
   constexpr double infinite = std::numeric_limits<double>::infinity();
   std::vector<double> least(width, infinite);
@@ -217,11 +217,11 @@ std::vector<Packing> find_packings(const HistoryReader& history) {
 
 Bytes openfast_binary_head(const Origin& origin, const HistoryReader& history,
                            const std::vector<Packing>& packings) {
-  const std::vector<system::Channel>& channels = history.content().channels;
+  const std::vector<turbine::Channel>& channels = history.content().channels;
   if (history.rows() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     throw InputError("more rows than an .outb can count; hint: .h5 has room for them");
   std::size_t width = least_name_width;
-  for (const system::Channel& channel : channels)
+  for (const turbine::Channel& channel : channels)
     width = std::max({width, channel.name.size(), channel.unit.size() + 2});
   if (width > static_cast<std::size_t>(std::numeric_limits<std::int16_t>::max()))
     throw InputError("names too long for an .outb; hint: .csv");
@@ -238,9 +238,9 @@ Bytes openfast_binary_head(const Origin& origin, const HistoryReader& history,
   head.add(static_cast<std::int32_t>(words.size()));
   head.add_text(words);
   head.add_word("Time", width);
-  for (const system::Channel& channel : channels) head.add_word(channel.name, width);
+  for (const turbine::Channel& channel : channels) head.add_word(channel.name, width);
   head.add_word("(s)", width);
-  for (const system::Channel& channel : channels) head.add_word("(" + channel.unit + ")", width);
+  for (const turbine::Channel& channel : channels) head.add_word("(" + channel.unit + ")", width);
   return head;
 }
 

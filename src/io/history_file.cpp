@@ -77,7 +77,7 @@ HistoryFile::~HistoryFile() { give_room(); }
 void HistoryFile::resume() {
   const HistoryReader before(path_);
   const HistoryContent& old = before.content();
-  const auto name_of = [](const system::Channel& channel) { return channel.name; };
+  const auto name_of = [](const turbine::Channel& channel) { return channel.name; };
   if (!std::ranges::equal(old.channels, content_.channels, {}, name_of, name_of))
     throw InputError(path_ +
                      ": has other channels than this run; hint: -o gives the result another name");

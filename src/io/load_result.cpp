@@ -172,7 +172,7 @@ void write_loads(ResultFile& file, const std::vector<LoadReport>& reports,
                  options);
   if (lifetime.damage.empty()) return;
   const std::string group = top + "/lifetime";
-  const std::vector<system::Channel>& channels = reports.front().channels;
+  const std::vector<turbine::Channel>& channels = reports.front().channels;
   file.write_channels(group, channels);
   file.write_values(group + "/hours", lifetime.hours,
                     {"h", no_frame, "that each result stands for", {"result"}});
@@ -202,7 +202,7 @@ void write_load_table(const std::string& path, const std::vector<LoadReport>& re
       text << '\n';
     }
   for (std::size_t c = 0; c < lifetime.damage.size(); ++c) {
-    const system::Channel& channel = reports.front().channels[c];
+    const turbine::Channel& channel = reports.front().channels[c];
     text << "lifetime," << channel.name << ',' << channel.unit << ",,,,,,,";
     for (const double load : lifetime.damage[c]) text << ',' << load;
     text << '\n';

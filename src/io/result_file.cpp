@@ -325,7 +325,7 @@ void ResultFile::set_attribute(const std::string& object, const std::string& nam
   storage_->file.set_attribute(object, name, value);
 }
 
-void ResultFile::write_model(const system::TurbineSystem& system) {
+void ResultFile::write_model(const turbine::TurbineSystem& system) {
   std::vector<std::string> names;
   std::vector<std::string> units;
   std::vector<std::string> roles;
@@ -428,17 +428,17 @@ void ResultFile::write_static(const analysis::StaticPath& path) {
 }
 
 void ResultFile::write_channels(const std::string& group,
-                                const std::vector<system::Channel>& channels) {
+                                const std::vector<turbine::Channel>& channels) {
   const auto write = [&](const std::string& name, const auto& member,
                          const std::string& description) {
     std::vector<std::string> texts;
-    for (const system::Channel& channel : channels) texts.push_back(channel.*member);
+    for (const turbine::Channel& channel : channels) texts.push_back(channel.*member);
     write_texts(group + "/channel_" + name, texts, {"", no_frame, description, {channel_axis}});
   };
-  write("name", &system::Channel::name, "the channels, by OpenFAST's names");
-  write("unit", &system::Channel::unit, "unit of each channel");
-  write("frame", &system::Channel::frame, "axes of each channel");
-  write("description", &system::Channel::description, "each channel in words");
+  write("name", &turbine::Channel::name, "the channels, by OpenFAST's names");
+  write("unit", &turbine::Channel::unit, "unit of each channel");
+  write("frame", &turbine::Channel::frame, "axes of each channel");
+  write("description", &turbine::Channel::description, "each channel in words");
 }
 
 void ResultFile::write_history(const HistoryContent& history) {

@@ -6,7 +6,7 @@
 
 #include "samara/analysis/sparse_parts.hpp"
 #include "samara/analysis/trim.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "small_systems.hpp"
 #include "turbines.hpp"
@@ -51,7 +51,7 @@ BOOST_AUTO_TEST_CASE(degrees_of_freedom_are_three_a_tower_point_six_a_blade_poin
   // Of points: 3 M + 6 N + 2 for M points in the tower and N in a blade, with an order for each.
   for (const Mesh& mesh : {Mesh{4, 1, 4, 1}, Mesh{1, 1, 1, 1}, Mesh{3, 2, 5, 1}, Mesh{1, 3, 2, 2},
                            Mesh{2, 4, 1, 6}, Mesh{7, 1, 3, 3}, Mesh{2, 5, 12, 1}}) {
-    const system::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);
     const int tower = mesh.tower_elements * mesh.tower_order;
     const int blade = mesh.blade_elements * mesh.blade_order;
     const analysis::ConsistentSubspace subspace(system, trim_of(system));
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(locked_joints_and_other_rigid_strains_change_the_count) {
   tower.stiffness.diagonal() << 1e10, 1e9, 1e9, 1e9, 1e9, 1e9;
   definition.blades.beam.sections[0].rigid[3] = true;
   definition.blades.beam.sections[0].stiffness(3, 3) = 0.0;
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   const analysis::ConsistentSubspace subspace(system, trim_of(system));
   BOOST_TEST(subspace.degrees_of_freedom() == 6 * 4 + 2 * 2 * 3);
 }
@@ -79,14 +79,14 @@ BOOST_AUTO_TEST_CASE(without_tower_and_nacelle_only_blades_and_teeter_move) {
   model::TurbineDefinition definition = lee_turbine({1, 1, 3, 2});
   definition.has_tower = false;
   definition.has_nacelle = false;
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   const analysis::ConsistentSubspace subspace(system, trim_of(system));
   BOOST_TEST(subspace.degrees_of_freedom() == 6 * 6 + 1);
 }
 
 BOOST_AUTO_TEST_CASE(basis_is_the_identity_in_its_own_coordinates) {
-  const system::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 2})),
-                                     PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 2})),
+                                      PETSC_COMM_SELF);
   const analysis::PeriodicSolution solution = trim_of(system);
   const analysis::ConsistentSubspace subspace(system, solution);
   const Eigen::Index d = subspace.degrees_of_freedom();
@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(basis_is_the_identity_in_its_own_coordinates) {
 
 BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_constant_solution) {
   for (const Mesh& mesh : {Mesh{4, 1, 4, 1}, Mesh{2, 2, 1, 4}}) {
-    const system::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);
     const analysis::PeriodicSolution solution = trim_of(system);
     BOOST_REQUIRE(solution.is_constant());
     const analysis::ConsistentSubspace subspace(system, solution);
@@ -125,8 +125,8 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_constant_soluti
 BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_periodic_solution) {
   // Under gravity the constraints change in time: their rate gives the left half a velocity, by
   // central differences with an error of (Omega step)^2 / 6 = 6e-8 of it.
-  const system::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 2}, 9.80665)),
-                                     PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 2}, 9.80665)),
+                                      PETSC_COMM_SELF);
   const analysis::PeriodicSolution solution = trim_of(system);
   BOOST_REQUIRE(!solution.is_constant());
   const analysis::ConsistentSubspace subspace(system, solution);
@@ -153,8 +153,8 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_periodic_soluti
 
 BOOST_AUTO_TEST_CASE(nonlinear_state_obeys_constraints_and_kinematics) {
   // At deflections of some degrees, where the equations are far from linear.
-  const system::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 1})),
-                                     PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(lee_turbine({2, 1, 2, 1})),
+                                      PETSC_COMM_SELF);
   const analysis::PeriodicSolution solution = trim_of(system);
   const analysis::ConsistentSubspace subspace(system, solution);
   const double t = 0.3;

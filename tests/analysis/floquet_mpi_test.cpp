@@ -5,7 +5,7 @@
 
 #include "samara/analysis/floquet.hpp"
 #include "samara/analysis/trim.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 #include "first_order_systems.hpp"
 #include "turbines.hpp"
@@ -20,7 +20,7 @@ struct Runs {
 };
 
 Runs run(const model::TurbineDefinition& definition, const analysis::FloquetOptions& options) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   return {find_floquet_modes(system, trim.solution, options, PETSC_COMM_SELF, observer),

@@ -17,8 +17,8 @@
 #include "samara/io/case.hpp"
 #include "samara/model/turbine.hpp"
 #include "samara/petsc/session.hpp"
-#include "samara/system/turbine_input_output.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_input_output.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 namespace {
 
@@ -155,13 +155,13 @@ class Dump {
 
   void put_signals(const std::string& before, double t, const petsc::Handle<Vec>& z,
                    const petsc::Handle<Vec>& z_dot) const {
-    system::ChannelStations stations;
+    turbine::ChannelStations stations;
     if (!system_.turbine().blades.empty()) stations.blade = {0.0, 0.37, 1.0};
     if (system_.turbine().has_tower) stations.tower = {0.0, 0.37, 1.0};
     std::vector<std::string> channels;
-    for (const system::Channel& one : system::TurbineChannels::available(system_, stations))
+    for (const turbine::Channel& one : turbine::TurbineChannels::available(system_, stations))
       channels.push_back(one.name);
-    const system::TurbineInputOutput signals(system_, {}, stations, channels);
+    const turbine::TurbineInputOutput signals(system_, {}, stations, channels);
     const Eigen::VectorXd values = signals.output_values(t, z.get(), z_dot.get());
     for (std::size_t i = 0; i < channels.size(); ++i)
       put(before + "channel", channels[i], values(static_cast<Eigen::Index>(i)));
@@ -192,7 +192,7 @@ class Dump {
   }
 
   io::Case input_;
-  system::TurbineSystem system_;
+  turbine::TurbineSystem system_;
   std::vector<std::string> names_;
 };
 

@@ -278,7 +278,7 @@ BOOST_AUTO_TEST_CASE(every_dataset_has_unit_frame_and_description) {
   const std::string path = folder.file("x.h5");
   {
     const model::Turbine turbine = model::build_turbine(baseline().turbine);
-    const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
     ResultFile file(path, baseline(), record);
     file.write_model(system);
     file.write_floquet(small_floquet());
@@ -369,7 +369,7 @@ BOOST_AUTO_TEST_CASE(unknowns_have_name_unit_and_role) {
   const Folder folder;
   const std::string path = folder.file("x.h5");
   const model::Turbine turbine = model::build_turbine(baseline().turbine);
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   {
     ResultFile file(path, baseline(), record);
     file.write_model(system);
@@ -515,7 +515,7 @@ BOOST_AUTO_TEST_CASE(a_table_of_the_steady_state_has_a_line_an_unknown) {
   const Folder folder;
   const std::string path = folder.file("x.csv");
   const model::Turbine turbine = model::build_turbine(baseline().turbine);
-  const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const Eigen::MatrixXd coefficients =
       Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(system.size()), 3, 0.5);
   write_trim_table(path, system, make_trim(coefficients));

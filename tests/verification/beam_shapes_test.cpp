@@ -34,7 +34,7 @@ model::TurbineDefinition curved_beam(const std::vector<Vector3>& line, int eleme
 }
 
 Vector3 tip_deflection(const model::TurbineDefinition& definition) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   const petsc::Handle<Vec> z = system.make_state();

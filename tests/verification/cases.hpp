@@ -13,7 +13,7 @@
 #include "samara/analysis/floquet.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/io/case.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 namespace samara::test {
 
@@ -51,7 +51,7 @@ inline std::vector<std::string> with(std::vector<std::string> settings,
 }
 
 inline analysis::ModeSet constant_modes_of(const model::TurbineDefinition& definition) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   return analysis::find_constant_modes(system, trim.solution);
@@ -61,7 +61,7 @@ inline analysis::Floquet floquet_of(
     const model::TurbineDefinition& definition, int steps,
     analysis::FloquetPeriod period = analysis::FloquetPeriod::automatic,
     const analysis::TrimOptions& trim_options = {}, MPI_Comm comm = PETSC_COMM_SELF) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, trim_options, observer);
   return analysis::find_floquet_modes(system, trim.solution, {steps, period}, comm, observer);

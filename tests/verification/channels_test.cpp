@@ -6,9 +6,9 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/base/error.hpp"
-#include "samara/system/turbine_channels.hpp"
+#include "samara/turbine/turbine_channels.hpp"
 
-#include "../system/bodies.hpp"
+#include "../turbine/bodies.hpp"
 #include "history.hpp"
 
 using namespace samara;
@@ -27,10 +27,10 @@ struct Instant {
   Values values;
 };
 
-Values channels_at(const system::TurbineSystem& system, const Instant& instant) {
+Values channels_at(const turbine::TurbineSystem& system, const Instant& instant) {
   const petsc::Handle<Vec> z = sample::to_petsc(system, instant.z);
   const petsc::Handle<Vec> z_dot = sample::to_petsc(system, instant.z_dot);
-  const system::TurbineChannels channels(system, {}, {});
+  const turbine::TurbineChannels channels(system, {}, {});
   std::vector<double> numbers(channels.channels().size());
   channels.evaluate(instant.t, z.get(), z_dot.get(), numbers);
   Values values;
@@ -38,7 +38,7 @@ Values channels_at(const system::TurbineSystem& system, const Instant& instant) 
   return values;
 }
 
-Instant moving(const system::TurbineSystem& system) {
+Instant moving(const turbine::TurbineSystem& system) {
   Instant instant;
   Keeper<double> keeper([&](const analysis::TransientSample& sample) {
     instant.t = sample.t;
@@ -55,7 +55,7 @@ Instant moving(const system::TurbineSystem& system) {
 /// A turbine that stands still, by the statics of its trim.
 Values resting(const std::string& text) {
   const io::Case input = io::parse_case("test", text, {});
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::TransientStart start =
       analysis::start_on(system, analysis::find_trim(system, {}, observer), 0.0);
@@ -85,7 +85,7 @@ blades:
 /// Force and moment about the origin that hold what moves: -d/dt of momentum less gravity, of the
 /// pieces that `choose` takes. Momenta by plain geometry, differenced along the path (order 4).
 template <class Choose>
-Vector6 load_of(const model::TurbineDefinition& constant, const system::TurbineSystem& system,
+Vector6 load_of(const model::TurbineDefinition& constant, const turbine::TurbineSystem& system,
                 const Instant& instant, const Choose& choose) {
   // The definition with the pitch, speed and azimuth of an instant.
   const auto at_instant = [&](double t) {
@@ -133,7 +133,7 @@ namespace {
 
 /// Tower-base and root loads are those that momenta and weights ask for, to `small` of all forces.
 void check_reactions(const model::TurbineDefinition& definition,
-                     const system::TurbineSystem& system, double small) {
+                     const turbine::TurbineSystem& system, double small) {
   const Instant instant = moving(system);
   const auto all = [](const sample::Piece&) { return true; };
   Vector6 whole = load_of(definition, system, instant, all);
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(reactions_are_what_all_applied_and_inertial_forces_ask_for)
   for (const sample::Choice& choice : sample::choices()) {
     model::TurbineDefinition definition = sample::turbine_definition(choice);
     definition.shaft.rotor.slope = 0.0;
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     // Rates of prescribed joints are exact in the equations, and BDF2's in the path.
     check_reactions(definition, system, choice.prescribed ? 1e-4 : 1e-9);
   }
@@ -192,7 +192,7 @@ BOOST_AUTO_TEST_CASE(reactions_follow_blades_that_pitch_and_a_rotor_that_speeds_
     turbine.operation.pitch.assign(turbine.blades.size(),
                                    math::TimeCurve::formula("0.2 + 0.3*sin(4*t)"));
     turbine.operation.turning.emplace(math::TimeCurve::formula("3 + 2*t - cos(3*t)"), 1.0);
-    const system::TurbineSystem system(turbine, PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
     check_reactions(definition, system, 1e-8);
     BOOST_TEST(sample::tangent_error(system, 0.4, sample::random_state(system, 8)) < 1e-10);
   }
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(blade_that_points_up_or_sideways_loads_its_root_by_its_weig
   const io::Case input =
       io::parse_case("test", std::string(frame_of_a_turbine) + "shaft: {azimuth_deg: 90}\n" + heavy,
                      {"blades.tip_mass=100", "blades.pitch_deg=30"});
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::TransientStart start =
       analysis::start_on(system, analysis::find_trim(system, {}, observer), 0.0);
@@ -264,13 +264,13 @@ BOOST_AUTO_TEST_CASE(section_channels_stand_at_their_stations_and_unknown_names_
   const io::Case input =
       io::parse_case("test", std::string(frame_of_a_turbine) + "shaft: {azimuth_deg: 0}\n",
                      {"blades.tip_mass=100", "blades.elements=3", "blades.order=2"});
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::TransientStart start =
       analysis::start_on(system, analysis::find_trim(system, {}, observer), 0.0);
-  system::ChannelStations stations;
+  turbine::ChannelStations stations;
   stations.blade = {0.0, 0.5, 1.0};
-  const system::TurbineChannels channels(system, stations, {"B1N1FLz", "B1N2FLz", "B2N3FLz"});
+  const turbine::TurbineChannels channels(system, stations, {"B1N1FLz", "B1N2FLz", "B2N3FLz"});
   std::array<double, 3> values{};
   const petsc::Handle<Vec> z = sample::to_petsc(system, start.z);
   const petsc::Handle<Vec> z_dot = sample::to_petsc(system, start.z_dot);
@@ -281,7 +281,7 @@ BOOST_AUTO_TEST_CASE(section_channels_stand_at_their_stations_and_unknown_names_
   const auto suggests = [](const InputError& error) {
     return std::string(error.what()).find("did you mean \"TwrBsMyt\"") != std::string::npos;
   };
-  BOOST_CHECK_EXCEPTION(system::TurbineChannels(system, {}, {"TwrBsMty"}), InputError, suggests);
+  BOOST_CHECK_EXCEPTION(turbine::TurbineChannels(system, {}, {"TwrBsMty"}), InputError, suggests);
 }
 
 BOOST_AUTO_TEST_CASE(root_moment_converges_with_the_order_of_the_element) {
@@ -299,7 +299,7 @@ BOOST_AUTO_TEST_CASE(root_moment_converges_with_the_order_of_the_element) {
       beam.order = order;
       model::TurbineDefinition definition = definition_of(beam);
       definition.blades.precone = 0.1;
-      const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+      const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
       analysis::Observer observer;
       const analysis::TransientStart start =
           analysis::start_on(system, analysis::find_trim(system, {}, observer), 0.0);

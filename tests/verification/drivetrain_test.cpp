@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(an_unbalanced_rotor_under_gravity_is_held_by_its_generator_
   model::TurbineDefinition definition = definition_of(beam);
   definition.gravity = 1e-3;
   definition.shaft.generator = {model::JointKind::free, generator_inertia, {}};
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   const double l = blade_length;
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(the_generator_takes_the_power_that_the_rotor_gives) {
   definition.blades.each[2].mass_factor = 1.4;
   definition.shaft.generator.law = {120.0, 2.5, {}};
   definition.shaft.rotor = {90.0, -1.7, {}};
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::TrimOptions options;
   options.harmonics = 24;
   options.tolerance = 1e-13;
@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(the_generator_takes_the_power_that_the_rotor_gives) {
 BOOST_AUTO_TEST_CASE(a_rotor_torque_twists_the_shaft_of_a_locked_generator) {
   model::TurbineDefinition definition = rotor(5.0, true, false);
   definition.shaft.rotor = {90.0, -1.7, {}};
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   BOOST_TEST(trim.solution.coefficients()(system.layout().shaft_torsion(), 0) == 90.0 / stiffness,

@@ -152,11 +152,11 @@ BOOST_AUTO_TEST_CASE(a_rigid_turbine_loads_its_tower_by_its_weight_at_its_lever_
   turbine.nacelle.center_of_mass = Vector3(0.7, 1.9, 1.75);
   turbine.shaft.tilt = -0.2;
   turbine.blades.precone = -0.1;
-  const system::TurbineSystem system(model::build_turbine(turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(turbine), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   const Eigen::MatrixXd& h = trim.solution.coefficients();
-  const model::Layout& layout = system.layout();
+  const turbine::TurbineLayout& layout = system.layout();
   const double g = turbine.gravity;
   const BladeMoments blade(turbine);
   const double rotor = turbine.hub.mass + 3.0 * blade.mass;

@@ -15,7 +15,7 @@
 #include "samara/linear/hill.hpp"
 #include "samara/linear/multiblade.hpp"
 #include "samara/model/masses.hpp"
-#include "samara/system/turbine_input_output.hpp"
+#include "samara/turbine/turbine_input_output.hpp"
 
 #include "history.hpp"
 
@@ -46,8 +46,8 @@ struct Linearized {
     return analysis::find_trim(system, options, observer);
   }
 
-  system::TurbineSystem system;
-  system::TurbineInputOutput ports;
+  turbine::TurbineSystem system;
+  turbine::TurbineInputOutput ports;
   analysis::Trim trim;
   linear::LinearModel model;
 };
@@ -91,7 +91,7 @@ struct History {
 /// A turbine under u(t) = size (1 - cos(omega t))^2 in one input: at rest at the start.
 class Driven final : public system::PeriodicSystem {
  public:
-  Driven(const system::TurbineSystem& turbine, const system::TurbineInputOutput& ports, int input,
+  Driven(const turbine::TurbineSystem& turbine, const turbine::TurbineInputOutput& ports, int input,
          double size, double omega)
       : turbine_(turbine), ports_(ports), input_(input), size_(size), omega_(omega) {}
 
@@ -103,7 +103,7 @@ class Driven final : public system::PeriodicSystem {
     return size_ * 2.0 * omega_ * omega_ * (s * s + c - c * c);
   }
 
-  system::TurbineInputs<double> inputs_at(double t) const {
+  turbine::TurbineInputs<double> inputs_at(double t) const {
     const auto count = static_cast<Eigen::Index>(ports_.inputs().size());
     VectorXd values = VectorXd::Zero(count);
     VectorXd rates = VectorXd::Zero(count);
@@ -147,8 +147,8 @@ class Driven final : public system::PeriodicSystem {
   }
 
  private:
-  const system::TurbineSystem& turbine_;
-  const system::TurbineInputOutput& ports_;
+  const turbine::TurbineSystem& turbine_;
+  const turbine::TurbineInputOutput& ports_;
   int input_;
   double size_;
   double omega_;
@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
   const auto n = static_cast<Eigen::Index>(linear.model.states().size());
   std::vector<linear::StateSpace> forms;
   for (int k = 0; k <= steps; ++k) forms.push_back(linear.model.state_space(step * k));
-  const system::TurbineChannels measured(linear.system, {}, channels);
+  const turbine::TurbineChannels measured(linear.system, {}, channels);
   const auto history_of = [&](const Driven& system) {
     Keeper<VectorXd> keeper([&](const TransientSample& sample) {
       VectorXd y(outputs);

@@ -37,8 +37,8 @@ class Multiblade {
  public:
   static constexpr int blades = 3;
 
-  explicit Multiblade(const system::TurbineSystem& system) : system_(system) {
-    const model::Layout& layout = system.layout();
+  explicit Multiblade(const turbine::TurbineSystem& system) : system_(system) {
+    const turbine::TurbineLayout& layout = system.layout();
     // The speed of a locked teeter has a component in turning axes, and is in no row but its own;
     // the angle is zero, as the padding is.
     std::vector<bool> left_out(static_cast<std::size_t>(system.size()), false);
@@ -47,9 +47,9 @@ class Multiblade {
     std::vector<bool> of_blade(left_out.size(), false);
     for (int k = 0; k < blades; ++k) {
       std::vector<int>& own = blade_[static_cast<std::size_t>(k)];
-      const int first = k * layout.blade_size();
-      for (int i = 0; i < layout.blade_size(); ++i) own.push_back(first + i);
-      for (int i = 0; i < 6; ++i) own.push_back(layout.blade_root(k) + i);
+      for (int i = 0; i < static_cast<int>(left_out.size()); ++i)
+        if (system.unknowns()[static_cast<std::size_t>(i)].owner.instance == k + 1)
+          own.push_back(i);
       for (const int i : own) of_blade[static_cast<std::size_t>(i)] = true;
     }
     for (int i = 0; i < static_cast<int>(left_out.size()); ++i)
@@ -123,7 +123,7 @@ class Multiblade {
     return matrix;
   }
 
-  const system::TurbineSystem& system_;
+  const turbine::TurbineSystem& system_;
   std::array<std::vector<int>, blades> blade_;
   std::vector<int> fixed_;
 };
@@ -198,7 +198,7 @@ inline std::vector<MultibladeMode> slow_modes(const MultibladeSystem& system, do
 /// the motion of the tower top along n1 relative to that along n1 and n2.
 inline std::vector<double> mean_frequencies(const io::Case& input,
                                             std::vector<double>* sideways = nullptr) {
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, input.trim, observer);
   const Multiblade multiblade(system);

@@ -31,7 +31,7 @@ BOOST_AUTO_TEST_CASE(multiblade_coordinates_make_an_isotropic_turbine_constant) 
   model::TurbineDefinition definition = isotropic_nrel5mw();
   for (const bool isotropic : {true, false}) {
     if (!isotropic) definition.blades.each[2].mass_factor = 1.1;
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     analysis::Observer observer;
     const analysis::Trim trim = analysis::find_trim(system, {}, observer);
     const Multiblade multiblade(system);
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(floquet_exponents_are_those_of_multiblade_coordinates) {
   // 3e-7 of the tenth mode. An exponent is known modulo i Omega: in turning axes a cyclic
   // motion is one Omega off.
   const model::TurbineDefinition definition = isotropic_nrel5mw();
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   const std::vector<MultibladeMode> modes =

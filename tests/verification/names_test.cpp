@@ -34,7 +34,7 @@ struct Run {
 
   analysis::Observer observer;
   model::Turbine turbine;
-  system::TurbineSystem system;
+  turbine::TurbineSystem system;
   analysis::Trim trim;
 };
 

@@ -41,7 +41,7 @@ model::TurbineDefinition one_bladed(double stiffness) {
 
 /// Mean and amplitude of every harmonic of the tower root's six loads, along n3, n1, n2.
 Eigen::MatrixXd root_harmonics(const model::TurbineDefinition& definition) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   BOOST_TEST(system.symmetry().sectors == 1);
   BOOST_TEST(system.symmetry().broken_by.empty());
   analysis::Observer observer;

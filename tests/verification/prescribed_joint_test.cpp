@@ -60,7 +60,7 @@ double lateral_inertia() {
 }
 
 /// Force and moment of the turbine on the ground in n1 n2 n3.
-Vector6 ground_load(const system::TurbineSystem& system, const analysis::Trim& trim, double t) {
+Vector6 ground_load(const turbine::TurbineSystem& system, const analysis::Trim& trim, double t) {
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   trim.solution.evaluate(t, z.get(), z_dot.get());
@@ -72,7 +72,7 @@ Vector6 ground_load(const system::TurbineSystem& system, const analysis::Trim& t
   return load;
 }
 
-analysis::Trim trim_of(const system::TurbineSystem& system, int harmonics) {
+analysis::Trim trim_of(const turbine::TurbineSystem& system, int harmonics) {
   analysis::TrimOptions options;
   options.harmonics = harmonics;
   options.tolerance = 1e-13;
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(weights_act_where_a_held_yaw_puts_them) {
   definition.shaft.height = 0.4;
   definition.nacelle.center_of_mass = Vector3(0.1, -0.3, 0.2);
   definition.nacelle.yaw.motion.angle = pi / 6.0;
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   const Vector6 load = ground_load(system, trim_of(system, 0), 0.0);
   // Counter-clockwise from above: n1 toward n2.
   const auto turned = [](const Vector3& y) {
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(a_yaw_that_swings_meets_the_gyroscopic_moment_of_the_rotor)
   for (const int per_rev : {1, 3}) {
     model::TurbineDefinition definition = rigid_turbine();
     definition.nacelle.yaw.motion = {0.5, 0.3, per_rev, 0.0, 0.7};
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     const analysis::Trim trim = trim_of(system, 12 * per_rev);
     double gyroscopic = 0.0;
     for (int k = 0; k < 7; ++k) {
@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(shooting_finds_the_same_motion_to_the_order_of_its_step) {
   definition.hub.teeter.kind = model::JointKind::prescribed;
   definition.hub.teeter.motion = {0.05, 0.1, 1, 0.0, 0.3};
   definition.nacelle.yaw.motion = {0.2, 0.05, 1, 0.0, 0.7};
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   const analysis::Trim reference = trim_of(system, 8);
   analysis::Observer observer;
   const auto difference = [&](int steps) {

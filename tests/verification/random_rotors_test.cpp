@@ -109,7 +109,7 @@ struct Shares {
   double axial = 0.0, lag = 0.0, flap = 0.0, torsion = 0.0;
 };
 
-Shares shares_of(const model::TurbineDefinition& definition, const system::TurbineSystem& system,
+Shares shares_of(const model::TurbineDefinition& definition, const turbine::TurbineSystem& system,
                  const Eigen::MatrixXcd& shape) {
   Shares shares;
   const model::Turbine& turbine = system.turbine();
@@ -180,7 +180,7 @@ void check_agreement(const Runs& runs) {
 }
 
 void check_names(const model::TurbineDefinition& definition, const analysis::ModeSet& set) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   for (std::size_t m = 0; m < set.modes.size(); ++m) {
     const analysis::Mode& mode = set.modes[m];
     if (!mode.resolved || set.shapes[m].size() == 0) continue;

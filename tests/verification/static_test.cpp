@@ -27,7 +27,7 @@ using namespace samara::test;
 using analysis::StaticMethod;
 using analysis::StaticPath;
 
-StaticPath statics_of(const system::TurbineSystem& system, int steps = 10,
+StaticPath statics_of(const turbine::TurbineSystem& system, int steps = 10,
                       StaticMethod method = StaticMethod::load) {
   analysis::Observer observer;
   return analysis::find_static_path(system, {method, steps, 1e-10, 1000}, observer);
@@ -47,7 +47,7 @@ struct End {
   double angle = 0.0;  ///< of its rotation [rad]
 };
 
-End end_of(const Eigen::VectorXd& z, const system::TurbineSystem& system) {
+End end_of(const Eigen::VectorXd& z, const turbine::TurbineSystem& system) {
   const Vector6 tip = z.segment<6>(system.layout().blade_tip(0));
   return {tip.head<3>(), 2.0 * std::atan(0.5 * tip.tail<3>().norm())};
 }
@@ -56,7 +56,7 @@ End end_of(const BeamCase& beam, const std::vector<model::LoadDefinition>& loads
            StaticMethod method = StaticMethod::load) {
   model::TurbineDefinition definition = definition_of(beam);
   definition.loads = loads;
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   return end_of(statics_of(system, steps, method).states.back().z, system);
 }
 
@@ -289,7 +289,7 @@ BOOST_AUTO_TEST_CASE(a_tower_top_beyond_170_degrees_is_named_with_the_load_reach
   load.on_tower = true;
   load.moment = Vector3(0.0, pi, 0.0);  // half a turn
   definition.loads = {load};
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   for (const StaticMethod method : {StaticMethod::load, StaticMethod::arc_length}) {
     try {
       statics_of(system, 10, method);
@@ -332,7 +332,7 @@ BOOST_AUTO_TEST_CASE(a_composite_beam_with_couplings_deflects_as_published) {
   const auto deflection = [&](int elements, int order) {
     model::TurbineDefinition definition = composite_beam(elements, order);
     definition.loads = {force_at(1.0, force)};
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     return end_of(statics_of(system).states.back().z, system).u;
   };
   const Vector3 found = deflection(5, 3);
@@ -361,7 +361,7 @@ BOOST_AUTO_TEST_CASE(a_composite_beam_obeys_the_differential_equations) {
   model::TurbineDefinition definition = composite_beam(6, 4);
   const Vector3 P(0.0, 0.0, force);
   definition.loads = {force_at(1.0, P)};
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   const Eigen::VectorXd z = statics_of(system).states.back().z;
   const End end = end_of(z, system);
 
@@ -397,7 +397,7 @@ BOOST_AUTO_TEST_CASE(a_bend_of_45_degrees_leaves_its_plane_as_published) {
   const auto end_with = [&](int elements, int order) {
     beam.elements = elements;
     beam.order = order;
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     return end_of(statics_of(system).states.back().z, system).u;
   };
   const Vector3 coarse = end_with(16, 1);
@@ -488,7 +488,7 @@ BOOST_AUTO_TEST_CASE(the_root_carries_all_loads_and_their_moments_in_the_deforme
     end_follower.moment = Vector3(150.0, 60.0, 90.0);
     end_follower.follower = true;
     definition.loads = {dead, spread, follower, end_follower};
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     const model::Beam& beam = system.turbine().blades[0];
     const Eigen::VectorXd z = statics_of(system).states.back().z;
     const int tip = system.layout().blade_tip(0);
@@ -561,7 +561,7 @@ BOOST_AUTO_TEST_CASE(a_parked_turbine_stands_as_its_steady_state_says) {
                                         {"shaft.speed=0", "gravity=9.81", "shaft.azimuth_deg=30"}));
   for (const bool stiff : {true, false}) {
     if (!stiff) input.turbine.tower.sections[0].stiffness *= 0.05;  // the tower leans
-    const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
     analysis::Observer observer;
     const analysis::Trim trim = analysis::find_trim(system, {}, observer);
     for (const StaticMethod method : {StaticMethod::load, StaticMethod::arc_length}) {
@@ -588,7 +588,7 @@ BOOST_AUTO_TEST_CASE(a_tower_that_buckles_leans_the_same_way_by_both_methods) {
   const double euler = pi * pi * section.stiffness(4, 4) / (4.0 * 27.0 * 27.0);
   const double weight = 9.81 * (6900.0 + 67.5772 * 2.0 * 8.42);  // and a third of the tower's own
   BOOST_TEST(euler < 0.9 * weight);
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   const StaticPath by_load = statics_of(system, 10, StaticMethod::load);
   const StaticPath by_arc = statics_of(system, 4, StaticMethod::arc_length);
   const Eigen::VectorXd& leaning = by_arc.states.back().z;
@@ -605,7 +605,7 @@ BOOST_AUTO_TEST_CASE(the_foot_of_a_tower_carries_weight_and_wind) {
   thrust.on_tower = true;
   thrust.moment = Vector3(4e3, 0.0, 0.0);
   input.turbine.loads = {wind, thrust};
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   const StaticPath path = statics_of(system);
   const Vector6 root = path.states.back().z.segment<6>(system.layout().tower_root());
   const double weight = 9.81 * (67.5772 * (27.0 + 2.0 * 8.42) + 6900.0);

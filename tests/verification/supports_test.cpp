@@ -118,14 +118,14 @@ model::TurbineDefinition definition_of(const Pendulum& pendulum) {
 
 analysis::StaticPath static_path_of(const model::TurbineDefinition& definition,
                                     analysis::StaticMethod method = analysis::StaticMethod::load) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   return find_static_path(system, {method, 5, 1e-10, 1000}, observer);
 }
 
 /// Displacement of the blade's end.
 Vector3 end_of(const model::TurbineDefinition& definition, const Eigen::VectorXd& z) {
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   return z.segment<3>(system.layout().blade_tip(0));
 }
 
@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(a_beam_that_bends_keeps_the_balance_of_moments_about_its_hi
   // Weight and force have no moment about the hinge, whatever the shape of the beam.
   const Pendulum pendulum{5.0, pi, 20.0};
   const model::TurbineDefinition definition = definition_of(pendulum);
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   const Eigen::VectorXd z = static_path_of(definition).states.back().z;
   const model::Beam& blade = system.turbine().blades[0];
   double moment = -pendulum.force * (Pendulum::length + z(system.layout().blade_tip(0)));
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(a_blade_on_a_flap_hinge_turns_into_the_plane_of_its_rotatio
   definition.hub.radius = 0.4;
   definition.blades.precone = 0.05;
   const double offset = 0.4 * std::cos(0.05);
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   const Eigen::VectorXd z = trim.solution.coefficients().col(0);
@@ -313,7 +313,7 @@ BOOST_AUTO_TEST_CASE(springs_carry_a_cantilever_like_flexibilities_in_a_row) {
   for (const double spring : {0.0, 80.0}) {
     definition.blades.beam.end_support = support("ffsfff", spring);
     if (spring == 0.0) definition.blades.beam.end_support = model::free_end();
-    const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     analysis::Observer observer;
     const Eigen::VectorXd z =
         find_static_path(system, {analysis::StaticMethod::load, 1, 1e-12, 10}, observer)

@@ -7,7 +7,7 @@
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/linear_algebra.hpp"
-#include "samara/system/turbine_channels.hpp"
+#include "samara/turbine/turbine_channels.hpp"
 
 #include "history.hpp"
 #include "record.hpp"
@@ -38,8 +38,9 @@ model::TurbineDefinition spun_up_beam(int elements, int order) {
   return definition;
 }
 
-std::unique_ptr<system::TurbineSystem> system_of(const model::TurbineDefinition& definition) {
-  return std::make_unique<system::TurbineSystem>(model::build_turbine(definition), PETSC_COMM_SELF);
+std::unique_ptr<turbine::TurbineSystem> system_of(const model::TurbineDefinition& definition) {
+  return std::make_unique<turbine::TurbineSystem>(model::build_turbine(definition),
+                                                  PETSC_COMM_SELF);
 }
 
 analysis::Trim trim_of(const system::PeriodicSystem& system, int harmonics) {
@@ -236,9 +237,9 @@ struct Budget {
 };
 
 /// How much the energy grows beyond the work of the drive, over the energy in the deflections.
-double energy_gain(const system::TurbineSystem& system, const TransientStart& start, double step,
+double energy_gain(const turbine::TurbineSystem& system, const TransientStart& start, double step,
                    TransientMethod method) {
-  const system::TurbineChannels torque(system, {}, {"RotTorq", "RotSpeed"});
+  const turbine::TurbineChannels torque(system, {}, {"RotTorq", "RotSpeed"});
   Keeper<Budget> budget([&](const TransientSample& sample) {
     std::array<double, 2> values{};
     torque.evaluate(sample.t, sample.z, sample.z_dot, values);
@@ -293,7 +294,7 @@ BOOST_AUTO_TEST_CASE(midpoint_rule_gives_reactions_of_second_order_beside_rigid_
   constexpr int rows = 150;
   constexpr Eigen::Index settled = 60;
   const std::vector<std::string> names{"RootFzb1", "RootMxb1", "TwrBsMyt", "TwrBsFxt"};
-  const system::TurbineChannels channels(*system, {}, names);
+  const turbine::TurbineChannels channels(*system, {}, names);
   std::vector<Eigen::MatrixXd> histories;
   for (const int parts : {1, 3, 9, 27}) {
     Eigen::MatrixXd history = Eigen::MatrixXd::Zero(4, rows);
@@ -363,7 +364,7 @@ blades:
   start.z = values_of(z.get());
   start.z_dot.resize(0);
 
-  const system::TurbineChannels channels(*system, {}, {"RotTorq", "RotSpeed"});
+  const turbine::TurbineChannels channels(*system, {}, {"RotTorq", "RotSpeed"});
   const double period = system->period();
   constexpr int steps = 100;
   constexpr int revolutions = 100;

@@ -14,10 +14,10 @@ using boost::test_tools::tolerance;
 namespace {
 
 /// The paper's turbine with the gravity of the earth, on a mesh of n elements of order s.
-std::unique_ptr<system::TurbineSystem> heavy(int elements, int order) {
+std::unique_ptr<turbine::TurbineSystem> heavy(int elements, int order) {
   const io::Case input = lee("baseline", with(mesh(true, elements, order), {"gravity=9.80665"}));
-  return std::make_unique<system::TurbineSystem>(model::build_turbine(input.turbine),
-                                                 PETSC_COMM_SELF);
+  return std::make_unique<turbine::TurbineSystem>(model::build_turbine(input.turbine),
+                                                  PETSC_COMM_SELF);
 }
 
 constexpr double tight = 1e-10;  // the default of trim.tolerance
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(coarse_and_fine_meshes_of_a_large_turbine_are_balanced_in_f
         io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml",
                       {"blades.elements=" + std::to_string(blades), "blades.order=2",
                        "tower.elements=" + std::to_string(tower), "tower.order=2"});
-    const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+    const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
     const analysis::Trim trim = solve_harmonic_balance(system, 4, tight, nullptr);
     BOOST_TEST(trim.newton_steps <= 5);
   }
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(balance_holds_with_three_times_the_samples) {
 
 BOOST_AUTO_TEST_CASE(balanced_rotor_without_gravity_is_a_constant) {
   const io::Case input = lee("baseline", {});
-  const system::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, input.trim, observer);
   BOOST_TEST(trim.solution.is_constant());
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(oscillating_follower_loads_are_balanced_as_shooting_says) {
   load.history.amplitude = 1.0;
   load.history.phase = 0.7;
   definition.loads = {load};
-  const system::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   analysis::TrimOptions options;
   options.harmonics = 8;

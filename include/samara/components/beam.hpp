@@ -30,14 +30,30 @@ enum class BeamEnd {
   carries,  ///< bodies: another component has the rows of the balance
 };
 
+/// What a system says of a beam in it.
+struct BeamSetting {
+  const model::Beam* mesh = nullptr;  ///< must live on
+  system::Owner owner;
+  system::Frame frame = system::Frame::fixed;
+  BeamEnd end = BeamEnd::free;
+  const char* end_name = "tip";
+  /// Of strains and curvatures: the motions they restore, shear that of the bending it makes.
+  std::array<const char*, 6> directions{};
+  std::string support_part;                         ///< of the root's springs
+  std::array<const char*, 6> support_directions{};  ///< the motions they restore
+  int rank = 0;                                     ///< of elimination: of its blocks
+  int shared_rank = 0;                              ///< of the root's reactions
+  double speed = 0.0;       ///< of the rotor, which prescribed loads may follow [rad/s]
+  bool root_moves = false;  ///< other than as prescribed
+};
+
 /// Where the unknowns of a beam are.
 struct PlacedBeam {
   const model::Beam* beam = nullptr;
   std::vector<int> points;  ///< first unknown of each point
   std::vector<int> masses;  ///< first unknown of each mass node
   int tip = 0;
-  int root = 0;  ///< first of F_hat_0, M_hat_0
-  BeamEnd end = BeamEnd::free;
+  int root = 0;       ///< first of F_hat_0, M_hat_0
   int root_port = 0;  ///< of the motion of the root and the gravity there: v_a, omega_a, g
 
   /// First row of the strain and curvature balance of local node a of the element of point p. A
@@ -62,10 +78,13 @@ struct PlacedBeam {
 
 class Beam final : public Stated<Beam> {
  public:
-  /// `speed`: of the rotor, which prescribed loads may follow [rad/s]. The model must live on.
-  Beam(const PlacedBeam& placed, double speed);
+  explicit Beam(const BeamSetting& setting);
 
   const PlacedBeam& placed() const { return placed_; }
+
+  void place(Registry& registry) override;
+  void describe(Registry& registry) override;
+  bool is_conservative() const override;
 
   template <class System>
   void state(System& system) const;
@@ -84,6 +103,13 @@ class Beam final : public Stated<Beam> {
   template <class System>
   void state_drag(System& system) const;
 
+  void describe_block(Registry& registry, int first, const std::string& place) const;
+  void describe_root(Registry& registry) const;
+  void describe_support(Registry& registry, int first) const;
+  void describe_end_support(Registry& registry) const;
+  void describe_mass(Registry& registry, int first, const Matrix6& mass) const;
+  void describe_energies(Registry& registry, int p) const;
+
   void connect_points();
   void connect_ends();
   Connections connect_end(int first, int point, bool has_balance);
@@ -100,8 +126,8 @@ class Beam final : public Stated<Beam> {
     Connections connections;
   };
 
+  BeamSetting setting_;
   PlacedBeam placed_;
-  double speed_;
   std::vector<ReferenceChange> changes_;
   Vector3 end_reference_ = Vector3::Zero();  ///< parameters of that of the tip
   std::vector<Connections> points_;

@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "samara/components/pattern.hpp"
+#include "samara/components/registry.hpp"
 #include "samara/components/residual.hpp"
 #include "samara/components/tangents.hpp"
 
@@ -17,6 +18,14 @@ class Component {
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
   virtual ~Component() = default;
+
+  /// Asks for unknowns and ports: twice, of a registry that counts and of one that places.
+  virtual void place(Registry& registry) = 0;
+  /// When all have their places: what the unknowns and rows are, and how the functions are tied to
+  /// them.
+  virtual void describe(Registry& registry) = 0;
+  /// True where it neither dissipates nor feeds energy (PeriodicSystem::is_conservative).
+  virtual bool is_conservative() const = 0;
 
   virtual void add_to(Residual<double>& residual) const = 0;
   virtual void add_to(Residual<std::complex<double>>& residual) const = 0;

@@ -103,8 +103,9 @@ class Pattern {
     end(connections, m, y.data());
   }
 
-  /// The plan of all functions that have been stated.
-  TangentPlan finish();
+  /// The plan of all functions that have been stated. `at_least`: blocks that it has, whatever
+  /// else; null: its own.
+  TangentPlan finish(const TangentPlan* at_least = nullptr);
 
  private:
   struct Port {

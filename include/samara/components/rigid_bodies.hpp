@@ -2,8 +2,10 @@
 // joints and of the tower top, and the motion of each blade's root.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "samara/components/beam.hpp"
 #include "samara/components/component.hpp"
 #include "samara/elements/rigid_chain.hpp"
 #include "samara/model/turbine.hpp"
@@ -21,21 +23,24 @@ struct BladePitch {
   Mat3<T> feather() const { return math::turn_about<T>(-Vector3::UnitX(), angle); }
 };
 
-/// Where the unknowns of the bodies and the ports of what they carry are.
-struct PlacedBodies {
-  int tower_top = -1;            ///< first unknown of the end of the tower; -1: none
-  int joints = 0;                ///< q_y, U1, q_h, U2, q_s, U_s, q_g, U_g
-  std::vector<int> blade_roots;  ///< first of F_hat_0, M_hat_0 of each blade
-  std::vector<int> root_ports;   ///< of each blade
-  int tower_port = -1;           ///< of the tower's foot; -1: none
-  int hub_port = 0;              ///< of the motion of the apex and the gravity there, in H
-  int load_port = 0;             ///< sum of the root loads: force and moment about the apex, in H
+/// What a turbine says of its bodies.
+struct BodiesSetting {
+  const Beam* tower = nullptr;  ///< null: the bodies stand on the ground
+  std::vector<const Beam*> blades;
+  int shared_rank = 0;  ///< of elimination
 };
 
 class RigidBodies final : public Stated<RigidBodies> {
  public:
-  /// The turbine must live on.
-  RigidBodies(const model::Turbine& turbine, const PlacedBodies& placed);
+  /// Turbine and beams must live on.
+  RigidBodies(const model::Turbine& turbine, const BodiesSetting& setting);
+
+  void place(Registry& registry) override;
+  void describe(Registry& registry) override;
+  bool is_conservative() const override;
+
+  /// First of q_y, U1, q_h, U2, q_s, U_s, q_g, U_g.
+  int joints() const { return joints_; }
 
   template <class System>
   void state(System& system) const;
@@ -45,6 +50,20 @@ class RigidBodies final : public Stated<RigidBodies> {
   elements::ChainReport<T> report(Residual<T>& residual) const;
 
  private:
+  int joint(int number) const;
+  int tower_top() const;
+  void describe_joint(Registry& registry, int number, const std::string& name, system::Frame frame,
+                      bool free) const;
+  Matrix3 bearing_axes() const;
+  Matrix6 carried_mass() const;
+  void describe_energies(Registry& registry) const;
+  void describe_generator(Registry& registry) const;
+  void describe_spring(Registry& registry, const elements::Hinge& hinge, const std::string& name,
+                       system::Frame frame, int angle) const;
+  bool axis_moves() const;
+  bool hub_moves() const;
+  void connect();
+
   template <class System>
   void state_loads(System& system) const;
   template <class System>
@@ -57,7 +76,10 @@ class RigidBodies final : public Stated<RigidBodies> {
   const elements::RigidChain& chain_in(const System& system) const;
 
   const model::Turbine& turbine_;
-  PlacedBodies placed_;
+  BodiesSetting setting_;
+  int joints_ = 0;
+  int hub_port_ = 0;   ///< of the motion of the apex and the gravity there, in H
+  int load_port_ = 0;  ///< sum of the root loads: force and moment about the apex, in H
   elements::RigidChain chain_at_any_speed_;
   Connections chain_;
   Connections foot_;

@@ -8,8 +8,8 @@
 #include "samara/analysis/options.hpp"
 #include "samara/linear/linearization.hpp"
 #include "samara/model/definition.hpp"
-#include "samara/system/turbine_channels.hpp"
-#include "samara/system/turbine_events.hpp"
+#include "samara/turbine/turbine_channels.hpp"
+#include "samara/turbine/turbine_events.hpp"
 
 namespace samara::io {
 
@@ -30,12 +30,12 @@ struct TransientCase {
   std::string start_path;             ///< of that result
   long output_steps = 1;              ///< between rows of the history
   std::vector<std::string> channels;  ///< empty: all but those of stations
-  system::ChannelStations stations;
+  turbine::ChannelStations stations;
   std::optional<math::TimeCurve> speed;   ///< of the generator [rad/s]
   std::optional<math::TimeCurve> pitch;   ///< of all blades [rad]
   std::optional<math::TimeCurve> yaw;     ///< [rad]
   std::optional<math::TimeCurve> teeter;  ///< [rad]
-  std::vector<system::TurbineEvent> events;
+  std::vector<turbine::TurbineEvent> events;
 };
 
 struct LinearizeCase {
@@ -43,7 +43,7 @@ struct LinearizeCase {
   linear::LinearizeOptions options;
   std::vector<std::string> inputs;   ///< empty: all
   std::vector<std::string> outputs;  ///< channels; empty: all but those of stations
-  system::ChannelStations stations;
+  turbine::ChannelStations stations;
   std::string mat_path;  ///< empty: no MAT-file is wanted
 };
 

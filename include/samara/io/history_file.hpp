@@ -25,7 +25,7 @@
 
 #include "samara/analysis/transient.hpp"
 #include "samara/io/result_file.hpp"
-#include "samara/system/turbine_channels.hpp"
+#include "samara/turbine/turbine_channels.hpp"
 
 namespace samara::io {
 
@@ -47,7 +47,7 @@ struct HistoryCheckpoint {
 
 /// What the result says of a history.
 struct HistoryContent {
-  std::vector<system::Channel> channels;
+  std::vector<turbine::Channel> channels;
   std::vector<HistorySegment> segments;
   std::vector<double> time;    ///< of rows that are in no segment; empty where there are segments
   std::vector<double> values;  ///< row by row

@@ -9,7 +9,7 @@
 
 #include "samara/io/result_file.hpp"
 #include "samara/loads/load_evaluation.hpp"
-#include "samara/system/turbine_channels.hpp"
+#include "samara/turbine/turbine_channels.hpp"
 
 namespace samara::io {
 
@@ -31,7 +31,7 @@ LoadOptions read_load_options(const std::vector<std::string>& settings);
 /// One result that was evaluated.
 struct LoadReport {
   std::string source;  ///< path of the result
-  std::vector<system::Channel> channels;
+  std::vector<turbine::Channel> channels;
   loads::LoadHistory history;
   loads::LoadEvaluation evaluation;
 };

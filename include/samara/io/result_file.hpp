@@ -15,7 +15,7 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/io/case.hpp"
 #include "samara/linear/linearization.hpp"
-#include "samara/system/turbine_system.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 namespace samara::io {
 
@@ -52,7 +52,7 @@ class ResultFile {
   ResultFile& operator=(const ResultFile&) = delete;
 
   /// /model: speed, period, unknowns.
-  void write_model(const system::TurbineSystem& system);
+  void write_model(const turbine::TurbineSystem& system);
   /// /trim
   void write_trim(const analysis::Trim& trim);
   /// /static
@@ -75,7 +75,7 @@ class ResultFile {
   void write_array(const std::string& name, const std::vector<double>& values,
                    const std::vector<std::size_t>& shape, const Meaning& meaning);
   /// `group`/channel_name, channel_unit, channel_frame, channel_description.
-  void write_channels(const std::string& group, const std::vector<system::Channel>& channels);
+  void write_channels(const std::string& group, const std::vector<turbine::Channel>& channels);
   void write_texts(const std::string& name, const std::vector<std::string>& texts,
                    const Meaning& meaning);
   /// Attributes of a group or dataset that exists.

@@ -79,7 +79,8 @@ class PeriodicSystem {
   virtual std::vector<std::vector<PetscInt>> pattern() const { return {}; }
 
   /// The same system without gravity and prescribed loads. Both residuals are linear in the loads:
-  /// (1 - f) times this one's plus f times the loaded one's is that of a load factor f.
+  /// (1 - f) times this one's plus f times the loaded one's is that of a load factor f. The
+  /// Jacobians of both have entries in the same places.
   virtual std::unique_ptr<PeriodicSystem> unloaded() const {
     throw InternalError("this system does not know its loads");
   }

@@ -1,0 +1,327 @@
+#include "samara/turbine/turbine_channels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <numbers>
+#include <string_view>
+
+#include "samara/base/error.hpp"
+#include "samara/base/words.hpp"
+
+#include "channel_catalogue.hpp"
+
+namespace samara::turbine {
+
+using namespace slots;
+
+namespace {
+
+using PointSum = std::vector<std::pair<int, double>>;
+
+/// Beam axes 1 2 3 (outward, leading edge, downwind) to x y z; those of the tower (up, lateral,
+/// downwind) the same way.
+template <class T>
+Vec3<T> along_beam(const Vec3<T>& v) {
+  return Vec3<T>(v(2), -v(1), v(0));
+}
+
+/// Axes 1 2 3 of the bodies (lateral, downwind, up) to x y z.
+template <class T>
+Vec3<T> of_body(const Vec3<T>& v) {
+  return Vec3<T>(v(1), -v(0), v(2));
+}
+
+template <class T>
+double real_of(const T& value) {
+  if constexpr (std::is_same_v<T, double>)
+    return value;
+  else
+    return value.real();
+}
+
+/// The rotation vector of Rodrigues parameters.
+template <class T>
+Vec3<T> rotation_vector(const Vec3<T>& theta) {
+  using std::atan;
+  using std::sqrt;
+  const T square = math::dot(theta, theta);
+  // 2 atan(x / 2) / x; its series where x is small.
+  constexpr double small = 1e-4;
+  if (std::abs(real_of(square)) < small * small) return theta * T(T(1.0) - square / 12.0);
+  const T length = sqrt(square);
+  return theta * T(2.0 * atan(length * 0.5) / length);
+}
+
+/// The polynomial of the element's points; of elements with one point the straight line through the
+/// two nearest.
+PointSum interpolate(const model::Beam& beam, double fraction) {
+  std::vector<int> points;
+  if (beam.order == 1) {
+    int next = 0;
+    while (next < beam.point_count() && beam.fractions[static_cast<std::size_t>(next)] < fraction)
+      ++next;
+    const int first = std::clamp(next - 1, 0, std::max(beam.point_count() - 2, 0));
+    for (int p = first; p < std::min(first + 2, beam.point_count()); ++p) points.push_back(p);
+  } else {
+    int e = 0;
+    while (e + 1 < beam.elements && beam.ends[static_cast<std::size_t>(e) + 1] < fraction) ++e;
+    for (int j = 0; j < beam.order; ++j) points.push_back(e * beam.order + j);
+  }
+  PointSum result;
+  for (const int p : points) {
+    double weight = 1.0;
+    const double own = beam.fractions[static_cast<std::size_t>(p)];
+    for (const int q : points)
+      if (q != p) {
+        const double other = beam.fractions[static_cast<std::size_t>(q)];
+        weight *= (fraction - other) / (own - other);
+      }
+    result.emplace_back(p, weight);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Channel> TurbineChannels::available(const TurbineSystem& system,
+                                                const ChannelStations& stations) {
+  return ChannelCatalogue(system.turbine(), stations).channels;
+}
+
+TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStations& stations,
+                                 const std::vector<std::string>& names)
+    : system_(system), stations_(stations) {
+  const ChannelCatalogue catalogue(system.turbine(), stations_);
+  const auto take = [&](std::size_t i, const std::string& name) {
+    channels_.push_back(catalogue.channels[i]);
+    channels_.back().name = name;
+    picks_.push_back(catalogue.picks[i]);
+  };
+  if (names.empty())
+    for (std::size_t i = 0; i < catalogue.sections_from; ++i) take(i, catalogue.channels[i].name);
+  std::vector<std::pair<std::string, std::size_t>> known = catalogue.aliases;
+  for (std::size_t i = 0; i < catalogue.channels.size(); ++i)
+    known.emplace_back(catalogue.channels[i].name, i);
+  std::map<std::string_view, std::size_t> numbers;
+  for (const auto& [name, i] : known) numbers.try_emplace(name, i);
+  std::vector<std::string> unknown;
+  for (const std::string& name : names) {
+    const auto found = numbers.find(name);
+    if (found == numbers.end())
+      unknown.push_back(name);
+    else
+      take(found->second, name);
+  }
+  if (!unknown.empty()) {
+    std::vector<std::string> words;
+    for (const auto& one : known) words.push_back(one.first);
+    throw InputError(
+        (unknown.size() == 1 ? "unknown channel " : "unknown channels ") +
+        list_unknown(unknown, words, "; hint: docs/channels.md has those of a turbine"));
+  }
+  place_sections(catalogue);
+}
+
+void TurbineChannels::place_sections(const ChannelCatalogue& catalogue) {
+  size_ = catalogue.section_slot(0, 0);
+  const std::vector<components::PlacedBeam>& beams = system_.equations().beams();
+  for (std::size_t b = 0; b < beams.size(); ++b) {
+    const model::Beam& beam = *beams[b].beam;
+    const std::vector<double>& places = ChannelCatalogue::stations_of(
+        beam, b < system_.turbine().blades.size() ? stations_.blade : stations_.tower);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const int slot = catalogue.section_slot(static_cast<int>(b), i);
+      size_ = slot + section_slots;
+      const bool is_wanted =
+          std::any_of(picks_.begin(), picks_.end(), [slot](const ChannelPick& pick) {
+            return pick.slot >= slot && pick.slot < slot + section_slots;
+          });
+      if (is_wanted) sections_.push_back({static_cast<int>(b), slot, interpolate(beam, places[i])});
+    }
+  }
+}
+
+namespace {
+
+template <class T>
+using Block = Eigen::Matrix<T, turbine::TurbineLayout::block, 1>;
+
+template <class T>
+Block<T> block_at(const std::vector<T>& z, int first) {
+  return Eigen::Map<const Block<T>>(z.data() + first);
+}
+
+/// The quantities of channel_catalogue.hpp.
+template <class T>
+class Quantities {
+ public:
+  Quantities(const TurbineSystem& system, const TurbineInputs<T>& inputs, int size)
+      : inputs_(inputs),
+        equations_(system.equations()),
+        turbine_(system.turbine()),
+        layout_(system.layout()),
+        values_(static_cast<std::size_t>(size), T(0)) {}
+
+  const T& operator[](int slot) const { return values_[static_cast<std::size_t>(slot)]; }
+
+  void add_chain(double t, const std::vector<T>& z, const std::vector<T>& z_dot) {
+    const elements::ChainReport<T> chain = equations_.report<T>(t, z, z_dot, inputs_);
+    constexpr double turn = 2.0 * std::numbers::pi;
+    put(azimuth_slot, chain.azimuth - T(turn * std::floor(real_of(chain.azimuth) / turn)));
+    put(rotor_speed, chain.shaft_rate);
+    put(generator_speed, chain.generator_rate);
+    put(generator_torque, chain.generator_torque);
+    put(brake_torque, chain.brake_torque);
+    put(yaw_slot, chain.yaw);
+    put(yaw_rate, chain.yaw_rate);
+    put(teeter_slot, chain.teeter);
+    put(teeter_rate, chain.teeter_rate);
+    add_shaft(chain);
+    if (turbine_.has_tower)
+      add_tower(chain, z);
+    else
+      add_top(chain, of_body<T>(chain.top_load.template head<3>()),
+              of_body<T>(chain.top_load.template tail<3>()));
+  }
+
+  void add_blade(double t, int k, const std::vector<T>& z, const std::vector<T>& z_dot) {
+    const int first = ChannelCatalogue::blade_slot(k);
+    const auto number = static_cast<std::size_t>(k);
+    T pitch(turbine_.pitch_at(number, t).value);
+    if (!inputs_.pitch.empty()) pitch += inputs_.pitch[number];
+    const Mat3<T> to_cone = math::turn_about<T>(-Vector3::UnitX(), pitch);
+    const Vec6<T> root = Eigen::Map<const Vec6<T>>(z.data() + layout_.blade_root(k));
+    const Vec3<T> force = root.template head<3>();
+    const Vec3<T> moment = root.template tail<3>();
+    put(first + blade_pitch, pitch);
+    put(first + root_force, along_beam<T>(force));
+    put(first + root_moment, along_beam<T>(moment));
+    put(first + coned_force, along_beam<T>(to_cone * force));
+    put(first + coned_moment, along_beam<T>(to_cone * moment));
+    const auto tip = block_at(z, layout_.blade_tip(k));
+    const auto tip_dot = block_at(z_dot, layout_.blade_tip(k));
+    const Vec3<T> u = tip.template segment<3>(0);
+    const Vec3<T> V = tip.template segment<3>(6);
+    const Vec3<T> Omega = tip.template segment<3>(9);
+    const Vec3<T> swept = math::cross(Omega, V);
+    const model::Beam& beam = turbine_.blades[static_cast<std::size_t>(k)];
+    put(first + pitched_tip, along_beam<T>(u));
+    put(first + coned_tip, along_beam<T>(to_cone * u));
+    put(first + tip_turn, along_beam<T>(turned_by(beam, beam.elements - 1, tip)));
+    put(first + tip_acceleration, along_beam<T>(Vec3<T>(tip_dot.template segment<3>(6)) + swept));
+  }
+
+  /// `place`: first unknown of each Gauss point.
+  void add_section(int first, const model::Beam& beam, const std::vector<int>& place,
+                   const PointSum& station, const std::vector<T>& z, const std::vector<T>& z_dot) {
+    Vec6<T> load = Vec6<T>::Zero();
+    Vec3<T> move = Vec3<T>::Zero();
+    Vec3<T> turn = Vec3<T>::Zero();
+    for (const auto& [p, weight] : station) {
+      const auto state = block_at(z, place[static_cast<std::size_t>(p)]);
+      const auto rates = block_at(z_dot, place[static_cast<std::size_t>(p)]);
+      const Vector6& damping = beam.points[static_cast<std::size_t>(p)].damping;
+      for (int i = 0; i < 6; ++i) load(i) += (state(12 + i) + rates(12 + i) * damping(i)) * weight;
+      move += Vec3<T>(state.template segment<3>(0)) * T(weight);
+      turn += turned_by(beam, p / beam.order, state) * T(weight);
+    }
+    put(first + section_force, along_beam<T>(load.template head<3>()));
+    put(first + section_moment, along_beam<T>(load.template tail<3>()));
+    put(first + section_move, along_beam<T>(move));
+    put(first + section_turn, along_beam<T>(turn));
+  }
+
+ private:
+  void put(int slot, const T& value) { values_[static_cast<std::size_t>(slot)] = value; }
+  void put(int slot, const Vec3<T>& v) {
+    for (int i = 0; i < 3; ++i) put(slot + i, v(i));
+  }
+
+  /// The rotation vector of a place in element e, whatever its rotations count from.
+  Vec3<T> turned_by(const model::Beam& beam, int e, const Block<T>& state) const {
+    const Vec3<T> theta = state.template segment<3>(3);
+    const Matrix3& reference = beam.reference(e);
+    if (reference.isIdentity(0.0)) return rotation_vector<T>(theta);
+    const Vector3 from = math::parameters_of(reference);
+    return rotation_vector<T>(math::compose<T>(theta, from.cast<T>()));
+  }
+
+  void add_shaft(const elements::ChainReport<T>& chain) {
+    const Vec3<T> force = chain.rotor_load.template head<3>();
+    const Vec3<T> moment = chain.rotor_load.template tail<3>();
+    const Mat3<T> C_DS = math::turn_about<T>(Vector3::UnitY(), chain.azimuth);
+    put(shaft_force, of_body<T>(force));
+    put(shaft_moment, of_body<T>(moment));
+    put(bearing_force, of_body<T>(C_DS * force));
+    put(bearing_moment, of_body<T>(C_DS * moment));
+    put(rotor_power, moment(1) * chain.shaft_rate);
+  }
+
+  void add_tower(const elements::ChainReport<T>& chain, const std::vector<T>& z) {
+    const auto top = block_at(z, layout_.tower_tip());
+    const Vec3<T> theta = top.template segment<3>(3);
+    const Vec6<T> base = Eigen::Map<const Vec6<T>>(z.data() + layout_.tower_root());
+    put(top_move, along_beam<T>(top.template head<3>()));
+    put(top_turn, along_beam<T>(rotation_vector<T>(theta)));
+    put(base_force, along_beam<T>(base.template head<3>()));
+    put(base_moment, along_beam<T>(base.template tail<3>()));
+    const Mat3<T> C_Ta = math::direction_cosines<T>(theta);
+    add_top(chain, along_beam<T>(C_Ta * Vec3<T>(top.template segment<3>(12))),
+            along_beam<T>(C_Ta * Vec3<T>(top.template segment<3>(15))));
+  }
+
+  /// From the load in the axes p of the tower top, x y z.
+  void add_top(const elements::ChainReport<T>& chain, const Vec3<T>& force, const Vec3<T>& moment) {
+    const Mat3<T> C_np = math::turn_about<T>(Vector3::UnitZ(), chain.yaw).transpose();
+    put(top_force, force);
+    put(top_moment, moment);
+    put(yawed_force, Vec3<T>(C_np * force));
+    put(yawed_moment, Vec3<T>(C_np * moment));
+    put(top_speed_up, of_body<T>(chain.top_acceleration));
+  }
+
+  const TurbineInputs<T>& inputs_;
+  const TurbineEquations& equations_;
+  const model::Turbine& turbine_;
+  const turbine::TurbineLayout& layout_;
+  std::vector<T> values_;
+};
+
+}  // namespace
+
+template <class T>
+void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+                               std::span<T> values, const TurbineInputs<T>& inputs) const {
+  const model::Turbine& turbine = system_.turbine();
+  const int blades = static_cast<int>(turbine.blades.size());
+  Quantities<T> quantities(system_, inputs, size_);
+  quantities.add_chain(t, z, z_dot);
+  for (int k = 0; k < blades; ++k) quantities.add_blade(t, k, z, z_dot);
+  for (const Section& section : sections_) {
+    const components::PlacedBeam& placed =
+        system_.equations().beams()[static_cast<std::size_t>(section.beam)];
+    quantities.add_section(section.slot, *placed.beam, placed.points, section.place, z, z_dot);
+  }
+  for (std::size_t i = 0; i < picks_.size(); ++i)
+    values[i] = quantities[picks_[i].slot] * picks_[i].factor;
+}
+
+template void TurbineChannels::evaluate(double, const std::vector<double>&,
+                                        const std::vector<double>&, std::span<double>,
+                                        const TurbineInputs<double>&) const;
+template void TurbineChannels::evaluate(double, const std::vector<std::complex<double>>&,
+                                        const std::vector<std::complex<double>>&,
+                                        std::span<std::complex<double>>,
+                                        const TurbineInputs<std::complex<double>>&) const;
+
+void TurbineChannels::evaluate(double t, Vec z, Vec z_dot, std::span<double> values) const {
+  const auto plain = [this](Vec vector) {
+    const petsc::ReadView view(vector);
+    return std::vector<double>(view.data(), view.data() + system_.size());
+  };
+  evaluate<double>(t, plain(z), plain(z_dot), values);
+}
+
+}  // namespace samara::turbine

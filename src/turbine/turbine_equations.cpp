@@ -1,0 +1,153 @@
+#include "samara/turbine/turbine_equations.hpp"
+
+#include <algorithm>
+
+#include "rotor_symmetry.hpp"
+
+namespace samara::turbine {
+namespace {
+
+using components::BeamSetting;
+using components::Residual;
+using system::Frame;
+using system::PartKind;
+
+// Ranks of elimination.
+constexpr int blade_rank = 0;
+constexpr int tower_rank = 1;
+constexpr int shared_rank = 2;
+
+BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
+  const elements::RigidChain& chain = turbine.chain;
+  BeamSetting blade;
+  blade.mesh = &turbine.blades[k];
+  blade.owner = {PartKind::beam, "blade", static_cast<int>(k) + 1};
+  blade.frame = Frame::rotating;
+  blade.directions = {"axial", "lead-lag", "flap", "torsion", "flap", "lead-lag"};
+  blade.support_part = "blade";
+  blade.support_directions = {"support",     "support",    "support",
+                              "pitch hinge", "flap hinge", "lag hinge"};
+  blade.rank = blade_rank;
+  blade.shared_rank = shared_rank;
+  blade.speed = turbine.speed;
+  blade.root_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free ||
+                     chain.torsion.free || chain.generator.free;
+  return blade;
+}
+
+/// The tower's b2 is lateral (n1), its b3 downwind (n2): bending about b2 moves it along b3.
+BeamSetting tower_setting(const model::Turbine& turbine) {
+  BeamSetting tower;
+  tower.mesh = &turbine.tower;
+  tower.owner = {PartKind::beam, "tower"};
+  tower.end = components::BeamEnd::carries;
+  tower.end_name = "top";
+  tower.directions = {"axial", "lateral", "fore-aft", "torsion", "fore-aft", "lateral"};
+  tower.support_part = "foundation";
+  tower.support_directions.fill("");
+  tower.rank = tower_rank;
+  tower.shared_rank = shared_rank;
+  tower.speed = turbine.speed;
+  return tower;
+}
+
+}  // namespace
+
+TurbineEquations::TurbineEquations(const model::Turbine& turbine,
+                                   const components::TangentPlan* at_least)
+    : turbine_(turbine) {
+  make_components();
+  place();
+  describe();
+  components::Pattern pattern(layout_.size(), declarations_.port_sizes);
+  pattern.add(padding_);
+  for (const components::Component* component : components_) component->add_to(pattern);
+  plan_ = std::make_shared<const components::TangentPlan>(pattern.finish(at_least));
+}
+
+TurbineEquations::~TurbineEquations() = default;
+
+/// The bodies come first: they provide what the roots of the beams move with.
+void TurbineEquations::make_components() {
+  components::BodiesSetting bodies;
+  bodies.shared_rank = shared_rank;
+  for (std::size_t k = 0; k < turbine_.blades.size(); ++k) {
+    beams_.push_back(std::make_unique<components::Beam>(blade_setting(turbine_, k)));
+    bodies.blades.push_back(beams_.back().get());
+  }
+  if (turbine_.has_tower) {
+    beams_.push_back(std::make_unique<components::Beam>(tower_setting(turbine_)));
+    bodies.tower = beams_.back().get();
+  }
+  bodies_ = std::make_unique<components::RigidBodies>(turbine_, bodies);
+  components_.push_back(bodies_.get());
+  for (const auto& beam : beams_) components_.push_back(beam.get());
+}
+
+void TurbineEquations::place() {
+  components::Registry counted;
+  for (components::Component* component : components_) component->place(counted);
+  registry_ = components::Registry::placing(counted);
+  for (components::Component* component : components_) component->place(registry_);
+}
+
+void TurbineEquations::describe() {
+  for (const auto& beam : beams_) beam->describe(registry_);
+  bodies_->describe(registry_);
+  declarations_ = registry_.finish();
+  const int blades = static_cast<int>(turbine_.blades.size());
+  const std::string fault = blades < 2 ? "" : find_symmetry_fault(turbine_);
+  symmetry_ = registry_.symmetry(fault.empty() ? std::max(blades, 1) : 1);
+  symmetry_.broken_by = fault;
+  for (const auto& beam : beams_) layout_.beams_.push_back(beam->placed());
+  layout_.joints_ = bodies_->joints();
+  layout_.size_ = static_cast<int>(declarations_.unknowns.size());
+  layout_.padding_ = declarations_.padding;
+  for (const int i : layout_.padding()) padding_.push_back({i, i, 1, 1.0});
+}
+
+bool TurbineEquations::is_conservative() const {
+  return std::all_of(components_.begin(), components_.end(),
+                     [](const components::Component* one) { return one->is_conservative(); });
+}
+
+template <class T>
+void TurbineEquations::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+                                const TurbineInputs<T>& inputs, std::vector<T>& r) const {
+  std::fill(r.begin(), r.end(), T(0));
+  Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, r);
+  residual.add(padding_);
+  for (const components::Component* component : components_) component->add_to(residual);
+}
+
+void TurbineEquations::evaluate(double t, const std::vector<double>& z,
+                                const std::vector<double>& z_dot,
+                                components::Tangents& tangents) const {
+  tangents.start(t, z, z_dot);
+  for (const components::Component* component : components_) component->add_to(tangents);
+}
+
+template <class T>
+elements::ChainReport<T> TurbineEquations::report(double t, const std::vector<T>& z,
+                                                  const std::vector<T>& z_dot,
+                                                  const TurbineInputs<T>& inputs) const {
+  std::vector<T> unused;  // only ports are filled
+  Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
+  return bodies_->report(residual);
+}
+
+using Complex = std::complex<double>;
+template void TurbineEquations::evaluate(double, const std::vector<double>&,
+                                         const std::vector<double>&, const TurbineInputs<double>&,
+                                         std::vector<double>&) const;
+template void TurbineEquations::evaluate(double, const std::vector<Complex>&,
+                                         const std::vector<Complex>&, const TurbineInputs<Complex>&,
+                                         std::vector<Complex>&) const;
+template elements::ChainReport<double> TurbineEquations::report(double, const std::vector<double>&,
+                                                                const std::vector<double>&,
+                                                                const TurbineInputs<double>&) const;
+template elements::ChainReport<Complex> TurbineEquations::report(
+    double, const std::vector<Complex>&, const std::vector<Complex>&,
+    const TurbineInputs<Complex>&) const;
+
+}  // namespace samara::turbine

@@ -1,0 +1,393 @@
+#include "turbine_motions.hpp"
+
+#include <array>
+#include <string>
+
+#include "samara/math/rotation.hpp"
+
+namespace samara::turbine {
+namespace {
+
+using Complex = std::complex<double>;
+using Vector3c = Eigen::Matrix<Complex, 3, 1>;
+using Vector6c = Eigen::Matrix<Complex, 6, 1>;
+
+/// Of the six directions of a section, or of a root, in its axes, the motion that each belongs to.
+struct Directions {
+  std::array<const char*, 4> names;
+  std::array<int, 6> motion;
+
+  const char* name(int i) const { return names[static_cast<std::size_t>(i)]; }
+};
+/// About b2 a beam bends along b3, and about b3 along b2.
+constexpr std::array<int, 6> bending{0, 1, 2, 3, 2, 1};
+constexpr Directions blade_directions{{"axial", "lead-lag", "flap", "torsion"}, bending};
+/// The tower's b2 is lateral (n1), its b3 downwind (n2).
+constexpr Directions tower_directions{{"axial", "lateral", "fore-aft", "torsion"}, bending};
+constexpr Directions root_directions{{"support", "pitch hinge", "flap hinge", "lag hinge"},
+                                     {0, 0, 0, 1, 2, 3}};
+constexpr Directions foundation_directions{{"", "", "", ""}, {0, 0, 0, 0, 0, 0}};
+constexpr int motions_a_beam = 4;
+/// Of the four motions of a beam, in all lists of names.
+constexpr bool bends(int i) { return i == 1 || i == 2; }
+
+enum Joint { yaw, teeter, torsion, generator, joints };
+constexpr std::array<const char*, joints> joint_names{"yaw", "teeter", "shaft torsion",
+                                                      "rotor rotation"};
+
+/// Where the motions of each part begin: of each blade its deformations and its root's, of the
+/// tower its own and the foundation, joints.
+struct Numbering {
+  explicit Numbering(const model::Turbine& turbine)
+      : tower(2 * motions_a_beam * static_cast<int>(turbine.blades.size())),
+        joints(tower + (turbine.has_tower ? 2 * motions_a_beam : 0)),
+        size(joints + Joint::joints) {}
+  static int blade(std::size_t k) { return 2 * motions_a_beam * static_cast<int>(k); }
+  int tower;
+  int joints;
+  int size;
+};
+
+// ---- linear maps
+// ---------------------------------------------------------------------------------
+
+Vector3c cross(const Vector3& a, const Vector3c& b) { return math::skew<double>(a) * b; }
+
+/// A small motion of a rigid body: of a point of it, and its rotation.
+struct Twist {
+  Vector3c translation = Vector3c::Zero();
+  Vector3c rotation = Vector3c::Zero();
+
+  Twist at(const Vector3& arm) const { return {translation - cross(arm, rotation), rotation}; }
+  Twist operator+(const Twist& other) const {
+    return {translation + other.translation, rotation + other.rotation};
+  }
+  Twist operator-(const Twist& other) const {
+    return {translation - other.translation, rotation - other.rotation};
+  }
+};
+
+/// Momentum and angular momentum about a point.
+struct Momentum {
+  Vector3c linear = Vector3c::Zero();
+  Vector3c angular = Vector3c::Zero();
+
+  /// About the point from which this one is at `arm`.
+  Momentum from(const Vector3& arm) const { return {linear, angular + cross(arm, linear)}; }
+  Momentum& operator+=(const Momentum& other) {
+    linear += other.linear;
+    angular += other.angular;
+    return *this;
+  }
+};
+
+double half_product(const Complex& q, const Complex& p) {
+  return 0.5 * std::real(std::conj(q) * p);
+}
+
+/// q* p / 2 of each direction of a twist, in the axes of the columns of C.
+void add_products(const Twist& twist, const Momentum& momentum, const Matrix3& C,
+                  const std::array<int, 6>& motion, int first, Eigen::VectorXd& energies) {
+  const Vector3c d = C.transpose() * twist.translation;
+  const Vector3c phi = C.transpose() * twist.rotation;
+  const Vector3c p = C.transpose() * momentum.linear;
+  const Vector3c h = C.transpose() * momentum.angular;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    energies(first + motion[i]) += half_product(d(row), p(row));
+    energies(first + motion[i + 3]) += half_product(phi(row), h(row));
+  }
+}
+
+// ---- bodies
+// --------------------------------------------------------------------------------------
+
+/// A mass at a place, ground axes.
+struct Mass {
+  Vector3 place = Vector3::Zero();
+  Matrix6 matrix = Matrix6::Zero();  ///< momenta from velocities, about the place
+  Vector3 center = Vector3::Zero();  ///< from the place
+
+  Momentum momentum_of(const Twist& twist) const {
+    Vector6c velocity;
+    velocity << twist.translation, twist.rotation;
+    const Vector6c momentum = matrix * velocity;
+    return {momentum.head<3>(), momentum.tail<3>()};
+  }
+};
+
+Mass mass_of(const Vector3& place, const Matrix3& C, const Matrix6& matrix) {
+  Matrix6 turn = Matrix6::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = C;
+  Mass mass;
+  mass.place = place;
+  mass.matrix = turn * matrix * turn.transpose();
+  if (matrix(0, 0) > 0.0)
+    mass.center = C * Vector3(matrix(5, 1), matrix(3, 2), matrix(4, 0)) / matrix(0, 0);
+  return mass;
+}
+
+Mass mass_of(const Vector3& place, const Matrix3& C, const elements::RigidBody& body) {
+  return mass_of(place, C, model::rigid_mass(body.mass, body.center, body.inertia));
+}
+
+/// Positions of a block about their steady values: components of the beam's root to the ground.
+struct Node {
+  int first = 0;
+  Matrix3 C = Matrix3::Identity();  ///< of the root
+  Matrix3 turn = Matrix3::Zero();   ///< rotation, ground axes, of theta
+
+  Twist twist_of(const Eigen::Ref<const Eigen::VectorXcd>& z) const {
+    return {C * z.segment<3>(first), turn * z.segment<3>(first + 3)};
+  }
+};
+
+/// A beam in its steady state.
+struct SteadyBeam {
+  struct Point {
+    Node node;
+    Mass mass;
+    Matrix3 axes = Matrix3::Identity();  ///< of the section, undeformed on the root's support
+  };
+  std::vector<Point> points;
+  bool has_support = false;
+  Point support;
+  Vector3 root = Vector3::Zero();
+  Vector3 tip = Vector3::Zero();  ///< displaced
+};
+
+SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const Matrix3& C,
+                 const Eigen::VectorXd& steady) {
+  const model::Beam& beam = *where.beam;
+  SteadyBeam placed;
+  placed.root = root;
+  Matrix3 axes = C;  // of the root as it stands on its support
+  if (beam.has_support)
+    axes *= math::direction_cosines<double>(Vector3(steady.segment<3>(where.masses[0] + 3)))
+                .transpose();
+  const auto put = [&](int first, const Vector3& x, const Matrix3& turned, const Matrix6& mass,
+                       const Matrix3& section) {
+    const Vector3 theta = steady.segment<3>(first + 3);
+    const Matrix3 back = math::direction_cosines<double>(theta).transpose();
+    Matrix3 Q;
+    for (int i = 0; i < 3; ++i) Q.col(i) = math::tangent_times<double>(theta, Vector3::Unit(i));
+    const Vector3 at = root + C * (x + steady.segment<3>(first));
+    return SteadyBeam::Point{
+        {first, C, C * back * Q}, mass_of(at, C * back * turned, mass), axes * section};
+  };
+  for (int p = 0; p < beam.point_count(); ++p) {
+    const auto at = static_cast<std::size_t>(p);
+    const elements::BeamPoint& point = beam.points[at];
+    placed.points.push_back(put(where.points[at], point.x, point.reference * point.C_ab,
+                                beam.point_length(p) * point.mass, point.C_ab));
+  }
+  for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
+    const model::MassNode& node = beam.mass_nodes[m];
+    const auto next = static_cast<std::size_t>(node.end * beam.order);  // of the points
+    placed.points.push_back(put(where.masses[m], node.x, beam.reference_before(node.end), node.mass,
+                                beam.points[next].C_ab));
+    if (node.end != 0) continue;
+    placed.has_support = true;
+    placed.support = placed.points.back();
+  }
+  placed.points.push_back(put(where.tip, beam.tip, beam.reference(beam.elements - 1), beam.tip_mass,
+                              beam.points.back().C_ab));
+  placed.tip = placed.points.back().mass.place;
+  return placed;
+}
+
+// ---- the walk
+// ------------------------------------------------------------------------------------
+
+class TurbineMotionEnergies final : public system::MotionEnergies {
+ public:
+  TurbineMotionEnergies(const model::Turbine& turbine, const TurbineLayout& layout, double t,
+                        const Eigen::VectorXd& steady)
+      : layout_(layout), chain_(turbine.chain), numbering_(turbine), has_tower_(turbine.has_tower) {
+    Matrix3 C = Matrix3::Identity();  // of T
+    if (has_tower_) place_tower(steady, C);
+    yaw_axis_ = C.col(2);
+    C *= math::turn_about<double>(Vector3::UnitZ(), steady(layout.yaw()));
+    nacelle_ = mass_of(top_, C, chain_.nacelle);
+    bearing_ = top_ + C * Vector3(0.0, 0.0, chain_.height);
+    C *= math::turn_about<double>(Vector3::UnitX(), chain_.tilt);
+    shaft_axis_ = C.col(1);
+    pin_ = bearing_ + chain_.overhang * shaft_axis_;
+    C *= math::turn_about<double>(
+        Vector3::UnitY(),
+        turbine.turning_at(t).value + steady(layout.generator()) + steady(layout.shaft_torsion()));
+    shaft_ = mass_of(bearing_, C, chain_.shaft);
+    teeter_axis_ = C * chain_.teeter_axis;
+    C *= math::turn_about<double>(chain_.teeter_axis, steady(layout.teeter()));
+    hub_ = mass_of(pin_, C, chain_.hub);
+    const Vector3 apex = pin_ + chain_.undersling * C.col(1);
+    for (std::size_t k = 0; k < turbine.blades.size(); ++k)
+      blades_.push_back(place(layout.beams()[k], apex + C * turbine.roots[k].position,
+                              C * turbine.roots[k].C_Ha, steady));
+  }
+
+  Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                     const Eigen::Ref<const Eigen::VectorXcd>& z) const override {
+    Eigen::VectorXd energies = Eigen::VectorXd::Zero(numbering_.size);
+    const Complex q_y = z(layout_.yaw());
+    const Complex q_h = z(layout_.teeter());
+    const Complex q_s = z(layout_.shaft_torsion());
+    const Complex q_g = z(layout_.generator());
+    const auto add_joint = [&](Joint joint, int coordinate, const Complex& p) {
+      energies(numbering_.joints + joint) += half_product(z_dot(coordinate), p);
+    };
+    // Outward: how each body moves.
+    const Twist top = has_tower_ ? tower_.points.back().node.twist_of(z) : Twist{};
+    const Twist nacelle{top.translation, top.rotation + yaw_axis_ * q_y};
+    const Twist shaft{nacelle.at(bearing_ - top_).translation,
+                      nacelle.rotation + shaft_axis_ * (q_g + q_s)};
+    const Twist hub{shaft.at(pin_ - bearing_).translation, shaft.rotation + teeter_axis_ * q_h};
+    // Inward: momenta of all that a joint carries, about a point of its axis.
+    Momentum carried = hub_.momentum_of(hub);
+    for (std::size_t k = 0; k < blades_.size(); ++k)
+      carried += momentum_of(blades_[k], hub.at(blades_[k].root - pin_), blade_directions,
+                             root_directions, Numbering::blade(k), {}, z_dot, z, energies)
+                     .from(blades_[k].root - pin_);
+    add_joint(teeter, layout_.teeter(), sum(teeter_axis_, carried.angular));
+    carried = carried.from(pin_ - bearing_);
+    carried += shaft_.momentum_of(shaft);
+    const Complex turning = sum(shaft_axis_, carried.angular);
+    const Complex rolling = sum(shaft_axis_, nacelle.rotation);
+    const Complex spin = chain_.generator_inertia * (rolling + chain_.gear_ratio * q_g);
+    add_joint(torsion, layout_.shaft_torsion(), turning);
+    add_joint(generator, layout_.generator(), turning + chain_.gear_ratio * spin);
+    carried = carried.from(bearing_ - top_);
+    carried += nacelle_.momentum_of(nacelle);
+    carried.angular += shaft_axis_ * spin;
+    add_joint(yaw, layout_.yaw(), sum(yaw_axis_, carried.angular));
+    if (has_tower_)
+      momentum_of(tower_, {}, tower_directions, foundation_directions, numbering_.tower, carried,
+                  z_dot, z, energies);
+    return energies;
+  }
+
+ private:
+  static Complex sum(const Vector3& axis, const Vector3c& vector) {
+    return axis.cast<Complex>().cwiseProduct(vector).sum();
+  }
+
+  /// C becomes that of the tower top: ground components of t1 t2 t3.
+  void place_tower(const Eigen::VectorXd& steady, Matrix3& C) {
+    Matrix3 upright;  // a = (n3, n1, n2)
+    upright << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    tower_ = place(layout_.beams().back(), Vector3::Zero(), upright, steady);
+    top_ = tower_.tip;
+    const Vector3 theta = steady.segment<3>(layout_.tower_tip() + 3);
+    C = upright * math::direction_cosines<double>(theta).transpose() * upright.transpose();
+  }
+
+  /// Adds the energies of a beam's motions and returns its momentum about its root. `base`: the
+  /// motion of the root's place; `carried`: the momentum of what the tip carries, about it.
+  static Momentum momentum_of(const SteadyBeam& beam, const Twist& base,
+                              const Directions& deformation, const Directions& root, int first,
+                              const Momentum& carried,
+                              const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                              const Eigen::Ref<const Eigen::VectorXcd>& z,
+                              Eigen::VectorXd& energies) {
+    Twist given;
+    Vector3 foot = beam.root;
+    if (beam.has_support) {
+      given = beam.support.node.twist_of(z_dot);
+      foot = beam.support.mass.place;
+    }
+    Momentum total;
+    for (std::size_t i = 0; i < beam.points.size(); ++i) {
+      const SteadyBeam::Point& point = beam.points[i];
+      const Twist own = point.node.twist_of(z);
+      const Twist rate = point.node.twist_of(z_dot);
+      const Vector3& at = point.mass.place;
+      Momentum momentum = point.mass.momentum_of(own + base.at(at - beam.root));
+      if (i + 1 == beam.points.size()) momentum += carried;
+      const Twist deformed = rate - given.at(at - foot);
+      // About its centre a mass has no momentum that a translation and a rotation share.
+      const Vector3& center = point.mass.center;
+      add_products(deformed.at(center), momentum.from(-center), point.axes, deformation.motion,
+                   first, energies);
+      total += momentum.from(at - beam.root);
+    }
+    if (beam.has_support)
+      add_products(given, total.from(beam.root - foot), beam.points.front().node.C, root.motion,
+                   first + motions_a_beam, energies);
+    return total;
+  }
+
+  const TurbineLayout& layout_;
+  const elements::RigidChain& chain_;
+  Numbering numbering_;
+  bool has_tower_;
+  SteadyBeam tower_;
+  std::vector<SteadyBeam> blades_;
+  Mass nacelle_, shaft_, hub_;
+  Vector3 top_ = Vector3::Zero();
+  Vector3 bearing_ = Vector3::Zero();
+  Vector3 pin_ = Vector3::Zero();
+  Vector3 yaw_axis_ = Vector3::UnitZ();
+  Vector3 shaft_axis_ = Vector3::UnitY();
+  Vector3 teeter_axis_ = Vector3::UnitX();
+};
+
+/// Positions of all masses of a blade that belong to a motion: what bends moves along b2 and b3,
+/// whatever the twist.
+void add_positions(const model::Beam& beam, const TurbineLayout& layout, int blade, int i,
+                   system::Motion& motion) {
+  const std::vector<int> positions =
+      i == 0 || i == 3 ? std::vector<int>{i} : std::vector<int>{1, 2};
+  const auto add = [&](int first, const Matrix6& mass) {
+    for (const int position : positions) {
+      if (!(mass(position, position) > 0.0)) continue;
+      motion.unknowns.push_back(first + position);
+      motion.weight.push_back(mass(position, position));
+    }
+  };
+  for (int p = 0; p < beam.point_count(); ++p)
+    add(layout.blade_point(blade, p),
+        beam.point_length(p) * beam.points[static_cast<std::size_t>(p)].mass);
+  add(layout.blade_tip(blade), beam.tip_mass);
+}
+
+}  // namespace
+
+std::vector<system::Motion> motions_of(const model::Turbine& turbine, const TurbineLayout& layout) {
+  std::vector<system::Motion> motions;
+  for (std::size_t k = 0; k < turbine.blades.size(); ++k) {
+    const model::Beam& beam = turbine.blades[k];
+    const int blade = static_cast<int>(k);
+    for (int i = 0; i < motions_a_beam; ++i) {
+      system::Motion motion{
+          {system::PartKind::beam, "blade", blade + 1}, blade_directions.name(i), bends(i)};
+      add_positions(beam, layout, blade, i, motion);
+      motions.push_back(motion);
+    }
+    for (int i = 0; i < motions_a_beam; ++i) {
+      system::Motion motion{{system::PartKind::support, "blade", blade + 1},
+                            root_directions.name(i)};
+      for (int j = 0; beam.has_support && j < 6; ++j) {
+        if (root_directions.motion[static_cast<std::size_t>(j)] != i) continue;
+        motion.unknowns.push_back(layout.blade_mass(blade, 0) + j);
+        motion.weight.push_back(1.0);
+      }
+      motions.push_back(motion);
+    }
+  }
+  if (turbine.has_tower) {
+    for (int i = 0; i < motions_a_beam; ++i)
+      motions.push_back({{system::PartKind::beam, "tower"}, tower_directions.name(i), bends(i)});
+    for (int i = 0; i < motions_a_beam; ++i)
+      motions.push_back({{system::PartKind::support, "foundation"}, foundation_directions.name(i)});
+  }
+  for (const char* name : joint_names) motions.push_back({{system::PartKind::joint, name}});
+  return motions;
+}
+
+std::unique_ptr<system::MotionEnergies> find_motion_energies(const model::Turbine& turbine,
+                                                             const TurbineLayout& layout, double t,
+                                                             const Eigen::VectorXd& steady) {
+  return std::make_unique<TurbineMotionEnergies>(turbine, layout, t, steady);
+}
+
+}  // namespace samara::turbine

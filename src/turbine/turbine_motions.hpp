@@ -1,0 +1,21 @@
+// Kinetic energy of a turbine by the motion that it belongs to (docs/theory.md, section 5.6).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "samara/model/turbine.hpp"
+#include "samara/system/periodic_system.hpp"
+#include "samara/turbine/turbine_equations.hpp"
+
+namespace samara::turbine {
+
+/// Deformations of blades and tower by direction, hinges of blades, foundation, joints.
+std::vector<system::Motion> motions_of(const model::Turbine& turbine, const TurbineLayout& layout);
+
+/// About the state `steady` at t.
+std::unique_ptr<system::MotionEnergies> find_motion_energies(const model::Turbine& turbine,
+                                                             const TurbineLayout& layout, double t,
+                                                             const Eigen::VectorXd& steady);
+
+}  // namespace samara::turbine

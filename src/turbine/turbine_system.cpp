@@ -1,0 +1,413 @@
+#include "samara/turbine/turbine_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "turbine_motions.hpp"
+
+namespace samara::turbine {
+namespace {
+
+constexpr int block = TurbineLayout::block;
+
+/// |theta| from which rotations count anew: 120 degrees. A coarse mesh depends a little on what
+/// they count from, so that is not done before it is needed.
+constexpr double large_rotation = 3.4641016151377544;
+
+}  // namespace
+
+class TurbineSystem::Assembly {
+ public:
+  Assembly(const model::Turbine& whole_turbine, MPI_Comm communicator,
+           const components::TangentPlan* at_least)
+      : equations(whole_turbine, at_least),
+        turbine(equations.turbine()),
+        layout(equations.layout()),
+        comm(communicator),
+        plan(*equations.plan()),
+        tangents(equations.plan()) {
+    find_range();
+    place_mass();
+  }
+
+  TurbineEquations equations;
+  const model::Turbine& turbine;
+  const TurbineLayout& layout;
+  MPI_Comm comm;
+  const components::TangentPlan& plan;
+  std::vector<bool> differential;
+  std::vector<std::size_t> mass_offsets;  ///< of M's places into its blocks, row by row
+  PetscInt first_row = 0;
+  PetscInt last_row = 0;
+  mutable components::Tangents tangents;
+  mutable petsc::Handle<VecScatter> gather;
+  mutable petsc::Handle<Vec> whole;
+
+  bool parallel() const {
+    int ranks = 1;
+    MPI_Comm_size(comm, &ranks);
+    return ranks > 1;
+  }
+
+  // ---- the state -----------------------------------------------------------------------------
+
+  /// The whole vector, from all ranks.
+  std::vector<double> gathered(Vec z) const {
+    std::vector<double> values(static_cast<std::size_t>(layout.size()));
+    if (!parallel()) {
+      const petsc::ReadView view(z);
+      std::copy(view.data(), view.data() + layout.size(), values.begin());
+      return values;
+    }
+    if (!gather) petsc::check(VecScatterCreateToAll(z, gather.fill(), whole.fill()));
+    petsc::check(VecScatterBegin(gather.get(), z, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+    petsc::check(VecScatterEnd(gather.get(), z, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+    const petsc::ReadView view(whole.get());
+    std::copy(view.data(), view.data() + layout.size(), values.begin());
+    return values;
+  }
+
+  /// The rotations of the undeformed state.
+  void undo_references(std::vector<double>& values) const {
+    const auto put = [&values](int first, const Matrix3& reference) {
+      Eigen::Map<Vector3>(values.data() + first + 3) = math::parameters_of(reference.transpose());
+    };
+    for (const components::PlacedBeam& placed : equations.beams()) {
+      if (placed.find_changes().empty()) continue;
+      const model::Beam& beam = *placed.beam;
+      for (int p = 0; p < beam.point_count(); ++p)
+        put(placed.points[static_cast<std::size_t>(p)], beam.reference(p / beam.order));
+      for (std::size_t m = 0; m < placed.masses.size(); ++m)
+        put(placed.masses[m], beam.reference_before(beam.mass_nodes[m].end));
+      put(placed.tip, beam.reference(beam.elements - 1));
+    }
+  }
+
+  /// Writes the own part of a state with its rotations counted as in `target`, or from the
+  /// undeformed state where that is null.
+  void recount(std::vector<double> values, const TurbineEquations* target, Vec z) const {
+    const auto rewrite = [&values](int first, const Matrix3& from, const Matrix3& to) {
+      if (from == to) return;
+      const Eigen::Map<Vector3> theta(values.data() + first + 3);
+      const Matrix3 attitude = math::direction_cosines<double>(theta).transpose() * from;
+      Eigen::Map<Vector3>(values.data() + first + 3) =
+          math::parameters_of(attitude * to.transpose());
+    };
+    for (std::size_t b = 0; b < equations.beams().size(); ++b) {
+      const components::PlacedBeam& placed = equations.beams()[b];
+      const model::Beam& beam = *placed.beam;
+      const auto to = [&](int e) -> Matrix3 {
+        return target == nullptr ? Matrix3(Matrix3::Identity())
+                                 : target->beams()[b].beam->reference(e);
+      };
+      for (int p = 0; p < beam.point_count(); ++p) {
+        const int e = p / beam.order;
+        rewrite(placed.points[static_cast<std::size_t>(p)], beam.reference(e), to(e));
+      }
+      for (std::size_t m = 0; m < placed.masses.size(); ++m) {
+        const int e = beam.mass_nodes[m].end - 1;
+        if (e >= 0) rewrite(placed.masses[m], beam.reference(e), to(e));
+      }
+      rewrite(placed.tip, beam.reference(beam.elements - 1), to(beam.elements - 1));
+    }
+    write_own(values, z);
+  }
+
+  void write_own(const std::vector<double>& values, Vec z) const {
+    const petsc::WriteView view(z);
+    for (PetscInt i = first_row; i < last_row; ++i)
+      view[i - first_row] = values[static_cast<std::size_t>(i)];
+  }
+
+ private:
+  void find_range() {
+    const petsc::Handle<Vec> z = vector();
+    petsc::check(VecGetOwnershipRange(z.get(), &first_row, &last_row));
+  }
+
+  /// Where M's places are in its blocks.
+  void place_mass() {
+    differential.assign(static_cast<std::size_t>(layout.size()), false);
+    for (int row = 0; row < layout.size(); ++row)
+      for (const int column : plan.M[static_cast<std::size_t>(row)]) {
+        mass_offsets.push_back(tangents.M().place(row, column));
+        differential[static_cast<std::size_t>(column)] = true;
+      }
+  }
+
+ public:
+  petsc::Handle<Vec> vector() const {
+    int ranks = 1;
+    int rank = 0;
+    MPI_Comm_size(comm, &ranks);
+    MPI_Comm_rank(comm, &rank);
+    const int blocks = layout.blocks();
+    const int own = blocks / ranks + (rank < blocks % ranks ? 1 : 0);
+    return petsc::make_vector(comm, own * block, layout.size());
+  }
+};
+
+TurbineSystem::TurbineSystem(const model::Turbine& turbine, MPI_Comm comm)
+    : TurbineSystem(turbine, comm, nullptr) {}
+
+TurbineSystem::TurbineSystem(const model::Turbine& turbine, MPI_Comm comm,
+                             const components::TangentPlan* at_least)
+    : assembly_(std::make_unique<Assembly>(turbine, comm, at_least)) {}
+
+TurbineSystem::~TurbineSystem() = default;
+
+const model::Turbine& TurbineSystem::turbine() const { return assembly_->turbine; }
+const TurbineLayout& TurbineSystem::layout() const { return assembly_->layout; }
+const TurbineEquations& TurbineSystem::equations() const { return assembly_->equations; }
+MPI_Comm TurbineSystem::comm() const { return assembly_->comm; }
+PetscInt TurbineSystem::size() const { return assembly_->layout.size(); }
+
+double TurbineSystem::period() const {
+  const double speed = assembly_->turbine.speed;
+  return speed > 0.0 ? 2.0 * std::numbers::pi / speed : 0.0;
+}
+
+const std::vector<system::Unknown>& TurbineSystem::unknowns() const {
+  return assembly_->equations.declarations().unknowns;
+}
+const std::vector<system::RowRole>& TurbineSystem::rows() const {
+  return assembly_->equations.declarations().rows;
+}
+const std::vector<bool>& TurbineSystem::differential() const { return assembly_->differential; }
+const system::RotorSymmetry& TurbineSystem::symmetry() const {
+  return assembly_->equations.symmetry();
+}
+const std::vector<system::EnergyGroup>& TurbineSystem::energy_groups() const {
+  return assembly_->equations.declarations().energies;
+}
+const std::vector<system::NeutralCoordinate>& TurbineSystem::neutral_coordinates() const {
+  return assembly_->equations.declarations().neutral;
+}
+
+std::vector<system::Motion> TurbineSystem::motions() const {
+  return motions_of(turbine(), layout());
+}
+
+std::unique_ptr<system::MotionEnergies> TurbineSystem::motion_energies(double t, Vec steady) const {
+  const std::vector<double> values = assembly_->gathered(steady);
+  return find_motion_energies(turbine(), layout(), t,
+                              Eigen::Map<const Eigen::VectorXd>(values.data(), layout().size()));
+}
+
+std::vector<system::MeshError> TurbineSystem::mesh_errors() const {
+  return assembly_->equations.declarations().mesh_errors;
+}
+
+bool TurbineSystem::constraints_are_autonomous() const {
+  const model::Operation& operation = turbine().operation;
+  return turbine().yaw_motion.is_constant() && turbine().teeter_motion.is_constant() &&
+         !operation.yaw && !operation.teeter;
+}
+
+bool TurbineSystem::is_conservative() const { return assembly_->equations.is_conservative(); }
+
+petsc::Handle<Vec> TurbineSystem::make_state() const { return assembly_->vector(); }
+
+petsc::Handle<Mat> TurbineSystem::make_jacobian() const {
+  const Assembly& assembly = *assembly_;
+  const petsc::Handle<Vec> z = make_state();
+  PetscInt local = 0;
+  petsc::check(VecGetLocalSize(z.get(), &local));
+  const auto& columns = assembly.tangents.K().columns();
+  const int first = static_cast<int>(assembly.first_row) / block;
+  const int last = static_cast<int>(assembly.last_row) / block;
+  std::vector<PetscInt> inside;
+  std::vector<PetscInt> outside;
+  for (int i = first; i < last; ++i) {
+    PetscInt own = 0;
+    const auto& row = columns[static_cast<std::size_t>(i)];
+    for (const int j : row)
+      if (j >= first && j < last) ++own;
+    inside.push_back(own);
+    outside.push_back(static_cast<PetscInt>(row.size()) - own);
+  }
+  petsc::Handle<Mat> matrix;
+  petsc::check(MatCreate(assembly.comm, matrix.fill()));
+  petsc::check(MatSetSizes(matrix.get(), local, local, size(), size()));
+  petsc::check(MatSetType(matrix.get(), MATBAIJ));
+  petsc::check(MatSeqBAIJSetPreallocation(matrix.get(), block, 0, inside.data()));
+  petsc::check(
+      MatMPIBAIJSetPreallocation(matrix.get(), block, 0, inside.data(), 0, outside.data()));
+  for (int i = first; i < last; ++i) {  // sets the pattern; the values come block by block
+    const std::vector<double> zeros(static_cast<std::size_t>(block * block), 0.0);
+    for (const PetscInt j : columns[static_cast<std::size_t>(i)]) {
+      const PetscInt row = i;
+      petsc::check(MatSetValuesBlocked(matrix.get(), 1, &row, 1, &j, zeros.data(), INSERT_VALUES));
+    }
+  }
+  petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
+  petsc::check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
+  return matrix;
+}
+
+petsc::Handle<Mat> TurbineSystem::make_mass() const {
+  const Assembly& assembly = *assembly_;
+  const petsc::Handle<Vec> z = make_state();
+  PetscInt local = 0;
+  petsc::check(VecGetLocalSize(z.get(), &local));
+  std::vector<PetscInt> inside;
+  std::vector<PetscInt> outside;
+  for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i) {
+    PetscInt own = 0;
+    const auto& row = assembly.plan.M[static_cast<std::size_t>(i)];
+    for (const PetscInt j : row)
+      if (j >= assembly.first_row && j < assembly.last_row) ++own;
+    inside.push_back(own);
+    outside.push_back(static_cast<PetscInt>(row.size()) - own);
+  }
+  petsc::Handle<Mat> matrix;
+  petsc::check(MatCreate(assembly.comm, matrix.fill()));
+  petsc::check(MatSetSizes(matrix.get(), local, local, size(), size()));
+  petsc::check(MatSetType(matrix.get(), MATAIJ));
+  petsc::check(MatSeqAIJSetPreallocation(matrix.get(), 0, inside.data()));
+  petsc::check(MatMPIAIJSetPreallocation(matrix.get(), 0, inside.data(), 0, outside.data()));
+  for (PetscInt i = assembly.first_row; i < assembly.last_row; ++i) {  // sets the pattern
+    const auto& row = assembly.plan.M[static_cast<std::size_t>(i)];
+    const std::vector<double> zeros(row.size(), 0.0);
+    petsc::check(MatSetValues(matrix.get(), 1, &i, static_cast<PetscInt>(row.size()), row.data(),
+                              zeros.data(), INSERT_VALUES));
+  }
+  petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
+  petsc::check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
+  return matrix;
+}
+
+std::vector<std::vector<PetscInt>> TurbineSystem::pattern() const {
+  const components::TangentPlan& pattern = assembly_->plan;
+  std::vector<std::vector<PetscInt>> columns(pattern.K.size());
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    std::set_union(pattern.K[i].begin(), pattern.K[i].end(), pattern.M[i].begin(),
+                   pattern.M[i].end(), std::back_inserter(columns[i]));
+  return columns;
+}
+
+void TurbineSystem::reference_state(double t, Vec z) const {
+  const Assembly& assembly = *assembly_;
+  const auto n = static_cast<std::size_t>(size());
+  std::vector<double> values(n, 0.0);
+  const std::vector<double> rates(n, 0.0);
+  // With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The
+  // rows of free joints ask for the same of their speeds, one after the other from the tower
+  // outward.
+  const auto angle_at = [&](int joint) -> double& {
+    return values[static_cast<std::size_t>(joint)];
+  };
+  angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_at(t).angle;
+  angle_at(assembly.layout.teeter()) = assembly.turbine.teeter_at(t).angle;
+  std::vector<double> r(n, 0.0);
+  assembly.undo_references(values);
+  for (int pass = 0; pass < 5; ++pass) {
+    assembly.equations.evaluate(t, values, rates, r);
+    const std::vector<system::RowRole>& roles = assembly.equations.declarations().rows;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (assembly.equations.declarations().unknowns[i].role != system::UnknownRole::velocity)
+        continue;
+      if (roles[i] == system::RowRole::kinematic) values[i] -= r[i];
+    }
+    const elements::RigidChain& chain = assembly.turbine.chain;
+    const auto set_speed = [&](bool free, int first) {
+      const auto at = static_cast<std::size_t>(first);
+      if (free) values[at + 1] += r[at];
+    };
+    set_speed(chain.generator.free, assembly.layout.generator());
+    set_speed(chain.torsion.free, assembly.layout.shaft_torsion());
+    set_speed(chain.teeter.free, assembly.layout.teeter());
+  }
+  assembly.write_own(values, z);
+}
+
+std::unique_ptr<system::PeriodicSystem> TurbineSystem::unloaded() const {
+  model::Turbine bare = turbine();
+  bare.chain.gravity = 0.0;
+  bare.chain.generator_torque = {};
+  bare.chain.rotor_torque = {};
+  bare.tower.loads.clear();
+  for (model::Beam& blade : bare.blades) blade.loads.clear();
+  return std::unique_ptr<system::PeriodicSystem>(
+      new TurbineSystem(bare, comm(), assembly_->equations.plan().get()));
+}
+
+std::unique_ptr<system::PeriodicSystem> TurbineSystem::counted_from(Vec z) const {
+  const Assembly& assembly = *assembly_;
+  const std::vector<double> values = assembly.gathered(z);
+  const auto rotation = [&values](int first) {
+    return Vector3(Eigen::Map<const Vector3>(values.data() + first + 3));
+  };
+  model::Turbine turned = turbine();
+  bool any = false;
+  for (std::size_t k = 0; k < turned.blades.size(); ++k) {
+    const components::PlacedBeam& placed = assembly.equations.beams()[k];
+    model::Beam& beam = turned.blades[k];
+    double largest = rotation(placed.tip).norm();
+    for (const int first : placed.points) largest = std::max(largest, rotation(first).norm());
+    if (largest < large_rotation) continue;
+    any = true;
+    for (int e = 0; e < beam.elements; ++e) {
+      const auto middle = static_cast<std::size_t>(e * beam.order + beam.order / 2);
+      const Matrix3 reference =
+          math::direction_cosines<double>(rotation(placed.points[middle])).transpose() *
+          beam.reference(e);
+      for (int j = 0; j < beam.order; ++j)
+        beam.points[static_cast<std::size_t>(e * beam.order + j)].reference = reference;
+    }
+  }
+  if (!any) return nullptr;
+  auto system = std::make_unique<TurbineSystem>(turned, comm());
+  assembly.recount(values, &system->equations(), z);
+  return system;
+}
+
+void TurbineSystem::count_from_undeformed(Vec z) const {
+  assembly_->recount(assembly_->gathered(z), nullptr, z);
+}
+
+void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {
+  const Assembly& assembly = *assembly_;
+  std::vector<double> values(static_cast<std::size_t>(size()));
+  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), values);
+  assembly.write_own(values, r);
+}
+
+void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,
+                             Mat mass) const {
+  const Assembly& assembly = *assembly_;
+  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), assembly.tangents);
+  std::vector<double>& K = assembly.tangents.K().values();
+  const std::vector<double>& M = assembly.tangents.M().values();
+  if (mass != nullptr && !assembly.parallel()) {
+    PetscScalar* values = nullptr;  // row after row, as the offsets
+    petsc::check(MatSeqAIJGetArrayWrite(mass, &values));
+    for (std::size_t entry = 0; entry < assembly.mass_offsets.size(); ++entry)
+      values[entry] = M[assembly.mass_offsets[entry]];
+    petsc::check(MatSeqAIJRestoreArrayWrite(mass, &values));
+  } else if (mass != nullptr) {
+    std::size_t entry = 0;
+    std::vector<PetscScalar> row_values;
+    for (PetscInt i = 0; i < size(); ++i) {
+      const auto& columns = assembly.plan.M[static_cast<std::size_t>(i)];
+      const bool own = i >= assembly.first_row && i < assembly.last_row;
+      row_values.clear();
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        row_values.push_back(M[assembly.mass_offsets[entry++]]);
+      if (own && !columns.empty())
+        petsc::check(MatSetValues(mass, 1, &i, static_cast<PetscInt>(columns.size()),
+                                  columns.data(), row_values.data(), INSERT_VALUES));
+    }
+    petsc::check(MatAssemblyBegin(mass, MAT_FINAL_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(mass, MAT_FINAL_ASSEMBLY));
+  }
+  if (jacobian != nullptr) {
+    if (shift != 0.0)
+      for (std::size_t i = 0; i < K.size(); ++i) K[i] += shift * M[i];
+    assembly.tangents.K().copy_to(jacobian);
+  }
+}
+
+}  // namespace samara::turbine

@@ -1,0 +1,245 @@
+// The declared places of the tangents, against the tangents of turbines in which any quantity may
+// be absent.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <set>
+
+#include <boost/test/unit_test.hpp>
+
+#include "sample_turbine.hpp"
+
+using namespace samara;
+
+namespace {
+
+using Places = std::set<std::pair<PetscInt, PetscInt>>;
+
+/// A shift beside which K is nothing, so that K + shift M has the places of M at its large entries.
+constexpr double large_shift = 1e200;
+constexpr double between = 1e100;
+
+/// Places of at most this share beside those that states fill: they cost time in factorizations.
+constexpr double largest_excess = 1.3;
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : random_(seed) {}
+  bool one_in(int count) { return std::uniform_int_distribution<int>(1, count)(random_) == 1; }
+  double any() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random_); }
+  /// Now and then none.
+  double some(double value) { return one_in(3) ? 0.0 : value * (1.0 + 0.5 * any()); }
+
+ private:
+  std::minstd_rand random_;
+};
+
+void vary(model::BeamDefinition& beam, Draw& draw, bool can_hold_end) {
+  const bool straight = draw.one_in(3);
+  const bool round = draw.one_in(3);
+  const bool no_rotary = draw.one_in(4);
+  for (model::SectionDefinition& section : beam.sections) {
+    if (straight) section.twist = 0.0;
+    if (round) section.stiffness = Vector6(section.stiffness.diagonal()).asDiagonal();
+    if (round) section.mass = sample::section_mass(2.0, 0.0, 0.0, Vector3(0.5, 0.2, 0.3));
+    if (round && no_rotary && section.rigid[0]) {  // as ElastoDyn has it
+      section.mass.bottomRightCorner<3, 3>().setZero();
+      section.rigid[3] = true;
+      section.stiffness(3, 3) = 0.0;
+    }
+  }
+  beam.damping *= draw.one_in(3) ? 0.0 : 1.0;
+  for (int i = 0; i < 6; ++i)
+    if (draw.one_in(5) || beam.sections.front().rigid[static_cast<std::size_t>(i)])
+      beam.damping(i) = 0.0;
+  beam.mass_damping = Vector3(draw.some(0.1), draw.some(0.3), draw.some(0.2));
+  beam.tip_mass = draw.some(0.7);
+  if (draw.one_in(3))
+    beam.point_masses = {{0.55, 0.6, Vector3(0.0, draw.some(0.1), 0.0), Vector3(0.1, 0.05, 0.08)}};
+  if (!draw.one_in(3)) return;
+  beam.support.rigid = {};
+  beam.support.stiffness = sample::section_stiffness(Vector6::Constant(3e3), draw.some(0.1));
+  beam.support.mass = 1.3;
+  beam.support.center = Vector3(draw.some(0.1), draw.some(0.2), 0.0);
+  beam.support.inertia = Vector3(0.3, 0.4, 0.5);
+  beam.support.damping = draw.some(0.02);
+  if (!can_hold_end) return;
+  beam.end_support.free[2] = false;
+  beam.end_support.stiffness(2, 2) = 90.0;
+  beam.end_support.free[4] = false;
+  beam.end_support.stiffness(4, 4) = 70.0;
+}
+
+model::TurbineDefinition random_turbine(unsigned seed) {
+  Draw draw(seed);
+  const std::vector<sample::Choice> choices = sample::choices();
+  sample::Choice choice = choices[seed % choices.size()];
+  choice.blades = 1 + static_cast<int>(seed % 5);
+  if (choice.blades > 2) choice.teeter = false;
+  model::TurbineDefinition d = sample::turbine_definition(choice);
+  if (choice.blades > 2) d.hub.teeter.kind = model::JointKind::locked;
+  d.gravity = draw.some(9.81);
+  d.shaft.speed = draw.one_in(6) ? 0.0 : 3.0;
+  d.shaft.azimuth = draw.some(0.7);
+  d.shaft.overhang = draw.some(1.1);
+  d.shaft.tilt = draw.some(0.15);
+  d.shaft.height = draw.some(0.4);
+  d.shaft.mass = draw.some(2.0);
+  d.shaft.center_of_mass = draw.some(0.6);
+  d.hub.radius = draw.some(0.35);
+  d.hub.undersling = draw.some(-0.25);
+  d.hub.center_of_mass = draw.some(0.2);
+  d.hub.teeter.stiffness = draw.some(200.0);
+  d.hub.teeter.damping = draw.some(10.0);
+  d.nacelle.yaw.stiffness = draw.some(300.0);
+  d.nacelle.yaw.damping = draw.some(20.0);
+  d.nacelle.center_of_mass = Vector3(draw.some(0.1), draw.some(0.3), draw.some(0.4));
+  if (d.nacelle.yaw.kind == model::JointKind::prescribed)
+    d.nacelle.yaw.motion = {draw.some(0.5), draw.some(0.2), 2, 0.0, 0.7};
+  d.blades.precone = draw.some(0.08);
+  d.blades.pitch = draw.some(0.2);
+  if (draw.one_in(4)) d.blades.each[1].pitch = 0.05;
+  if (draw.one_in(4)) d.hub.teeter_stops = {0.02, 500.0, draw.some(5.0)};
+  if (draw.one_in(4) && d.hub.teeter.kind != model::JointKind::free) d.hub.teeter_stops = {};
+  if (draw.one_in(3)) d.shaft.rotor = {5.0, 0.0, {{0.0, 1.0}, {2.0, 1.0}, {6.0, 9.0}}};
+  if (draw.one_in(3))
+    d.shaft.generator = {model::JointKind::free, draw.some(1.5), {6.0, draw.some(4.0), {}}};
+  vary(d.tower, draw, false);
+  vary(d.blades.beam, draw, true);
+  if (draw.one_in(2)) {
+    model::LoadDefinition load;
+    load.from = draw.one_in(2) ? 1.0 : 0.2;
+    load.force = Vector3(draw.some(1.0), draw.some(2.0), draw.some(3.0));
+    load.moment = Vector3(draw.some(1.0), 0.0, draw.some(3.0));
+    load.follower = !draw.one_in(3);
+    load.history.amplitude = draw.some(1.0);
+    load.history.per_rev = 1;
+    d.loads = {load};
+  }
+  return d;
+}
+
+/// What the blades are turned by, and what else changes in time, without any value at t = 0.
+void operate(model::Turbine& turbine, Draw& draw) {
+  const math::TimeCurve curve = math::TimeCurve::through({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.3}});
+  if (draw.one_in(4)) turbine.operation.pitch.assign(turbine.blades.size(), curve);
+  if (draw.one_in(4) && !turbine.chain.yaw.free) turbine.operation.yaw = curve;
+  if (draw.one_in(4) && !turbine.chain.teeter.free) turbine.operation.teeter = curve;
+}
+
+Places to_places(const std::vector<std::vector<PetscInt>>& rows) {
+  Places places;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const PetscInt j : rows[i]) places.emplace(static_cast<PetscInt>(i), j);
+  return places;
+}
+
+/// Of entries larger than `above`.
+void collect(Mat matrix, double above, Places& places) {
+  const Eigen::MatrixXd values = sample::to_dense(matrix);
+  BOOST_TEST(values.allFinite());
+  for (Eigen::Index j = 0; j < values.cols(); ++j)
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      if (std::abs(values(i, j)) > above)
+        places.emplace(static_cast<PetscInt>(i), static_cast<PetscInt>(j));
+}
+
+/// Stored places, whatever is in them.
+Places stored_places(Mat matrix) {
+  Places places;
+  PetscInt rows = 0;
+  petsc::check(MatGetSize(matrix, &rows, nullptr));
+  for (PetscInt i = 0; i < rows; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    petsc::check(MatGetRow(matrix, i, &count, &columns, nullptr));
+    for (PetscInt c = 0; c < count; ++c) places.emplace(i, columns[c]);
+    petsc::check(MatRestoreRow(matrix, i, &count, &columns, nullptr));
+  }
+  return places;
+}
+
+struct FoundPlaces {
+  Places K, M;
+};
+
+/// What the tangents fill at some states and times, from the undeformed one on.
+FoundPlaces fill(const turbine::TurbineSystem& system) {
+  FoundPlaces found;
+  const petsc::Handle<Mat> jacobian = system.make_jacobian();
+  for (unsigned trial = 0; trial < 4; ++trial) {
+    const double t = trial == 0 ? 0.0 : 0.31 + 0.83 * trial;
+    sample::RandomState state = sample::random_state(system, trial + 1);
+    if (trial == 0) state = {sample::reference_state_of(system, t), 0.0 * state.z_dot};
+    const petsc::Handle<Vec> z = sample::to_petsc(system, state.z);
+    const petsc::Handle<Vec> z_dot = sample::to_petsc(system, state.z_dot);
+    system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), nullptr);
+    collect(jacobian.get(), 0.0, found.K);
+    system.tangents(t, z.get(), z_dot.get(), large_shift, jacobian.get(), nullptr);
+    collect(jacobian.get(), between, found.M);
+  }
+  return found;
+}
+
+/// The first place of `inner` that `outer` lacks, in words; empty where there is none.
+std::string find_outside(const Places& inner, const Places& outer,
+                         const system::PeriodicSystem& system) {
+  for (const auto& [i, j] : inner)
+    if (outer.count({i, j}) == 0)
+      return "row of " + system.unknowns()[static_cast<std::size_t>(i)].name() + ", column of " +
+             system.unknowns()[static_cast<std::size_t>(j)].name();
+  return "";
+}
+
+/// Returns the number of places declared, and of those that states fill.
+std::pair<double, double> check_pattern(const turbine::TurbineSystem& system) {
+  const FoundPlaces found = fill(system);
+  const Places declared = to_places(system.pattern());
+  const Places mass = stored_places(system.make_mass().get());
+  BOOST_TEST(find_outside(found.K, declared, system) == "");
+  BOOST_TEST(find_outside(found.M, mass, system) == "");
+  BOOST_TEST(find_outside(mass, declared, system) == "");
+  std::vector<bool> has_rate(static_cast<std::size_t>(system.size()), false);
+  for (const auto& [i, j] : found.M) has_rate[static_cast<std::size_t>(j)] = true;
+  for (std::size_t i = 0; i < has_rate.size(); ++i)
+    BOOST_TEST(system.differential()[i] == has_rate[i], system.unknowns()[i].name());
+  Places filled = found.K;
+  filled.insert(found.M.begin(), found.M.end());
+  return {static_cast<double>(declared.size()), static_cast<double>(filled.size())};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(turbine_pattern)
+
+BOOST_AUTO_TEST_CASE(tangents_of_any_turbine_are_inside_and_fill_most_of_it) {
+  for (unsigned seed = 0; seed < 120; ++seed) {
+    const model::TurbineDefinition definition = random_turbine(seed);
+    model::Turbine turbine = model::build_turbine(definition);
+    Draw draw(seed + 1000);
+    operate(turbine, draw);
+    const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      const auto [declared, filled] = check_pattern(system);
+      BOOST_TEST(declared <= largest_excess * filled);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(tangents_are_inside_after_large_rotations) {
+  for (const sample::Choice& choice : sample::choices()) {
+    const model::TurbineDefinition definition = sample::turbine_definition(choice);
+    const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+    Eigen::VectorXd z = sample::random_state(system, 5).z;
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      if (system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
+        z(i) *= 4.0;
+    const std::unique_ptr<system::PeriodicSystem> counted =
+        system.counted_from(sample::to_petsc(system, z).get());
+    BOOST_TEST_REQUIRE(bool(counted));
+    check_pattern(dynamic_cast<const turbine::TurbineSystem&>(*counted));
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
