@@ -1,7 +1,8 @@
 #include "samara/components/rigid_bodies.hpp"
 
-#include <limits>
-#include <type_traits>
+#include <array>
+
+#include "samara/elements/torque_laws.hpp"
 
 namespace samara::components {
 namespace {
@@ -15,15 +16,33 @@ constexpr int at_top_velocity_dot = at_joints + joint_unknowns;
 constexpr int at_joint_rates = at_top_velocity_dot + 6;
 constexpr int at_top_load = at_joint_rates + joint_unknowns;
 constexpr int at_hub_load = at_top_load + 6;
-constexpr int chain_arguments = at_hub_load + 6;
 // Its values: rows of the tower top, two of each joint, the motion of the hub.
 constexpr int top_rows = 0;
 constexpr int joint_rows = 6;
 constexpr int hub_motion = joint_rows + joint_unknowns;
 constexpr int chain_values = hub_motion + 9;
 
+/// Places of the nodes' unknowns among those of the joints: yaw, generator, torsion, teeter.
+constexpr std::array<int, elements::chain_nodes> slot_of{0, 3, 2, 1};
+
+using elements::FrameMotion;
+using elements::JointState;
+using elements::NodeResult;
+using elements::RigidTree;
+using elements::Wrench;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// From the order of the tower's axes, (t3, t1, t2), to t1 t2 t3, and back.
 template <class T>
-using ChainArguments = Eigen::Matrix<T, chain_arguments, 1>;
+Vec3<T> from_top(const Vec3<T>& b) {
+  return Vec3<T>(b(1), b(2), b(0));
+}
+template <class T>
+Vec3<T> to_top(const Vec3<T>& t) {
+  return Vec3<T>(t(2), t(0), t(1));
+}
+
 template <class T>
 using RootMotion = Eigen::Matrix<T, 9, 1>;
 
@@ -50,12 +69,7 @@ Matrix6 hub_from_root(const model::BladeRoot& root) {
 }  // namespace
 
 RigidBodies::RigidBodies(const model::Turbine& turbine, const BodiesSetting& setting)
-    : turbine_(turbine), setting_(setting), chain_at_any_speed_(turbine.chain) {
-  constexpr double any = std::numeric_limits<double>::quiet_NaN();
-  for (elements::TorqueLine* line :
-       {&chain_at_any_speed_.generator_torque, &chain_at_any_speed_.rotor_torque})
-    if (!line->table.empty()) *line = {any, any, any, {}};
-}
+    : turbine_(turbine), setting_(setting), tree_(elements::tree_of(turbine.chain)) {}
 
 void RigidBodies::connect() {
   const int top = tower_top();
@@ -79,31 +93,18 @@ void RigidBodies::connect() {
   }
 }
 
-/// The chain that a system is stated with: for a pattern, tables of torque may have any slope.
-template <class System>
-const elements::RigidChain& RigidBodies::chain_in(const System&) const {
-  if constexpr (std::is_same_v<System, Pattern>)
-    return chain_at_any_speed_;
-  else
-    return turbine_.chain;
-}
-
-template <class T, class System, class Arguments>
-elements::ChainState<T> RigidBodies::chain_state(const System& system, const Arguments& x) const {
-  elements::ChainState<T> state;
-  state.theta = x.template segment<3>(at_theta);
-  state.top_velocity = x.template segment<6>(at_top_velocity);
-  state.top_velocity_dot = x.template segment<6>(at_top_velocity_dot);
-  state.top_load = x.template segment<6>(at_top_load);
-  state.hub_load = x.template segment<6>(at_hub_load);
-  int local = 0;
-  for (elements::JointState<T>* joint :
-       {&state.yaw, &state.teeter, &state.torsion, &state.generator}) {
-    joint->angle = x(at_joints + local);
-    joint->speed = x(at_joints + local + 1);
-    joint->angle_dot = x(at_joint_rates + local);
-    joint->speed_dot = x(at_joint_rates + local + 1);
-    local += 2;
+/// The motions that are prescribed, and what acts on the joints.
+template <class T, class System>
+void RigidBodies::set_joints(const System& system, const ChainArguments<T>& x,
+                             RigidTree::States<T>& states) const {
+  static_assert(chain_arguments == at_hub_load + 6);
+  for (int node = 0; node < tree_.size(); ++node) {
+    const int local = 2 * slot_of[at(node)];
+    JointState<T>& joint = states[at(node)];
+    joint.angle = x(at_joints + local);
+    joint.speed = x(at_joints + local + 1);
+    joint.angle_dot = x(at_joint_rates + local);
+    joint.speed_dot = x(at_joint_rates + local + 1);
   }
   const double t = system.time();
   const model::Operation& operation = turbine_.operation;
@@ -112,22 +113,60 @@ elements::ChainState<T> RigidBodies::chain_state(const System& system, const Arg
     return elements::JointMotion{system.varying(now.angle), system.varying(now.rate),
                                  system.varying(now.acceleration)};
   };
-  state.yaw.prescribed =
+  states[elements::yaw_node].prescribed =
       motion(turbine_.yaw_at(t), operation.yaw || !turbine_.yaw_motion.is_constant());
-  state.teeter.prescribed =
+  states[elements::teeter_node].prescribed =
       motion(turbine_.teeter_at(t), operation.teeter || !turbine_.teeter_motion.is_constant());
   const math::TimeCurve::Value turning = turbine_.turning_at(t);
-  const bool turns = operation.turning.has_value();
-  state.azimuth = turns || turbine_.speed != 0.0 ? system.varying(turning.value) : turning.value;
-  state.speed = turns ? system.varying(turning.rate) : turning.rate;
-  state.speed_dot = turns ? system.varying(turning.acceleration) : turning.acceleration;
+  elements::JointMotion& carried = states[elements::generator_node].carried;
+  carried =
+      motion({turning.value, turning.rate, turning.acceleration}, operation.turning.has_value());
+  if (turbine_.speed != 0.0) carried.angle = system.varying(turning.value);
   if constexpr (System::has_inputs) {
     const TurbineInputs<T>& inputs = system.inputs();
-    state.generator_torque = inputs.generator_torque;
-    state.yaw_torque = inputs.yaw_torque;
-    state.up = inputs.up();
+    states[elements::generator_node].torque = inputs.generator_torque * -turbine_.chain.gear();
+    states[elements::yaw_node].torque = inputs.yaw_torque;
   }
-  return state;
+}
+
+/// Of the tower top, in t1 t2 t3.
+template <class T, class System>
+FrameMotion<T> RigidBodies::base_motion(const System& system, const ChainArguments<T>& x,
+                                        const Mat3<T>& C_top) const {
+  Vec3<T> up = Vec3<T>::UnitX();
+  if constexpr (System::has_inputs) up = system.inputs().up();
+  FrameMotion<T> top;
+  top.v = from_top<T>(x.template segment<3>(at_top_velocity));
+  top.omega = from_top<T>(x.template segment<3>(at_top_velocity + 3));
+  top.alpha = from_top<T>(x.template segment<3>(at_top_velocity_dot + 3));
+  top.a = from_top<T>(x.template segment<3>(at_top_velocity_dot)) + math::cross(top.omega, top.v);
+  top.gravity = from_top<T>(C_top * Vec3<T>(up * T(-turbine_.chain.gravity)));
+  return top;
+}
+
+template <class T, class System>
+RigidBodies::Walk<T> RigidBodies::walk(const System& system, const ChainArguments<T>& x) const {
+  Walk<T> walk;
+  walk.C_top = math::direction_cosines<T>(x.template segment<3>(at_theta));
+  walk.top = base_motion<T>(system, x, walk.C_top);
+  RigidTree::States<T> states;
+  set_joints<T>(system, x, states);
+  tree_.walk_outward<T>(walk.top, states, walk.nodes);
+  RigidTree::Loads<T> loads;
+  for (int node = 0; node < tree_.size(); ++node)
+    loads[at(node)] = {Vec3<T>::Zero(), Vec3<T>::Zero()};
+  const Vec3<T> apex(T(0), T(turbine_.chain.undersling), T(0));
+  Wrench<T>& hub = loads[elements::teeter_node];
+  hub.force = x.template segment<3>(at_hub_load);
+  hub.moment = x.template segment<3>(at_hub_load + 3) + math::cross(apex, hub.force);
+  walk.on_top = tree_.walk_inward<T>(states, loads, walk.nodes);
+  if (!turbine_.chain.tower_top.is_none()) {
+    const Wrench<T> own =
+        elements::detail::active_and_inertia<T>(turbine_.chain.tower_top, walk.top);
+    walk.on_top.force += own.force;
+    walk.on_top.moment += own.moment;
+  }
+  return walk;
 }
 
 /// By the turbine's operation and by inputs together.
@@ -170,23 +209,25 @@ void RigidBodies::state(System& system) const {
     system.require_rotation(tower_top() + 3, [] { return std::string("tower top"); });
   }
   state_loads(system);
-  const elements::RigidChain& chain = chain_in(system);
   const auto rows_of = [&]<class T>(const ChainArguments<T>& x) {
-    elements::HubMotion<T> hub;
-    const elements::ChainRows<T> rows =
-        elements::rigid_chain<T>(chain, chain_state<T>(system, x), hub);
+    const Walk<T> walk = this->walk<T>(system, x);
     Eigen::Matrix<T, chain_values, 1> y;
-    y.template segment<6>(top_rows) = rows.top;
-    int row = joint_rows;
-    const auto put = [&](const elements::Hinge& hinge, const elements::JointRows<T>& joint) {
-      y(row++) = hinge.free ? joint.kinematic : joint.position;
-      y(row++) = hinge.free ? joint.balance : joint.kinematic;
-    };
-    put(chain.yaw, rows.yaw);
-    put(chain.teeter, rows.teeter);
-    put(chain.torsion, rows.torsion);
-    put(chain.generator, rows.generator);
-    y.template segment<9>(hub_motion) << hub.velocity, hub.omega, hub.gravity;
+    y.template segment<3>(top_rows) =
+        to_top<T>(walk.on_top.force) - walk.C_top * Vec3<T>(x.template segment<3>(at_top_load));
+    y.template segment<3>(top_rows + 3) =
+        to_top<T>(walk.on_top.moment) -
+        walk.C_top * Vec3<T>(x.template segment<3>(at_top_load + 3));
+    for (int node = 0; node < tree_.size(); ++node) {
+      const elements::JointRows<T>& rows = walk.nodes[at(node)].rows;
+      const bool free = tree_.node(node).free;
+      const int row = joint_rows + 2 * slot_of[at(node)];
+      y(row) = free ? rows.kinematic : rows.position;
+      y(row + 1) = free ? rows.balance : rows.kinematic;
+    }
+    const FrameMotion<T>& hub = walk.nodes[elements::teeter_node].motion;
+    const Vec3<T> apex(T(0), T(turbine_.chain.undersling), T(0));
+    y.template segment<9>(hub_motion) << hub.v + math::cross(hub.omega, apex), hub.omega,
+        hub.gravity;
     return y;
   };
   system.template add<chain_arguments, chain_values>(chain_, rows_of);
@@ -228,18 +269,38 @@ void RigidBodies::state_roots(System& system) const {
 }
 
 template <class T>
-elements::ChainReport<T> RigidBodies::report(Residual<T>& residual) const {
+BodiesReport<T> RigidBodies::report(Residual<T>& residual) const {
   state_loads(residual);
-  elements::HubMotion<T> hub;
-  elements::ChainReport<T> report;
-  elements::rigid_chain<T>(
-      turbine_.chain, chain_state<T>(residual, residual.template gather<chain_arguments>(chain_)),
-      hub, &report);
+  const Walk<T> walk = this->walk<T>(residual, residual.template gather<chain_arguments>(chain_));
+  const NodeResult<T>& yaw = walk.nodes[elements::yaw_node];
+  const NodeResult<T>& generator = walk.nodes[elements::generator_node];
+  const NodeResult<T>& torsion = walk.nodes[elements::torsion_node];
+  const NodeResult<T>& teeter = walk.nodes[elements::teeter_node];
+  const elements::RigidChain& chain = turbine_.chain;
+  BodiesReport<T> report;
+  report.azimuth = torsion.angle;
+  report.yaw = yaw.angle;
+  report.yaw_rate = yaw.rate;
+  report.teeter = teeter.angle;
+  report.teeter_rate = teeter.rate;
+  report.shaft_rate = generator.rate + torsion.rate;
+  report.rotor_load << teeter.passed.force, teeter.passed.moment;
+  report.top_load << walk.on_top.force, walk.on_top.moment;
+  report.top_acceleration = walk.top.a;
+  report.generator_rate = generator.rate * chain.gear();
+  report.brake_torque = T(0);
+  if (chain.generator.free && chain.brake_torque != 0.0)
+    report.brake_torque =
+        -elements::torque_of<T>(elements::BrakeTorque(chain.brake_torque), T(0), generator.rate);
+  report.generator_torque = generator.held - report.brake_torque;
+  chain.rotor_torque.require(math::plain_value(teeter.motion.omega(1)));
+  if (chain.generator.free)
+    chain.generator_torque.require(math::plain_value(report.generator_rate));
   return report;
 }
 
-template elements::ChainReport<double> RigidBodies::report(Residual<double>&) const;
-template elements::ChainReport<std::complex<double>> RigidBodies::report(
+template BodiesReport<double> RigidBodies::report(Residual<double>&) const;
+template BodiesReport<std::complex<double>> RigidBodies::report(
     Residual<std::complex<double>>&) const;
 
 template class Stated<RigidBodies>;

@@ -167,7 +167,7 @@ class Quantities {
   const T& operator[](int slot) const { return values_[static_cast<std::size_t>(slot)]; }
 
   void add_chain(double t, const std::vector<T>& z, const std::vector<T>& z_dot) {
-    const elements::ChainReport<T> chain = equations_.report<T>(t, z, z_dot, inputs_);
+    const components::BodiesReport<T> chain = equations_.report<T>(t, z, z_dot, inputs_);
     constexpr double turn = 2.0 * std::numbers::pi;
     put(azimuth_slot, chain.azimuth - T(turn * std::floor(real_of(chain.azimuth) / turn)));
     put(rotor_speed, chain.shaft_rate);
@@ -248,7 +248,7 @@ class Quantities {
     return rotation_vector<T>(math::compose<T>(theta, from.cast<T>()));
   }
 
-  void add_shaft(const elements::ChainReport<T>& chain) {
+  void add_shaft(const components::BodiesReport<T>& chain) {
     const Vec3<T> force = chain.rotor_load.template head<3>();
     const Vec3<T> moment = chain.rotor_load.template tail<3>();
     const Mat3<T> C_DS = math::turn_about<T>(Vector3::UnitY(), chain.azimuth);
@@ -259,7 +259,7 @@ class Quantities {
     put(rotor_power, moment(1) * chain.shaft_rate);
   }
 
-  void add_tower(const elements::ChainReport<T>& chain, const std::vector<T>& z) {
+  void add_tower(const components::BodiesReport<T>& chain, const std::vector<T>& z) {
     const auto top = block_at(z, layout_.tower_tip());
     const Vec3<T> theta = top.template segment<3>(3);
     const Vec6<T> base = Eigen::Map<const Vec6<T>>(z.data() + layout_.tower_root());
@@ -273,7 +273,8 @@ class Quantities {
   }
 
   /// From the load in the axes p of the tower top, x y z.
-  void add_top(const elements::ChainReport<T>& chain, const Vec3<T>& force, const Vec3<T>& moment) {
+  void add_top(const components::BodiesReport<T>& chain, const Vec3<T>& force,
+               const Vec3<T>& moment) {
     const Mat3<T> C_np = math::turn_about<T>(Vector3::UnitZ(), chain.yaw).transpose();
     put(top_force, force);
     put(top_moment, moment);

@@ -128,9 +128,9 @@ void TurbineEquations::evaluate(double t, const std::vector<double>& z,
 }
 
 template <class T>
-elements::ChainReport<T> TurbineEquations::report(double t, const std::vector<T>& z,
-                                                  const std::vector<T>& z_dot,
-                                                  const TurbineInputs<T>& inputs) const {
+components::BodiesReport<T> TurbineEquations::report(double t, const std::vector<T>& z,
+                                                     const std::vector<T>& z_dot,
+                                                     const TurbineInputs<T>& inputs) const {
   std::vector<T> unused;  // only ports are filled
   Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
   return bodies_->report(residual);
@@ -143,10 +143,10 @@ template void TurbineEquations::evaluate(double, const std::vector<double>&,
 template void TurbineEquations::evaluate(double, const std::vector<Complex>&,
                                          const std::vector<Complex>&, const TurbineInputs<Complex>&,
                                          std::vector<Complex>&) const;
-template elements::ChainReport<double> TurbineEquations::report(double, const std::vector<double>&,
-                                                                const std::vector<double>&,
-                                                                const TurbineInputs<double>&) const;
-template elements::ChainReport<Complex> TurbineEquations::report(
+template components::BodiesReport<double> TurbineEquations::report(
+    double, const std::vector<double>&, const std::vector<double>&,
+    const TurbineInputs<double>&) const;
+template components::BodiesReport<Complex> TurbineEquations::report(
     double, const std::vector<Complex>&, const std::vector<Complex>&,
     const TurbineInputs<Complex>&) const;
 

@@ -15,12 +15,14 @@
 
 #include "samara/math/autodiff.hpp"
 
+#include "chain_walk.hpp"
 #include "jet.hpp"
 
 namespace {
 
 using namespace samara;
 using namespace samara::elements;
+using namespace samara::test;
 using Complex = std::complex<double>;
 
 /// Generalized forces of 1e2 to 1e4 N, some thousand operations; relative to their largest part.

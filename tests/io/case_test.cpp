@@ -268,7 +268,8 @@ BOOST_AUTO_TEST_CASE(a_generator_table_reaches_to_the_speed_behind_the_gear) {
   const model::ShaftDefinition read = read_text(shaft + "[[10, 3], [30, 7]]\n").turbine.shaft;
   BOOST_TEST(read.generator_speed() == 20.0);
   BOOST_TEST(model::build_turbine(read_text(shaft + "[[10, 3], [30, 7]]\n").turbine)
-                 .chain.generator_torque.at(20.0) == 5.0);
+                 .chain.generator_torque.at(20.0)
+                 .torque == 5.0);
   check_error(shaft + "[[1, 3], [3, 7]]\n",
               "case.yaml:14:5: shaft.generator.torque_table: the table reaches from 1 to 3 rad/s, "
               "shaft.speed times gear_ratio is 20 rad/s; hint: entries up to there, or torque and "

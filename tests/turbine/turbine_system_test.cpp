@@ -18,6 +18,7 @@
 #include "samara/elements/beam_tip.hpp"
 #include "samara/math/quadrature.hpp"
 
+#include "../elements/chain_walk.hpp"
 #include "bodies.hpp"
 
 namespace {
@@ -84,7 +85,7 @@ std::vector<Place> places_of(const turbine::TurbineSystem& system) {
 
 template <class T>
 elements::Attachment<T> attachment_of(const turbine::TurbineSystem& system, const Place& place,
-                                      const elements::HubMotion<T>& hub) {
+                                      const test::HubMotion<T>& hub) {
   elements::Attachment<T> a;
   const model::Turbine& turbine = system.turbine();
   if (place.blade < 0) {
@@ -181,7 +182,7 @@ Array<T> summed_residual(const turbine::TurbineSystem& system, double t, const A
                          const Array<T>& z_dot) {
   const model::Turbine& turbine = system.turbine();
   const turbine::TurbineLayout& layout = system.layout();
-  elements::ChainState<T> chain;
+  test::ChainState<T> chain;
   chain.theta.setZero();
   chain.top_velocity.setZero();
   chain.top_velocity_dot.setZero();
@@ -221,8 +222,8 @@ Array<T> summed_residual(const turbine::TurbineSystem& system, double t, const A
     chain.hub_load.template head<3>() += force;
     chain.hub_load.template tail<3>() += moment + math::cross<T>(arm, force);
   }
-  elements::HubMotion<T> hub;
-  const elements::ChainRows<T> rows = elements::rigid_chain<T>(turbine.chain, chain, hub);
+  test::HubMotion<T> hub;
+  const test::ChainRows<T> rows = test::rigid_chain<T>(turbine.chain, chain, hub);
 
   Array<T> r = Array<T>::Zero(system.size());
   for (const Place& place : places_of(system))

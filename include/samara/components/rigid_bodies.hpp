@@ -30,6 +30,22 @@ struct BodiesSetting {
   int shared_rank = 0;  ///< of elimination
 };
 
+/// What is asked of the bodies beside their rows. It is only given where torque tables reach.
+template <class T>
+struct BodiesReport {
+  T azimuth;         ///< of S against the bearing [rad]
+  T yaw, teeter;     ///< angles [rad]
+  T yaw_rate;        ///< [rad/s]
+  T generator_rate;  ///< of the generator against the nacelle, in the sense of its turning [rad/s]
+  T generator_torque;        ///< of the nacelle on it, against its turning, without the brake [N m]
+  T brake_torque;            ///< the same way [N m]
+  T shaft_rate;              ///< of S against the nacelle [rad/s]
+  T teeter_rate;             ///< [rad/s]
+  Vec6<T> rotor_load;        ///< of the hub on the shaft at the teeter pin, in S [N, N m]
+  Vec6<T> top_load;          ///< of the nacelle on T at the tower top, in t1 t2 t3 [N, N m]
+  Vec3<T> top_acceleration;  ///< of T, in t1 t2 t3 [m/s^2]
+};
+
 class RigidBodies final : public Stated<RigidBodies> {
  public:
   /// Turbine and beams must live on.
@@ -47,7 +63,7 @@ class RigidBodies final : public Stated<RigidBodies> {
 
   /// What is asked of the bodies beside their rows. T: double or std::complex<double>.
   template <class T>
-  elements::ChainReport<T> report(Residual<T>& residual) const;
+  BodiesReport<T> report(Residual<T>& residual) const;
 
  private:
   int joint(int number) const;
@@ -68,19 +84,35 @@ class RigidBodies final : public Stated<RigidBodies> {
   void state_loads(System& system) const;
   template <class System>
   void state_roots(System& system) const;
-  template <class T, class System, class Arguments>
-  elements::ChainState<T> chain_state(const System& system, const Arguments& x) const;
+  /// theta, V, Omega of the tower top; the joints; V_dot, Omega_dot; rates of the joints; F_hat,
+  /// M_hat of the tower top; load on the hub about the apex.
+  static constexpr int chain_arguments = 43;
+  template <class T>
+  using ChainArguments = Eigen::Matrix<T, chain_arguments, 1>;
+  template <class T>
+  struct Walk {
+    Mat3<T> C_top;  ///< components in T from those in the tower's axes
+    elements::FrameMotion<T> top;
+    elements::RigidTree::Results<T> nodes;
+    elements::Wrench<T> on_top;
+  };
+  template <class T, class System>
+  void set_joints(const System& system, const ChainArguments<T>& x,
+                  elements::RigidTree::States<T>& states) const;
+  template <class T, class System>
+  elements::FrameMotion<T> base_motion(const System& system, const ChainArguments<T>& x,
+                                       const Mat3<T>& C_top) const;
+  template <class T, class System>
+  Walk<T> walk(const System& system, const ChainArguments<T>& x) const;
   template <class T, class System>
   BladePitch<T> pitch_of(const System& system, std::size_t k) const;
-  template <class System>
-  const elements::RigidChain& chain_in(const System& system) const;
 
   const model::Turbine& turbine_;
   BodiesSetting setting_;
   int joints_ = 0;
   int hub_port_ = 0;   ///< of the motion of the apex and the gravity there, in H
   int load_port_ = 0;  ///< sum of the root loads: force and moment about the apex, in H
-  elements::RigidChain chain_at_any_speed_;
+  elements::RigidTree tree_;
   Connections chain_;
   Connections foot_;
   std::vector<Connections> loads_;  ///< of each blade

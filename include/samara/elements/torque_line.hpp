@@ -1,14 +1,13 @@
 // A torque that depends on a speed: a straight line, or a table of them.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include "samara/base/error.hpp"
-#include "samara/math/scalar.hpp"
 
 namespace samara::elements {
 
@@ -30,21 +29,27 @@ struct TorqueLine {
     throw DomainError(text.str());
   }
 
-  /// The torque at a speed; where that is an entry of the table, with the mean of both slopes. A
-  /// table goes on beyond its ends, for the iterates of a solver on their way.
-  template <class T>
-  T at(const T& at_speed) const {
-    if (table.empty()) return (at_speed - T(speed)) * slope + T(torque);
-    const double value = math::plain_value(at_speed);
+  struct Value {
+    double torque = 0.0;
+    double slope = 0.0;
+  };
+
+  /// Torque and slope at a speed; where that is an entry of the table, the mean of both slopes. A
+  /// table goes on beyond its ends, for the iterates of a solver on their way. At no number the
+  /// slope of a line is its own, of a table no number.
+  Value at(double at_speed) const {
+    if (table.empty()) return {(at_speed - speed) * slope + torque, slope};
+    if (at_speed != at_speed)
+      return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     const auto slope_before = [this](std::size_t i) {
       return (table[i].second - table[i - 1].second) / (table[i].first - table[i - 1].first);
     };
     std::size_t i = 1;
-    while (i + 1 < table.size() && table[i].first < value) ++i;
+    while (i + 1 < table.size() && table[i].first < at_speed) ++i;
     double local = slope_before(i);
-    if (i + 1 < table.size() && table[i].first == value)
+    if (i + 1 < table.size() && table[i].first == at_speed)
       local = 0.5 * (slope_before(i) + slope_before(i + 1));
-    return (at_speed - T(table[i].first)) * local + T(table[i].second);
+    return {(at_speed - table[i].first) * local + table[i].second, local};
   }
 };
 

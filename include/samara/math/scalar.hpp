@@ -1,7 +1,6 @@
 // The plain value of the scalars that the equations are evaluated with, for branches.
 #pragma once
 
-#include <cmath>
 #include <complex>
 #include <limits>
 
@@ -18,13 +17,5 @@ double plain_value(const Eigen::AutoDiffScalar<Derivatives>& value) {
 }
 /// None: every comparison with it is false.
 inline double plain_value(const Dependence&) { return std::numeric_limits<double>::quiet_NaN(); }
-
-/// x / sqrt(1 + x^2): the sign of x but near zero.
-template <class T>
-T smooth_sign(const T& x) {
-  using std::sqrt;
-  const T length = sqrt(T(x * x + T(1.0)));
-  return x / length;
-}
 
 }  // namespace samara::math

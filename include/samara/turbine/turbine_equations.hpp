@@ -94,8 +94,8 @@ class TurbineEquations {
 
   /// What is asked of the rigid bodies beside their rows.
   template <class T>
-  elements::ChainReport<T> report(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                                  const TurbineInputs<T>& inputs) const;
+  components::BodiesReport<T> report(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+                                     const TurbineInputs<T>& inputs) const;
 
  private:
   void make_components();

@@ -1,0 +1,335 @@
+// Rigid bodies on joints by Kane's method (docs/theory.md, section 3; Lee, Hodges & Patil (2002),
+// eq. (8), (9)): a tree of joints, each with the body behind it, on a base whose motion is given.
+//
+// The generalized speed of a free joint is the angular velocity of the body behind it about its
+// axis, in the inertial frame. That makes the partial velocities so sparse that Kane's sums are one
+// walk inward: a joint passes on the moment without its component about its own axis, and that
+// component, with the joint's spring and damper, is the joint's row.
+//
+// The full nonlinear equations, at any angles.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "samara/elements/joint_motion.hpp"
+#include "samara/math/rotation.hpp"
+#include "samara/math/scalar.hpp"
+#include "samara/math/types.hpp"
+
+namespace samara::elements {
+
+/// A rigid body; its frame is that of the body it belongs to.
+struct RigidBody {
+  double mass = 0.0;                  ///< [kg]
+  Vector3 center = Vector3::Zero();   ///< from the body's reference point [m]
+  Matrix3 inertia = Matrix3::Zero();  ///< about its own centre [kg m^2]
+
+  bool is_none() const { return mass == 0.0 && inertia.isZero(0.0); }
+};
+
+/// A torque and its slopes.
+struct JointTorque {
+  double value = 0.0;     ///< [N m]
+  double by_angle = 0.0;  ///< [N m/rad]
+  double by_rate = 0.0;   ///< [N m s/rad]
+};
+
+/// A torque that depends on the angle and the rate of a joint, or on the angular velocity of a
+/// body.
+class TorqueFunction {
+ public:
+  TorqueFunction() = default;
+  TorqueFunction(const TorqueFunction&) = delete;
+  TorqueFunction& operator=(const TorqueFunction&) = delete;
+  virtual ~TorqueFunction() = default;
+
+  /// Along the axis, on what is behind the joint. At arguments that are no numbers a slope is zero
+  /// only where it is so at all angles and rates.
+  virtual JointTorque at(double angle, double rate) const = 0;
+};
+
+/// The torque of a law at a scalar of any kind, with its first derivatives.
+template <class T>
+T torque_of(const TorqueFunction& law, const T& angle, const T& rate) {
+  const double angle_value = math::plain_value(angle);
+  const double rate_value = math::plain_value(rate);
+  const JointTorque torque = law.at(angle_value, rate_value);
+  T sum(torque.value);
+  if (torque.by_angle != 0.0) sum += (angle - T(angle_value)) * torque.by_angle;
+  if (torque.by_rate != 0.0) sum += (rate - T(rate_value)) * torque.by_rate;
+  return sum;
+}
+
+/// A joint and the body behind it. Its point is the reference point of the body.
+struct TreeNode {
+  int parent = -1;                     ///< node that carries it; -1: the base
+  Vector3 place = Vector3::Zero();     ///< of its point, in the parent's axes [m]
+  Matrix3 axes = Matrix3::Identity();  ///< at angle zero, as columns in the parent's
+  Vector3 axis = Vector3::UnitX();     ///< in its own axes
+  bool free = false;                   ///< false: it moves as prescribed
+  double stiffness = 0.0;              ///< [N m/rad]
+  double damping = 0.0;                ///< [N m s/rad]
+  std::vector<std::shared_ptr<const TorqueFunction>> laws;  ///< by its angle and rate
+  /// What is behind looks the same at all angles: its axes do not turn, and the joint behind it,
+  /// about the same axis, turns by both angles.
+  bool is_round = false;
+  /// A rotor about the same axis that turns `gear_ratio` times as fast against what carries the
+  /// joint. The moment of what is behind goes to what carries the joint as a whole: on its way
+  /// through the gear it changes only by the rotor's inertia.
+  bool is_geared = false;
+  double gear_ratio = 1.0;
+  double rotor_inertia = 0.0;  ///< [kg m^2]
+  RigidBody body;
+  Vector3 spin_axis = Vector3::UnitY();
+  /// On the body along `spin_axis`, by its angular velocity about it; null: none.
+  std::shared_ptr<const TorqueFunction> spin_law;
+};
+
+/// Angle of a joint, speed of the body behind it about its axis, and their rates.
+template <class T>
+struct JointState {
+  T angle, speed, angle_dot, speed_dot;
+  T torque = T(0);              ///< on what is behind a free joint, beside its laws [N m]
+  JointMotion prescribed = {};  ///< of a joint that is not free
+  JointMotion carried = {};     ///< a motion that its own adds to
+};
+
+/// Velocity and acceleration of a frame and of a point of it, and gravity, components in the frame.
+template <class T>
+struct FrameMotion {
+  Vec3<T> omega, alpha, v, a, gravity;
+};
+
+/// A force, and a moment about a point.
+template <class T>
+struct Wrench {
+  Vec3<T> force, moment;
+};
+
+template <class T>
+struct JointRows {
+  T kinematic;  ///< q_dot - (U - speed it is carried with); of a joint that is not free U - that
+                ///< speed - the prescribed rate
+  T balance;    ///< Kane's row of U [N m]; unused where not free
+  T position;   ///< q - the prescribed angle, of a joint that is not free
+};
+
+/// What a walk leaves of a node.
+template <class T>
+struct NodeResult {
+  JointRows<T> rows;
+  FrameMotion<T> motion;  ///< of the body, at the joint's point
+  FrameMotion<T> inner;   ///< of what carries it, in the same axes
+  Mat3<T> turn;           ///< components in its axes from those in its axes at angle zero
+  T angle;                ///< by which its axes have turned, or would have
+  T rate;                 ///< of the body against what carries it
+  T held;                 ///< of a geared joint: torque on the rotor against its turning [N m]
+  Wrench<T> passed;  ///< on what carries it, about the joint's point, in the axes at angle zero
+};
+
+class RigidTree {
+ public:
+  static constexpr int most_nodes = 6;
+  template <class T>
+  using States = std::array<JointState<T>, most_nodes>;
+  template <class T>
+  using Loads = std::array<Wrench<T>, most_nodes>;
+  template <class T>
+  using Results = std::array<NodeResult<T>, most_nodes>;
+
+  /// Returns its number. Parents come first.
+  int add(const TreeNode& node) {
+    nodes_.push_back(node);
+    return size() - 1;
+  }
+  int size() const { return static_cast<int>(nodes_.size()); }
+  const TreeNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+
+  /// Motions from the base outward.
+  template <class T>
+  void walk_outward(const FrameMotion<T>& base, const States<T>& states, Results<T>& results) const;
+
+  /// Loads and inertia inward: the rows, and what the base carries, about its own point. `loads`:
+  /// on each body from outside, about its joint's point.
+  template <class T>
+  Wrench<T> walk_inward(const States<T>& states, const Loads<T>& loads, Results<T>& results) const;
+
+ private:
+  std::vector<TreeNode> nodes_;
+};
+
+namespace detail {
+
+/// Components change from v to C v.
+template <class T>
+FrameMotion<T> seen_from(const Mat3<T>& C, const FrameMotion<T>& m) {
+  return {C * m.omega, C * m.alpha, C * m.v, C * m.a, C * m.gravity};
+}
+
+/// The motion of the point at `r` of the same frame.
+template <class T>
+FrameMotion<T> moved_to(const Vec3<T>& r, const FrameMotion<T>& m) {
+  const Vec3<T> swept = math::cross(m.omega, r);
+  const Vec3<T> turning = math::cross(m.alpha, r);
+  const Vec3<T> centripetal = math::cross(m.omega, swept);
+  return {m.omega, m.alpha, m.v + swept, m.a + turning + centripetal, m.gravity};
+}
+
+/// What a vector has across a unit vector. Along a base vector nothing is left of it, not even a
+/// dependence.
+template <class T>
+Vec3<T> across(const Vec3<T>& axis, const Vec3<T>& v) {
+  Mat3<T> projection;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) projection(i, j) = T(i == j ? 1.0 : 0.0) - axis(i) * axis(j);
+  return projection * v;
+}
+
+/// The frame behind a joint that turns with the given relative rate, and its rate. `inner` is the
+/// motion of the joint's point, in the axes of what is behind.
+template <class T>
+FrameMotion<T> with_relative_rate(const Vec3<T>& axis, double rate, double acceleration,
+                                  const FrameMotion<T>& inner) {
+  FrameMotion<T> outer = inner;
+  const Vec3<T> carried = math::cross(axis, inner.omega);
+  for (int i = 0; i < 3; ++i) {
+    outer.omega(i) += axis(i) * rate;
+    outer.alpha(i) -= carried(i) * rate;
+    outer.alpha(i) += axis(i) * acceleration;
+  }
+  return outer;
+}
+
+/// The frame behind a free joint: its angular velocity about the axis is `speed`.
+template <class T>
+FrameMotion<T> with_outer_speed(const Vec3<T>& axis, const T& speed, const T& speed_dot,
+                                const FrameMotion<T>& inner) {
+  const T rate = speed - math::dot(axis, inner.omega);
+  FrameMotion<T> outer = inner;
+  const Vec3<T> carried = math::cross(axis, inner.omega);
+  outer.omega = across<T>(axis, inner.omega) + axis * speed;
+  outer.alpha = across<T>(axis, inner.alpha) + axis * speed_dot - carried * rate;
+  return outer;
+}
+
+/// R - m a and T - I alpha - omega x I omega of a body, about the reference point of `m`.
+template <class T>
+Wrench<T> active_and_inertia(const RigidBody& body, const FrameMotion<T>& m) {
+  const Vec3<T> center = body.center.cast<T>();
+  const FrameMotion<T> at_center = moved_to<T>(center, m);
+  const Mat3<T> inertia = body.inertia.cast<T>();
+  const Vec3<T> spin = inertia * m.omega;
+  const Vec3<T> spin_up = inertia * m.alpha;
+  Wrench<T> w;
+  w.force = (m.gravity - at_center.a) * T(body.mass);
+  w.moment = math::cross(center, w.force) - spin_up - math::cross(m.omega, spin);
+  return w;
+}
+
+/// The rotor's momentum J w along the axis, w = omega_inner + n times the joint's rate: the joint's
+/// row knows n times the torque that turns it, what carries it the whole rate of change.
+template <class T>
+void add_rotor(const TreeNode& node, const Vec3<T>& axis, NodeResult<T>& result, Wrench<T>& w) {
+  using math::dot;
+  const T along = dot(axis, result.motion.alpha) - dot(axis, result.inner.alpha);
+  const T momentum =
+      (dot(axis, result.inner.omega) + result.rate * node.gear_ratio) * node.rotor_inertia;
+  const T momentum_dot =
+      (dot(axis, result.inner.alpha) + along * node.gear_ratio) * node.rotor_inertia;
+  result.held = (dot(axis, w.moment) - momentum_dot * node.gear_ratio) / std::abs(node.gear_ratio);
+  if (node.free) result.rows.balance -= momentum_dot * node.gear_ratio;
+  w.moment -= math::cross(result.inner.omega, Vec3<T>(axis * momentum)) + axis * momentum_dot;
+}
+
+}  // namespace detail
+
+template <class T>
+void RigidTree::walk_outward(const FrameMotion<T>& base, const States<T>& states,
+                             Results<T>& results) const {
+  for (int i = 0; i < size(); ++i) {
+    const TreeNode& node = this->node(i);
+    const JointState<T>& state = states[static_cast<std::size_t>(i)];
+    NodeResult<T>& result = results[static_cast<std::size_t>(i)];
+    const auto parent = static_cast<std::size_t>(node.parent);
+    const bool on_base = node.parent < 0;
+    result.angle = (node.free ? state.angle : T(state.prescribed.angle)) + T(state.carried.angle);
+    if (!on_base && this->node(node.parent).is_round) result.angle += results[parent].angle;
+    result.inner = on_base ? base : results[parent].motion;
+    if (!node.place.isZero(0.0))
+      result.inner = detail::moved_to<T>(node.place.cast<T>(), result.inner);
+    if (!node.axes.isIdentity(0.0))
+      result.inner = detail::seen_from<T>(node.axes.transpose().cast<T>(), result.inner);
+    if (!node.is_round) {
+      result.turn = math::turn_about<T>(node.axis, result.angle).transpose();
+      result.inner = detail::seen_from<T>(result.turn, result.inner);
+    }
+    const Vec3<T> axis = node.axis.cast<T>();
+    const T own_rate = state.speed - math::dot(axis, result.inner.omega) - T(state.carried.rate);
+    result.rate = own_rate + T(state.carried.rate);
+    result.motion =
+        node.free ? detail::with_outer_speed<T>(axis, state.speed, state.speed_dot, result.inner)
+                  : detail::with_relative_rate<T>(
+                        axis, state.carried.rate + state.prescribed.rate,
+                        state.carried.acceleration + state.prescribed.acceleration, result.inner);
+    result.rows.kinematic =
+        node.free ? T(state.angle_dot - own_rate) : T(own_rate - T(state.prescribed.rate));
+    result.rows.position = state.angle - T(state.prescribed.angle);
+  }
+}
+
+template <class T>
+Wrench<T> RigidTree::walk_inward(const States<T>& states, const Loads<T>& loads,
+                                 Results<T>& results) const {
+  using math::cross;
+  using math::dot;
+  Loads<T> sums = loads;
+  Wrench<T> total{Vec3<T>::Zero(), Vec3<T>::Zero()};
+  for (int i = size() - 1; i >= 0; --i) {
+    const TreeNode& node = this->node(i);
+    const JointState<T>& state = states[static_cast<std::size_t>(i)];
+    NodeResult<T>& result = results[static_cast<std::size_t>(i)];
+    Wrench<T>& w = sums[static_cast<std::size_t>(i)];
+    const Vec3<T> axis = node.axis.cast<T>();
+    if (!node.body.is_none()) {
+      const Wrench<T> own = detail::active_and_inertia<T>(node.body, result.motion);
+      w.force += own.force;
+      w.moment += own.moment;
+    }
+    if (node.spin_law) {
+      const Vec3<T> spin_axis = node.spin_axis.cast<T>();
+      w.moment +=
+          spin_axis * torque_of<T>(*node.spin_law, T(0), dot(spin_axis, result.motion.omega));
+    }
+    result.rows.balance = T(0);
+    if (node.free) {
+      const T own_rate = result.rate - T(state.carried.rate);
+      T torque = state.torque - state.angle * node.stiffness - own_rate * node.damping;
+      for (const auto& law : node.laws) torque += torque_of<T>(*law, state.angle, result.rate);
+      result.rows.balance = dot(axis, w.moment) + torque;
+      if (!node.is_geared) w.moment = (detail::across<T>(axis, w.moment) - axis * torque).eval();
+    }
+    if (node.is_geared) detail::add_rotor(node, axis, result, w);
+    // At the joint's point of what carries it, in its axes.
+    result.passed = w;
+    if (!node.is_round) {
+      result.passed.force = result.turn.transpose() * w.force;
+      result.passed.moment = result.turn.transpose() * w.moment;
+    }
+    Wrench<T> passed = result.passed;
+    if (!node.axes.isIdentity(0.0)) {
+      const Mat3<T> axes = node.axes.cast<T>();
+      passed.force = (axes * passed.force).eval();
+      passed.moment = (axes * passed.moment).eval();
+    }
+    if (!node.place.isZero(0.0)) passed.moment += cross(node.place.cast<T>().eval(), passed.force);
+    Wrench<T>& onto = node.parent < 0 ? total : sums[static_cast<std::size_t>(node.parent)];
+    onto.force += passed.force;
+    onto.moment += passed.moment;
+  }
+  return total;
+}
+
+}  // namespace samara::elements
