@@ -159,6 +159,22 @@ std::string unusual_figures(const model::TurbineDefinition& definition) {
   return text.empty() ? text : "\n" + text;
 }
 
+/// From the hub outward, with their distances from the shaft axis.
+std::string hinge_words(const model::BladesDefinition& blades) {
+  std::string text;
+  double along = 0.0;
+  for (const model::HingeDefinition& hinge : blades.hinges) {
+    along += hinge.offset;
+    elements::Hinge joint;
+    joint.free = hinge.joint.kind == model::JointKind::free;
+    joint.stiffness = hinge.joint.stiffness;
+    joint.damping = hinge.joint.damping;
+    text += (text.empty() ? "" : "; ") + std::string(components::hinge_name(hinge.axis)) + " at " +
+            general(along, 5) + " m " + joint_words(joint, hinge.joint.motion);
+  }
+  return text;
+}
+
 std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
@@ -198,6 +214,8 @@ std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                      joint_words(turbine.chain.teeter, turbine.teeter_motion) + "; shaft torsion " +
                      joint_words(turbine.chain.torsion) + "; generator " +
                      joint_words(turbine.chain.generator));
+  if (has_rotor && !definition.blades.hinges.empty())
+    line("hinges", hinge_words(definition.blades));
   const model::ShaftDefinition& shaft = definition.shaft;
   if (shaft.generator.inertia > 0.0 || shaft.gear_ratio != 1.0)
     line("generator",

@@ -115,8 +115,9 @@ void HistoryLegs::fire(std::size_t i) {
   fired_[i] = start_.time;
   turbine_ = turbine::apply_event(turbine_, event, start_.time);
   if (!event.generator_off) return;
+  const turbine::TurbineSystem system(turbine_, PETSC_COMM_SELF);
   for (analysis::HeldCoordinate& held : start_.held)
-    if (held.name == "generator") held.load = 0.0;
+    if (held.unknown == system.layout().generator()) held.load = 0.0;
 }
 
 std::optional<double> HistoryLegs::next_time() const {

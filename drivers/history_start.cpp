@@ -56,7 +56,8 @@ io::HistoryCheckpoint checkpoint_of(const std::string& path, const io::HistoryRe
                                ": has no checkpoint; hint: transient.checkpoint sets their distance"
                          : history.damage() + ", and no checkpoint");
   if (!history.damage().empty()) progress.note(history.damage());
-  const io::HistoryCheckpoint& last = history.content().checkpoints.back();
+  io::HistoryCheckpoint last = history.content().checkpoints.back();
+  io::place_held(system, last.point.held);
   if (last.point.z.size() != system.size())
     throw InputError(path + ": its state has " + std::to_string(last.point.z.size()) +
                      " unknowns, the model " + std::to_string(system.size()));
@@ -177,7 +178,8 @@ HistoryStart start_on_steady_state(const std::string& path, const io::Case& befo
   HistoryStart start{{}, {}, system.turbine()};
   set_azimuth(start.turbine, steady.azimuth);
   require_same_motion(path, steady, 0.0, start.turbine);
-  const analysis::Trim trim = io::read_result_trim(path);
+  analysis::Trim trim = io::read_result_trim(path);
+  io::place_held(system, trim.held);
   note_roughness(trim, progress, path);
   if (trim.solution.coefficients().rows() != system.size())
     throw InputError(path + ": its steady state has " +
@@ -201,8 +203,9 @@ HistoryStart start_from(const std::string& path, const io::Case& input,
                            : start_on_steady_state(path, before, input, system, progress);
   // A new law is all of the torque: what held the mean speed under the old one goes.
   if (law_of(before.model_text) != law_of(input.model_text))
-    std::erase_if(start.point.held,
-                  [](const analysis::HeldCoordinate& one) { return one.name == "generator"; });
+    std::erase_if(start.point.held, [&system](const analysis::HeldCoordinate& one) {
+      return one.unknown == system.layout().generator();
+    });
   return start;
 }
 

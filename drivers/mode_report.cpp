@@ -29,7 +29,7 @@ constexpr std::size_t first_modes = 10;
 double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
 
 /// Whether the ground sees other frequencies than the rotor, and each of one mode.
-bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.blades > 2; }
+bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.instances > 2; }
 
 std::string percent(double share) { return fixed(100.0 * share, 0); }
 

@@ -56,6 +56,10 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
     const double length = turbine.blades[static_cast<std::size_t>(k)].tip.norm();
     add_three(blade + " tip", layout.blade_tip(k), "m", rounding * length,
               {"along b1 (outward)", "along b2 (lead-lag)", "along b3 (flap)"});
+    const std::vector<model::RootHinge>& hinges = turbine.roots[static_cast<std::size_t>(k)].hinges;
+    for (std::size_t i = 0; i < hinges.size(); ++i)
+      add_angle(blade + " " + components::hinge_name(hinges[i].axis),
+                layout.hinge(k, static_cast<int>(i)));
     add_three(blade + " root force", root, "N", small_load, {"b1 (axial)", "b2", "b3"});
     add_three(blade + " root moment", root + 3, "N m", small_load,
               {"b1 (torsion)", "b2 (flap)", "b3 (lead-lag)"});
@@ -145,7 +149,7 @@ std::string generator_words(const io::Case& input, double shaft_load, double sha
   return text + "\n";
 }
 
-std::string summary(const io::Case& input, const Trim& trim) {
+std::string summary(const io::Case& input, const turbine::TurbineSystem& system, const Trim& trim) {
   const int harmonics = trim.solution.harmonics();
   std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
   text += "rotor speed  " + general(input.turbine.shaft.speed, 6) + " rad/s\n";
@@ -166,7 +170,7 @@ std::string summary(const io::Case& input, const Trim& trim) {
     text += "rough        " + words + "\n";
   for (const analysis::HeldCoordinate& held : trim.held) {
     const double zero = rounding * std::max(trim.load_level, 1.0);
-    if (held.name == "generator") {
+    if (held.unknown == system.layout().generator()) {
       text += generator_words(input, held.load, zero);
       continue;
     }
@@ -189,7 +193,7 @@ void run_trim(const Job& job) {
   progress.finish();
   if (!is_first) return;
   deliver(
-      job, summary(job.input, trim) + output_table(system, trim),
+      job, summary(job.input, system, trim) + output_table(system, trim),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));

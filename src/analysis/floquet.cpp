@@ -674,7 +674,7 @@ class Analysis {
   /// Names come from the shapes, which only the first rank has.
   void share_names() {
     if (ranks_.size == 1) return;
-    MPI_Bcast(&set_.blades, 1, MPI_INT, 0, ranks_.comm);
+    MPI_Bcast(&set_.instances, 1, MPI_INT, 0, ranks_.comm);
     for (Mode& mode : set_.modes)
       MPI_Bcast(&mode.fixed_frame_frequency, 1, MPI_DOUBLE, 0, ranks_.comm);
     std::string text;

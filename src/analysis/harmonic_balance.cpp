@@ -476,7 +476,7 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
   trim.newton_steps = static_cast<int>(steps);
   const std::vector<double> loads = balance.loads(solution);
   for (std::size_t n = 0; n < loads.size(); ++n)
-    trim.held.push_back({held[n].name, held[n].unit, loads[n]});
+    trim.held.push_back({held[n].name, held[n].unit, loads[n], held[n].unknown});
   return trim;
 }
 

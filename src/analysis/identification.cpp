@@ -98,11 +98,11 @@ system::Motion strained_motion(const system::PeriodicSystem& system, const Eigen
   return {{system::PartKind::body, "mode"}};
 }
 
-const char* word_of(int n, int blades) {
-  if (blades == 2) return n == 0 ? " symmetric" : " antisymmetric";
+const char* word_of(int n, int instances) {
+  if (instances == 2) return n == 0 ? " symmetric" : " antisymmetric";
   if (n == 0) return " collective";
   if (n == 1) return " regressive";
-  return n == blades - 1 ? " progressive" : " reactionless";
+  return n == instances - 1 ? " progressive" : " reactionless";
 }
 
 /// What a mode is called, piece by piece.
@@ -241,7 +241,7 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
     for (Eigen::Index i = 0; i < shape.rows(); ++i) {
       const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
       const bool counts =
-          state ? unknown.role == system::UnknownRole::state && unknown.owner.part == state->part
+          state ? unknown.role == system::UnknownRole::state && unknown.owner.is_alike(*state)
                 : unknown.role == system::UnknownRole::position;
       if (counts) largest = std::max(largest, shape.row(i).cwiseAbs().maxCoeff() / unknown.scale);
     }
@@ -253,7 +253,7 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
 
 void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingMotion>& leading,
                 ModeSet& set, int sectors) {
-  set.blades = blades_of(system.motions());
+  set.instances = count_instances(system.motions());
   if (set.shapes.empty()) return;  // another rank has them
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   std::vector<Name> names;
@@ -267,7 +267,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
       continue;
     }
     const int component = leading[m].component;
-    names.push_back({leading[m].motion, component < 0 ? "" : word_of(component, set.blades)});
+    names.push_back({leading[m].motion, component < 0 ? "" : word_of(component, set.instances)});
   }
   const bool canonical = has_canonical_shapes(system) && set.shape_times.size() == 1;
   unite_degenerate(set, sectors, canonical, names);
@@ -275,14 +275,14 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
     Mode& mode = set.modes[m];
     mode.label = names[m].text();
     const double frequency = mode.exponent.imag();
-    const bool in_blades = names[m].motion.owner.instance > 0;
+    const bool is_rotating = names[m].motion.owner.instance > 0;
     const bool is_clear = leading.empty() || mode.state || leading[m].is_clear;
-    if (set.rotor_speed == 0.0 || frequency <= zero || (!in_blades && is_clear))
+    if (set.rotor_speed == 0.0 || frequency <= zero || (!is_rotating && is_clear))
       mode.fixed_frame_frequency = frequency;
-    else if (set.blades > 2 && is_clear && !names[m].together.empty()) {
+    else if (set.instances > 2 && is_clear && !names[m].together.empty()) {
       const int n = leading[m].component;
       mode.fixed_frame_frequency =
-          std::abs(frequency - (2 * n > set.blades ? n - set.blades : n) * set.rotor_speed);
+          std::abs(frequency - (2 * n > set.instances ? n - set.instances : n) * set.rotor_speed);
     }
   }
 }

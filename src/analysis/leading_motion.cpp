@@ -223,18 +223,18 @@ Leading find_leading(const system::PeriodicSystem& system,
 
 /// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
 /// blade is 2 pi n / B ahead of the one behind it. Empty where nothing moves.
-Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int blades,
+Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int count,
                                   const system::Motion& one, const Eigen::MatrixXcd& shape) {
   std::vector<const system::Motion*> alike;
   for (const system::Motion& motion : motions)
     if (motion.is_alike(one)) alike.push_back(&motion);
-  Eigen::VectorXd shares = Eigen::VectorXd::Zero(blades);
-  if (static_cast<int>(alike.size()) != blades) return {};
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(count);
+  if (static_cast<int>(alike.size()) != count) return {};
   for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i)
-    for (int n = 0; n < blades; ++n) {
+    for (int n = 0; n < count; ++n) {
       Eigen::RowVectorXcd component = Eigen::RowVectorXcd::Zero(shape.cols());
-      for (int k = 0; k < blades; ++k)
-        component += std::polar(1.0, -2.0 * std::numbers::pi * n * k / blades) *
+      for (int k = 0; k < count; ++k)
+        component += std::polar(1.0, -2.0 * std::numbers::pi * n * k / count) *
                      shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
       shares(n) += alike.front()->weight[i] * component.squaredNorm();
     }
@@ -244,10 +244,10 @@ Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, in
 
 }  // namespace
 
-int blades_of(const std::vector<system::Motion>& motions) {
-  int blades = 0;
-  for (const system::Motion& motion : motions) blades = std::max(blades, motion.owner.instance);
-  return blades;
+int count_instances(const std::vector<system::Motion>& motions) {
+  int count = 0;
+  for (const system::Motion& motion : motions) count = std::max(count, motion.owner.instance);
+  return count;
 }
 
 std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& system,
@@ -256,9 +256,9 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
   const std::vector<system::Motion> motions = system.motions();
   std::vector<LeadingMotion> leading;
   if (set.shapes.empty() || motions.empty()) return leading;
-  const int blades = blades_of(motions);
+  const int count = count_instances(motions);
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
-  const bool together = blades == 2 || (blades > 2 && set.rotor_speed > 0.0);
+  const bool together = count == 2 || (count > 2 && set.rotor_speed > 0.0);
   MotionsInTime in_time(system, solution);
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     const Mode& mode = set.modes[m];
@@ -274,13 +274,13 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
     if (motion.owner.instance > 0 && together && mode.exponent.imag() > zero) {
       Eigen::Index largest = 0;
       const Eigen::VectorXd shares = multiblade_shares(
-          motions, blades, motion,
+          motions, count, motion,
           shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]));
       if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share)
         one.component = static_cast<int>(largest);
       // The mode will be its conjugate, in which the blades follow each other the other way.
       if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
-        one.component = blades - one.component;
+        one.component = count - one.component;
     }
     leading.push_back(one);
   }

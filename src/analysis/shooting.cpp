@@ -242,7 +242,7 @@ class Shooting {
               {}};
     for (Eigen::Index h = 0; h < loads_.size(); ++h) {
       const auto& neutral = system_.neutral_coordinates()[static_cast<std::size_t>(h)];
-      trim.held.push_back({neutral.name, neutral.unit, loads_(h)});
+      trim.held.push_back({neutral.name, neutral.unit, loads_(h), neutral.unknown});
     }
     finish_trim(system_, trim);
     return trim;

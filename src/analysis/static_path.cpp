@@ -85,6 +85,7 @@ class Equilibrium {
       const system::UnknownRole role = system.unknowns()[static_cast<std::size_t>(i)].role;
       if (role == system::UnknownRole::position) positions_.push_back(i);
       if (role == system::UnknownRole::internal) loads_.push_back(i);
+      if (role == system::UnknownRole::state) states_.push_back(i);
     }
     for (const system::NeutralCoordinate& held : held_) {
       std::erase(positions_, static_cast<Eigen::Index>(held.unknown));
@@ -163,7 +164,7 @@ class Equilibrium {
   std::vector<HeldCoordinate> held_loads(const Point& point) const {
     std::vector<HeldCoordinate> held;
     for (const system::NeutralCoordinate& neutral : held_)
-      held.push_back({neutral.name, neutral.unit, point.x(neutral.unknown)});
+      held.push_back({neutral.name, neutral.unit, point.x(neutral.unknown), neutral.unknown});
     return held;
   }
 
@@ -189,8 +190,9 @@ class Equilibrium {
     return state;
   }
 
-  /// Largest change relative to the largest value, of positions and of internal loads. What is
-  /// rigid moves by rounding alone.
+  /// Largest change relative to the largest value, of positions and of internal loads, and of
+  /// first-order states relative to their own value or scale. What is rigid moves by rounding
+  /// alone.
   double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x) const {
     double worst = 0.0;
     for (const std::vector<Eigen::Index>* unknowns : {&positions_, &loads_}) {
@@ -203,6 +205,12 @@ class Equilibrium {
       if (!(moved <= std::numeric_limits<double>::max())) return moved;
       if (moved > (unknowns == &positions_ ? rounding : 0.0))
         worst = std::max(worst, moved / std::max(size, moved));
+    }
+    for (const Eigen::Index i : states_) {
+      const double scale = loaded_.unknowns()[static_cast<std::size_t>(i)].scale;
+      const double moved = std::abs(change(i)) / std::max(std::abs(x(i)), scale);
+      if (!(moved <= std::numeric_limits<double>::max())) return moved;
+      worst = std::max(worst, moved);
     }
     return worst;
   }
@@ -297,6 +305,7 @@ class Equilibrium {
   DirectSolver solver_;
   std::vector<Eigen::Index> positions_;
   std::vector<Eigen::Index> loads_;  ///< internal, and those that hold coordinates
+  std::vector<Eigen::Index> states_;
 };
 
 /// Along the path by one unit of arc length: ds^2 = |positions|^2 / D^2 + df^2 / f0^2, with f0 the

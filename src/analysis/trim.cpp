@@ -147,7 +147,7 @@ void add_held_loads(const system::PeriodicSystem& system, const std::vector<Held
   const petsc::WriteView view(r);
   for (const HeldCoordinate& coordinate : held)
     for (const system::NeutralCoordinate& neutral : system.neutral_coordinates())
-      if (neutral.name == coordinate.name) view[neutral.row] += coordinate.load;
+      if (neutral.unknown == coordinate.unknown) view[neutral.row] += coordinate.load;
 }
 
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,

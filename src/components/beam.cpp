@@ -150,7 +150,10 @@ std::vector<ReferenceChange> PlacedBeam::find_changes() const {
 
 // ---- declaration -------------------------------------------------------------------------------
 
-Beam::Beam(const BeamSetting& setting) : setting_(setting) { placed_.beam = setting_.mesh; }
+Beam::Beam(const BeamSetting& setting) : setting_(setting) {
+  placed_.beam = setting_.mesh;
+  if (setting_.mesh->order > most_points) throw InternalError("an element has too many points");
+}
 
 /// A chain is eliminated toward what carries it, or what it carries.
 void Beam::place(Registry& registry) {

@@ -96,7 +96,7 @@ void Pattern::append(std::vector<TangentPlan::Entries>& entries, int from,
 void Pattern::add_share(const Share& share, const Dependence* y) {
   if (share.count < 1 || share.count > 3 ||
       share.row / block != (share.row + share.count - 1) / block)
-    throw InternalError("a share of a function is in no block");
+    throw InternalError("a share of a function has not one to three rows of one block");
   TangentPlan::SharePlan plan;
   std::uint64_t all = 0;
   for (int i = 0; i < share.count; ++i) {

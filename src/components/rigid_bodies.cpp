@@ -46,30 +46,12 @@ Vec3<T> to_top(const Vec3<T>& t) {
 template <class T>
 using RootMotion = Eigen::Matrix<T, 9, 1>;
 
-/// v_a, omega_a, gravity of a blade root from the hub's motion, at the pitch of C_Ha.
-Eigen::Matrix<double, 9, 9> root_from_hub(const model::BladeRoot& root) {
-  const Matrix3 C_aH = root.C_Ha.transpose();
-  Eigen::Matrix<double, 9, 9> map = Eigen::Matrix<double, 9, 9>::Zero();
-  map.block<3, 3>(0, 0) = C_aH;
-  map.block<3, 3>(0, 3) = -C_aH * math::skew<double>(root.position);
-  map.block<3, 3>(3, 3) = C_aH;
-  map.block<3, 3>(6, 6) = C_aH;
-  return map;
-}
-
-/// Force and moment about the apex in H of a blade's root load, at that pitch.
-Matrix6 hub_from_root(const model::BladeRoot& root) {
-  Matrix6 map = Matrix6::Zero();
-  map.topLeftCorner<3, 3>() = root.C_Ha;
-  map.bottomLeftCorner<3, 3>() = math::skew<double>(root.position) * root.C_Ha;
-  map.bottomRightCorner<3, 3>() = root.C_Ha;
-  return map;
-}
-
 }  // namespace
 
 RigidBodies::RigidBodies(const model::Turbine& turbine, const BodiesSetting& setting)
-    : turbine_(turbine), setting_(setting), tree_(elements::tree_of(turbine.chain)) {}
+    : turbine_(turbine), setting_(setting), tree_(elements::tree_of(turbine.chain)) {
+  for (std::size_t k = 0; k < setting_.blades.size(); ++k) roots_.emplace_back(turbine_, k);
+}
 
 void RigidBodies::connect() {
   const int top = tower_top();
@@ -87,10 +69,6 @@ void RigidBodies::connect() {
   chain_.provisions = {{hub_port_, hub_motion}};
   foot_.arguments = {zeros(1)};
   if (has_top) foot_.provisions = {{setting_.tower->placed().root_port, 0}};
-  for (const Beam* blade : setting_.blades) {
-    loads_.push_back({{unknowns(blade->placed().root, 6)}, {}, {{load_port_, 0}}});
-    roots_.push_back({{port_values(hub_port_, 9)}, {}, {{blade->placed().root_port, 0}}});
-  }
 }
 
 /// The motions that are prescribed, and what acts on the joints.
@@ -169,26 +147,6 @@ RigidBodies::Walk<T> RigidBodies::walk(const System& system, const ChainArgument
   return walk;
 }
 
-/// By the turbine's operation and by inputs together.
-template <class T, class System>
-BladePitch<T> RigidBodies::pitch_of(const System& system, std::size_t k) const {
-  BladePitch<T> pitch;
-  if (!turbine_.operation.pitch.empty()) {
-    const math::TimeCurve::Value now = turbine_.pitch_at(k, system.time());
-    pitch.moves = true;
-    pitch.angle = T(system.varying(now.value - turbine_.roots[k].pitch));
-    pitch.rate = T(system.varying(now.rate));
-  }
-  if constexpr (System::has_inputs) {
-    const TurbineInputs<T>& inputs = system.inputs();
-    if (inputs.pitch.empty()) return pitch;
-    pitch.moves = true;
-    pitch.angle += inputs.pitch[k];
-    pitch.rate += inputs.pitch_rate[k];
-  }
-  return pitch;
-}
-
 template <class System>
 void RigidBodies::state(System& system) const {
   if (setting_.tower != nullptr) {
@@ -208,7 +166,7 @@ void RigidBodies::state(System& system) const {
     system.template add<1, 9>(foot_, foot);
     system.require_rotation(tower_top() + 3, [] { return std::string("tower top"); });
   }
-  state_loads(system);
+  for (const BladeRoot& root : roots_) root.state_load(system);
   const auto rows_of = [&]<class T>(const ChainArguments<T>& x) {
     const Walk<T> walk = this->walk<T>(system, x);
     Eigen::Matrix<T, chain_values, 1> y;
@@ -231,46 +189,14 @@ void RigidBodies::state(System& system) const {
     return y;
   };
   system.template add<chain_arguments, chain_values>(chain_, rows_of);
-  state_roots(system);
-}
-
-template <class System>
-void RigidBodies::state_loads(System& system) const {
-  for (std::size_t k = 0; k < loads_.size(); ++k) {
-    const Matrix6 map = hub_from_root(turbine_.roots[k]);
-    const auto load_of = [&]<class T>(const Vec6<T>& root) {
-      Vec6<T> load = root;
-      if (const BladePitch<T> pitch = pitch_of<T>(system, k); pitch.moves) {
-        const Mat3<T> feather = pitch.feather();
-        load << feather * root.template head<3>(), feather * root.template tail<3>();
-      }
-      return Vec6<T>(map.cast<T>() * load);
-    };
-    system.template add<6, 6>(loads_[k], load_of);
-  }
-}
-
-template <class System>
-void RigidBodies::state_roots(System& system) const {
-  for (std::size_t k = 0; k < roots_.size(); ++k) {
-    const Eigen::Matrix<double, 9, 9> map = root_from_hub(turbine_.roots[k]);
-    const auto motion_of = [&]<class T>(const RootMotion<T>& hub) {
-      RootMotion<T> root = map.cast<T>() * hub;
-      if (const BladePitch<T> pitch = pitch_of<T>(system, k); pitch.moves) {
-        const Mat3<T> back = pitch.feather().transpose();
-        for (int vector = 0; vector < 9; vector += 3)
-          root.template segment<3>(vector) = (back * root.template segment<3>(vector)).eval();
-        root(3) -= pitch.rate;
-      }
-      return root;
-    };
-    system.template add<9, 9>(roots_[k], motion_of);
-  }
+  for (const BladeRoot& root : roots_) root.state_motion(system);
 }
 
 template <class T>
 BodiesReport<T> RigidBodies::report(Residual<T>& residual) const {
-  state_loads(residual);
+  if (setting_.tower != nullptr)
+    residual.require_rotation(tower_top() + 3, [] { return std::string("tower top"); });
+  for (const BladeRoot& root : roots_) root.state_load(residual);
   const Walk<T> walk = this->walk<T>(residual, residual.template gather<chain_arguments>(chain_));
   const NodeResult<T>& yaw = walk.nodes[elements::yaw_node];
   const NodeResult<T>& generator = walk.nodes[elements::generator_node];

@@ -31,6 +31,7 @@ void RigidBodies::place(Registry& registry) {
   joints_ = registry.add_shared(setting_.shared_rank, joint_count * joint_unknowns);
   hub_port_ = registry.add_port(9);
   load_port_ = registry.add_port(6);
+  for (BladeRoot& root : roots_) root.place(registry, setting_.shared_rank);
 }
 
 int RigidBodies::joint(int number) const { return joints_ + joint_unknowns * number; }
@@ -55,6 +56,9 @@ void RigidBodies::describe(Registry& registry) {
   if (setting_.blades.size() == 2)  // the hinge axis turns with the shaft: half a turn reverses it
     for (int i = 0; i < joint_unknowns; ++i) registry.reverse(joint(teeter) + i);
   describe_energies(registry);
+  for (std::size_t k = 0; k < roots_.size(); ++k)
+    roots_[k].describe(registry, setting_.blades[k]->placed().root, hub_port_, load_port_,
+                       setting_.blades[k]->placed().root_port);
   connect();
 }
 
@@ -205,7 +209,9 @@ bool RigidBodies::is_conservative() const {
   if (hub_moves() && torque_varies) return false;
   const elements::TorqueLine& torque = chain.generator_torque;
   if (chain.generator.free && (torque.slope != 0.0 || !torque.table.empty())) return false;
-  return chain.brake_torque == 0.0;
+  return chain.brake_torque == 0.0 &&
+         std::all_of(roots_.begin(), roots_.end(),
+                     [](const BladeRoot& root) { return root.is_conservative(); });
 }
 
 bool RigidBodies::axis_moves() const {

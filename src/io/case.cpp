@@ -269,6 +269,65 @@ void read_hub(const YamlNode& node, model::HubDefinition& hub, ErrorList& errors
   map.finish();
 }
 
+constexpr std::array<std::pair<const char*, model::HingeAxis>, 3> hinge_axes{
+    {{"flap", model::HingeAxis::flap},
+     {"lag", model::HingeAxis::lag},
+     {"pitch", model::HingeAxis::pitch}}};
+
+/// Spring and damper of the hinges of one blade where they are others than those of all.
+void read_hinge_differences(const YamlNode& node, const std::string& where,
+                            const model::BladesDefinition& blades,
+                            model::BladeDifference& difference, ErrorList& errors) {
+  MapReader map(node, where, errors);
+  for (const auto& [word, axis] : hinge_axes) {
+    const YamlNode* entry = map.find(word);
+    if (entry == nullptr) continue;
+    const auto found = std::ranges::find(blades.hinges, axis, &model::HingeDefinition::axis);
+    if (found == blades.hinges.end() || found->joint.kind != JointKind::free)
+      map.refuse(*entry, word, "no free hinge of blades.hinges");
+    MapReader hinge(*entry, map.where(word), errors);
+    model::HingeDifference& own = difference.hinges[axis];
+    double value = 0.0;
+    if (hinge.read("stiffness", value, non_negative)) own.stiffness = value;
+    if (hinge.read("damping", value, non_negative)) own.damping = value;
+    hinge.finish();
+  }
+  map.finish();
+}
+
+/// From the hub outward.
+void read_hinges(MapReader& map, const YamlNode& list, model::BladesDefinition& blades) {
+  if (list.kind != YamlNode::Kind::list) {
+    map.refuse(list, "hinges",
+               "expected a list of hinges, from the hub outward, " + describe(list));
+    return;
+  }
+  for (std::size_t i = 0; i < list.children.size(); ++i) {
+    const std::string place = "hinges[" + std::to_string(i) + "]";
+    MapReader hinge(list.children[i], map.where(place), map.errors());
+    model::HingeDefinition definition;
+    hinge.require("axis", "flap, lag or pitch");
+    hinge.require("joint", "free, locked or prescribed");
+    hinge.read("axis", definition.axis,
+               {{"flap", model::HingeAxis::flap},
+                {"lag", model::HingeAxis::lag},
+                {"pitch", model::HingeAxis::pitch}});
+    hinge.read("offset", definition.offset, non_negative);
+    read_joint(hinge, definition.joint);
+    const YamlNode* delta3 = hinge.node().find("delta3_deg");
+    read_angle(hinge, "delta3_deg", definition.delta3, quarter_turn);
+    if (delta3 != nullptr && definition.axis != model::HingeAxis::flap)
+      hinge.refuse(*delta3, "delta3_deg", "only the axis of a flap hinge is skewed");
+    if (const YamlNode* wave = hinge.node().find("harmonic"))
+      hinge.refuse(*wave, "harmonic", "a hinge is prescribed at a constant angle_deg");
+    if (std::ranges::find(blades.hinges, definition.axis, &model::HingeDefinition::axis) !=
+        blades.hinges.end())
+      hinge.refuse(list.children[i], "axis", "given twice; each axis has one hinge at the most");
+    hinge.finish();
+    blades.hinges.push_back(definition);
+  }
+}
+
 void read_each(const YamlNode& node, const std::string& where, model::BladesDefinition& blades,
                ErrorList& errors) {
   MapReader map(node, where, errors);
@@ -281,6 +340,8 @@ void read_each(const YamlNode& node, const std::string& where, model::BladesDefi
     read_angle(blade, "pitch_deg", difference.pitch, half_turn);
     blade.read("mass_factor", difference.mass_factor, positive);
     blade.read("stiffness_factor", difference.stiffness_factor, positive);
+    if (const YamlNode* hinges = blade.find("hinges"))
+      read_hinge_differences(*hinges, blade.where("hinges"), blades, difference, errors);
     blade.finish();
   }
   if (node.kind != YamlNode::Kind::map) return;
@@ -303,6 +364,14 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   read_angle(map, "pitch_deg", blades.pitch, half_turn);
   read_beam(map, Matrix3::Identity(), blade_ratios, blades.beam);
   read_support(map, "end_support", false, blades.beam.end_support);
+  if (const YamlNode* entry = map.find("hinges")) read_hinges(map, *entry, blades);
+  if (const YamlNode* entry = map.find("pitch_link_delta3_deg")) {
+    read_angle(map, "pitch_link_delta3_deg", blades.pitch_link, quarter_turn);
+    const auto flap =
+        std::ranges::find(blades.hinges, model::HingeAxis::flap, &model::HingeDefinition::axis);
+    if (flap == blades.hinges.end() || flap->joint.kind != JointKind::free)
+      map.refuse(*entry, "pitch_link_delta3_deg", "blades.hinges has no free flap hinge");
+  }
   if (const YamlNode* entry = map.find("each")) {
     read_each(*entry, map.where("each"), blades, errors);
   }
@@ -478,6 +547,21 @@ void check_teeter(const YamlNode& root, const model::TurbineDefinition& turbine,
                  std::to_string(turbine.blades.count) + "; use joint: locked, or leave teeter out");
 }
 
+/// The hinges stand between the shaft axis and the root.
+void check_hinges(const YamlNode& root, const model::TurbineDefinition& turbine,
+                  ErrorList& errors) {
+  const YamlNode* blades = root.find("blades");
+  const YamlNode* hinges = blades == nullptr ? nullptr : blades->find("hinges");
+  if (hinges == nullptr) return;
+  double along = 0.0;
+  for (const model::HingeDefinition& hinge : turbine.blades.hinges) along += hinge.offset;
+  if (along <= turbine.hub.radius) return;
+  std::ostringstream text;
+  text << "the offsets add to " << along << " m, beyond the root at hub.radius, "
+       << turbine.hub.radius << " m";
+  errors.add(hinges->place, "blades.hinges", text.str());
+}
+
 void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   model::TurbineDefinition& turbine = result.turbine;
   MapReader map(root, "", errors);
@@ -507,6 +591,7 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("linearize"))
     read_linearize(*node, turbine, result.linearize, errors);
   map.finish();
+  check_hinges(root, turbine, errors);
   check_teeter(root, turbine, errors);
   if (turbine.shaft.speed == 0.0) return;
   int& least = result.trim.least_harmonics;

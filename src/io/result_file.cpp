@@ -65,7 +65,7 @@ double per_rev(const Mode& mode, double rotor_speed) { return mode.exponent.imag
 double hertz(const Mode& mode) { return mode.exponent.imag() / (2.0 * std::numbers::pi); }
 
 /// Whether the frequency in the fixed frame is another than that in the rotor's, and known.
-bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.blades > 2; }
+bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.instances > 2; }
 
 double fixed_frame_hertz(const Mode& mode) {
   return mode.fixed_frame_frequency / (2.0 * std::numbers::pi);

@@ -72,4 +72,10 @@ analysis::Trim read_result_trim(const std::string& path) {
   return trim;
 }
 
+void place_held(const system::PeriodicSystem& system, std::vector<analysis::HeldCoordinate>& held) {
+  for (analysis::HeldCoordinate& one : held)
+    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates())
+      if (neutral.name == one.name) one.unknown = neutral.unknown;
+}
+
 }  // namespace samara::io

@@ -189,7 +189,8 @@ class Linearizer {
   void add_average() {
     if (has_period_ && !result_.is_constant)
       observer_.note(
-          "note: the average of rotating coordinates loses what couples tower and blades; hint: "
+          "note: the average of rotating coordinates loses what couples the blades to what stands; "
+          "hint: "
           "linearize.forms with multiblade and average for three and more blades, with hill or "
           "lyapunov_floquet for less");
     result_.forms.push_back(average_of(periodic_));

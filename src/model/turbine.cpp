@@ -92,16 +92,56 @@ elements::RigidBody tower_top_of(const Matrix6& mass) {
 BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   const double azimuth = 2.0 * std::numbers::pi * k / blades.count;
   const auto found = blades.each.find(k + 1);
-  const double pitch = blades.pitch + (found == blades.each.end() ? 0.0 : found->second.pitch);
+  const BladeDifference own = found == blades.each.end() ? BladeDifference{} : found->second;
+  BladeRoot root;
+  root.pitch = blades.pitch + own.pitch;
   Matrix3 upright;  // columns b1 b2 b3 = h3 h1 h2
   upright << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   const Matrix3 turned = math::turn_about<double>(Vector3::UnitY(), azimuth) * upright;
   const Matrix3 cone = math::turn_about<double>(-Vector3::UnitY(), blades.precone);
-  const Matrix3 feather = math::turn_about<double>(-Vector3::UnitX(), pitch);
-  BladeRoot root;
-  root.C_Ha = turned * cone * feather;
-  root.position = radius * root.C_Ha.col(0);
-  root.pitch = pitch;
+  const Matrix3 feather = math::turn_about<double>(-Vector3::UnitX(), root.pitch);
+  double along = 0.0;
+  bool is_pitched = false;
+  // The first link has the axes of the cone in its own, and its arm in H.
+  const auto add_link = [&](double offset, RootLink link) {
+    const Matrix3 before = root.links.empty() ? Matrix3(turned * cone) : Matrix3::Identity();
+    link.arm = offset * before.col(0);
+    link.axes = before * link.axes;
+    root.links.push_back(link);
+    along += offset;
+  };
+  for (const HingeDefinition& hinge : blades.hinges) {
+    RootLink link;
+    if (hinge.axis == HingeAxis::flap)
+      link.axis = Vector3(std::sin(hinge.delta3), -std::cos(hinge.delta3), 0.0);
+    if (hinge.axis == HingeAxis::lag) link.axis = -Vector3::UnitZ();
+    if (hinge.axis == HingeAxis::pitch) {
+      link.axes = feather;
+      link.is_pitch = is_pitched = true;
+    }
+    if (hinge.joint.kind == JointKind::prescribed)
+      link.axes *= math::turn_about<double>(link.axis, hinge.joint.motion.angle);
+    if (hinge.joint.kind == JointKind::free) {
+      link.hinge = static_cast<int>(root.hinges.size());
+      if (hinge.axis == HingeAxis::flap) root.flap_hinge = link.hinge;
+      RootHinge free{hinge.axis, hinge.joint.stiffness, hinge.joint.damping};
+      if (const auto other = own.hinges.find(hinge.axis); other != own.hinges.end()) {
+        free.stiffness = other->second.stiffness.value_or(free.stiffness);
+        free.damping = other->second.damping.value_or(free.damping);
+      }
+      root.hinges.push_back(free);
+    }
+    add_link(hinge.offset, link);
+  }
+  RootLink last;
+  if (!is_pitched) last.axes = feather;
+  last.is_pitch = !is_pitched;
+  add_link(radius - along, last);
+  if (root.flap_hinge >= 0) root.pitch_by_flap = -std::tan(blades.pitch_link);
+  for (const RootLink& link : root.links) {
+    root.position += root.C_Ha * link.arm;
+    root.C_Ha = (root.C_Ha * link.axes).eval();
+  }
   return root;
 }
 
@@ -136,7 +176,7 @@ void add_loads(const TurbineDefinition& definition, Turbine& turbine) {
 }
 
 bool differs(const BladeDifference& d) {
-  return d.pitch != 0.0 || d.mass_factor != 1.0 || d.stiffness_factor != 1.0;
+  return d.pitch != 0.0 || d.mass_factor != 1.0 || d.stiffness_factor != 1.0 || !d.hinges.empty();
 }
 
 }  // namespace
@@ -169,6 +209,8 @@ Turbine build_turbine(const TurbineDefinition& definition) {
   const elements::RigidChain& chain = turbine.chain;
   for (const elements::Hinge* hinge : {&chain.yaw, &chain.teeter, &chain.torsion, &chain.generator})
     if (hinge->free) ++turbine.degrees_of_freedom;
+  for (const BladeRoot& root : turbine.roots)
+    turbine.degrees_of_freedom += static_cast<int>(root.hinges.size());
   return turbine;
 }
 

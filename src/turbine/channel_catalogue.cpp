@@ -86,6 +86,14 @@ void ChannelCatalogue::add_blade(int k) {
   const std::string pitched = "blade " + n + ", coned and pitched";
   const std::string tip = "blade " + n + ", section at the tip";
   add("BldPitch" + n + " PtchPMzc" + n, "deg", pitched, "pitch", first + blade_pitch, to_degrees);
+  for (const model::RootHinge& hinge : turbine_.roots[static_cast<std::size_t>(k)].hinges) {
+    const char* names[] = {"FlapHinge", "LagHinge", "PitchHinge"};
+    const char* ways[] = {"downwind", "against the turning", "toward feather"};
+    const auto axis = static_cast<std::size_t>(hinge.axis);
+    add(names[axis] + n, "deg", "blade " + n + ", root",
+        std::string(components::hinge_name(hinge.axis)) + " angle, " + ways[axis],
+        first + hinge_angles + static_cast<int>(axis), to_degrees);
+  }
   add("TipDxc" + n + " OoPDefl" + n, "m", coned, "tip deflection, out of plane", first + coned_tip,
       1.0);
   add("TipDyc" + n + " IPDefl" + n, "m", coned, "tip deflection, in plane", first + coned_tip + 1,

@@ -23,7 +23,8 @@ inline constexpr int pitched_tip = 15;
 inline constexpr int tip_turn = 18;          // rotation vector of the tip, pitched axes
 inline constexpr int tip_acceleration = 21;  // in the axes of the tip's section
 inline constexpr int blade_pitch = 24;
-inline constexpr int blade_slots = 25;
+inline constexpr int hinge_angles = 25;  // flap, lag, pitch
+inline constexpr int blade_slots = 28;
 // Of the whole:
 inline constexpr int base_force = 0;  // tower base
 inline constexpr int base_moment = 3;

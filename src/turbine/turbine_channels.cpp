@@ -196,6 +196,10 @@ class Quantities {
     const Vec3<T> force = root.template head<3>();
     const Vec3<T> moment = root.template tail<3>();
     put(first + blade_pitch, pitch);
+    const std::vector<model::RootHinge>& hinges = turbine_.roots[number].hinges;
+    for (std::size_t i = 0; i < hinges.size(); ++i)
+      put(first + hinge_angles + static_cast<int>(hinges[i].axis),
+          z[static_cast<std::size_t>(layout_.hinge(k, static_cast<int>(i)))]);
     put(first + root_force, along_beam<T>(force));
     put(first + root_moment, along_beam<T>(moment));
     put(first + coned_force, along_beam<T>(to_cone * force));

@@ -31,7 +31,7 @@ BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
   blade.shared_rank = shared_rank;
   blade.speed = turbine.speed;
   blade.root_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free ||
-                     chain.torsion.free || chain.generator.free;
+                     chain.torsion.free || chain.generator.free || !turbine.roots[k].hinges.empty();
   return blade;
 }
 
@@ -57,8 +57,8 @@ TurbineEquations::TurbineEquations(const model::Turbine& turbine,
                                    const components::TangentPlan* at_least)
     : turbine_(turbine) {
   make_components();
-  place();
-  describe();
+  components::Registry registry = place();
+  describe(registry);
   components::Pattern pattern(layout_.size(), declarations_.port_sizes);
   pattern.add(padding_);
   for (const components::Component* component : components_) component->add_to(pattern);
@@ -84,23 +84,27 @@ void TurbineEquations::make_components() {
   for (const auto& beam : beams_) components_.push_back(beam.get());
 }
 
-void TurbineEquations::place() {
+components::Registry TurbineEquations::place() {
   components::Registry counted;
   for (components::Component* component : components_) component->place(counted);
-  registry_ = components::Registry::placing(counted);
-  for (components::Component* component : components_) component->place(registry_);
+  components::Registry registry = components::Registry::placing(counted);
+  for (components::Component* component : components_) component->place(registry);
+  return registry;
 }
 
-void TurbineEquations::describe() {
-  for (const auto& beam : beams_) beam->describe(registry_);
-  bodies_->describe(registry_);
-  declarations_ = registry_.finish();
+void TurbineEquations::describe(components::Registry& registry) {
+  for (const auto& beam : beams_) beam->describe(registry);
+  bodies_->describe(registry);
+  declarations_ = registry.finish();
   const int blades = static_cast<int>(turbine_.blades.size());
   const std::string fault = blades < 2 ? "" : find_symmetry_fault(turbine_);
-  symmetry_ = registry_.symmetry(fault.empty() ? std::max(blades, 1) : 1);
+  symmetry_ = registry.symmetry(fault.empty() ? std::max(blades, 1) : 1);
   symmetry_.broken_by = fault;
   for (const auto& beam : beams_) layout_.beams_.push_back(beam->placed());
+  layout_.has_tower_ = turbine_.has_tower;
   layout_.joints_ = bodies_->joints();
+  for (const components::BladeRoot& root : bodies_->roots())
+    layout_.hinges_.push_back(root.first());
   layout_.size_ = static_cast<int>(declarations_.unknowns.size());
   layout_.padding_ = declarations_.padding;
   for (const int i : layout_.padding()) padding_.push_back({i, i, 1, 1.0});

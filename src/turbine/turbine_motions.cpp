@@ -59,6 +59,7 @@ struct Twist {
   Vector3c rotation = Vector3c::Zero();
 
   Twist at(const Vector3& arm) const { return {translation - cross(arm, rotation), rotation}; }
+  Twist operator*(const Complex& size) const { return {translation * size, rotation * size}; }
   Twist operator+(const Twist& other) const {
     return {translation + other.translation, rotation + other.rotation};
   }
@@ -78,6 +79,11 @@ struct Momentum {
     linear += other.linear;
     angular += other.angular;
     return *this;
+  }
+  /// Along a real twist of the same point.
+  Complex along(const Twist& twist) const {
+    return twist.translation.cwiseProduct(linear).sum() +
+           twist.rotation.cwiseProduct(angular).sum();
   }
 };
 
@@ -156,6 +162,13 @@ struct SteadyBeam {
   Vector3 tip = Vector3::Zero();  ///< displaced
 };
 
+/// A free hinge of a blade's root in its steady state.
+struct SteadyHinge {
+  int angle = 0;   ///< unknown
+  int motion = 0;  ///< of root_directions
+  Twist twist;     ///< of the root's place, by the angle
+};
+
 SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const Matrix3& C,
                  const Eigen::VectorXd& steady) {
   const model::Beam& beam = *where.beam;
@@ -222,8 +235,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     hub_ = mass_of(pin_, C, chain_.hub);
     const Vector3 apex = pin_ + chain_.undersling * C.col(1);
     for (std::size_t k = 0; k < turbine.blades.size(); ++k)
-      blades_.push_back(place(layout.beams()[k], apex + C * turbine.roots[k].position,
-                              C * turbine.roots[k].C_Ha, steady));
+      place_blade(turbine, k, apex, C, steady);
   }
 
   Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
@@ -244,10 +256,17 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     const Twist hub{shaft.at(pin_ - bearing_).translation, shaft.rotation + teeter_axis_ * q_h};
     // Inward: momenta of all that a joint carries, about a point of its axis.
     Momentum carried = hub_.momentum_of(hub);
-    for (std::size_t k = 0; k < blades_.size(); ++k)
-      carried += momentum_of(blades_[k], hub.at(blades_[k].root - pin_), blade_directions,
-                             root_directions, Numbering::blade(k), {}, z_dot, z, energies)
-                     .from(blades_[k].root - pin_);
+    for (std::size_t k = 0; k < blades_.size(); ++k) {
+      const SteadyBeam& blade = blades_[k];
+      Twist base = hub.at(blade.root - pin_);
+      for (const SteadyHinge& hinge : hinges_[k]) base = base + hinge.twist * z(hinge.angle);
+      const Momentum momentum = momentum_of(blade, base, blade_directions, root_directions,
+                                            Numbering::blade(k), {}, z_dot, z, energies);
+      for (const SteadyHinge& hinge : hinges_[k])
+        energies(Numbering::blade(k) + motions_a_beam + hinge.motion) +=
+            half_product(z_dot(hinge.angle), momentum.along(hinge.twist));
+      carried += momentum.from(blade.root - pin_);
+    }
     add_joint(teeter, layout_.teeter(), sum(teeter_axis_, carried.angular));
     carried = carried.from(pin_ - bearing_);
     carried += shaft_.momentum_of(shaft);
@@ -269,6 +288,65 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
  private:
   static Complex sum(const Vector3& axis, const Vector3c& vector) {
     return axis.cast<Complex>().cwiseProduct(vector).sum();
+  }
+
+  /// A blade behind its hinges, at the apex of a hub with the axes C.
+  void place_blade(const model::Turbine& turbine, std::size_t k, const Vector3& apex,
+                   const Matrix3& C, const Eigen::VectorXd& steady) {
+    const model::BladeRoot& root = turbine.roots[k];
+    const int blade = static_cast<int>(k);
+    const auto angle_of = [&](int hinge) { return steady(layout_.hinge(blade, hinge)); };
+    std::vector<SteadyHinge> hinges(root.hinges.size());
+    std::vector<Vector3> points(root.hinges.size());
+    Vector3 place_of_pitch = apex;
+    Vector3 pitch_axis = Vector3::Zero();
+    Vector3 at = apex;
+    Matrix3 axes = C;
+    for (const model::RootLink& link : root.links) {
+      at += axes * link.arm;
+      axes = (axes * link.axes).eval();
+      const Vector3 axis = axes * link.axis;
+      if (link.is_pitch) {
+        place_of_pitch = at;
+        pitch_axis = axis;
+      }
+      double angle = 0.0;
+      if (link.hinge >= 0) {
+        const auto i = static_cast<std::size_t>(link.hinge);
+        points[i] = at;
+        hinges[i] = {layout_.hinge(blade, link.hinge), motion_of(root.hinges[i].axis), {}};
+        hinges[i].twist.rotation = axis.cast<Complex>();
+        angle += angle_of(link.hinge);
+      }
+      if (link.is_pitch && root.flap_hinge >= 0)
+        angle += root.pitch_by_flap * angle_of(root.flap_hinge);
+      axes = (axes * math::turn_about<double>(link.axis, angle)).eval();
+    }
+    // Twists of the root's place: a hinge turns it about its point, the pitch link about the
+    // pitch's.
+    for (std::size_t i = 0; i < hinges.size(); ++i)
+      hinges[i].twist = hinges[i].twist.at(at - points[i]);
+    if (root.flap_hinge >= 0 && root.pitch_by_flap != 0.0) {
+      Twist linked;
+      linked.rotation = pitch_axis.cast<Complex>();
+      Twist& flap = hinges[static_cast<std::size_t>(root.flap_hinge)].twist;
+      flap = flap + linked.at(at - place_of_pitch) * root.pitch_by_flap;
+    }
+    hinges_.push_back(hinges);
+    blades_.push_back(place(layout_.beams()[k], at, axes, steady));
+  }
+
+  /// Number of a hinge's motion among root_directions.
+  static int motion_of(model::HingeAxis axis) {
+    switch (axis) {
+      case model::HingeAxis::pitch:
+        return 1;
+      case model::HingeAxis::flap:
+        return 2;
+      case model::HingeAxis::lag:
+        break;
+    }
+    return 3;
   }
 
   /// C becomes that of the tower top: ground components of t1 t2 t3.
@@ -322,6 +400,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
   bool has_tower_;
   SteadyBeam tower_;
   std::vector<SteadyBeam> blades_;
+  std::vector<std::vector<SteadyHinge>> hinges_;  ///< of each blade
   Mass nacelle_, shaft_, hub_;
   Vector3 top_ = Vector3::Zero();
   Vector3 bearing_ = Vector3::Zero();
@@ -366,6 +445,12 @@ std::vector<system::Motion> motions_of(const model::Turbine& turbine, const Turb
     for (int i = 0; i < motions_a_beam; ++i) {
       system::Motion motion{{system::PartKind::support, "blade", blade + 1},
                             root_directions.name(i)};
+      const model::BladeRoot& root = turbine.roots[k];
+      for (std::size_t h = 0; h < root.hinges.size(); ++h) {
+        if (motion.direction != components::hinge_name(root.hinges[h].axis)) continue;
+        motion.unknowns.push_back(layout.hinge(blade, static_cast<int>(h)));
+        motion.weight.push_back(1.0);
+      }
       for (int j = 0; beam.has_support && j < 6; ++j) {
         if (root_directions.motion[static_cast<std::size_t>(j)] != i) continue;
         motion.unknowns.push_back(layout.blade_mass(blade, 0) + j);

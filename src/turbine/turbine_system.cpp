@@ -149,9 +149,6 @@ class TurbineSystem::Assembly {
   }
 };
 
-TurbineSystem::TurbineSystem(const model::Turbine& turbine, MPI_Comm comm)
-    : TurbineSystem(turbine, comm, nullptr) {}
-
 TurbineSystem::TurbineSystem(const model::Turbine& turbine, MPI_Comm comm,
                              const components::TangentPlan* at_least)
     : assembly_(std::make_unique<Assembly>(turbine, comm, at_least)) {}
@@ -330,8 +327,7 @@ std::unique_ptr<system::PeriodicSystem> TurbineSystem::unloaded() const {
   bare.chain.rotor_torque = {};
   bare.tower.loads.clear();
   for (model::Beam& blade : bare.blades) blade.loads.clear();
-  return std::unique_ptr<system::PeriodicSystem>(
-      new TurbineSystem(bare, comm(), assembly_->equations.plan().get()));
+  return std::make_unique<TurbineSystem>(bare, comm(), assembly_->equations.plan().get());
 }
 
 std::unique_ptr<system::PeriodicSystem> TurbineSystem::counted_from(Vec z) const {

@@ -489,6 +489,48 @@ class SofteningSpring final : public LoadedSpring {
   double range_;
 };
 
+/// A load on a spring and on a lag that pushes back: N = k w, N + g x = load, T x' + x + h x^3 = w.
+/// At rest load = k w + g x with w = x + h x^3.
+class LaggingSupport final : public SmallSystem {
+ public:
+  static constexpr double k = 2.0;
+  static constexpr double g = 30.0;
+  static constexpr double h = 1e4;
+
+  explicit LaggingSupport(double load) : load_(load) {
+    add("N", UnknownRole::internal, RowRole::constraint);
+    add("w", UnknownRole::position, RowRole::balance);
+    add_state("lag", "x");
+    unknowns_.back().scale = 1e-3;
+  }
+  Eigen::VectorXd residual_at(double, const Eigen::VectorXd& z,
+                              const Eigen::VectorXd& z_dot) const override {
+    return Eigen::Vector3d(z(0) - k * z(1), z(0) + g * z(2) - load_,
+                           0.5 * z_dot(2) + z(2) + h * z(2) * z(2) * z(2) - z(1));
+  }
+  void tangents_at(double, const Eigen::VectorXd& z, const Eigen::VectorXd&, Eigen::MatrixXd& K,
+                   Eigen::MatrixXd& M) const override {
+    K << 1.0, -k, 0.0, 1.0, 0.0, g, 0.0, -1.0, 1.0 + 3.0 * h * z(2) * z(2);
+    M(2, 2) = 0.5;
+  }
+  std::unique_ptr<system::PeriodicSystem> unloaded() const override {
+    return std::make_unique<LaggingSupport>(0.0);
+  }
+  /// x at rest under a load, by bisection.
+  static double state_under(double load) {
+    double low = 0.0;
+    double high = load / g;
+    for (int i = 0; i < 200; ++i) {
+      const double x = 0.5 * (low + high);
+      (k * (x + h * x * x * x) + g * x < load ? low : high) = x;
+    }
+    return low;
+  }
+
+ private:
+  double load_;
+};
+
 /// y' = g(t, y) from y at t = 0 over `span` by the classical Runge-Kutta rule in `steps` steps; y
 /// may be a vector or a matrix.
 template <class Y, class G>

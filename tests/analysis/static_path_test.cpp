@@ -77,6 +77,22 @@ BOOST_AUTO_TEST_CASE(factors_are_prescribed_from_0_to_1) {
   BOOST_TEST(path.load_level == 0.5 * limit_load);
 }
 
+BOOST_AUTO_TEST_CASE(states_stand_where_they_do_not_change) {
+  constexpr double load = 3.0;
+  const test::LaggingSupport system(load);
+  for (const StaticMethod method : {StaticMethod::load, StaticMethod::arc_length}) {
+    const StaticPath path = follow(system, {method, 4, 1e-9, 1000});
+    BOOST_TEST(path.states.back().factor == 1.0);
+    for (const analysis::StaticState& state : path.states) {
+      const double x = test::LaggingSupport::state_under(state.factor * load);
+      const double w = x + test::LaggingSupport::h * x * x * x;
+      BOOST_TEST(std::abs(state.z(2) - x) < 1e-9 * std::max(x, 1e-3));
+      BOOST_TEST(std::abs(state.z(1) - w) < 1e-9 * std::max(w, 1e-3));
+      BOOST_TEST(std::abs(state.z(0) - test::LaggingSupport::k * w) < 1e-9);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(arc_length_passes_both_limit_points_to_the_far_branch) {
   const test::ShallowTruss truss(1.0);
   for (const int steps : {5, 10, 40}) {

@@ -6,6 +6,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/linear/linear_model.hpp"
+#include "samara/linear/lyapunov_floquet.hpp"
 #include "samara/linear/multiblade.hpp"
 
 #include "../analysis/first_order_systems.hpp"
@@ -94,6 +95,22 @@ BOOST_AUTO_TEST_CASE(state_space_answers_as_the_equations_do) {
                    "row " << row << " of " << system->unknowns()[0].name() << ", s = " << s);
       }
     }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_periodic_lag_has_a_constant_form) {
+  // x' = (-1 + 2 cos t) x: in Lyapunov-Floquet coordinates its exponent is -1.
+  const PeriodicLag system;
+  const analysis::PeriodicSolution solution = rest(system);
+  const OneRow input_output(system, 0);
+  const linear::LinearModel model(system, input_output, solution);
+  BOOST_TEST_REQUIRE(model.states().size() == 1U);
+  const linear::AzimuthSeries series([&](double psi) { return model.state_space(psi); }, 12, 2);
+  const linear::LyapunovFloquet floquet(series, 1.0, 16, 0);
+  for (const double psi : {0.0, 1.3, 4.0}) {
+    const Eigen::MatrixXd A = floquet.form(psi).A;
+    BOOST_TEST(A.rows() == 1);
+    BOOST_TEST(std::abs(A(0, 0) + 1.0) < 1e-7);
   }
 }
 

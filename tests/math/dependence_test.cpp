@@ -1,5 +1,7 @@
 #include "samara/math/dependence.hpp"
 
+#include <limits>
+
 #include <boost/test/unit_test.hpp>
 
 #include "samara/math/rotation.hpp"
@@ -20,7 +22,6 @@ BOOST_AUTO_TEST_CASE(sums_and_products_depend_on_all_that_is_in_them) {
     BOOST_TEST(!value.is_on(1));
   }
   BOOST_TEST((-a + 3.0).quantities() == a.quantities());
-  BOOST_TEST(a.shifted(5).quantities() == Dependence::on(5).quantities());
 }
 
 BOOST_AUTO_TEST_CASE(zero_takes_away_what_it_multiplies) {
@@ -35,7 +36,7 @@ BOOST_AUTO_TEST_CASE(zero_takes_away_what_it_multiplies) {
 }
 
 BOOST_AUTO_TEST_CASE(what_varies_is_no_zero) {
-  const Dependence varying = Dependence::varying();
+  const Dependence varying(std::numeric_limits<double>::quiet_NaN());
   BOOST_TEST(!varying.is_zero());
   BOOST_TEST(!(varying - varying).is_zero());
   BOOST_TEST((varying * Dependence::on(1)).is_on(1));

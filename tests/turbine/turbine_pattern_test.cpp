@@ -105,6 +105,24 @@ model::TurbineDefinition random_turbine(unsigned seed) {
   if (draw.one_in(3)) d.shaft.rotor = {5.0, 0.0, {{0.0, 1.0}, {2.0, 1.0}, {6.0, 9.0}}};
   if (draw.one_in(3))
     d.shaft.generator = {model::JointKind::free, draw.some(1.5), {6.0, draw.some(4.0), {}}};
+  if (draw.one_in(3)) d.shaft.torsion = {model::JointKind::free, 900.0, draw.some(7.0), {}};
+  if (draw.one_in(3)) d.shaft.gear_ratio = -3.7;
+  if (draw.one_in(3)) {
+    for (const model::HingeAxis axis :
+         {model::HingeAxis::flap, model::HingeAxis::pitch, model::HingeAxis::lag})
+      if (!draw.one_in(4)) {
+        model::HingeDefinition hinge;
+        hinge.axis = axis;
+        hinge.offset = draw.one_in(2) ? 0.0 : 0.2 * d.hub.radius;
+        hinge.joint = {draw.one_in(5) ? model::JointKind::locked : model::JointKind::free,
+                       draw.some(60.0),
+                       draw.some(2.0),
+                       {}};
+        if (axis == model::HingeAxis::flap) hinge.delta3 = draw.some(0.3);
+        d.blades.hinges.push_back(hinge);
+      }
+    d.blades.pitch_link = draw.some(0.4);
+  }
   vary(d.tower, draw, false);
   vary(d.blades.beam, draw, true);
   if (draw.one_in(2)) {
@@ -126,6 +144,9 @@ void operate(model::Turbine& turbine, Draw& draw) {
   if (draw.one_in(4)) turbine.operation.pitch.assign(turbine.blades.size(), curve);
   if (draw.one_in(4) && !turbine.chain.yaw.free) turbine.operation.yaw = curve;
   if (draw.one_in(4) && !turbine.chain.teeter.free) turbine.operation.teeter = curve;
+  if (draw.one_in(4) && !turbine.chain.generator.free)
+    turbine.operation.turning = math::IntegratedCurve(curve, 2.0);
+  if (draw.one_in(3) && turbine.chain.generator.free) turbine.chain.brake_torque = 4.0;
 }
 
 Places to_places(const std::vector<std::vector<PetscInt>>& rows) {
@@ -200,6 +221,8 @@ std::pair<double, double> check_pattern(const turbine::TurbineSystem& system) {
   BOOST_TEST(find_outside(found.K, declared, system) == "");
   BOOST_TEST(find_outside(found.M, mass, system) == "");
   BOOST_TEST(find_outside(mass, declared, system) == "");
+  // A derivative whose place is not declared is missing in the tangents.
+  BOOST_TEST(sample::tangent_error(system, 1.7, sample::random_state(system, 11)) < 1e-11);
   std::vector<bool> has_rate(static_cast<std::size_t>(system.size()), false);
   for (const auto& [i, j] : found.M) has_rate[static_cast<std::size_t>(j)] = true;
   for (std::size_t i = 0; i < has_rate.size(); ++i)

@@ -317,7 +317,7 @@ double symmetry_error(const turbine::TurbineSystem& system, const system::RotorS
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(turbine_residual)
+BOOST_AUTO_TEST_SUITE(residuals_of_turbines)
 
 BOOST_AUTO_TEST_CASE(residual_is_the_sum_over_points_nodes_and_bodies) {
   for (const sample::Choice& choice : sample::choices()) {
@@ -391,7 +391,7 @@ BOOST_AUTO_TEST_CASE(residual_depends_on_time_by_the_azimuth_alone) {
 
 BOOST_AUTO_TEST_SUITE_END()
 
-BOOST_AUTO_TEST_SUITE(turbine_tangents)
+BOOST_AUTO_TEST_SUITE(tangents_of_turbines)
 
 BOOST_AUTO_TEST_CASE(K_and_M_are_the_complex_step_of_the_whole_turbine) {
   for (const sample::Choice& choice : sample::choices()) {

@@ -11,8 +11,8 @@
 
 namespace samara::analysis {
 
-/// Blades of which there are motions.
-int blades_of(const std::vector<system::Motion>& motions);
+/// Of several parts alike, the blades, of which there are motions.
+int count_instances(const std::vector<system::Motion>& motions);
 
 /// The motion that a mode is named after: that with most kinetic and strain energy.
 struct LeadingMotion {

@@ -63,7 +63,7 @@ inline double logarithmic_decrement(const Mode& mode) {
 struct ModeSet {
   std::vector<Mode> modes;  ///< in the order of arrange_modes (identification.hpp)
   int degrees_of_freedom = 0;
-  int blades = 0;
+  int instances = 0;          ///< of several parts alike: the blades; 0 where there are none
   double rotor_speed = 0.0;   ///< Omega [rad/s]
   double step = 0.0;          ///< of time [s], of the integration; 0: nothing was integrated
   bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*

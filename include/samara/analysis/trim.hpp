@@ -16,7 +16,8 @@ namespace samara::analysis {
 struct HeldCoordinate {
   std::string name;
   std::string unit;
-  double load = 0.0;  ///< constant load that holds the mean; not small: no equilibrium there
+  double load = 0.0;      ///< constant load that holds the mean; not small: no equilibrium there
+  PetscInt unknown = -1;  ///< of the system; -1: of none
 };
 
 /// Adds these loads to a residual.

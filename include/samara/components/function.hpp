@@ -5,6 +5,11 @@
 
 #include <vector>
 
+#include "samara/base/error.hpp"
+#include "samara/math/rotation.hpp"
+#include "samara/math/scalar.hpp"
+#include "samara/math/types.hpp"
+
 namespace samara::components {
 
 /// Consecutive arguments of a function.
@@ -56,6 +61,16 @@ struct Connections {
   std::vector<Share> shares;
   std::vector<Provision> provisions;
 };
+
+/// @throws DomainError where three rotation parameters are beyond 170 degrees, with the words of
+/// `place()`
+template <class T, class Place>
+void require_rotation(const T* parameters, const Place& place) {
+  Vector3 theta;
+  for (int i = 0; i < 3; ++i) theta(i) = math::plain_value(parameters[i]);
+  if (!(theta.norm() < math::largest_rodrigues_length))
+    throw DomainError(place() + ": rotation beyond 170 degrees");
+}
 
 /// Whether tangents may be kept as long as the arguments are the same.
 enum class Memory {

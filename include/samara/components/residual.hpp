@@ -2,17 +2,12 @@
 // differentiate by a complex step.
 #pragma once
 
-#include <cmath>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "samara/base/error.hpp"
 #include "samara/components/function.hpp"
 #include "samara/components/inputs.hpp"
-#include "samara/math/rotation.hpp"
-#include "samara/math/scalar.hpp"
 
 namespace samara::components {
 
@@ -37,10 +32,7 @@ class Residual {
   /// @throws DomainError beyond 170 degrees, with the words of `place()`
   template <class Place>
   void require_rotation(int first, const Place& place) const {
-    double square = 0.0;
-    for (int i = 0; i < 3; ++i) square += std::pow(math::plain_value(z_[at(first + i)]), 2);
-    if (!(std::sqrt(square) < math::largest_rodrigues_length))
-      throw DomainError(place() + ": rotation beyond 170 degrees");
+    components::require_rotation(z_.data() + first, place);
   }
 
   void add(const std::vector<LinearShare>& shares) {

@@ -6,22 +6,12 @@
 #include <vector>
 
 #include "samara/components/beam.hpp"
+#include "samara/components/blade_root.hpp"
 #include "samara/components/component.hpp"
 #include "samara/elements/rigid_chain.hpp"
 #include "samara/model/turbine.hpp"
 
 namespace samara::components {
-
-/// How a blade's axes a have turned about -b1 from those that C_Ha states.
-template <class T>
-struct BladePitch {
-  bool moves = false;  ///< false: they have not, and do not
-  T angle = T(0);      ///< [rad]
-  T rate = T(0);       ///< [rad/s]
-
-  /// Components in the axes that C_Ha states from those in the turned ones.
-  Mat3<T> feather() const { return math::turn_about<T>(-Vector3::UnitX(), angle); }
-};
 
 /// What a turbine says of its bodies.
 struct BodiesSetting {
@@ -57,6 +47,7 @@ class RigidBodies final : public Stated<RigidBodies> {
 
   /// First of q_y, U1, q_h, U2, q_s, U_s, q_g, U_g.
   int joints() const { return joints_; }
+  const std::vector<BladeRoot>& roots() const { return roots_; }
 
   template <class System>
   void state(System& system) const;
@@ -80,10 +71,6 @@ class RigidBodies final : public Stated<RigidBodies> {
   bool hub_moves() const;
   void connect();
 
-  template <class System>
-  void state_loads(System& system) const;
-  template <class System>
-  void state_roots(System& system) const;
   /// theta, V, Omega of the tower top; the joints; V_dot, Omega_dot; rates of the joints; F_hat,
   /// M_hat of the tower top; load on the hub about the apex.
   static constexpr int chain_arguments = 43;
@@ -104,8 +91,6 @@ class RigidBodies final : public Stated<RigidBodies> {
                                        const Mat3<T>& C_top) const;
   template <class T, class System>
   Walk<T> walk(const System& system, const ChainArguments<T>& x) const;
-  template <class T, class System>
-  BladePitch<T> pitch_of(const System& system, std::size_t k) const;
 
   const model::Turbine& turbine_;
   BodiesSetting setting_;
@@ -115,8 +100,7 @@ class RigidBodies final : public Stated<RigidBodies> {
   elements::RigidTree tree_;
   Connections chain_;
   Connections foot_;
-  std::vector<Connections> loads_;  ///< of each blade
-  std::vector<Connections> roots_;  ///< of each blade
+  std::vector<BladeRoot> roots_;
 };
 
 extern template class Stated<RigidBodies>;

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "samara/base/error.hpp"
 #include "samara/components/block_matrix.hpp"
 #include "samara/components/function.hpp"
 #include "samara/components/pattern.hpp"
@@ -30,29 +31,33 @@ class Tangents {
   static constexpr bool has_inputs = false;  ///< they are zero
   double time() const { return t_; }
   static double varying(double value) { return value; }
+  /// @throws DomainError beyond 170 degrees, with the words of `place()`
   template <class Place>
-  static void require_rotation(int, const Place&) {}
+  void require_rotation(int first, const Place& place) const {
+    components::require_rotation(z_->data() + first, place);
+  }
 
   static void add(const std::vector<LinearShare>&) {}
 
   template <int n, int m, class Function>
   void add(const Connections& connections, const Function& function, Memory memory = Memory::none) {
-    const TangentPlan::Call& call = plan_->calls[next_];
+    const TangentPlan::Call& call = plan_->calls.at(next_);
     Derivatives& at = derivatives_[next_++];
+    if (call.arguments != n || call.values != m)
+      throw InternalError("functions are stated in another order than before");
     if (call.is_idle) return;
     gather(connections, n);
     if (memory == Memory::none ||
         !std::equal(at.x.begin(), at.x.end(), arguments_.begin(), arguments_.begin() + n)) {
       Eigen::Matrix<math::Dual<n>, n, 1> x;
-      for (int i = 0; i < n; ++i) {
-        at.x[static_cast<std::size_t>(i)] = arguments_[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n; ++i)
         x(i) = math::independent<n>(arguments_[static_cast<std::size_t>(i)], i);
-      }
       const Eigen::Matrix<math::Dual<n>, m, 1> y = function(x);
       for (int i = 0; i < m; ++i) {
         at.y(i) = y(i).value();
         at.J.row(i) = y(i).derivatives().transpose();
       }
+      std::copy_n(arguments_.begin(), n, at.x.begin());
     }
     scatter(connections, call, at);
   }

@@ -14,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+#include "samara/base/error.hpp"
 #include "samara/elements/joint_motion.hpp"
 #include "samara/math/rotation.hpp"
 #include "samara/math/scalar.hpp"
@@ -142,6 +143,10 @@ class RigidTree {
 
   /// Returns its number. Parents come first.
   int add(const TreeNode& node) {
+    const bool is_behind_round = node.parent >= 0 && this->node(node.parent).is_round;
+    if (size() == most_nodes || node.parent >= size() || (node.is_round && !node.body.is_none()) ||
+        (is_behind_round && node.axis != this->node(node.parent).axis))
+      throw InternalError("a joint does not fit in the tree of bodies");
     nodes_.push_back(node);
     return size() - 1;
   }

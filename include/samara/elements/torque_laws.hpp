@@ -1,8 +1,8 @@
 // Torques on joints and bodies that depend on speeds and angles.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "samara/elements/rigid_tree.hpp"
 #include "samara/elements/torque_line.hpp"

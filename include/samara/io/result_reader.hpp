@@ -26,4 +26,7 @@ Case read_result_case(const std::string& path);
 /// none
 analysis::Trim read_result_trim(const std::string& path);
 
+/// Finds the unknowns of held coordinates, of which a file has the names.
+void place_held(const system::PeriodicSystem& system, std::vector<analysis::HeldCoordinate>& held);
+
 }  // namespace samara::io

@@ -28,19 +28,10 @@ class Dependence {
     quantity.quantities_ = std::uint64_t{1} << index;
     return quantity;
   }
-  /// A value that depends on none of the quantities, but on others.
-  static Dependence varying() { return Dependence(any); }
-
   /// Bit `index` is set where the quantity may have a derivative.
   std::uint64_t quantities() const { return quantities_; }
   bool is_on(int index) const { return (quantities_ >> index & 1U) != 0; }
   bool is_zero() const { return value_ == 0.0; }
-  /// The same with the quantities counted from `index` on.
-  Dependence shifted(int index) const {
-    Dependence moved = *this;
-    moved.quantities_ <<= index;
-    return moved;
-  }
 
   Dependence& operator+=(const Dependence& b) { return take(b, value_ + b.value_); }
   Dependence& operator-=(const Dependence& b) { return take(b, value_ - b.value_); }

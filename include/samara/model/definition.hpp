@@ -174,17 +174,40 @@ struct HubDefinition {
   double delta3 = 0.0;      ///< teeter axis from h1 toward h3 [rad]
 };
 
+/// How a hinge turns what is outboard of it: flap downwind, lag against the rotor's turning, pitch
+/// toward feather.
+enum class HingeAxis { flap, lag, pitch };
+
+/// A hinge of a blade's root.
+struct HingeDefinition {
+  HingeAxis axis = HingeAxis::flap;
+  double offset = 0.0;  ///< along b1 from the shaft axis, or from the hinge inboard of it [m], >= 0
+  JointDefinition joint;  ///< a prescribed one has a constant angle
+  double delta3 = 0.0;    ///< of a flap hinge: its axis is turned so that flapping by beta pitches
+                        ///< the blade by -tan(delta3) beta where beta is small [rad]
+};
+
+/// What differs of a hinge on one blade.
+struct HingeDifference {
+  std::optional<double> stiffness;  ///< [N m/rad]
+  std::optional<double> damping;    ///< [N m s/rad]
+};
+
 /// What differs on one blade.
 struct BladeDifference {
   double pitch = 0.0;             ///< added to the pitch of all blades [rad]
   double mass_factor = 1.0;       ///< times the section masses, > 0
   double stiffness_factor = 1.0;  ///< times the section stiffnesses, > 0
+  std::map<HingeAxis, HingeDifference> hinges;
 };
 
 struct BladesDefinition {
   int count = 1;
   double precone = 0.0;  ///< > 0 moves the tips toward +s2 [rad]
-  double pitch = 0.0;    ///< > 0 toward feather [rad]
+  double pitch = 0.0;    ///< > 0 toward feather [rad], at a pitch hinge, or at the root
+  std::vector<HingeDefinition> hinges;  ///< from the hub outward, one of each axis at the most
+  /// Pitch by -tan(pitch_link) times the flap angle: the geometry of a pitch link [rad].
+  double pitch_link = 0.0;
   BeamDefinition beam;
   std::map<int, BladeDifference> each;  ///< by blade number from 1
 };

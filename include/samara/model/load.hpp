@@ -22,9 +22,6 @@ struct BeamLoad {
   Matrix3 tip_axes = Matrix3::Identity();  ///< C_ab of the tip, where the load is there
   int first_element = 0;
   std::vector<Eigen::MatrixXd> weights;  ///< 1 for a point load, [m] for a distributed one
-
-  /// Force and moment at time t [s].
-  Vector6 at(double t, double rotor_speed) const { return history.factor(t, rotor_speed) * load; }
 };
 
 /// Cuts a load on a beam that is cut already: the integrals over the elements are exact.

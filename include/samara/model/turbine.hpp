@@ -10,11 +10,31 @@
 
 namespace samara::model {
 
+/// A hinge of a blade's root that turns freely.
+struct RootHinge {
+  HingeAxis axis = HingeAxis::flap;
+  double stiffness = 0.0;  ///< [N m/rad]
+  double damping = 0.0;    ///< [N m s/rad]
+};
+
+/// A step from the apex of the rotor to the root of a blade.
+struct RootLink {
+  Vector3 arm = Vector3::Zero();       ///< to its point, in the axes before it [m]
+  Matrix3 axes = Matrix3::Identity();  ///< those behind it where it has not turned, as columns
+  Vector3 axis = -Vector3::UnitX();    ///< that it turns about, in the axes behind it
+  bool is_pitch = false;               ///< it turns as the blade is pitched
+  int hinge = -1;                      ///< and as this hinge does; -1: as none
+};
+
 /// Where a blade is fixed to the hub.
 struct BladeRoot {
-  Vector3 position = Vector3::Zero();  ///< from the apex, components in H [m]
-  Matrix3 C_Ha = Matrix3::Identity();  ///< blade axes a to hub axes
+  Vector3 position = Vector3::Zero();  ///< from the apex, components in H, no hinge turned [m]
+  Matrix3 C_Ha = Matrix3::Identity();  ///< blade axes a to hub axes, no hinge turned
   double pitch = 0.0;                  ///< of a about -b1 [rad]
+  std::vector<RootLink> links;         ///< from the apex outward
+  std::vector<RootHinge> hinges;
+  double pitch_by_flap = 0.0;  ///< rad/rad, of a pitch link
+  int flap_hinge = -1;         ///< among hinges; -1: none
 };
 
 struct Turbine {

@@ -54,6 +54,8 @@ struct Owner {
   Owner(PartKind kind_of_part, std::string part_name, int number = 0)
       : kind(kind_of_part), part(std::move(part_name)), instance(number) {}
   bool operator==(const Owner&) const = default;
+  /// Whether this is the same part, or one of several alike.
+  bool is_alike(const Owner& other) const { return kind == other.kind && part == other.part; }
   /// "blade 1", "tower"
   std::string name() const;
 };
@@ -74,6 +76,9 @@ struct Unknown {
   /// A position or a first-order state: what the error of a solution is measured by, each over its
   /// scale.
   bool is_coordinate() const { return role == UnknownRole::position || role == UnknownRole::state; }
+
+  /// Unit of the load that works on a position.
+  std::string load_unit() const { return unit == "rad" ? "N m" : "N"; }
 
   /// "blade 1 point 3 theta2"
   std::string name() const;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "samara/base/error.hpp"
 #include "samara/components/beam.hpp"
 #include "samara/components/inputs.hpp"
 #include "samara/components/rigid_bodies.hpp"
@@ -36,6 +37,8 @@ class TurbineLayout {
   /// u_hat, theta_hat, V_hat = (U8 U6 U7), Omega_hat = (U5 U3 U4), F_hat, M_hat of the tower top.
   int tower_tip() const { return tower().tip; }
   int tower_root() const { return tower().root; }
+  /// q of free hinge i of blade k, both from 0; U follows.
+  int hinge(int k, int i) const { return hinges_[static_cast<std::size_t>(k)] + 2 * i; }
   int joints() const { return joints_; }
   int yaw() const { return joints_; }                ///< q_y; U1 follows
   int teeter() const { return joints_ + 2; }         ///< q_h; U2 follows
@@ -50,9 +53,14 @@ class TurbineLayout {
  private:
   friend class TurbineEquations;
   const components::PlacedBeam& blade(int k) const { return beams_[static_cast<std::size_t>(k)]; }
-  const components::PlacedBeam& tower() const { return beams_.back(); }
+  const components::PlacedBeam& tower() const {
+    if (!has_tower_) throw InternalError("a turbine without a tower is asked for its place");
+    return beams_.back();
+  }
 
   std::vector<components::PlacedBeam> beams_;
+  std::vector<int> hinges_;  ///< of each blade
+  bool has_tower_ = false;
   int joints_ = 0;
   int size_ = 0;
   std::vector<int> padding_;
@@ -99,14 +107,13 @@ class TurbineEquations {
 
  private:
   void make_components();
-  void place();
-  void describe();
+  components::Registry place();
+  void describe(components::Registry& registry);
 
   model::Turbine turbine_;
   std::vector<std::unique_ptr<components::Beam>> beams_;  ///< of the blades, then of the tower
   std::unique_ptr<components::RigidBodies> bodies_;
   std::vector<components::Component*> components_;  ///< in the order of their equations
-  components::Registry registry_;
   components::Declarations declarations_;
   system::RotorSymmetry symmetry_;
   TurbineLayout layout_;

@@ -12,7 +12,9 @@ namespace samara::turbine {
 class TurbineSystem final : public system::PeriodicSystem {
  public:
   /// Assembles on any communicator: each rank holds a copy of the turbine and writes its own rows.
-  TurbineSystem(const model::Turbine& turbine, MPI_Comm comm);
+  /// `at_least`: blocks that its tangents have, whatever else; null: its own.
+  TurbineSystem(const model::Turbine& turbine, MPI_Comm comm,
+                const components::TangentPlan* at_least = nullptr);
   ~TurbineSystem() override;
 
   const model::Turbine& turbine() const;
@@ -48,10 +50,6 @@ class TurbineSystem final : public system::PeriodicSystem {
 
  private:
   class Assembly;
-  /// With the blocks of `at_least`, whatever else; null: its own.
-  TurbineSystem(const model::Turbine& turbine, MPI_Comm comm,
-                const components::TangentPlan* at_least);
-
   std::unique_ptr<Assembly> assembly_;
 };
 

@@ -1,0 +1,167 @@
+// The root of a blade on the hub: its pitch and its hinges, without mass of their own
+// (docs/theory.md, section 3.2). The motion of the root follows from the hub's, the load on the hub
+// from the root's; a free hinge has an angle q, its rate U and the balance of moments about its
+// axis.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/components/component.hpp"
+#include "samara/math/rotation.hpp"
+#include "samara/model/turbine.hpp"
+
+namespace samara::components {
+
+/// "flap hinge", "lag hinge", "pitch hinge"
+const char* hinge_name(model::HingeAxis axis);
+
+class BladeRoot {
+ public:
+  /// `k`: number of the blade from 0. The turbine must live on.
+  BladeRoot(const model::Turbine& turbine, std::size_t k);
+
+  void place(Registry& registry, int shared_rank);
+  /// `root`: first of the root's reactions; ports of the hub's motion, the load on it, and the
+  /// motion of the root.
+  void describe(Registry& registry, int root, int hub_port, int load_port, int root_port);
+  bool is_conservative() const;
+
+  /// First of q, U of each free hinge.
+  int first() const { return first_; }
+
+  /// The load on the hub, and the rows of the hinges.
+  template <class System>
+  void state_load(System& system) const;
+  /// The motion of the root.
+  template <class System>
+  void state_motion(System& system) const;
+
+ private:
+  static constexpr int most_hinges = 3;
+  static constexpr int load_arguments = 6 + 3 * most_hinges;    ///< root load; q, U, rate of q
+  static constexpr int load_values = 6 + 2 * most_hinges;       ///< load on the hub; rows
+  static constexpr int motion_arguments = 9 + 2 * most_hinges;  ///< of the hub; q, U
+
+  /// How the links turn.
+  template <class T>
+  struct Turn {
+    bool moves = false;
+    T angle = T(0);
+    T rate = T(0);
+  };
+  /// `hinges`: q, then U.
+  template <class T, class System, class Hinges>
+  Turn<T> turn_of(const System& system, const model::RootLink& link, const Hinges& hinges) const;
+
+  const model::BladeRoot& root() const { return turbine_.roots[k_]; }
+  std::vector<Argument> hinge_arguments(bool with_rates) const;
+
+  const model::Turbine& turbine_;
+  std::size_t k_;
+  int first_ = 0;
+  Connections load_;
+  Connections motion_;
+};
+
+/// By the turbine's operation, by inputs, by a hinge, and by a pitch link together.
+template <class T, class System, class Hinges>
+BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLink& link,
+                                      const Hinges& hinges) const {
+  Turn<T> turn;
+  const auto add = [&](int hinge, double ratio) {
+    turn.moves = true;
+    turn.angle += hinges(hinge) * ratio;
+    turn.rate += hinges(most_hinges + hinge) * ratio;
+  };
+  if (link.hinge >= 0) add(link.hinge, 1.0);
+  if (!link.is_pitch) return turn;
+  if (root().pitch_by_flap != 0.0) add(root().flap_hinge, root().pitch_by_flap);
+  if (!turbine_.operation.pitch.empty()) {
+    const math::TimeCurve::Value now = turbine_.pitch_at(k_, system.time());
+    turn.moves = true;
+    turn.angle += T(system.varying(now.value - root().pitch));
+    turn.rate += T(system.varying(now.rate));
+  }
+  if constexpr (System::has_inputs) {
+    const TurbineInputs<T>& inputs = system.inputs();
+    if (inputs.pitch.empty()) return turn;
+    turn.moves = true;
+    turn.angle += inputs.pitch[k_];
+    turn.rate += inputs.pitch_rate[k_];
+  }
+  return turn;
+}
+
+template <class System>
+void BladeRoot::state_load(System& system) const {
+  const auto rows_of = [&]<class T>(const Eigen::Matrix<T, load_arguments, 1>& x) {
+    const Eigen::Matrix<T, 2 * most_hinges, 1> hinges = x.template segment<2 * most_hinges>(6);
+    Vec3<T> force = x.template head<3>();
+    Vec3<T> moment = x.template segment<3>(3);
+    Eigen::Matrix<T, load_values, 1> y = Eigen::Matrix<T, load_values, 1>::Zero();
+    for (auto link = root().links.rbegin(); link != root().links.rend(); ++link) {
+      if (const Turn<T> turn = turn_of<T>(system, *link, hinges); turn.moves) {
+        const Vec3<T> axis = link->axis.template cast<T>();
+        const T torque = math::dot(axis, moment);
+        if (link->hinge >= 0) y(6 + link->hinge) += torque;
+        if (link->is_pitch && root().pitch_by_flap != 0.0)
+          y(6 + root().flap_hinge) += torque * root().pitch_by_flap;
+        const Mat3<T> turned = math::turn_about<T>(link->axis, turn.angle);
+        force = (turned * force).eval();
+        moment = (turned * moment).eval();
+      }
+      if (!link->axes.isIdentity(0.0)) {
+        const Mat3<T> axes = link->axes.template cast<T>();
+        force = (axes * force).eval();
+        moment = (axes * moment).eval();
+      }
+      if (!link->arm.isZero(0.0)) {
+        const Vec3<T> arm = link->arm.template cast<T>();
+        moment += math::cross(arm, force);
+      }
+    }
+    y.template head<3>() = force;
+    y.template segment<3>(3) = moment;
+    for (std::size_t i = 0; i < root().hinges.size(); ++i) {
+      const model::RootHinge& hinge = root().hinges[i];
+      const auto at = static_cast<Eigen::Index>(i);
+      y(6 + at) -= hinges(at) * hinge.stiffness + hinges(most_hinges + at) * hinge.damping;
+      y(6 + most_hinges + at) = x(6 + 2 * most_hinges + at) - hinges(most_hinges + at);
+    }
+    return y;
+  };
+  system.template add<load_arguments, load_values>(load_, rows_of);
+}
+
+template <class System>
+void BladeRoot::state_motion(System& system) const {
+  const auto motion_of = [&]<class T>(const Eigen::Matrix<T, motion_arguments, 1>& x) {
+    const Eigen::Matrix<T, 2 * most_hinges, 1> hinges = x.template tail<2 * most_hinges>();
+    Vec3<T> velocity = x.template head<3>();
+    Vec3<T> omega = x.template segment<3>(3);
+    Vec3<T> gravity = x.template segment<3>(6);
+    const auto turn_back = [&](const Mat3<T>& axes) {
+      for (Vec3<T>* vector : {&velocity, &omega, &gravity})
+        *vector = (axes.transpose() * *vector).eval();
+    };
+    for (const model::RootLink& link : root().links) {
+      if (!link.arm.isZero(0.0)) {
+        const Vec3<T> arm = link.arm.template cast<T>();
+        velocity += math::cross(omega, arm);
+      }
+      if (!link.axes.isIdentity(0.0)) turn_back(link.axes.template cast<T>());
+      if (const Turn<T> turn = turn_of<T>(system, link, hinges); turn.moves) {
+        turn_back(math::turn_about<T>(link.axis, turn.angle));
+        for (int i = 0; i < 3; ++i)
+          if (link.axis(i) != 0.0) omega(i) += turn.rate * link.axis(i);
+      }
+    }
+    Eigen::Matrix<T, 9, 1> motion;
+    motion << velocity, omega, gravity;
+    return motion;
+  };
+  system.template add<motion_arguments, 9>(motion_, motion_of);
+}
+
+}  // namespace samara::components

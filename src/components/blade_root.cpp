@@ -1,0 +1,85 @@
+#include "samara/components/blade_root.hpp"
+
+namespace samara::components {
+
+const char* hinge_name(model::HingeAxis axis) {
+  switch (axis) {
+    case model::HingeAxis::flap:
+      return "flap hinge";
+    case model::HingeAxis::lag:
+      return "lag hinge";
+    case model::HingeAxis::pitch:
+      break;
+  }
+  return "pitch hinge";
+}
+
+BladeRoot::BladeRoot(const model::Turbine& turbine, std::size_t k) : turbine_(turbine), k_(k) {}
+
+void BladeRoot::place(Registry& registry, int shared_rank) {
+  const int count = static_cast<int>(root().hinges.size());
+  if (count > 0) first_ = registry.add_shared(shared_rank, 2 * count);
+}
+
+/// Of q, U and, where wanted, the rates of q.
+std::vector<Argument> BladeRoot::hinge_arguments(bool with_rates) const {
+  std::vector<Argument> arguments;
+  const int count = static_cast<int>(root().hinges.size());
+  const auto add = [&](int offset, bool is_rate) {
+    for (int i = 0; i < count; ++i)
+      arguments.push_back(is_rate ? rates(first_ + 2 * i, 1)
+                                  : unknowns(first_ + 2 * i + offset, 1));
+    if (count < most_hinges) arguments.push_back(zeros(most_hinges - count));
+  };
+  add(0, false);
+  add(1, false);
+  if (with_rates) add(0, true);
+  return arguments;
+}
+
+void BladeRoot::describe(Registry& registry, int reactions, int hub_port, int load_port,
+                         int root_port) {
+  using system::Frame;
+  using system::PartKind;
+  const int number = static_cast<int>(k_) + 1;
+  load_.arguments = {unknowns(reactions, 6)};
+  motion_.arguments = {port_values(hub_port, 9)};
+  for (const Argument& argument : hinge_arguments(true)) load_.arguments.push_back(argument);
+  for (const Argument& argument : hinge_arguments(false)) motion_.arguments.push_back(argument);
+  load_.provisions = {{load_port, 0}};
+  motion_.provisions = {{root_port, 0}};
+  for (std::size_t i = 0; i < root().hinges.size(); ++i) {
+    const model::RootHinge& hinge = root().hinges[i];
+    const int local = static_cast<int>(i);
+    const int at = first_ + 2 * local;
+    const std::string name = hinge_name(hinge.axis);
+    const system::Owner owner(PartKind::joint, "blade", number);
+    registry.describe(at,
+                      {owner, name, "angle", "rad", system::UnknownRole::position, Frame::rotating},
+                      system::RowRole::kinematic);
+    registry.describe(
+        at + 1, {owner, name, "speed", "rad/s", system::UnknownRole::velocity, Frame::rotating},
+        system::RowRole::balance);
+    load_.shares.push_back({at, 1, 6 + most_hinges + local});
+    load_.shares.push_back({at + 1, 1, 6 + local});
+    if (hinge.stiffness > 0.0)
+      registry.add(system::EnergyGroup{system::EnergyGroup::Kind::strain,
+                                       {PartKind::support, "blade", number},
+                                       name,
+                                       Frame::rotating,
+                                       {at},
+                                       {hinge.stiffness},
+                                       hinge.damping / hinge.stiffness});
+    else if (turbine_.speed == 0.0)
+      registry.add(system::NeutralCoordinate{"blade " + std::to_string(number) + " " + name, at,
+                                             at + 1, "N m"});
+  }
+}
+
+bool BladeRoot::is_conservative() const {
+  for (const model::RootHinge& hinge : root().hinges)
+    if (hinge.damping != 0.0) return false;
+  return true;
+}
+
+}  // namespace samara::components

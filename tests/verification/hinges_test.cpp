@@ -1,0 +1,308 @@
+// Blades on hinges: frequencies in closed form, and rigid blades of particles on three hinges in
+// any order, whose equations are written from positions alone.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <boost/test/unit_test.hpp>
+
+#include "samara/base/error.hpp"
+#include "samara/math/quadrature.hpp"
+
+#include "cases.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using Complex = std::complex<double>;
+using model::HingeAxis;
+
+namespace {
+
+constexpr double speed = 10.0;
+
+/// A rotor that turns at `speed` without gravity, its blades rigid and 10 m from the shaft axis to
+/// the tip.
+std::string rotor(double root, const std::string& inertia, const std::string& blades,
+                  int count = 1) {
+  const std::string length = std::to_string(10.0 - root);
+  return "samara: 1\ngravity: 0\nshaft: {speed: 10}\nhub: {radius: " + std::to_string(root) +
+         "}\nblades:\n  count: " + std::to_string(count) + "\n  length: " + length +
+         "\n  elements: 2\n  order: 3\n  sections: [{at: 0, mass: 4, inertia: " + inertia +
+         ", stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}]\n" +
+         blades;
+}
+
+struct Solved {
+  explicit Solved(const std::string& text)
+      : system(model::build_turbine(io::parse_case("test", text, {}).turbine), PETSC_COMM_SELF),
+        trim(analysis::find_trim(system, {}, observer)),
+        set(analysis::find_constant_modes(system, trim.solution)) {}
+  double frequency_of(const std::string& label) const {
+    for (const analysis::Mode& mode : set.modes)
+      if (mode.label == label) return mode.exponent.imag();
+    return -1.0;
+  }
+  double angle(int hinge) const {
+    return trim.solution.coefficients()(system.layout().hinge(0, hinge), 0);
+  }
+
+  analysis::Observer observer;
+  turbine::TurbineSystem system;
+  analysis::Trim trim;
+  analysis::ModeSet set;
+};
+
+struct Particle {
+  double mass = 0.0;
+  Vector3 place = Vector3::Zero();  ///< from the root, blade axes
+};
+
+/// A rigid blade of particles on hinges with springs and dampers, on a hub that turns about b3.
+struct ParticleBlade {
+  std::vector<HingeAxis> order;
+  std::vector<double> offset;  ///< of each from the one before
+  Eigen::Vector3d stiffness, damping;
+  double rest = 0.0;  ///< from the last hinge to the root
+  std::vector<Particle> particles;
+
+  static Vector3 axis_of(HingeAxis axis) {
+    if (axis == HingeAxis::flap) return -Vector3::UnitY();
+    return axis == HingeAxis::lag ? Vector3(-Vector3::UnitZ()) : Vector3(-Vector3::UnitX());
+  }
+  Vector3 place_of(const Particle& particle, const Eigen::Vector3d& q) const {
+    Vector3 x = rest * Vector3::UnitX() + particle.place;
+    for (int i = 2; i >= 0; --i) {
+      const auto at = static_cast<std::size_t>(i);
+      x = Eigen::AngleAxisd(q(i), axis_of(order[at])) * x;
+      x += offset[at] * Vector3::UnitX();
+    }
+    return x;
+  }
+  /// Of springs and centrifugal forces.
+  double potential(const Eigen::Vector3d& q) const {
+    double sum = 0.5 * q.dot(stiffness.cwiseProduct(q));
+    for (const Particle& one : particles)
+      sum -= 0.5 * one.mass * speed * speed * place_of(one, q).head<2>().squaredNorm();
+    return sum;
+  }
+  Eigen::Matrix3d jacobian(const Particle& one, const Eigen::Vector3d& q) const {
+    constexpr double h = 1e-5;
+    Eigen::Matrix3d J;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d d = h * Eigen::Vector3d::Unit(i);
+      J.col(i) = (8.0 * (place_of(one, q + d) - place_of(one, q - d)) -
+                  (place_of(one, q + 2.0 * d) - place_of(one, q - 2.0 * d))) /
+                 (12.0 * h);
+    }
+    return J;
+  }
+  Eigen::Vector3d gradient(const Eigen::Vector3d& q) const {
+    Eigen::Vector3d sum = stiffness.cwiseProduct(q);
+    for (const Particle& one : particles) {
+      Vector3 outward = place_of(one, q);
+      outward(2) = 0.0;
+      sum -= one.mass * speed * speed * jacobian(one, q).transpose() * outward;
+    }
+    return sum;
+  }
+  Eigen::Matrix3d hessian(const Eigen::Vector3d& q) const {
+    constexpr double h = 1e-3;
+    Eigen::Matrix3d H;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d d = h * Eigen::Vector3d::Unit(i);
+      H.col(i) = (8.0 * (gradient(q + d) - gradient(q - d)) -
+                  (gradient(q + 2.0 * d) - gradient(q - 2.0 * d))) /
+                 (12.0 * h);
+    }
+    return H;
+  }
+  Eigen::Vector3d equilibrium() const {
+    Eigen::Vector3d q = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 50; ++i) q -= hessian(q).lu().solve(gradient(q));
+    return q;
+  }
+  /// Of small motions about q: M q'' + (C + G) q' + K q = 0.
+  std::vector<Complex> exponents(const Eigen::Vector3d& q) const {
+    Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d D = damping.asDiagonal();
+    Eigen::Matrix3d spin;
+    spin << 0, -1, 0, 1, 0, 0, 0, 0, 0;
+    for (const Particle& one : particles) {
+      const Eigen::Matrix3d J = jacobian(one, q);
+      M += one.mass * J.transpose() * J;
+      D += 2.0 * speed * one.mass * J.transpose() * spin * J;
+    }
+    Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
+    A.topRightCorner<3, 3>().setIdentity();
+    A.bottomLeftCorner<3, 3>() = -M.lu().solve(hessian(q));
+    A.bottomRightCorner<3, 3>() = -M.lu().solve(D);
+    const Eigen::Matrix<Complex, 6, 1> values = A.eigenvalues();
+    return {values.begin(), values.end()};
+  }
+};
+
+const char* word_of(HingeAxis axis) {
+  return axis == HingeAxis::flap ? "flap" : axis == HingeAxis::lag ? "lag" : "pitch";
+}
+
+std::string message_of(const std::string& text) {
+  try {
+    io::parse_case("test", text, {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(hinges)
+
+BOOST_AUTO_TEST_CASE(flap_and_lag_of_a_uniform_blade_have_their_closed_forms) {
+  // nu^2 = 1 + 3 e / (2 (1 - e)) in flap and (3/2) e / (1 - e) in lag, e the offset by the radius.
+  for (const double e : {0.02, 0.05, 0.2}) {
+    const std::string at = std::to_string(10.0 * e);
+    for (const int count : {1, 3}) {
+      const Solved solved(rotor(
+          10.0 * e, "[0, 0, 0]",
+          "  hinges: [{axis: flap, offset: " + at + ", joint: free}, {axis: lag, joint: free}]\n",
+          count));
+      BOOST_TEST(solved.set.degrees_of_freedom == 2 * count);
+      const std::string last = count > 1 ? " collective" : "";
+      const double flap = solved.frequency_of("blade flap hinge" + last) / speed;
+      const double lag = solved.frequency_of("blade lag hinge" + last) / speed;
+      BOOST_TEST(std::abs(flap * flap - (1.0 + 1.5 * e / (1.0 - e))) < 1e-6);
+      BOOST_TEST(std::abs(lag * lag - 1.5 * e / (1.0 - e)) < 1e-6);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(pitch_follows_flap_by_a_link_and_by_a_skewed_axis) {
+  // Hinged at the shaft axis, inertias I1 I2 I3 about it, t = tan(delta3): with theta = -t beta
+  // nu^2 = (I3 - I1 + t^2 (I3 - I2)) / (I2 + t^2 I1).
+  const double I1 = 10.0 * 3.0;
+  const double I2 = 4000.0 / 3.0 + 10.0 * 20.0;
+  const double I3 = 4000.0 / 3.0 + 10.0 * 11.0;
+  for (const double degrees : {0.0, 35.0, -50.0}) {
+    const double t = std::tan(degrees * pi / 180.0);
+    const double wanted = (I3 - I1 + t * t * (I3 - I2)) / (I2 + t * t * I1);
+    const std::string delta = std::to_string(degrees);
+    for (const std::string& way :
+         {"  hinges: [{axis: flap, joint: free, delta3_deg: " + delta + "}]\n",
+          "  hinges: [{axis: flap, joint: free}]\n  pitch_link_delta3_deg: " + delta + "\n",
+          "  hinges: [{axis: flap, joint: free}, {axis: pitch, joint: locked}]\n"
+          "  pitch_link_delta3_deg: " +
+              delta + "\n"}) {
+      const Solved solved(rotor(0.0, "[3, 20, 11]", way));
+      const double nu = solved.frequency_of("blade flap hinge") / speed;
+      BOOST_TEST(std::abs(nu * nu - wanted) < 1e-6, way << nu * nu << " instead of " << wanted);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(three_hinges_in_any_order_move_as_particles_on_them_do) {
+  const std::vector<std::vector<HingeAxis>> orders{
+      {HingeAxis::flap, HingeAxis::lag, HingeAxis::pitch},
+      {HingeAxis::pitch, HingeAxis::lag, HingeAxis::flap},
+      {HingeAxis::lag, HingeAxis::pitch, HingeAxis::flap}};
+  for (const std::vector<HingeAxis>& order : orders) {
+    ParticleBlade blade;
+    blade.order = order;
+    blade.offset = {0.3, 0.5, 0.2};
+    blade.rest = 0.5;
+    blade.stiffness = Eigen::Vector3d(3e3, 5e4, 9e3);
+    blade.damping = Eigen::Vector3d(0.0, 400.0, 30.0);
+    const double length = 8.5;
+    const math::QuadratureRule rule = math::gauss_rule(4);
+    for (std::size_t j = 0; j < rule.points.size(); ++j)
+      blade.particles.push_back(
+          {4.0 * length * rule.weights[j], Vector3(length * rule.points[j], 0.0, 0.0)});
+    // A body off the line: its principal axes are those of the blade.
+    const Vector3 center(0.5 * length, 0.4, 1.2);
+    for (const double side : {-1.0, 1.0}) {
+      blade.particles.push_back({20.0, center + Vector3(0.0, 0.5 * side, 0.0)});
+      blade.particles.push_back({20.0, center + Vector3(0.0, 0.0, 0.3 * side)});
+    }
+    std::string list;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      list += std::string(i > 0 ? ", " : "") + "{axis: " + word_of(order[i]) +
+              ", joint: free, offset: " + std::to_string(blade.offset[i]) +
+              ", stiffness: " + std::to_string(blade.stiffness(at)) +
+              ", damping: " + std::to_string(blade.damping(at)) + "}";
+    }
+    const Solved solved(rotor(1.5, "[0, 0, 0]",
+                              "  hinges: [" + list +
+                                  "]\n  point_masses:\n"
+                                  "    - {at: 0.5, mass: 80, center: [0, 0.4, 1.2], "
+                                  "inertia: [13.6, 3.6, 10]}\n"));
+    const Eigen::Vector3d q = blade.equilibrium();
+    BOOST_TEST(q.cwiseAbs().maxCoeff() > 0.05);  // finite angles
+    for (int i = 0; i < 3; ++i) BOOST_TEST(std::abs(solved.angle(i) - q(i)) < 1e-6);
+    std::vector<Complex> wanted = blade.exponents(q);
+    for (const analysis::Mode& mode : solved.set.modes) {
+      double nearest = 1e9;
+      for (const Complex& one : wanted) nearest = std::min(nearest, std::abs(one - mode.exponent));
+      BOOST_TEST(nearest < 1e-5 * speed, mode.label << " " << mode.exponent);
+    }
+    BOOST_TEST(solved.set.degrees_of_freedom == 3);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_blade_cones_where_its_spring_and_the_centrifugal_force_balance) {
+  // A flap hinge at the shaft axis: a follower force at the tip against a spring and
+  // Omega^2 I sin(beta) cos(beta).
+  const Solved solved(
+      rotor(0.0, "[0, 0, 0]",
+            "  hinges: [{axis: flap, joint: free, stiffness: 2e4}]\n"
+            "loads: [{beam: blades, at: 1.0, force: [0, 0, 3000], follower: true}]\n"));
+  const double I = 4.0 * 1000.0 / 3.0;
+  double beta = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    const double r = 2e4 * beta + speed * speed * I * std::sin(beta) * std::cos(beta) - 3e4;
+    beta -= r / (2e4 + speed * speed * I * std::cos(2.0 * beta));
+  }
+  BOOST_TEST(beta > 0.15);
+  BOOST_TEST(std::abs(solved.angle(0) - beta) < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(a_damper_that_is_out_breaks_the_symmetry) {
+  const std::string hinges =
+      "  hinges: [{axis: flap, offset: 0.5, joint: free}, {axis: lag, joint: free, damping: "
+      "200}]\n";
+  const Solved whole(rotor(0.5, "[0, 0, 0]", hinges, 3));
+  BOOST_TEST(whole.system.symmetry().sectors == 3);
+  const io::Case input = io::parse_case(
+      "test", rotor(0.5, "[0, 0, 0]", hinges + "  each: {2: {hinges: {lag: {damping: 0}}}}\n", 3),
+      {});
+  const turbine::TurbineSystem one_out(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  BOOST_TEST(one_out.symmetry().sectors == 1);
+  BOOST_TEST(one_out.symmetry().broken_by == "the blades differ");
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_with_its_place) {
+  const auto fault = [](const std::string& blades) {
+    return message_of(rotor(0.5, "[0, 0, 0]", blades));
+  };
+  const auto has = [](const std::string& text, const std::string& words) {
+    return text.find(words) != std::string::npos;
+  };
+  BOOST_TEST(has(fault("  hinges: [{axis: flap, offset: 0.6, joint: free}]\n"),
+                 "blades.hinges: the offsets add to 0.6 m, beyond the root at hub.radius, 0.5 m"));
+  BOOST_TEST(has(fault("  hinges: [{axis: flap, joint: free}, {axis: flap, joint: free}]\n"),
+                 "given twice"));
+  BOOST_TEST(has(fault("  hinges: [{axis: lag, joint: free, delta3_deg: 3}]\n"),
+                 "only the axis of a flap hinge is skewed"));
+  BOOST_TEST(has(fault("  pitch_link_delta3_deg: 30\n"), "blades.hinges has no free flap hinge"));
+  BOOST_TEST(has(fault("  hinges: [{axis: flap, joint: locked}]\n"
+                       "  each: {1: {hinges: {flap: {damping: 1}}}}\n"),
+                 "no free hinge of blades.hinges"));
+  BOOST_TEST(has(fault("  hinges: flap\n"), "expected a list of hinges"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
