@@ -106,7 +106,8 @@ BOOST_AUTO_TEST_CASE(a_periodic_lag_has_a_constant_form) {
   const linear::LinearModel model(system, input_output, solution);
   BOOST_TEST_REQUIRE(model.states().size() == 1U);
   const linear::AzimuthSeries series([&](double psi) { return model.state_space(psi); }, 12, 2);
-  const linear::LyapunovFloquet floquet(series, 1.0, 16, 0);
+  const linear::LyapunovFloquet floquet(series, 1.0, 16, 0, linear::LyapunovFloquet::default_steps,
+                                        1);
   for (const double psi : {0.0, 1.3, 4.0}) {
     const Eigen::MatrixXd A = floquet.form(psi).A;
     BOOST_TEST(A.rows() == 1);
