@@ -135,7 +135,7 @@ template <class T>
 components::BodiesReport<T> TurbineEquations::report(double t, const std::vector<T>& z,
                                                      const std::vector<T>& z_dot,
                                                      const TurbineInputs<T>& inputs) const {
-  std::vector<T> unused;  // only ports are filled
+  std::vector<T> unused(z.size());  // rows of hinges; only the ports count
   Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
   return bodies_->report(residual);
 }

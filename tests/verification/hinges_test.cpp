@@ -13,6 +13,7 @@
 
 #include "samara/base/error.hpp"
 #include "samara/math/quadrature.hpp"
+#include "samara/turbine/turbine_input_output.hpp"
 
 #include "cases.hpp"
 
@@ -270,6 +271,31 @@ BOOST_AUTO_TEST_CASE(a_blade_cones_where_its_spring_and_the_centrifugal_force_ba
   }
   BOOST_TEST(beta > 0.15);
   BOOST_TEST(std::abs(solved.angle(0) - beta) < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(angles_are_channels_and_pitch_moves_them) {
+  // A pitch input turns the blade at its pitch hinge, inboard of the flap hinge.
+  const Solved solved(rotor(0.5, "[1, 2, 3]",
+                            "  precone_deg: 4\n"
+                            "  hinges: [{axis: pitch, joint: locked}, "
+                            "{axis: flap, offset: 0.5, joint: free}]\n",
+                            2));
+  const turbine::TurbineInputOutput signals(solved.system, {"pitch_1"}, {},
+                                            {"FlapHinge1", "FlapHinge2", "RootFzb1"});
+  const petsc::Handle<Vec> z = solved.system.make_state();
+  const petsc::Handle<Vec> z_dot = solved.system.make_state();
+  solved.trim.solution.evaluate(0.0, z.get(), z_dot.get());
+  const Eigen::VectorXd values = signals.output_values(0.0, z.get(), z_dot.get());
+  BOOST_TEST(solved.angle(0) < -0.01);  // against the cone
+  BOOST_TEST(std::abs(values(0) - solved.angle(0) * 180.0 / pi) < 1e-12);
+  BOOST_TEST(std::abs(values(1) - values(0)) < 1e-9);
+  // Half m Omega^2 times the square of the radii, less what the hinge takes.
+  const double force = 0.5 * 4.0 * speed * speed * (100.0 - 0.25);
+  BOOST_TEST(std::abs(1e3 * values(2) - force) < 0.01 * force);
+  const system::OutputTangents tangents = signals.output_tangents(0.0, z.get(), z_dot.get());
+  const PetscInt angle = solved.system.layout().hinge(0, 0);
+  BOOST_TEST(std::abs(tangents.by_state(0, angle) - 180.0 / pi) < 1e-9);
+  BOOST_TEST(tangents.by_input.row(0).norm() == 0.0);
 }
 
 BOOST_AUTO_TEST_CASE(a_damper_that_is_out_breaks_the_symmetry) {
