@@ -11,6 +11,9 @@
 namespace samara::io {
 namespace {
 
+/// Values of a dataset that stores none: all are its fill value, and cost memory and time alone.
+constexpr std::size_t most_unstored = 1000000;
+
 /// Bytes of one read at the most (2 GB): larger data are read slice by slice.
 constexpr std::size_t most_bytes = std::size_t{1} << 31;
 /// Of texts, which nobody has as many of as of numbers.
@@ -124,6 +127,8 @@ void Hdf5Reader::require_numbers(const Item& item) const {
 }
 
 std::vector<double> Hdf5Reader::read_numbers(const Item& item, std::size_t count) const {
+  if (!item.is_attribute && count > most_unstored && H5Dget_storage_size(item.id.get()) == 0)
+    refuse(item.place, "has " + std::to_string(count) + " values, none of them stored");
   require_numbers(item);
   std::vector<double> values(count);
   if (count == 0) return values;
