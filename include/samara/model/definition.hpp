@@ -183,8 +183,9 @@ struct HingeDefinition {
   HingeAxis axis = HingeAxis::flap;
   double offset = 0.0;  ///< along b1 from the shaft axis, or from the hinge inboard of it [m], >= 0
   JointDefinition joint;  ///< a prescribed one has a constant angle
-  double delta3 = 0.0;    ///< of a flap hinge: its axis is turned so that flapping by beta pitches
-                        ///< the blade by -tan(delta3) beta where beta is small [rad]
+  /// Of a flap hinge: its axis is turned, so that flapping by a small angle beta pitches the blade
+  /// by -tan(delta3) beta [rad].
+  double delta3 = 0.0;
 };
 
 /// What differs of a hinge on one blade.
