@@ -165,12 +165,11 @@ std::string hinge_words(const model::BladesDefinition& blades) {
   double along = 0.0;
   for (const model::HingeDefinition& hinge : blades.hinges) {
     along += hinge.offset;
-    elements::Hinge joint;
-    joint.free = hinge.joint.kind == model::JointKind::free;
-    joint.stiffness = hinge.joint.stiffness;
-    joint.damping = hinge.joint.damping;
+    const model::JointDefinition& joint = hinge.joint;
     text += (text.empty() ? "" : "; ") + std::string(components::hinge_name(hinge.axis)) + " at " +
-            general(along, 5) + " m " + joint_words(joint, hinge.joint.motion);
+            general(along, 5) + " m " +
+            joint_words({joint.kind == model::JointKind::free, joint.stiffness, joint.damping},
+                        joint.motion);
   }
   return text;
 }

@@ -39,12 +39,13 @@ model::Turbine turbine_after(const io::TransientCase& transient, model::Turbine 
 }
 
 HistoryLegs::HistoryLegs(const io::TransientCase& transient, const model::Turbine& turbine,
-                         analysis::TransientStart start, std::vector<double> fired,
+                         analysis::TransientStart start, std::vector<double> fired, int generator,
                          HistoryRecorder& recorder, io::HistoryFile& file)
     : transient_(transient),
       turbine_(turbine_after(transient, turbine, fired)),
       start_(std::move(start)),
       fired_(std::move(fired)),
+      generator_(generator),
       recorder_(recorder),
       file_(file) {
   fired_.resize(transient_.events.size(), never);
@@ -115,9 +116,8 @@ void HistoryLegs::fire(std::size_t i) {
   fired_[i] = start_.time;
   turbine_ = turbine::apply_event(turbine_, event, start_.time);
   if (!event.generator_off) return;
-  const turbine::TurbineSystem system(turbine_, PETSC_COMM_SELF);
   for (analysis::HeldCoordinate& held : start_.held)
-    if (held.unknown == system.layout().generator()) held.load = 0.0;
+    if (held.unknown == generator_) held.load = 0.0;
 }
 
 std::optional<double> HistoryLegs::next_time() const {

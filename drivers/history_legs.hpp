@@ -25,11 +25,12 @@ model::Turbine turbine_after(const io::TransientCase& transient, model::Turbine 
 
 class HistoryLegs {
  public:
-  /// `fired`: time of each event; may be shorter than their number. The case, the recorder and the
+  /// `fired`: time of each event; may be shorter than their number. `generator`: unknown of its
+  /// angle. The case, the recorder and the
   /// file must live on.
   HistoryLegs(const io::TransientCase& transient, const model::Turbine& turbine,
-              analysis::TransientStart start, std::vector<double> fired, HistoryRecorder& recorder,
-              io::HistoryFile& file);
+              analysis::TransientStart start, std::vector<double> fired, int generator,
+              HistoryRecorder& recorder, io::HistoryFile& file);
 
   /// @throws ConvergenceError as `analysis::run_transient`
   analysis::TransientRun run();
@@ -49,6 +50,7 @@ class HistoryLegs {
   model::Turbine turbine_;
   analysis::TransientStart start_;
   std::vector<double> fired_;
+  int generator_;
   HistoryRecorder& recorder_;
   io::HistoryFile& file_;
   analysis::TransientRun total_;

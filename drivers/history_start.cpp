@@ -41,8 +41,7 @@ void set_azimuth(model::Turbine& turbine, double azimuth) {
   const double gained = azimuth - turbine.azimuth;
   turbine.azimuth = azimuth;
   const auto turn = [gained](auto& history) { history.phase += history.per_rev * gained; };
-  turn(turbine.yaw_motion);
-  turn(turbine.teeter_motion);
+  turbine.for_each_motion(turn);
   for (model::BeamLoad& load : turbine.tower.loads) turn(load.history);
   for (model::Beam& blade : turbine.blades)
     for (model::BeamLoad& load : blade.loads) turn(load.history);

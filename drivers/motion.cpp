@@ -12,12 +12,13 @@ void require_mass(const io::Case& input, const std::string& key,
                   const model::SupportDefinition& support) {
   bool displaces = false;
   bool turns = false;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!support.rigid[i]) displaces = true;
-    if (!support.rigid[3 + i] && !(support.inertia(static_cast<Eigen::Index>(i)) > 0.0))
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!support.rigid[at] && !(support.mass + support.added_mass(i) > 0.0)) displaces = true;
+    if (!support.rigid[3 + at] && !(support.inertia(i) + support.added_mass(3 + i) > 0.0))
       turns = true;
   }
-  if (displaces && !(support.mass > 0.0))
+  if (displaces)
     throw InputError(input.path + ": " + key +
                      " may move without a mass; hint: give the mass and inertia of what stands "
                      "on the springs (a foundation, a bearing); samara static needs none");
@@ -71,6 +72,10 @@ void require_motion(const io::Case& input) {
   }
   require_repeating_motion(input, "nacelle.yaw", input.turbine.nacelle.yaw.motion);
   require_repeating_motion(input, "hub.teeter", input.turbine.hub.teeter.motion);
+  const std::vector<model::HingeDefinition>& hinges = input.turbine.blades.hinges;
+  for (std::size_t i = 0; i < hinges.size(); ++i)
+    require_repeating_motion(input, "blades.hinges[" + std::to_string(i) + "]",
+                             hinges[i].joint.motion);
   if (input.turbine.has_tower) require_mass(input, "tower.support", input.turbine.tower.support);
   require_mass(input, "blades.support", input.turbine.blades.beam.support);
 }

@@ -134,11 +134,11 @@ void require_rest(const io::Case& input) {
 
 void run_static(const Job& job) {
   model::Turbine turbine = model::build_turbine(job.input.turbine);
-  for (model::JointHistory* motion : {&turbine.yaw_motion, &turbine.teeter_motion}) {
-    const double angle = motion->at(0.0, 0.0).angle;
-    *motion = {};
-    motion->angle = angle;  // at rest
-  }
+  turbine.for_each_motion([](model::JointHistory& motion) {
+    const double angle = motion.at(0.0, 0.0).angle;
+    motion = {};
+    motion.angle = angle;  // at rest
+  });
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);

@@ -183,7 +183,8 @@ void run_transient(const Job& job) {
   const Interruption interruption;
   const Clock::time_point began = Clock::now();
   try {
-    HistoryLegs legs(transient, turbine, start.point, start.fired, recorder, file);
+    HistoryLegs legs(transient, turbine, start.point, start.fired, system.layout().generator(),
+                     recorder, file);
     const analysis::TransientRun run = legs.run();
     const bool is_complete = run.reason == analysis::TransientEnd::complete;
     const double seconds = std::chrono::duration<double>(Clock::now() - began).count();

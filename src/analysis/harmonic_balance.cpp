@@ -9,7 +9,6 @@
 #include <optional>
 #include <sstream>
 
-#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
@@ -480,13 +479,13 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
   return trim;
 }
 
-/// Where supports are free, with their means held at zero: what restores a hinge, the centrifugal
+/// Where coordinates are free, with their means held at zero: what restores a hinge, the centrifugal
 /// force or the weight, acts through loads that the undeformed system does not carry yet, and
 /// Newton's method could go anywhere from there. None where nothing is free or a beam would be held
 /// twice.
 std::optional<Trim> hold_supports(const system::PeriodicSystem& system, int harmonics,
                                   double tolerance) {
-  const Coordinates free = find_free_supports(system);
+  const Coordinates free = system.free_coordinates();
   if (free.empty()) return std::nullopt;
   Coordinates held = system.neutral_coordinates();
   held.insert(held.end(), free.begin(), free.end());

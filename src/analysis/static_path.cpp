@@ -10,7 +10,6 @@
 
 #include <Eigen/SVD>
 
-#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
@@ -53,10 +52,11 @@ struct Point {
   double factor = 0.0;
 };
 
-/// What takes the place of supports that are free while they are being freed: in the row of each
-/// remaining (load - stiffness x), with the load that held it at x = 0.
+/// What holds free coordinates while they are being freed: in the row of each remaining (load -
+/// stiffness x), with the load that held it at x = 0.
 struct Easing {
-  std::vector<PetscInt> unknowns;  ///< and rows
+  std::vector<PetscInt> unknowns;
+  std::vector<PetscInt> rows;
   Eigen::VectorXd loads;
   double stiffness = 0.0;  ///< [N/m, N m/rad]
   double remaining = 0.0;
@@ -112,7 +112,7 @@ class Equilibrium {
     for (const system::NeutralCoordinate& held : held_) r(held.row) += point.x(held.unknown);
     for (std::size_t n = 0; n < easing_.unknowns.size(); ++n) {
       const PetscInt at = easing_.unknowns[n];
-      r(at) += easing_.remaining *
+      r(easing_.rows[n]) += easing_.remaining *
                (easing_.loads(static_cast<Eigen::Index>(n)) - easing_.stiffness * point.x(at));
     }
   }
@@ -137,13 +137,13 @@ class Equilibrium {
     return at(columns, coordinates);
   }
 
-  /// Motions of coordinates under a unit load on each of them.
-  Eigen::MatrixXd compliance_of(const Point& point, const std::vector<PetscInt>& coordinates) {
-    const auto n = static_cast<Eigen::Index>(coordinates.size());
+  /// Motions of the coordinates that are being freed, under a unit load on each of them.
+  Eigen::MatrixXd eased_compliance(const Point& point) {
+    const auto n = static_cast<Eigen::Index>(easing_.rows.size());
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size_, n);
-    for (Eigen::Index j = 0; j < n; ++j) columns(coordinates[static_cast<std::size_t>(j)], j) = 1.0;
+    for (Eigen::Index j = 0; j < n; ++j) columns(easing_.rows[static_cast<std::size_t>(j)], j) = 1.0;
     solve(point, columns);
-    return at(columns, coordinates);
+    return at(columns, easing_.unknowns);
   }
 
   /// The system with large rotations counted anew, for which the point is rewritten; null where
@@ -265,9 +265,9 @@ class Equilibrium {
                            SAME_NONZERO_PATTERN));
     }
     if (easing_.remaining == 0.0) return;
-    for (const PetscInt at : easing_.unknowns)
-      petsc::check(
-          MatSetValue(jacobian_.get(), at, at, -easing_.remaining * easing_.stiffness, ADD_VALUES));
+    for (std::size_t n = 0; n < easing_.unknowns.size(); ++n)
+      petsc::check(MatSetValue(jacobian_.get(), easing_.rows[n], easing_.unknowns[n],
+                               -easing_.remaining * easing_.stiffness, ADD_VALUES));
     petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
     petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
   }
@@ -322,7 +322,7 @@ class PathFollower {
       : system_(system),
         options_(options),
         observer_(observer),
-        free_(find_free_supports(system)),
+        free_(system.free_coordinates()),
         equilibrium_(make_equilibrium(system)) {
     path_.method = options.method;
     first_step_ = 1.0 / options.steps;
@@ -469,7 +469,7 @@ class PathFollower {
     return true;
   }
 
-  // ---- supports that are free -----------------------------------------------------------------
+  // ---- free coordinates -----------------------------------------------------------------------
 
   std::unique_ptr<Equilibrium> make_equilibrium(const system::PeriodicSystem& system) const {
     return std::make_unique<Equilibrium>(system, system.neutral_coordinates(), easing_);
@@ -481,7 +481,7 @@ class PathFollower {
     return unknowns;
   }
 
-  /// Free supports held at zero: at rest without loads, and at the first step with them.
+  /// Free coordinates held at zero: at rest without loads, and at the first step with them.
   struct Held {
     Point rest;
     Point loaded;
@@ -531,6 +531,8 @@ class PathFollower {
     if (!is_loaded) refuse_unrestored(bare.matrixV().rightCols<1>());
     accept(held->rest, 1);
     easing_.unknowns = free_unknowns();
+    easing_.rows.clear();
+    for (const system::NeutralCoordinate& free : free_) easing_.rows.push_back(free.row);
     easing_.remaining = 1.0;
     point = held->loaded;
     point.x(easing_.unknowns).setZero();
@@ -580,7 +582,7 @@ class PathFollower {
   void require_restored(const Point& point) {
     const double remaining = easing_.remaining;
     easing_.remaining = restored;
-    const Eigen::MatrixXd motions = equilibrium_->compliance_of(point, easing_.unknowns);
+    const Eigen::MatrixXd motions = equilibrium_->eased_compliance(point);
     easing_.remaining = remaining;
     const Eigen::JacobiSVD<Eigen::MatrixXd> values(motions, Eigen::ComputeThinU);
     if (values.singularValues()(0) * restored * easing_.stiffness > 0.5)
@@ -723,7 +725,7 @@ class PathFollower {
   const system::PeriodicSystem& system_;
   const StaticOptions& options_;
   Observer& observer_;
-  std::vector<system::NeutralCoordinate> free_;        ///< directions of supports
+  std::vector<system::NeutralCoordinate> free_;        ///< coordinates without springs
   Easing easing_;                                      ///< while they are set free
   std::unique_ptr<system::PeriodicSystem> recounted_;  ///< rotations counted anew, if they grew
   std::unique_ptr<Equilibrium> equilibrium_;           ///< of that, or of the system itself

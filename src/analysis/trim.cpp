@@ -4,7 +4,6 @@
 #include <optional>
 #include <sstream>
 
-#include "samara/analysis/free_supports.hpp"
 #include "samara/analysis/harmonic_balance.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/shooting.hpp"
@@ -75,7 +74,7 @@ Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance) {
       throw InputError(error.what());
     }
   };
-  if (find_free_supports(system).empty() || is_balanced(system)) return solve(nullptr);
+  if (system.free_coordinates().empty() || is_balanced(system)) return solve(nullptr);
   Observer silent;
   const StaticPath path = find_static_path(system, {}, silent);
   const PeriodicSolution start(path.states.back().z, 0.0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "samara/base/index.hpp"
 #include "samara/elements/beam_drag.hpp"
 #include "samara/elements/beam_load.hpp"
 #include "samara/elements/beam_tip.hpp"
@@ -83,8 +84,6 @@ template <class T>
 using EndArguments = Eigen::Matrix<T, end_arguments, 1>;
 template <class T>
 using State = Eigen::Matrix<T, block, 1>;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 template <class T>
 State<T> state_of(const EndArguments<T>& x) {
@@ -180,23 +179,24 @@ void Beam::place(Registry& registry) {
 void Beam::describe(Registry& registry) {
   const model::Beam& beam = *placed_.beam;
   for (int p = 0; p < beam.point_count(); ++p) {
-    describe_block(registry, placed_.points[at(p)], "point " + std::to_string(p + 1));
+    describe_unknowns(registry, placed_.points[at(p)], "point " + std::to_string(p + 1));
     describe_energies(registry, p);
   }
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const int first = placed_.masses[m];
     if (beam.mass_nodes[m].end == 0) {
-      describe_block(registry, first, "support");
+      describe_unknowns(registry, first, "support");
       describe_support(registry, first);
+      describe_mass(registry, first, beam.support.added_mass);
     } else {  // point masses count from 1, whatever the root stands on
-      describe_block(registry, first, "mass " + std::to_string(beam.has_support ? m : m + 1));
+      describe_unknowns(registry, first, "mass " + std::to_string(beam.has_support ? m : m + 1));
     }
     describe_mass(registry, first, beam.mass_nodes[m].mass);
   }
-  describe_block(registry, placed_.tip, setting_.end_name);
+  describe_unknowns(registry, placed_.tip, setting_.end_name);
   if (setting_.end == BeamEnd::free) describe_end_support(registry);
   describe_mass(registry, placed_.tip, beam.tip_mass);
-  describe_root(registry);
+  describe_unknowns(registry, placed_.root, "root", 12);
   for (int e = 0; e < beam.elements; ++e) registry.add(find_mesh_error(beam, e, placed_.points));
 
   changes_ = placed_.find_changes();
@@ -208,20 +208,13 @@ void Beam::describe(Registry& registry) {
   if (beam.has_drag) connect_drag();
 }
 
-void Beam::describe_block(Registry& registry, int first, const std::string& place) const {
-  for (int i = 0; i < block; ++i) {
+/// Unknowns of a point from number `from` on, `first` the first of them.
+void Beam::describe_unknowns(Registry& registry, int first, const std::string& place,
+                             int from) const {
+  for (int i = from; i < block; ++i) {
     const NamedUnknown& named = point_unknowns[at(i)];
-    registry.describe(first + i,
+    registry.describe(first + i - from,
                       {setting_.owner, place, named.name, named.unit, role_at(i), setting_.frame},
-                      row_role_at(i));
-  }
-}
-
-void Beam::describe_root(Registry& registry) const {
-  for (int i = 12; i < block; ++i) {
-    const NamedUnknown& named = point_unknowns[at(i)];
-    registry.describe(placed_.root + i - 12,
-                      {setting_.owner, "root", named.name, named.unit, role_at(i), setting_.frame},
                       row_role_at(i));
   }
 }
@@ -237,7 +230,7 @@ void Beam::describe_support(Registry& registry, int first) const {
                                setting_.frame,
                                {first + 12 + i},
                                {beam.support.compliance(i, i)},
-                               beam.support.damping});
+                               beam.support.damping(i)});
   }
 }
 
@@ -255,9 +248,9 @@ void Beam::describe_end_support(Registry& registry) const {
   }
 }
 
-/// A rigid mass whose velocities are those of the block at `first`.
+/// A mass whose velocities are those of the block at `first`.
 void Beam::describe_mass(Registry& registry, int first, const Matrix6& mass) const {
-  if (mass(0, 0) == 0.0) return;
+  if (mass.isZero(0.0)) return;
   EnergyGroup group{EnergyGroup::Kind::kinetic, setting_.owner, "", setting_.frame, {}, {}};
   for (int i = 0; i < 6; ++i) group.unknowns.push_back(first + 6 + i);
   group.weight.assign(mass.data(), mass.data() + mass.size());
@@ -269,11 +262,7 @@ void Beam::describe_energies(Registry& registry, int p) const {
   const elements::BeamPoint& point = beam.points[at(p)];
   const int first = placed_.points[at(p)];
   const double length = beam.point_length(p);
-  EnergyGroup kinetic{EnergyGroup::Kind::kinetic, setting_.owner, "", setting_.frame, {}, {}};
-  for (int i = 0; i < 6; ++i) kinetic.unknowns.push_back(first + 6 + i);
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) kinetic.weight.push_back(length * point.mass(i, j));
-  registry.add(kinetic);
+  describe_mass(registry, first, length * point.mass);
   for (int i = 0; i < 6; ++i)
     if (point.compliance(i, i) > 0.0)
       registry.add(EnergyGroup{EnergyGroup::Kind::strain,
@@ -289,7 +278,7 @@ void Beam::describe_energies(Registry& registry, int p) const {
 /// none.
 bool Beam::is_conservative() const {
   const model::Beam& beam = *placed_.beam;
-  if (beam.has_drag || (beam.has_support && beam.support.damping != 0.0)) return false;
+  if (beam.has_drag || (beam.has_support && !beam.support.damping.isZero(0.0))) return false;
   for (const elements::BeamPoint& point : beam.points)
     if (!point.damping.isZero(0.0)) return false;
   for (const model::BeamLoad& load : beam.loads)
@@ -519,8 +508,12 @@ void Beam::state_support(System& system) const {
     const elements::TipTerms<T> terms =
         elements::beam_tip_terms<T>(Vector3::Zero(), Matrix3::Identity(),
                                     beam.mass_nodes.front().mass, node, rates, attachment_of<T>(x));
+    Vec6<T> balance;
+    balance << terms.force, terms.moment;
+    if (!beam.support.added_mass.isZero(0.0))
+      balance += elements::added_mass_load<T>(beam.support, node, rates);
     Eigen::Matrix<T, support_values, 1> y;
-    y << terms.velocity, terms.spin, terms.force, terms.moment, held.law, held.root;
+    y << terms.velocity, terms.spin, balance, held.law, held.root;
     return y;
   };
   system.template add<end_arguments, support_values>(masses_.front(), terms_of,

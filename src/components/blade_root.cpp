@@ -1,5 +1,7 @@
 #include "samara/components/blade_root.hpp"
 
+#include <string>
+
 namespace samara::components {
 
 const char* hinge_name(model::HingeAxis axis) {
@@ -16,9 +18,9 @@ const char* hinge_name(model::HingeAxis axis) {
 
 BladeRoot::BladeRoot(const model::Turbine& turbine, std::size_t k) : turbine_(turbine), k_(k) {}
 
-void BladeRoot::place(Registry& registry, int shared_rank) {
+void BladeRoot::place(Registry& registry, int rank) {
   const int count = static_cast<int>(root().hinges.size());
-  if (count > 0) first_ = registry.add_shared(shared_rank, 2 * count);
+  if (count > 0) first_ = registry.add_shared(rank, 2 * count);
 }
 
 /// Of q, U and, where wanted, the rates of q.
@@ -70,10 +72,16 @@ void BladeRoot::describe(Registry& registry, int reactions, int hub_port, int lo
                                        {at},
                                        {hinge.stiffness},
                                        hinge.damping / hinge.stiffness});
-    else if (turbine_.speed == 0.0)
-      registry.add(system::NeutralCoordinate{"blade " + std::to_string(number) + " " + name, at,
-                                             at + 1, "N m"});
+    else if (is_unloaded())
+      registry.add(system::NeutralCoordinate{owner.name() + " " + name, at, at + 1, "N m"});
+    else
+      registry.add_free({owner.name() + " " + name, at, at + 1, "N m"});
   }
+}
+
+/// Nothing brings a hinge without a spring anywhere.
+bool BladeRoot::is_unloaded() const {
+  return turbine_.speed == 0.0 && turbine_.chain.gravity == 0.0 && turbine_.blades[k_].loads.empty();
 }
 
 bool BladeRoot::is_conservative() const {

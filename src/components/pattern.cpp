@@ -5,6 +5,7 @@
 #include <string>
 
 #include "samara/base/error.hpp"
+#include "samara/base/index.hpp"
 #include "samara/components/block_matrix.hpp"
 
 namespace samara::components {
@@ -13,12 +14,12 @@ namespace {
 using math::Dependence;
 constexpr int block = BlockMatrix::block;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-std::vector<std::vector<int>> sorted(const std::vector<std::set<int>>& rows) {
-  std::vector<std::vector<int>> columns;
-  for (const std::set<int>& row : rows) columns.emplace_back(row.begin(), row.end());
-  return columns;
+/// Each once, ascending.
+void sort(std::vector<std::vector<int>>& rows) {
+  for (std::vector<int>& row : rows) {
+    std::ranges::sort(row);
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+  }
 }
 
 template <class Visit>
@@ -29,7 +30,9 @@ void for_each_quantity(std::uint64_t quantities, const Visit& visit) {
 
 }  // namespace
 
-Pattern::Pattern(int size, const std::vector<int>& port_sizes) : K_(at(size)), M_(at(size)) {
+Pattern::Pattern(int size, const std::vector<int>& port_sizes) {
+  plan_.K.resize(at(size));
+  plan_.M.resize(at(size));
   plan_.port_sizes = port_sizes;
   plan_.port_columns.resize(port_sizes.size());
   for (const int values : port_sizes) {
@@ -42,7 +45,7 @@ void Pattern::add(const std::vector<LinearShare>& shares) {
   for (const LinearShare& share : shares) {
     if (share.weight == 0.0) continue;
     linear_.push_back(share);
-    for (int i = 0; i < share.count; ++i) K_[at(share.row + i)].insert(share.column + i);
+    for (int i = 0; i < share.count; ++i) plan_.K[at(share.row + i)].push_back(share.column + i);
   }
 }
 
@@ -76,7 +79,9 @@ void Pattern::end(const Connections& connections, int m, const Dependence* y) {
   for (const Provision& provision : connections.provisions) add_provision(provision, y);
 }
 
-std::set<int>& Pattern::row(int row, bool is_rate) { return (is_rate ? M_ : K_)[at(row)]; }
+std::vector<int>& Pattern::row(int row, bool is_rate) {
+  return (is_rate ? plan_.M : plan_.K)[at(row)];
+}
 
 /// Prolongs the last entries by a column, or begins new ones where it is not the next or is in
 /// another block.
@@ -107,12 +112,12 @@ void Pattern::add_share(const Share& share, const Dependence* y) {
     for_each_quantity(own, [&](int argument) {
       const Source& source = sources_[at(argument)];
       if (source.kind != Argument::Kind::port) {
-        row(share.row + i, source.kind == Argument::Kind::rates).insert(source.first);
+        row(share.row + i, source.kind == Argument::Kind::rates).push_back(source.first);
         return;
       }
       for (const int place : ports_[at(source.first)].columns[at(source.index)]) {
         const PortColumn& column = plan_.port_columns[at(source.first)][at(place)];
-        row(share.row + i, column.is_rate).insert(column.unknown);
+        row(share.row + i, column.is_rate).push_back(column.unknown);
       }
     });
   }
@@ -185,18 +190,19 @@ void Pattern::add_provision(const Provision& provision, const Dependence* y) {
 }
 
 TangentPlan Pattern::finish(const TangentPlan* at_least) {
-  plan_.K = sorted(K_);
-  plan_.M = sorted(M_);
-  std::vector<std::set<int>> blocks(K_.size() / block);
-  for (std::size_t i = 0; i < K_.size(); ++i) {
-    std::set<int>& own = blocks[i / block];
-    own.insert(static_cast<int>(i) / block);
-    for (const std::set<int>* columns : {&K_[i], &M_[i]})
-      for (const int column : *columns) own.insert(column / block);
+  sort(plan_.K);
+  sort(plan_.M);
+  plan_.blocks.resize(plan_.K.size() / block);
+  for (std::size_t i = 0; i < plan_.K.size(); ++i) {
+    std::vector<int>& own = plan_.blocks[i / block];
+    own.push_back(static_cast<int>(i) / block);
+    for (const std::vector<int>* columns : {&plan_.K[i], &plan_.M[i]})
+      for (const int column : *columns) own.push_back(column / block);
   }
-  for (std::size_t i = 0; at_least != nullptr && i < blocks.size(); ++i)
-    blocks[i].insert(at_least->blocks[i].begin(), at_least->blocks[i].end());
-  plan_.blocks = sorted(blocks);
+  for (std::size_t i = 0; at_least != nullptr && i < plan_.blocks.size(); ++i)
+    plan_.blocks[i].insert(plan_.blocks[i].end(), at_least->blocks[i].begin(),
+                           at_least->blocks[i].end());
+  sort(plan_.blocks);
   const BlockMatrix places(plan_.blocks);
   const auto offset = [&places](int row, int column) { return places.place(row, column); };
   for (std::size_t c = 0; c < plan_.calls.size(); ++c)

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "samara/base/error.hpp"
+#include "samara/base/index.hpp"
 #include "samara/components/block_matrix.hpp"
 
 namespace samara::components {
@@ -11,8 +12,6 @@ namespace {
 constexpr int block = BlockMatrix::block;
 /// Unknowns that share a block stand in slots of six, as forces and moments do.
 constexpr int slot = 6;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -62,9 +61,13 @@ void Registry::describe(int unknown, const system::Unknown& what, system::RowRol
 }
 
 void Registry::set_free(int unknown) {
-  declared_.unknowns[at(unknown)].is_free = true;
+  system::Unknown& what = declared_.unknowns[at(unknown)];
+  what.is_free = true;
   set_row(unknown, system::RowRole::balance);
+  add_free({what.name(), unknown, unknown, what.load_unit()});
 }
+
+void Registry::add_free(const system::NeutralCoordinate& free) { declared_.free.push_back(free); }
 
 void Registry::set_row(int unknown, system::RowRole row) { declared_.rows[at(unknown)] = row; }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "samara/base/index.hpp"
 #include "samara/elements/torque_laws.hpp"
 
 namespace samara::components {
@@ -30,8 +31,6 @@ using elements::JointState;
 using elements::NodeResult;
 using elements::RigidTree;
 using elements::Wrench;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// From the order of the tower's axes, (t3, t1, t2), to t1 t2 t3, and back.
 template <class T>
@@ -137,13 +136,7 @@ RigidBodies::Walk<T> RigidBodies::walk(const System& system, const ChainArgument
   Wrench<T>& hub = loads[elements::teeter_node];
   hub.force = x.template segment<3>(at_hub_load);
   hub.moment = x.template segment<3>(at_hub_load + 3) + math::cross(apex, hub.force);
-  walk.on_top = tree_.walk_inward<T>(states, loads, walk.nodes);
-  if (!turbine_.chain.tower_top.is_none()) {
-    const Wrench<T> own =
-        elements::detail::active_and_inertia<T>(turbine_.chain.tower_top, walk.top);
-    walk.on_top.force += own.force;
-    walk.on_top.moment += own.moment;
-  }
+  walk.on_top = tree_.walk_inward<T>(walk.top, states, loads, walk.nodes);
   return walk;
 }
 

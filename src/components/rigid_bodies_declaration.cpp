@@ -31,7 +31,7 @@ void RigidBodies::place(Registry& registry) {
   joints_ = registry.add_shared(setting_.shared_rank, joint_count * joint_unknowns);
   hub_port_ = registry.add_port(9);
   load_port_ = registry.add_port(6);
-  for (BladeRoot& root : roots_) root.place(registry, setting_.shared_rank);
+  for (BladeRoot& root : roots_) root.place(registry, setting_.hinge_rank);
 }
 
 int RigidBodies::joint(int number) const { return joints_ + joint_unknowns * number; }

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "samara/base/index.hpp"
+
 namespace samara::components {
 namespace {
 
@@ -9,8 +11,6 @@ constexpr int block = BlockMatrix::block;
 /// Three rows by the values of a port.
 using ByPort =
     Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, TangentPlan::most_port_values>;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -25,6 +25,7 @@ double RigidChain::gear() const { return std::abs(gear_ratio); }
 
 RigidTree tree_of(const RigidChain& chain) {
   RigidTree tree;
+  tree.set_base_body(chain.tower_top);
   TreeNode yaw = node_of(chain.yaw, Vector3::UnitZ());
   yaw.body = chain.nacelle;
   tree.add(yaw);

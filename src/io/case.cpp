@@ -318,8 +318,6 @@ void read_hinges(MapReader& map, const YamlNode& list, model::BladesDefinition& 
     read_angle(hinge, "delta3_deg", definition.delta3, quarter_turn);
     if (delta3 != nullptr && definition.axis != model::HingeAxis::flap)
       hinge.refuse(*delta3, "delta3_deg", "only the axis of a flap hinge is skewed");
-    if (const YamlNode* wave = hinge.node().find("harmonic"))
-      hinge.refuse(*wave, "harmonic", "a hinge is prescribed at a constant angle_deg");
     if (std::ranges::find(blades.hinges, definition.axis, &model::HingeDefinition::axis) !=
         blades.hinges.end())
       hinge.refuse(list.children[i], "axis", "given twice; each axis has one hinge at the most");
@@ -357,6 +355,25 @@ void read_each(const YamlNode& node, const std::string& where, model::BladesDefi
   }
 }
 
+/// A blade turns on hinges; a beam between two supports stands on them, in axes that do not turn.
+void refuse_free_root(MapReader& map, const model::BladesDefinition& blades) {
+  const bool is_free = blades.beam.support.free != std::array<bool, 6>{};
+  if (blades.beam.end_support.is_none()) {
+    if (is_free)
+      map.refuse(*map.node().find("support"), "support",
+                 "the root of a blade is free on hinges; hint: instead of the support hinges: "
+                 "[{axis: flap, joint: free}], axis pitch for theta1, flap for theta2, lag for "
+                 "theta3");
+    return;
+  }
+  if (std::ranges::any_of(blades.hinges, [](const model::HingeDefinition& hinge) {
+        return hinge.joint.kind != JointKind::locked;
+      }))
+    map.refuse(*map.node().find("end_support"), "end_support",
+               "holds the end in axes that blades.hinges turn; hint: a beam between two supports "
+               "has support: pinned or stiffness: {theta2: free, ...} instead of hinges");
+}
+
 void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorList& errors) {
   MapReader map(node, "blades", errors);
   map.read("count", blades.count, 1, max_blades);
@@ -365,6 +382,7 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   read_beam(map, Matrix3::Identity(), blade_ratios, blades.beam);
   read_support(map, "end_support", false, blades.beam.end_support);
   if (const YamlNode* entry = map.find("hinges")) read_hinges(map, *entry, blades);
+  refuse_free_root(map, blades);
   if (const YamlNode* entry = map.find("pitch_link_delta3_deg")) {
     read_angle(map, "pitch_link_delta3_deg", blades.pitch_link, quarter_turn);
     const auto flap =
@@ -599,6 +617,8 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
     least = std::max(least, load.history.per_rev);
   for (const model::JointDefinition* joint : {&turbine.nacelle.yaw, &turbine.hub.teeter})
     least = std::max(least, joint->motion.per_rev);
+  for (const model::HingeDefinition& hinge : turbine.blades.hinges)
+    least = std::max(least, hinge.joint.motion.per_rev);
 }
 
 /// Adds an error where `samara` is not the version this program reads. False: a newer version, of

@@ -277,22 +277,45 @@ void read_point_masses(MapReader& map, std::vector<model::PointMassDefinition>& 
                    [](const auto& a, const auto& b) { return a.at < b.at; });
 }
 
+constexpr std::array<const char*, 6> directions{"u1", "u2", "u3", "theta1", "theta2", "theta3"};
+
 /// Reads springs by direction; what is not given stays as it is.
 void read_springs(const YamlNode& node, const std::string& where, model::SupportDefinition& support,
                   ErrorList& errors) {
-  constexpr std::array<const char*, 6> keys = {"u1", "u2", "u3", "theta1", "theta2", "theta3"};
   constexpr NumberRule rule{"a number > 0, rigid or free", positive.low, positive.high, true};
   MapReader map(node, where, errors);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const YamlNode* entry = map.find(keys[i]);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const YamlNode* entry = map.find(directions[i]);
     if (entry == nullptr) continue;
     support.rigid[i] = is_rigid(*entry);
     support.free[i] = is_word(*entry, "free");
     const auto k = static_cast<Eigen::Index>(i);
     if (!support.rigid[i] && !support.free[i])
-      read_number(*entry, map.where(keys[i]), rule, support.stiffness(k, k), errors);
+      read_number(*entry, map.where(directions[i]), rule, support.stiffness(k, k), errors);
   }
   map.finish();
+}
+
+void read_support_damping(MapReader& map, Vector6& damping) {
+  const YamlNode* entry = map.find("damping");
+  if (entry == nullptr) return;
+  if (entry->kind == YamlNode::Kind::list) {
+    read_numbers(*entry, map.where("damping"), non_negative, std::span<double>(damping.data(), 6),
+                 map.errors());
+    return;
+  }
+  constexpr NumberRule rule{"a number >= 0 or a list of 6", non_negative.low};
+  double mu = 0.0;
+  if (read_number(*entry, map.where("damping"), rule, mu, map.errors())) damping.setConstant(mu);
+}
+
+void read_added_mass(MapReader& map, Vector6& mass) {
+  const YamlNode* entry = map.find("added_mass");
+  if (entry == nullptr) return;
+  MapReader added(*entry, map.where("added_mass"), map.errors());
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    added.read(directions[i], mass(static_cast<Eigen::Index>(i)), non_negative);
+  added.finish();
 }
 
 /// Turns damping ratios into mu per strain.
@@ -349,11 +372,14 @@ void read_support(MapReader& beam, std::string_view key, bool at_root,
     map.read("mass", support.mass, non_negative);
     read_vector(map, "center", support.center, any_number);
     read_vector(map, "inertia", support.inertia, non_negative);
-    map.read("damping", support.damping, non_negative);
+    read_added_mass(map, support.added_mass);
+    read_support_damping(map, support.damping);
   }
   map.finish();
   if (errors.size() > errors_before) return;
-  if (support.is_clamp() && (support.mass > 0.0 || support.damping > 0.0))
+  const bool does_something = support.mass > 0.0 || !support.added_mass.isZero(0.0) ||
+                              !support.damping.isZero(0.0);
+  if (support.is_clamp() && does_something)
     errors.add(find_blame(*node), beam.where(key),
                "mass and damping of a support that is rigid in all directions do nothing");
   const std::string fault = model::find_support_fault(support);

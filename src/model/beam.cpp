@@ -204,6 +204,7 @@ void add_supports(const BeamDefinition& definition, Beam& beam) {
     beam.support.compliance = inverse_of(support.stiffness, elastic);
     beam.support.free = support.free;
     beam.support.damping = support.damping;
+    beam.support.added_mass = support.added_mass.asDiagonal();
     beam.mass_nodes.push_back(
         {0, Vector3::Zero(),
          rigid_mass(support.mass, support.center, support.inertia.asDiagonal())});

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "samara/base/error.hpp"
+#include "samara/base/index.hpp"
 #include "samara/math/rotation.hpp"
 
 namespace samara::model {
@@ -59,8 +60,6 @@ class Kinematics {
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
   /// Places: the points, the tip, the masses. The balance of node a of element e is that of its
   /// start or end: one for each point, and one more at the end and behind each mass.
   void place_nodes() {

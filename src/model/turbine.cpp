@@ -119,8 +119,10 @@ BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
       link.axes = feather;
       link.is_pitch = is_pitched = true;
     }
-    if (hinge.joint.kind == JointKind::prescribed)
-      link.axes *= math::turn_about<double>(link.axis, hinge.joint.motion.angle);
+    if (hinge.joint.kind == JointKind::prescribed) {
+      link.motion = hinge.joint.motion;
+      link.motion.phase += link.motion.per_rev * azimuth;  // each blade as the first, where it was
+    }
     if (hinge.joint.kind == JointKind::free) {
       link.hinge = static_cast<int>(root.hinges.size());
       if (hinge.axis == HingeAxis::flap) root.flap_hinge = link.hinge;
@@ -140,7 +142,7 @@ BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   if (root.flap_hinge >= 0) root.pitch_by_flap = -std::tan(blades.pitch_link);
   for (const RootLink& link : root.links) {
     root.position += root.C_Ha * link.arm;
-    root.C_Ha = (root.C_Ha * link.axes).eval();
+    root.C_Ha *= link.axes * math::turn_about<double>(link.axis, link.motion.angle);
   }
   return root;
 }

@@ -39,6 +39,10 @@ std::string motion_fault(const model::Turbine& turbine) {
   const bool reverses = teeter.angle == 0.0 && (teeter.is_constant() || teeter.per_rev % 2 == 1);
   if (!reverses || (blades > 2 && !teeter.is_constant()))
     return "the teeter angle does not repeat from blade to blade";
+  for (const model::BladeRoot& root : turbine.roots)
+    for (const model::RootLink& link : root.links)
+      if (!link.motion.is_constant() && link.motion.per_rev == 0)
+        return "a hinge's angle does not repeat with the rotor";
   return "";
 }
 

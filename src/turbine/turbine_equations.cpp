@@ -16,6 +16,7 @@ using system::PartKind;
 constexpr int blade_rank = 0;
 constexpr int tower_rank = 1;
 constexpr int shared_rank = 2;
+constexpr int hinge_rank = 3;  // a hinge's balance is a moment of its root's reaction, no more
 
 BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
   const elements::RigidChain& chain = turbine.chain;
@@ -71,6 +72,7 @@ TurbineEquations::~TurbineEquations() = default;
 void TurbineEquations::make_components() {
   components::BodiesSetting bodies;
   bodies.shared_rank = shared_rank;
+  bodies.hinge_rank = hinge_rank;
   for (std::size_t k = 0; k < turbine_.blades.size(); ++k) {
     beams_.push_back(std::make_unique<components::Beam>(blade_setting(turbine_, k)));
     bodies.blades.push_back(beams_.back().get());

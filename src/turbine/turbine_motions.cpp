@@ -31,6 +31,19 @@ constexpr int motions_a_beam = 4;
 /// Of the four motions of a beam, in all lists of names.
 constexpr bool bends(int i) { return i == 1 || i == 2; }
 
+/// Number of a hinge's motion among root_directions.
+int motion_of(model::HingeAxis axis) {
+  switch (axis) {
+    case model::HingeAxis::pitch:
+      return 1;
+    case model::HingeAxis::flap:
+      return 2;
+    case model::HingeAxis::lag:
+      break;
+  }
+  return 3;
+}
+
 enum Joint { yaw, teeter, torsion, generator, joints };
 constexpr std::array<const char*, joints> joint_names{"yaw", "teeter", "shaft torsion",
                                                       "rotor rotation"};
@@ -200,6 +213,8 @@ SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const
     placed.points.push_back(put(where.masses[m], node.x, beam.reference_before(node.end), node.mass,
                                 beam.points[next].C_ab));
     if (node.end != 0) continue;
+    placed.points.back().mass.matrix +=
+        mass_of(Vector3::Zero(), axes, beam.support.added_mass).matrix;
     placed.has_support = true;
     placed.support = placed.points.back();
   }
@@ -235,7 +250,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     hub_ = mass_of(pin_, C, chain_.hub);
     const Vector3 apex = pin_ + chain_.undersling * C.col(1);
     for (std::size_t k = 0; k < turbine.blades.size(); ++k)
-      place_blade(turbine, k, apex, C, steady);
+      place_blade(turbine, k, t, apex, C, steady);
   }
 
   Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
@@ -291,7 +306,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
   }
 
   /// A blade behind its hinges, at the apex of a hub with the axes C.
-  void place_blade(const model::Turbine& turbine, std::size_t k, const Vector3& apex,
+  void place_blade(const model::Turbine& turbine, std::size_t k, double t, const Vector3& apex,
                    const Matrix3& C, const Eigen::VectorXd& steady) {
     const model::BladeRoot& root = turbine.roots[k];
     const int blade = static_cast<int>(k);
@@ -310,7 +325,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
         place_of_pitch = at;
         pitch_axis = axis;
       }
-      double angle = 0.0;
+      double angle = link.motion.at(t, turbine.speed).angle;
       if (link.hinge >= 0) {
         const auto i = static_cast<std::size_t>(link.hinge);
         points[i] = at;
@@ -334,19 +349,6 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     }
     hinges_.push_back(hinges);
     blades_.push_back(place(layout_.beams()[k], at, axes, steady));
-  }
-
-  /// Number of a hinge's motion among root_directions.
-  static int motion_of(model::HingeAxis axis) {
-    switch (axis) {
-      case model::HingeAxis::pitch:
-        return 1;
-      case model::HingeAxis::flap:
-        return 2;
-      case model::HingeAxis::lag:
-        break;
-    }
-    return 3;
   }
 
   /// C becomes that of the tower top: ground components of t1 t2 t3.
@@ -447,7 +449,7 @@ std::vector<system::Motion> motions_of(const model::Turbine& turbine, const Turb
                             root_directions.name(i)};
       const model::BladeRoot& root = turbine.roots[k];
       for (std::size_t h = 0; h < root.hinges.size(); ++h) {
-        if (motion.direction != components::hinge_name(root.hinges[h].axis)) continue;
+        if (motion_of(root.hinges[h].axis) != i) continue;
         motion.unknowns.push_back(layout.hinge(blade, static_cast<int>(h)));
         motion.weight.push_back(1.0);
       }

@@ -182,6 +182,9 @@ const std::vector<system::EnergyGroup>& TurbineSystem::energy_groups() const {
 const std::vector<system::NeutralCoordinate>& TurbineSystem::neutral_coordinates() const {
   return assembly_->equations.declarations().neutral;
 }
+std::vector<system::NeutralCoordinate> TurbineSystem::free_coordinates() const {
+  return assembly_->equations.declarations().free;
+}
 
 std::vector<system::Motion> TurbineSystem::motions() const {
   return motions_of(turbine(), layout());

@@ -345,10 +345,10 @@ class Static(ProgramTest):
                     words=["static: stopped at load factor 0.", "static.max_steps", "hint: "])
 
     def test_ends_with_2_where_nothing_restores_or_holds_twice(self):
-        hinge = "length: 10\n  support: {stiffness: {theta2: free}, mass: 1, inertia: [1, 1, 1]}"
-        free = self.AT_REST.replace("length: 10", hinge)
-        self.write("case.yaml", free + "gravity: 0\n")
-        self.refuse("static", "case.yaml", words=["nothing restores blade 1 support theta2", "hint: "])
+        hinge = "length: 10\n  hinges: [{axis: flap, joint: free}]"  # its axis is vertical
+        free = self.AT_REST.replace("length: 10", hinge).replace("speed: 0", "speed: 0, azimuth_deg: 90")
+        self.write("case.yaml", free)
+        self.refuse("static", "case.yaml", words=["nothing restores blade 1 flap hinge", "hint: "])
         clamp = "length: 10\n  end_support: {stiffness: {u1: rigid}}"
         twice = self.AT_REST.replace("length: 10", clamp).replace("EA: 1e8", "EA: rigid")
         self.write("case.yaml", twice + self.LOADS % 1)

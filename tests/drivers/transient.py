@@ -269,10 +269,10 @@ class Midpoint(ProgramTest):
         path = self.write("hinged.yaml", HINGED)
         self.succeed("transient", path, "-o", "a.h5", "--set",
                      "transient={duration: 80, step: 0.01, start: undeformed, method: midpoint, "
-                     "output: {channels: [RootFzb1, TipDyb1]}}")
+                     "output: {channels: [RootFzb1, LagHinge1]}}")
         _, values, _, status = history(self.folder / "a.h5")
         self.assertEqual(status, "complete")
-        self.assertLess(abs(values[:, 1]).max(), 4)
+        self.assertLess(abs(values[:, 1]).max(), 25)
 
 
 HINGED = """samara: 1
@@ -283,7 +283,7 @@ blades:
   length: 10
   elements: 2
   order: 2
-  support: {stiffness: {theta2: free, theta3: free}, mass: 1, inertia: [0.1, 0.1, 0.1]}
+  hinges: [{axis: flap, offset: 0.5, joint: free}, {axis: lag, joint: free}]
   sections:
     - mass: 1
       inertia: [2e-4, 1e-4, 1e-4]

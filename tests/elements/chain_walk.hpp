@@ -62,10 +62,7 @@ ChainRows<T> rigid_chain(const elements::RigidChain& chain, const ChainState<T>&
   const Vec3<T> force = state.hub_load.template head<3>();
   const Vec3<T> moment = state.hub_load.template tail<3>();
   loads[elements::teeter_node] = {force, moment + math::cross(apex, force)};
-  elements::Wrench<T> carried = tree.walk_inward<T>(states, loads, nodes);
-  const elements::Wrench<T> own = elements::detail::active_and_inertia<T>(chain.tower_top, top);
-  carried.force += own.force;
-  carried.moment += own.moment;
+  const elements::Wrench<T> carried = tree.walk_inward<T>(top, states, loads, nodes);
   ChainRows<T> rows;
   rows.top << carried.force(2), carried.force(0), carried.force(1), carried.moment(2),
       carried.moment(0), carried.moment(1);

@@ -418,8 +418,10 @@ BOOST_AUTO_TEST_CASE(supports_are_words_or_springs) {
   }
   const model::SupportDefinition springs =
       beam(
+          "  end_support: pinned\n"
           "  support:\n    stiffness: {u1: 3, theta2: 7, theta3: free}\n    mass: 2\n"
-          "    center: [1, 2, 3]\n    inertia: [4, 5, 6]\n    damping: 0.1\n")
+          "    center: [1, 2, 3]\n    inertia: [4, 5, 6]\n    damping: 0.1\n"
+          "    added_mass: {u2: 8, theta3: 9}\n")
           .support;
   BOOST_TEST((springs.rigid == Six{false, true, true, true, false, false}));
   BOOST_TEST((springs.free == Six{false, false, false, false, false, true}));
@@ -427,7 +429,10 @@ BOOST_AUTO_TEST_CASE(supports_are_words_or_springs) {
   BOOST_TEST(springs.mass == 2.0);
   BOOST_TEST((springs.center == Vector3(1, 2, 3)));
   BOOST_TEST((springs.inertia == Vector3(4, 5, 6)));
-  BOOST_TEST(springs.damping == 0.1);
+  BOOST_TEST((springs.damping == Vector6::Constant(0.1)));
+  BOOST_TEST((springs.added_mass == Vector6(0, 8, 0, 0, 0, 9)));
+  BOOST_TEST((beam("  support: {stiffness: {u1: 3}, damping: [1, 2, 3, 4, 5, 6]}\n")
+                  .support.damping == Vector6(1, 2, 3, 4, 5, 6)));
   const model::SupportDefinition matrix =
       beam(
           "  end_support:\n    stiffness_matrix:\n"
@@ -443,6 +448,14 @@ BOOST_AUTO_TEST_CASE(supports_are_words_or_springs) {
 BOOST_AUTO_TEST_CASE(supports_are_checked) {
   check_error(minimal + "  support: loose\n",
               "case.yaml:9:3: blades.support: expected clamped or pinned, got \"loose\"");
+  check_error(minimal + "  support: pinned\n",
+              "case.yaml:9:3: blades.support: the root of a blade is free on hinges; hint: instead "
+              "of the support hinges: [{axis: flap, joint: free}], axis pitch for theta1, flap for "
+              "theta2, lag for theta3");
+  check_error(minimal + "  end_support: pinned\n  hinges: [{axis: lag, joint: free}]\n",
+              "case.yaml:9:3: blades.end_support: holds the end in axes that blades.hinges turn; "
+              "hint: a beam between two supports has support: pinned or stiffness: {theta2: free, "
+              "...} instead of hinges");
   check_error(minimal + "  support: {mass: 3}\n",
               "case.yaml:9:3: blades.support: missing key \"stiffness\" (or \"stiffness_matrix\")");
   check_error(

@@ -17,7 +17,7 @@ model::SupportDefinition springs(double lateral, double rotation) {
   support.mass = 1.3;
   support.center = Vector3(0.1, -0.2, 0.3);
   support.inertia = Vector3(0.3, 0.4, 0.5);
-  support.damping = 0.02;
+  support.damping << 0.02, 0.01, 0.03, 0.02, 0.05, 0.01;
   return support;
 }
 

@@ -63,7 +63,8 @@ void vary(model::BeamDefinition& beam, Draw& draw, bool can_hold_end) {
   beam.support.mass = 1.3;
   beam.support.center = Vector3(draw.some(0.1), draw.some(0.2), 0.0);
   beam.support.inertia = Vector3(0.3, 0.4, 0.5);
-  beam.support.damping = draw.some(0.02);
+  beam.support.damping.setConstant(draw.some(0.02));
+  beam.support.added_mass << 2.0, draw.some(3.0), 0.0, 0.5, 0.0, draw.some(0.2);
   if (!can_hold_end) return;
   beam.end_support.free[2] = false;
   beam.end_support.stiffness(2, 2) = 90.0;

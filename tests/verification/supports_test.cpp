@@ -65,7 +65,7 @@ model::TurbineDefinition rod_on_springs(const Rod& rod) {
       rod.rotation, rod.rotation, rod.rotation;
   definition.tower.support.mass = 0.7;
   definition.tower.support.inertia = Vector3(0.2, 0.3, 0.4);
-  definition.tower.support.damping = rod.damping;
+  definition.tower.support.damping.setConstant(rod.damping);
   definition.gravity = rod.gravity;
   return definition;
 }

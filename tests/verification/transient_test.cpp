@@ -337,7 +337,7 @@ blades:
   length: 10
   elements: 1
   order: 2
-  support: {stiffness: {theta2: free, theta3: free}, mass: 1, inertia: [0.1, 0.1, 0.1]}
+  hinges: [{axis: flap, offset: 0.5, joint: free}, {axis: lag, joint: free}]
   sections:
     - mass: 1
       inertia: [2e-4, 1e-4, 1e-4]

@@ -103,8 +103,8 @@ class Beam final : public Stated<Beam> {
   template <class System>
   void state_drag(System& system) const;
 
-  void describe_block(Registry& registry, int first, const std::string& place) const;
-  void describe_root(Registry& registry) const;
+  void describe_unknowns(Registry& registry, int first, const std::string& place,
+                         int from = 0) const;
   void describe_support(Registry& registry, int first) const;
   void describe_end_support(Registry& registry) const;
   void describe_mass(Registry& registry, int first, const Matrix6& mass) const;

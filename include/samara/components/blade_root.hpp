@@ -1,10 +1,9 @@
 // The root of a blade on the hub: its pitch and its hinges, without mass of their own
-// (docs/theory.md, section 3.2). The motion of the root follows from the hub's, the load on the hub
+// (docs/theory.md, section 3.3). The motion of the root follows from the hub's, the load on the hub
 // from the root's; a free hinge has an angle q, its rate U and the balance of moments about its
 // axis.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "samara/components/component.hpp"
@@ -21,7 +20,7 @@ class BladeRoot {
   /// `k`: number of the blade from 0. The turbine must live on.
   BladeRoot(const model::Turbine& turbine, std::size_t k);
 
-  void place(Registry& registry, int shared_rank);
+  void place(Registry& registry, int rank);
   /// `root`: first of the root's reactions; ports of the hub's motion, the load on it, and the
   /// motion of the root.
   void describe(Registry& registry, int root, int hub_port, int load_port, int root_port);
@@ -56,6 +55,7 @@ class BladeRoot {
 
   const model::BladeRoot& root() const { return turbine_.roots[k_]; }
   std::vector<Argument> hinge_arguments(bool with_rates) const;
+  bool is_unloaded() const;
 
   const model::Turbine& turbine_;
   std::size_t k_;
@@ -64,7 +64,7 @@ class BladeRoot {
   Connections motion_;
 };
 
-/// By the turbine's operation, by inputs, by a hinge, and by a pitch link together.
+/// As prescribed, by the turbine's operation, by inputs, by a hinge, and by a pitch link together.
 template <class T, class System, class Hinges>
 BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLink& link,
                                       const Hinges& hinges) const {
@@ -75,6 +75,13 @@ BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLin
     turn.rate += hinges(most_hinges + hinge) * ratio;
   };
   if (link.hinge >= 0) add(link.hinge, 1.0);
+  if (link.is_prescribed()) {
+    const elements::JointMotion now = link.motion.at(system.time(), turbine_.speed);
+    const bool varies = !link.motion.is_constant();
+    turn.moves = true;
+    turn.angle += T(varies ? system.varying(now.angle) : now.angle);
+    turn.rate += T(varies ? system.varying(now.rate) : 0.0);
+  }
   if (!link.is_pitch) return turn;
   if (root().pitch_by_flap != 0.0) add(root().flap_hinge, root().pitch_by_flap);
   if (!turbine_.operation.pitch.empty()) {

@@ -126,13 +126,11 @@ class Pattern {
   void add_share(const Share& share, const math::Dependence* y);
   void add_provision(const Provision& provision, const math::Dependence* y);
   int place_of(int port, const PortColumn& column);
-  std::set<int>& row(int row, bool is_rate);
+  std::vector<int>& row(int row, bool is_rate);
   static void append(std::vector<TangentPlan::Entries>& entries, int from,
                      const PortColumn& column);
 
   TangentPlan plan_;
-  std::vector<std::set<int>> K_;
-  std::vector<std::set<int>> M_;
   std::vector<Port> ports_;
   std::vector<Source> sources_;  ///< of the present function
   std::vector<LinearShare> linear_;

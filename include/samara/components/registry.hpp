@@ -15,6 +15,7 @@ struct Declarations {
   std::vector<system::RowRole> rows;
   std::vector<system::EnergyGroup> energies;
   std::vector<system::NeutralCoordinate> neutral;
+  std::vector<system::NeutralCoordinate> free;  ///< PeriodicSystem::free_coordinates
   std::vector<system::MeshError> mesh_errors;
   std::vector<int> port_sizes;
   /// Unknowns that nothing describes: they fill blocks, and stay zero.
@@ -41,6 +42,8 @@ class Registry {
   void describe(int unknown, const system::Unknown& what, system::RowRole row);
   /// Changes what is described: a position that nothing holds, whose row is a balance of loads.
   void set_free(int unknown);
+  /// A coordinate that only loads and inertia restore, and the row of the load that would hold it.
+  void add_free(const system::NeutralCoordinate& free);
   void set_row(int unknown, system::RowRole row);
   void add(const system::EnergyGroup& group);
   void add(const system::NeutralCoordinate& neutral);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "samara/base/index.hpp"
 #include "samara/components/function.hpp"
 #include "samara/components/inputs.hpp"
 
@@ -68,8 +69,6 @@ class Residual {
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
   T value_of(const Argument& argument, int i) const {
     switch (argument.kind) {
       case Argument::Kind::unknowns:

@@ -18,6 +18,7 @@ struct BodiesSetting {
   const Beam* tower = nullptr;  ///< null: the bodies stand on the ground
   std::vector<const Beam*> blades;
   int shared_rank = 0;  ///< of elimination
+  int hinge_rank = 0;   ///< behind that of the roots' reactions: of the hinges of blades
 };
 
 /// What is asked of the bodies beside their rows. It is only given where torque tables reach.

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "samara/elements/beam_point.hpp"
+#include "samara/elements/beam_tip.hpp"
 
 namespace samara::elements {
 
@@ -13,7 +13,8 @@ namespace samara::elements {
 struct RootSupport {
   Matrix6 compliance = Matrix6::Zero();  ///< of the springs; zero rows and columns where rigid
   std::array<bool, 6> free{};            ///< directions that nothing holds
-  double damping = 0.0;                  ///< mu [s]: load = F_hat + mu F_hat_dot, where elastic
+  Vector6 damping = Vector6::Zero();     ///< mu [s]: load = F_hat + mu F_hat_dot, where elastic
+  Matrix6 added_mass = Matrix6::Zero();  ///< inertia without weight, axes of the body [kg, kg m^2]
 
   bool is_elastic(int i) const { return compliance(i, i) > 0.0; }
 };
@@ -42,7 +43,7 @@ RootSupportTerms<T> root_support_terms(const RootSupport& support,
   RootSupportTerms<T> terms;
   for (int i = 0; i < 6; ++i) {
     terms.load(i) = z(12 + i);
-    if (support.is_elastic(i)) terms.load(i) += z_dot(12 + i) * support.damping;
+    if (support.is_elastic(i)) terms.load(i) += z_dot(12 + i) * support.damping(i);
     terms.law(i) = support.free[static_cast<std::size_t>(i)] ? z(12 + i) : z(i);
     for (int j = 0; j < 6; ++j)
       if (support.compliance(i, j) != 0.0) terms.law(i) -= z(12 + j) * support.compliance(i, j);
@@ -55,6 +56,18 @@ RootSupportTerms<T> root_support_terms(const RootSupport& support,
   terms.root = terms.load;
   terms.root.template tail<3>() += math::cross(displacement, force);
   return terms;
+}
+
+/// What changes the momenta of the water around the body, in a (Kirchhoff's equations).
+template <class T>
+Vec6<T> added_mass_load(const RootSupport& support, const Eigen::Matrix<T, point_size, 1>& z,
+                        const Eigen::Matrix<T, point_size, 1>& z_dot) {
+  const Mat3<T> R = math::direction_cosines(Vec3<T>(z.template segment<3>(3))).transpose();
+  const Vec6<T> load = inertial_load<T>(support.added_mass, z.template segment<6>(6),
+                                        z_dot.template segment<6>(6));
+  Vec6<T> in_a;
+  in_a << R * Vec3<T>(load.template head<3>()), R * Vec3<T>(load.template tail<3>());
+  return in_a;
 }
 
 /// Rows of the end, from its `balance` of forces and moments in a: where springs hold, the load

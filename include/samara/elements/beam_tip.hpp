@@ -16,6 +16,26 @@ struct TipTerms {
   Vec3<T> moment;    ///< M_hat + R (H_dot + Omega x H + V x P) - m
 };
 
+/// Force and moment that change the momenta of `inertia` at V, Omega: P_dot + Omega x P and H_dot +
+/// Omega x H + V x P, in their basis.
+template <class T>
+Vec6<T> inertial_load(const Matrix6& inertia, const Vec6<T>& velocity,
+                      const Vec6<T>& velocity_dot) {
+  const Mat6<T> mass = inertia.cast<T>();  // NOLINT: no copy where T is no double
+  const Vec6<T> momentum = mass * velocity;
+  const Vec6<T> momentum_dot = mass * velocity_dot;
+  const Vec3<T> V = velocity.template head<3>();
+  const Vec3<T> Omega = velocity.template tail<3>();
+  const Vec3<T> P = momentum.template head<3>();
+  const Vec3<T> H = momentum.template tail<3>();
+  const Vec3<T> force = Vec3<T>(momentum_dot.template head<3>()) + math::cross(Omega, P);
+  const Vec3<T> moment = Vec3<T>(momentum_dot.template tail<3>()) + math::cross(Omega, H) +
+                         math::cross(V, P);
+  Vec6<T> load;
+  load << force, moment;
+  return load;
+}
+
 /// `mass`: I6 of (3) about x, momenta from velocities, in the basis of V_hat and Omega_hat.
 /// `reference`: the rotation from which theta_hat counts.
 template <class T>
@@ -30,20 +50,14 @@ TipTerms<T> beam_tip_terms(const Vector3& x, const Matrix3& reference, const Mat
   terms.force = z.template segment<3>(12);
   terms.moment = z.template segment<3>(15);
   if (mass(0, 0) > 0.0) {
-    const Vec3<T> V = z.template segment<3>(6);
-    const Vec3<T> Omega = z.template segment<3>(9);
-    const Mat6<T> inertia = mass.cast<T>();  // NOLINT: no copy where T is no double
-    const Vec6<T> momentum = inertia * z.template segment<6>(6);
-    const Vec6<T> momentum_dot = inertia * z_dot.template segment<6>(6);
     Vec6<T> fall = Vec6<T>::Zero();
     fall.template head<3>() = R.transpose() * a.gravity;
-    const Vec6<T> weight = inertia * fall;
-    const Vec3<T> P = momentum.template head<3>();
-    const Vec3<T> H = momentum.template tail<3>();
-    const Vec3<T> force = Vec3<T>(momentum_dot.template head<3>()) + math::cross(Omega, P) -
-                          Vec3<T>(weight.template head<3>());
-    const Vec3<T> moment = Vec3<T>(momentum_dot.template tail<3>()) + math::cross(Omega, H) +
-                           math::cross(V, P) - Vec3<T>(weight.template tail<3>());
+    const Mat6<T> inertia = mass.cast<T>();  // NOLINT: no copy where T is no double
+    const Vec6<T> load =
+        inertial_load<T>(mass, z.template segment<6>(6), z_dot.template segment<6>(6)) -
+        Vec6<T>(inertia * fall);
+    const Vec3<T> force = load.template head<3>();
+    const Vec3<T> moment = load.template tail<3>();
     terms.force += R * force;
     terms.moment += R * moment;
   }

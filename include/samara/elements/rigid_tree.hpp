@@ -157,12 +157,16 @@ class RigidTree {
   template <class T>
   void walk_outward(const FrameMotion<T>& base, const States<T>& states, Results<T>& results) const;
 
-  /// Loads and inertia inward: the rows, and what the base carries, about its own point. `loads`:
-  /// on each body from outside, about its joint's point.
+  /// Loads and inertia inward: the rows, and the load of all bodies with the base's own, about the
+  /// base's point. `loads`: on each body from outside, about its joint's point.
   template <class T>
-  Wrench<T> walk_inward(const States<T>& states, const Loads<T>& loads, Results<T>& results) const;
+  Wrench<T> walk_inward(const FrameMotion<T>& base, const States<T>& states, const Loads<T>& loads,
+                        Results<T>& results) const;
+
+  void set_base_body(const RigidBody& body) { base_body_ = body; }
 
  private:
+  RigidBody base_body_;
   std::vector<TreeNode> nodes_;
 };
 
@@ -286,12 +290,13 @@ void RigidTree::walk_outward(const FrameMotion<T>& base, const States<T>& states
 }
 
 template <class T>
-Wrench<T> RigidTree::walk_inward(const States<T>& states, const Loads<T>& loads,
-                                 Results<T>& results) const {
+Wrench<T> RigidTree::walk_inward(const FrameMotion<T>& base, const States<T>& states,
+                                 const Loads<T>& loads, Results<T>& results) const {
   using math::cross;
   using math::dot;
   Loads<T> sums = loads;
   Wrench<T> total{Vec3<T>::Zero(), Vec3<T>::Zero()};
+  if (!base_body_.is_none()) total = detail::active_and_inertia<T>(base_body_, base);
   for (int i = size() - 1; i >= 0; --i) {
     const TreeNode& node = this->node(i);
     const JointState<T>& state = states[static_cast<std::size_t>(i)];

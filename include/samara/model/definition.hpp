@@ -41,7 +41,9 @@ struct SupportDefinition {
   double mass = 0.0;                  ///< of a rigid body between springs and beam [kg]
   Vector3 center = Vector3::Zero();   ///< from the root, root axes [m]
   Vector3 inertia = Vector3::Zero();  ///< about its own centre, root axes [kg m^2]
-  double damping = 0.0;               ///< mu [s] of the springs
+  /// Inertia without weight of the water around that body, along and about its axes [kg, kg m^2].
+  Vector6 added_mass = Vector6::Zero();
+  Vector6 damping = Vector6::Zero();  ///< mu [s] of the springs, by direction
 
   bool is_clamp() const { return rigid == std::array<bool, 6>{true, true, true, true, true, true}; }
   bool is_none() const { return free == std::array<bool, 6>{true, true, true, true, true, true}; }
@@ -182,7 +184,7 @@ enum class HingeAxis { flap, lag, pitch };
 struct HingeDefinition {
   HingeAxis axis = HingeAxis::flap;
   double offset = 0.0;  ///< along b1 from the shaft axis, or from the hinge inboard of it [m], >= 0
-  JointDefinition joint;  ///< a prescribed one has a constant angle
+  JointDefinition joint;  ///< a motion by `per_rev` is that of blade 1, others follow by azimuth
   /// Of a flap hinge: its axis is turned, so that flapping by a small angle beta pitches the blade
   /// by -tan(delta3) beta [rad].
   double delta3 = 0.0;

@@ -24,6 +24,9 @@ struct RootLink {
   Vector3 axis = -Vector3::UnitX();    ///< that it turns about, in the axes behind it
   bool is_pitch = false;               ///< it turns as the blade is pitched
   int hinge = -1;                      ///< and as this hinge does; -1: as none
+  JointHistory motion = {};            ///< and as prescribed
+
+  bool is_prescribed() const { return !motion.is_constant() || motion.angle != 0.0; }
 };
 
 /// Where a blade is fixed to the hub.
@@ -59,6 +62,15 @@ struct Turbine {
     turned.value += azimuth;
     return turned;
   }
+  /// Visits the prescribed motions of all joints, those that are constant too.
+  template <class Visit>
+  void for_each_motion(const Visit& visit) {
+    visit(yaw_motion);
+    visit(teeter_motion);
+    for (BladeRoot& root : roots)
+      for (RootLink& link : root.links) visit(link.motion);
+  }
+
   /// The motion of a yaw or teeter that is not free.
   elements::JointMotion yaw_at(double t) const { return motion_at(operation.yaw, yaw_motion, t); }
   elements::JointMotion teeter_at(double t) const {

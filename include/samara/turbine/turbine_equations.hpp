@@ -18,8 +18,9 @@ using TurbineInputs = components::TurbineInputs<T>;
 
 /// Where each unknown of a turbine is. Blocks of 18: every Gauss point, every beam end and every
 /// mass node is one; the joints and the root reactions share the last ones. Blades come first, tip
-/// to root, then the tower, foot to top, then the joints: an elimination in this order fills in
-/// nothing but the columns of the joints and of the tower top.
+/// to root, then the tower, foot to top, then the joints and the roots' reactions, then the hinges of
+/// blades: an elimination in this order fills in nothing but the columns of the joints, the hinges
+/// and the tower top.
 class TurbineLayout {
  public:
   static constexpr int block = elements::point_size;
