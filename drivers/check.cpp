@@ -174,6 +174,28 @@ std::string hinge_words(const model::BladesDefinition& blades) {
   return text;
 }
 
+/// "20000 kg, fore-aft 0.3281 Hz 3.834 %, side-side ..." of each damper that the case states.
+std::vector<std::string> mass_damper_lines(const turbine::TurbineSystem& system) {
+  std::vector<std::string> lines;
+  for (const auto& damper : system.equations().mass_dampers()) {
+    const model::MassDamperDefinition& definition = damper->definition();
+    if (definition.blade == 0 && damper->owner().instance > 1) continue;  // as on blade 1
+    system::Owner owner = damper->owner();
+    if (definition.blade == 0) owner.instance = 0;
+    std::string text = owner.name() + ": " + general(definition.mass, 6) + " kg";
+    for (std::size_t i = 0; i < definition.axes.size(); ++i) {
+      const model::MassDamperAxis& axis = definition.axes[i];
+      const double omega = std::sqrt(axis.stiffness / definition.mass);
+      text += std::string(i == 0 ? ", " : "; ") + damper->direction(i) + " " +
+              general(omega / (2.0 * std::numbers::pi), 4) + " Hz, damping " +
+              general(50.0 * axis.damping / (omega * definition.mass), 4) + " %";
+      if (axis.stop > 0.0) text += ", stops at " + general(axis.stop, 4) + " m";
+    }
+    lines.push_back(text);
+  }
+  return lines;
+}
+
 std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
@@ -237,6 +259,11 @@ std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
   if (definition.has_tower) line("tower foot", support_words(definition.tower.support));
   if (has_rotor && !definition.blades.beam.support.is_clamp())
     line("blade roots", support_words(definition.blades.beam.support));
+  std::string dampers = "mass dampers";
+  for (const std::string& words : mass_damper_lines(system)) {
+    line(dampers, words);
+    dampers.clear();
+  }
   line("gravity", general(definition.gravity, 6) + " m/s^2");
   if (!definition.loads.empty())
     line("loads", count(static_cast<int>(definition.loads.size()), "prescribed load"));

@@ -71,6 +71,12 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
   if (moves(turbine.chain.yaw, turbine.yaw_motion)) add_angle("yaw", layout.yaw());
   if (turbine.chain.torsion.free) add_angle("shaft torsion", layout.shaft_torsion());
   if (turbine.chain.generator.free) add_angle("generator", layout.generator());
+  for (const auto& damper : system.equations().mass_dampers()) {
+    if (damper->owner().instance > shown) continue;
+    for (std::size_t i = 0; i < damper->definition().axes.size(); ++i)
+      outputs.push_back({damper->owner().name() + " " + damper->direction(i), "m",
+                         damper->first(i), 1.0, rounding});
+  }
   if (!turbine.has_tower) return outputs;
   add_three("tower top", layout.tower_tip(), "m", rounding * turbine.tower.tip.norm(),
             {"along n3 (up)", "along n1 (lateral)", "along n2 (downwind)"});

@@ -1,5 +1,6 @@
 #include "samara/components/blade_root.hpp"
 
+#include <numbers>
 #include <string>
 
 namespace samara::components {
@@ -62,6 +63,7 @@ void BladeRoot::describe(Registry& registry, int reactions, int hub_port, int lo
     registry.describe(
         at + 1, {owner, name, "speed", "rad/s", system::UnknownRole::velocity, Frame::rotating},
         system::RowRole::balance);
+    describe_channel(registry, hinge.axis, at);
     load_.shares.push_back({at, 1, 6 + most_hinges + local});
     load_.shares.push_back({at + 1, 1, 6 + local});
     if (hinge.stiffness > 0.0)
@@ -79,9 +81,20 @@ void BladeRoot::describe(Registry& registry, int reactions, int hub_port, int lo
   }
 }
 
+void BladeRoot::describe_channel(Registry& registry, model::HingeAxis axis, int angle) const {
+  const char* names[] = {"FlapHinge", "LagHinge", "PitchHinge"};
+  const char* ways[] = {"downwind", "against the turning", "toward feather"};
+  const std::string number = std::to_string(k_ + 1);
+  const auto which = static_cast<std::size_t>(axis);
+  registry.add(Channel{names[which] + number, "deg", "blade " + number + ", root",
+                       std::string(hinge_name(axis)) + " angle, " + ways[which], angle,
+                       180.0 / std::numbers::pi});
+}
+
 /// Nothing brings a hinge without a spring anywhere.
 bool BladeRoot::is_unloaded() const {
-  return turbine_.speed == 0.0 && turbine_.chain.gravity == 0.0 && turbine_.blades[k_].loads.empty();
+  return turbine_.speed == 0.0 && turbine_.chain.gravity == 0.0 &&
+         turbine_.blades[k_].loads.empty();
 }
 
 bool BladeRoot::is_conservative() const {

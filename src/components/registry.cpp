@@ -79,6 +79,10 @@ void Registry::add(const system::NeutralCoordinate& neutral) {
 
 void Registry::add(const system::MeshError& error) { declared_.mesh_errors.push_back(error); }
 
+void Registry::add(const system::Motion& motion) { declared_.motions.push_back(motion); }
+
+void Registry::add(const Channel& channel) { declared_.channels.push_back(channel); }
+
 void Registry::reverse(int unknown) { reversed_.push_back(unknown); }
 
 Declarations Registry::finish() {

@@ -15,6 +15,7 @@
 
 #include "case_beam.hpp"
 #include "case_linearize.hpp"
+#include "case_mass_dampers.hpp"
 #include "case_transient.hpp"
 #include "yaml_reader.hpp"
 #include "yaml_settings.hpp"
@@ -601,6 +602,7 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   else
     refuse_rotor(map, turbine);
   if (const YamlNode* node = map.find("loads")) read_loads(map, *node, turbine);
+  read_mass_dampers(map, turbine);
   if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);

@@ -99,6 +99,24 @@ MassProperties whole_mass(const Turbine& turbine, const Masses& masses) {
   return sum;
 }
 
+/// The mass dampers of a carrier, in the axes of its node, about its point at rest: that of the
+/// tower's foot, a blade's root or the tower top.
+MassProperties damper_masses(const Turbine& turbine, MassDamperDefinition::Carrier carrier,
+                             int blade) {
+  MassProperties sum;
+  for (const MassDamper& damper : turbine.mass_dampers) {
+    if (damper.definition.carrier != carrier || damper.blade != blade) continue;
+    Vector3 node = Vector3::Zero();
+    if (!damper.is_on_nacelle()) {
+      const Beam& beam =
+          blade < 0 ? turbine.tower : turbine.blades[static_cast<std::size_t>(blade)];
+      node = damper.node < 0 ? beam.tip : beam.mass_nodes[static_cast<std::size_t>(damper.node)].x;
+    }
+    sum += point_mass(damper.definition.mass, node + damper.place);
+  }
+  return sum;
+}
+
 }  // namespace
 
 MassProperties MassProperties::placed(const Matrix3& C, const Vector3& r) const {
@@ -122,9 +140,14 @@ Masses compute_masses(const TurbineDefinition& definition, const Turbine& turbin
   const elements::RigidChain& chain = turbine.chain;
   const Vector3 apex(0.0, chain.undersling, 0.0);
   Masses masses;
-  if (turbine.has_tower)
-    masses.tower = beam_mass(definition.tower, 1.0).placed(tower_axes(), Vector3::Zero());
+  using Carrier = MassDamperDefinition::Carrier;
+  if (turbine.has_tower) {
+    masses.tower = beam_mass(definition.tower, 1.0);
+    masses.tower += damper_masses(turbine, Carrier::tower, -1);
+    masses.tower = masses.tower.placed(tower_axes(), Vector3::Zero());
+  }
   masses.nacelle = body_mass(chain.nacelle);
+  masses.nacelle += damper_masses(turbine, Carrier::nacelle, -1);
   masses.shaft = body_mass(chain.shaft);
   masses.hub = body_mass(chain.hub);
   masses.rotor = masses.hub;
@@ -133,9 +156,13 @@ Masses compute_masses(const TurbineDefinition& definition, const Turbine& turbin
     const auto found = definition.blades.each.find(static_cast<int>(k) + 1);
     const double factor = found == definition.blades.each.end() ? 1.0 : found->second.mass_factor;
     const BladeRoot& root = turbine.roots[k];
+    const MassProperties on_blade = damper_masses(turbine, Carrier::blade, static_cast<int>(k));
     masses.blades.push_back(beam_mass(definition.blades.beam, factor));
+    masses.blades.back() += on_blade;
     masses.rotor += masses.blades.back().placed(root.C_Ha, root.position + apex);
-    masses.meshed_rotor += beam_mass(turbine.blades[k]).placed(root.C_Ha, root.position + apex);
+    MassProperties meshed = beam_mass(turbine.blades[k]);
+    meshed += on_blade;
+    masses.meshed_rotor += meshed.placed(root.C_Ha, root.position + apex);
   }
   masses.whole = whole_mass(turbine, masses);
   return masses;

@@ -1,10 +1,12 @@
 #include "samara/model/turbine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "samara/base/error.hpp"
 #include "samara/math/rotation.hpp"
+#include "samara/model/reference_line.hpp"
 
 namespace samara::model {
 namespace {
@@ -177,6 +179,53 @@ void add_loads(const TurbineDefinition& definition, Turbine& turbine) {
   }
 }
 
+/// Each stands on an end of an element, as a point mass does.
+void add_damper_nodes(const std::vector<MassDamperDefinition>& dampers, BeamDefinition& tower,
+                      BeamDefinition& blade) {
+  for (const MassDamperDefinition& damper : dampers) {
+    if (damper.carrier == MassDamperDefinition::Carrier::nacelle) continue;
+    std::vector<PointMassDefinition>& masses =
+        damper.carrier == MassDamperDefinition::Carrier::tower ? tower.point_masses
+                                                               : blade.point_masses;
+    const auto next = std::ranges::lower_bound(masses, damper.at, {}, &PointMassDefinition::at);
+    if (next != masses.end() && next->at == damper.at) continue;
+    PointMassDefinition node;
+    node.at = damper.at;
+    masses.insert(next, node);
+  }
+}
+
+void place_mass_dampers(const TurbineDefinition& definition, Turbine& turbine) {
+  using Carrier = MassDamperDefinition::Carrier;
+  const auto place = [&](const MassDamperDefinition& damper, const BeamDefinition* carrier,
+                         const Beam& beam, int blade) {
+    MassDamper placed;
+    placed.definition = damper;
+    placed.blade = blade;
+    for (const MassDamper& other : turbine.mass_dampers)
+      if (other.definition.carrier == damper.carrier && other.blade == blade) ++placed.number;
+    if (carrier != nullptr) {
+      const ReferenceLine line(beam.name, *carrier);
+      placed.axes =
+          line.at(damper.at, interpolate_section(*carrier, damper.at).twist).C_ab;
+      const auto end = std::ranges::find(beam.ends, damper.at) - beam.ends.begin();
+      for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m)
+        if (damper.at < 1.0 && beam.mass_nodes[m].end == end) placed.node = static_cast<int>(m);
+    }
+    placed.place = placed.axes * damper.position;
+    turbine.mass_dampers.push_back(placed);
+  };
+  for (const MassDamperDefinition& damper : definition.mass_dampers) {
+    if (damper.carrier == Carrier::nacelle) place(damper, nullptr, turbine.tower, -1);
+    if (damper.carrier == Carrier::tower) place(damper, &definition.tower, turbine.tower, -1);
+    if (damper.carrier != Carrier::blade) continue;
+    if (damper.blade != 0) turbine.identical_blades = false;
+    for (std::size_t k = 0; k < turbine.blades.size(); ++k)
+      if (damper.blade == 0 || damper.blade == static_cast<int>(k) + 1)
+        place(damper, &definition.blades.beam, turbine.blades[k], static_cast<int>(k));
+  }
+}
+
 bool differs(const BladeDifference& d) {
   return d.pitch != 0.0 || d.mass_factor != 1.0 || d.stiffness_factor != 1.0 || !d.hinges.empty();
 }
@@ -186,8 +235,10 @@ bool differs(const BladeDifference& d) {
 Turbine build_turbine(const TurbineDefinition& definition) {
   Turbine turbine;
   turbine.has_tower = definition.has_tower;
-  if (definition.has_tower) turbine.tower = build_beam("tower", definition.tower);
-  const BladesDefinition& blades = definition.blades;
+  BeamDefinition tower = definition.tower;
+  BladesDefinition blades = definition.blades;
+  add_damper_nodes(definition.mass_dampers, tower, blades.beam);
+  if (definition.has_tower) turbine.tower = build_beam("tower", tower);
   for (int k = 0; k < blades.count; ++k) {
     const auto found = blades.each.find(k + 1);
     const BladeDifference d = found == blades.each.end() ? BladeDifference{} : found->second;
@@ -197,6 +248,7 @@ Turbine build_turbine(const TurbineDefinition& definition) {
     turbine.roots.push_back(root_of(blades, definition.hub.radius, k));
   }
   add_loads(definition, turbine);
+  place_mass_dampers(definition, turbine);
   turbine.chain = chain_of(definition);
   if (definition.has_tower) turbine.chain.tower_top = tower_top_of(turbine.tower.tip_mass);
   const auto motion_of = [](const JointDefinition& joint) {
@@ -213,6 +265,8 @@ Turbine build_turbine(const TurbineDefinition& definition) {
     if (hinge->free) ++turbine.degrees_of_freedom;
   for (const BladeRoot& root : turbine.roots)
     turbine.degrees_of_freedom += static_cast<int>(root.hinges.size());
+  for (const MassDamper& damper : turbine.mass_dampers)
+    turbine.degrees_of_freedom += static_cast<int>(damper.definition.axes.size());
   return turbine;
 }
 

@@ -22,13 +22,18 @@ std::vector<std::string> split_words(const std::string& text) {
 
 }  // namespace
 
-ChannelCatalogue::ChannelCatalogue(const model::Turbine& turbine, const ChannelStations& stations)
-    : turbine_(turbine), stations_(stations) {
+ChannelCatalogue::ChannelCatalogue(const TurbineEquations& equations,
+                                   const ChannelStations& stations)
+    : turbine_(equations.turbine()), stations_(stations) {
   add_rotation();
   for (std::size_t k = 0; k < turbine_.blades.size(); ++k) add_blade(static_cast<int>(k));
   add_shaft();
   add_yaw_bearing();
   if (turbine_.has_tower) add_tower();
+  for (const components::Channel& declared : equations.declarations().channels) {
+    channels.push_back({declared.name, declared.unit, declared.frame, declared.description});
+    picks.push_back({-1, declared.factor, declared.unknown});
+  }
   sections_from = channels.size();
   for (std::size_t k = 0; k < turbine_.blades.size(); ++k) add_blade_sections(static_cast<int>(k));
   if (turbine_.has_tower) add_tower_sections();
@@ -86,14 +91,6 @@ void ChannelCatalogue::add_blade(int k) {
   const std::string pitched = "blade " + n + ", coned and pitched";
   const std::string tip = "blade " + n + ", section at the tip";
   add("BldPitch" + n + " PtchPMzc" + n, "deg", pitched, "pitch", first + blade_pitch, to_degrees);
-  for (const model::RootHinge& hinge : turbine_.roots[static_cast<std::size_t>(k)].hinges) {
-    const char* names[] = {"FlapHinge", "LagHinge", "PitchHinge"};
-    const char* ways[] = {"downwind", "against the turning", "toward feather"};
-    const auto axis = static_cast<std::size_t>(hinge.axis);
-    add(names[axis] + n, "deg", "blade " + n + ", root",
-        std::string(components::hinge_name(hinge.axis)) + " angle, " + ways[axis],
-        first + hinge_angles + static_cast<int>(axis), to_degrees);
-  }
   add("TipDxc" + n + " OoPDefl" + n, "m", coned, "tip deflection, out of plane", first + coned_tip,
       1.0);
   add("TipDyc" + n + " IPDefl" + n, "m", coned, "tip deflection, in plane", first + coned_tip + 1,

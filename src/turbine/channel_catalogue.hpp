@@ -23,8 +23,7 @@ inline constexpr int pitched_tip = 15;
 inline constexpr int tip_turn = 18;          // rotation vector of the tip, pitched axes
 inline constexpr int tip_acceleration = 21;  // in the axes of the tip's section
 inline constexpr int blade_pitch = 24;
-inline constexpr int hinge_angles = 25;  // flap, lag, pitch
-inline constexpr int blade_slots = 28;
+inline constexpr int blade_slots = 25;
 // Of the whole:
 inline constexpr int base_force = 0;  // tower base
 inline constexpr int base_moment = 3;
@@ -62,7 +61,7 @@ inline constexpr int section_slots = 12;
 /// All channels of a turbine.
 class ChannelCatalogue {
  public:
-  ChannelCatalogue(const model::Turbine& turbine, const ChannelStations& stations);
+  ChannelCatalogue(const TurbineEquations& equations, const ChannelStations& stations);
 
   std::vector<Channel> channels;
   std::vector<ChannelPick> picks;  ///< of each channel

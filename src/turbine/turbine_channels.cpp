@@ -87,13 +87,13 @@ PointSum interpolate(const model::Beam& beam, double fraction) {
 
 std::vector<Channel> TurbineChannels::available(const TurbineSystem& system,
                                                 const ChannelStations& stations) {
-  return ChannelCatalogue(system.turbine(), stations).channels;
+  return ChannelCatalogue(system.equations(), stations).channels;
 }
 
 TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStations& stations,
                                  const std::vector<std::string>& names)
     : system_(system), stations_(stations) {
-  const ChannelCatalogue catalogue(system.turbine(), stations_);
+  const ChannelCatalogue catalogue(system.equations(), stations_);
   const auto take = [&](std::size_t i, const std::string& name) {
     channels_.push_back(catalogue.channels[i]);
     channels_.back().name = name;
@@ -196,10 +196,6 @@ class Quantities {
     const Vec3<T> force = root.template head<3>();
     const Vec3<T> moment = root.template tail<3>();
     put(first + blade_pitch, pitch);
-    const std::vector<model::RootHinge>& hinges = turbine_.roots[number].hinges;
-    for (std::size_t i = 0; i < hinges.size(); ++i)
-      put(first + hinge_angles + static_cast<int>(hinges[i].axis),
-          z[static_cast<std::size_t>(layout_.hinge(k, static_cast<int>(i)))]);
     put(first + root_force, along_beam<T>(force));
     put(first + root_moment, along_beam<T>(moment));
     put(first + coned_force, along_beam<T>(to_cone * force));
@@ -310,7 +306,9 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
     quantities.add_section(section.slot, *placed.beam, placed.points, section.place, z, z_dot);
   }
   for (std::size_t i = 0; i < picks_.size(); ++i)
-    values[i] = quantities[picks_[i].slot] * picks_[i].factor;
+    values[i] = (picks_[i].unknown < 0 ? quantities[picks_[i].slot]
+                                       : z[static_cast<std::size_t>(picks_[i].unknown)]) *
+                picks_[i].factor;
 }
 
 template void TurbineChannels::evaluate(double, const std::vector<double>&,

@@ -84,6 +84,18 @@ void TurbineEquations::make_components() {
   bodies_ = std::make_unique<components::RigidBodies>(turbine_, bodies);
   components_.push_back(bodies_.get());
   for (const auto& beam : beams_) components_.push_back(beam.get());
+  for (const model::MassDamper& damper : turbine_.mass_dampers) {
+    const bool is_on_blade = damper.blade >= 0;
+    components::MassDamperSetting setting;
+    setting.turbine = &turbine_;
+    setting.damper = &damper;
+    setting.beam = is_on_blade ? beams_[static_cast<std::size_t>(damper.blade)].get()
+                               : beams_.back().get();
+    setting.has_bodies = !is_on_blade;
+    setting.shared_rank = shared_rank;
+    mass_dampers_.push_back(std::make_unique<components::MassDamper>(setting));
+    components_.push_back(mass_dampers_.back().get());
+  }
 }
 
 components::Registry TurbineEquations::place() {
@@ -97,6 +109,10 @@ components::Registry TurbineEquations::place() {
 void TurbineEquations::describe(components::Registry& registry) {
   for (const auto& beam : beams_) beam->describe(registry);
   bodies_->describe(registry);
+  for (const auto& damper : mass_dampers_) {
+    damper->set_yaw(bodies_->joints());
+    damper->describe(registry);
+  }
   declarations_ = registry.finish();
   const int blades = static_cast<int>(turbine_.blades.size());
   const std::string fault = blades < 2 ? "" : find_symmetry_fault(turbine_);

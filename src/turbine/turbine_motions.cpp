@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "samara/math/rotation.hpp"
 
@@ -161,14 +162,42 @@ struct Node {
   }
 };
 
+/// A mass that moves along axes of what carries it, in its steady state, ground axes.
+struct Rider {
+  double mass = 0.0;
+  Vector3 place = Vector3::Zero();
+  std::vector<Vector3> axes;
+  std::vector<int> displacements;  ///< unknowns
+  int motion = 0;                  ///< number of the first axis's
+
+  /// Momentum about the point `at` of what carries it, which moves with `carrier`. Adds the
+  /// energies of its own motions.
+  Momentum momentum_of(const Vector3& at, const Twist& carrier,
+                       const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                       const Eigen::Ref<const Eigen::VectorXcd>& z,
+                       Eigen::VectorXd& energies) const {
+    Vector3c velocity = carrier.at(place - at).translation;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      velocity += axes[i].cast<Complex>() * z(displacements[i]);
+    const Vector3c linear = mass * velocity;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      energies(motion + static_cast<int>(i)) += half_product(
+          z_dot(displacements[i]), axes[i].cast<Complex>().cwiseProduct(linear).sum());
+    return Momentum{linear, Vector3c::Zero()}.from(place - at);
+  }
+};
+
 /// A beam in its steady state.
 struct SteadyBeam {
   struct Point {
     Node node;
     Mass mass;
     Matrix3 axes = Matrix3::Identity();  ///< of the section, undeformed on the root's support
+    Matrix3 node_axes = Matrix3::Identity();  ///< of its velocities, as columns
+    std::vector<Rider> riders{};
   };
   std::vector<Point> points;
+  int gauss_points = 0;  ///< the first of the points; mass nodes follow, then the end
   bool has_support = false;
   Point support;
   Vector3 root = Vector3::Zero();
@@ -187,6 +216,7 @@ SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const
   const model::Beam& beam = *where.beam;
   SteadyBeam placed;
   placed.root = root;
+  placed.gauss_points = beam.point_count();
   Matrix3 axes = C;  // of the root as it stands on its support
   if (beam.has_support)
     axes *= math::direction_cosines<double>(Vector3(steady.segment<3>(where.masses[0] + 3)))
@@ -198,8 +228,10 @@ SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const
     Matrix3 Q;
     for (int i = 0; i < 3; ++i) Q.col(i) = math::tangent_times<double>(theta, Vector3::Unit(i));
     const Vector3 at = root + C * (x + steady.segment<3>(first));
-    return SteadyBeam::Point{
-        {first, C, C * back * Q}, mass_of(at, C * back * turned, mass), axes * section};
+    return SteadyBeam::Point{{first, C, C * back * Q},
+                             mass_of(at, C * back * turned, mass),
+                             axes * section,
+                             C * back * turned};
   };
   for (int p = 0; p < beam.point_count(); ++p) {
     const auto at = static_cast<std::size_t>(p);
@@ -229,14 +261,20 @@ SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const
 
 class TurbineMotionEnergies final : public system::MotionEnergies {
  public:
-  TurbineMotionEnergies(const model::Turbine& turbine, const TurbineLayout& layout, double t,
-                        const Eigen::VectorXd& steady)
-      : layout_(layout), chain_(turbine.chain), numbering_(turbine), has_tower_(turbine.has_tower) {
+  TurbineMotionEnergies(const TurbineEquations& equations, double t, const Eigen::VectorXd& steady)
+      : layout_(equations.layout()),
+        chain_(equations.turbine().chain),
+        numbering_(equations.turbine()),
+        has_tower_(equations.turbine().has_tower),
+        size_(numbering_.size + static_cast<int>(equations.declarations().motions.size())) {
+    const model::Turbine& turbine = equations.turbine();
+    const TurbineLayout& layout = layout_;
     Matrix3 C = Matrix3::Identity();  // of T
     if (has_tower_) place_tower(steady, C);
     yaw_axis_ = C.col(2);
     C *= math::turn_about<double>(Vector3::UnitZ(), steady(layout.yaw()));
     nacelle_ = mass_of(top_, C, chain_.nacelle);
+    nacelle_axes_ = C;
     bearing_ = top_ + C * Vector3(0.0, 0.0, chain_.height);
     C *= math::turn_about<double>(Vector3::UnitX(), chain_.tilt);
     shaft_axis_ = C.col(1);
@@ -251,11 +289,12 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     const Vector3 apex = pin_ + chain_.undersling * C.col(1);
     for (std::size_t k = 0; k < turbine.blades.size(); ++k)
       place_blade(turbine, k, t, apex, C, steady);
+    place_riders(equations, steady);
   }
 
   Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
                      const Eigen::Ref<const Eigen::VectorXcd>& z) const override {
-    Eigen::VectorXd energies = Eigen::VectorXd::Zero(numbering_.size);
+    Eigen::VectorXd energies = Eigen::VectorXd::Zero(size_);
     const Complex q_y = z(layout_.yaw());
     const Complex q_h = z(layout_.teeter());
     const Complex q_s = z(layout_.shaft_torsion());
@@ -292,6 +331,8 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     add_joint(generator, layout_.generator(), turning + chain_.gear_ratio * spin);
     carried = carried.from(bearing_ - top_);
     carried += nacelle_.momentum_of(nacelle);
+    for (const Rider& rider : nacelle_riders_)
+      carried += rider.momentum_of(top_, nacelle, z_dot, z, energies);
     carried.angular += shaft_axis_ * spin;
     add_joint(yaw, layout_.yaw(), sum(yaw_axis_, carried.angular));
     if (has_tower_)
@@ -351,6 +392,32 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     blades_.push_back(place(layout_.beams()[k], at, axes, steady));
   }
 
+  /// Their motions come behind all others, in the order in which they are declared.
+  void place_riders(const TurbineEquations& equations, const Eigen::VectorXd& steady) {
+    int motion = numbering_.size;
+    for (std::size_t d = 0; d < equations.mass_dampers().size(); ++d) {
+      const model::MassDamper& damper = equations.turbine().mass_dampers[d];
+      SteadyBeam& beam =
+          damper.blade < 0 ? tower_ : blades_[static_cast<std::size_t>(damper.blade)];
+      SteadyBeam::Point& point =
+          damper.node < 0 ? beam.points.back()
+                          : beam.points[static_cast<std::size_t>(beam.gauss_points + damper.node)];
+      const Matrix3 axes = damper.is_on_nacelle() ? nacelle_axes_ : point.node_axes;
+      Rider rider;
+      rider.mass = damper.definition.mass;
+      rider.place = damper.is_on_nacelle() ? top_ : point.mass.place;
+      rider.place += axes * damper.place;
+      rider.motion = motion;
+      for (std::size_t i = 0; i < damper.definition.axes.size(); ++i) {
+        rider.axes.push_back(axes * damper.axis(i));
+        rider.displacements.push_back(equations.mass_dampers()[d]->first(i));
+        rider.place += rider.axes.back() * steady(rider.displacements.back());
+        ++motion;
+      }
+      (damper.is_on_nacelle() ? nacelle_riders_ : point.riders).push_back(rider);
+    }
+  }
+
   /// C becomes that of the tower top: ground components of t1 t2 t3.
   void place_tower(const Eigen::VectorXd& steady, Matrix3& C) {
     Matrix3 upright;  // a = (n3, n1, n2)
@@ -381,7 +448,10 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
       const Twist own = point.node.twist_of(z);
       const Twist rate = point.node.twist_of(z_dot);
       const Vector3& at = point.mass.place;
-      Momentum momentum = point.mass.momentum_of(own + base.at(at - beam.root));
+      const Twist whole = own + base.at(at - beam.root);
+      Momentum momentum = point.mass.momentum_of(whole);
+      for (const Rider& rider : point.riders)
+        momentum += rider.momentum_of(at, whole, z_dot, z, energies);
       if (i + 1 == beam.points.size()) momentum += carried;
       const Twist deformed = rate - given.at(at - foot);
       // About its centre a mass has no momentum that a translation and a rotation share.
@@ -400,10 +470,13 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
   const elements::RigidChain& chain_;
   Numbering numbering_;
   bool has_tower_;
+  int size_;
   SteadyBeam tower_;
   std::vector<SteadyBeam> blades_;
   std::vector<std::vector<SteadyHinge>> hinges_;  ///< of each blade
   Mass nacelle_, shaft_, hub_;
+  Matrix3 nacelle_axes_ = Matrix3::Identity();
+  std::vector<Rider> nacelle_riders_;
   Vector3 top_ = Vector3::Zero();
   Vector3 bearing_ = Vector3::Zero();
   Vector3 pin_ = Vector3::Zero();
@@ -471,10 +544,10 @@ std::vector<system::Motion> motions_of(const model::Turbine& turbine, const Turb
   return motions;
 }
 
-std::unique_ptr<system::MotionEnergies> find_motion_energies(const model::Turbine& turbine,
-                                                             const TurbineLayout& layout, double t,
+std::unique_ptr<system::MotionEnergies> find_motion_energies(const TurbineEquations& equations,
+                                                             double t,
                                                              const Eigen::VectorXd& steady) {
-  return std::make_unique<TurbineMotionEnergies>(turbine, layout, t, steady);
+  return std::make_unique<TurbineMotionEnergies>(equations, t, steady);
 }
 
 }  // namespace samara::turbine

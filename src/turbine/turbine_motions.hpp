@@ -13,9 +13,9 @@ namespace samara::turbine {
 /// Deformations of blades and tower by direction, hinges of blades, foundation, joints.
 std::vector<system::Motion> motions_of(const model::Turbine& turbine, const TurbineLayout& layout);
 
-/// About the state `steady` at t.
-std::unique_ptr<system::MotionEnergies> find_motion_energies(const model::Turbine& turbine,
-                                                             const TurbineLayout& layout, double t,
+/// About the state `steady` at t: those of motions_of, then those that components declare.
+std::unique_ptr<system::MotionEnergies> find_motion_energies(const TurbineEquations& equations,
+                                                             double t,
                                                              const Eigen::VectorXd& steady);
 
 }  // namespace samara::turbine

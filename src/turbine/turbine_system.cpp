@@ -187,12 +187,15 @@ std::vector<system::NeutralCoordinate> TurbineSystem::free_coordinates() const {
 }
 
 std::vector<system::Motion> TurbineSystem::motions() const {
-  return motions_of(turbine(), layout());
+  std::vector<system::Motion> motions = motions_of(turbine(), layout());
+  const std::vector<system::Motion>& declared = assembly_->equations.declarations().motions;
+  motions.insert(motions.end(), declared.begin(), declared.end());
+  return motions;
 }
 
 std::unique_ptr<system::MotionEnergies> TurbineSystem::motion_energies(double t, Vec steady) const {
   const std::vector<double> values = assembly_->gathered(steady);
-  return find_motion_energies(turbine(), layout(), t,
+  return find_motion_energies(equations(), t,
                               Eigen::Map<const Eigen::VectorXd>(values.data(), layout().size()));
 }
 

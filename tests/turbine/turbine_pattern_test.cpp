@@ -72,6 +72,32 @@ void vary(model::BeamDefinition& beam, Draw& draw, bool can_hold_end) {
   beam.end_support.stiffness(4, 4) = 70.0;
 }
 
+void add_mass_dampers(model::TurbineDefinition& d, Draw& draw) {
+  using Carrier = model::MassDamperDefinition::Carrier;
+  for (const Carrier carrier : {Carrier::blade, Carrier::nacelle, Carrier::tower}) {
+    if (carrier != Carrier::blade && !d.has_tower) continue;
+    model::MassDamperDefinition damper;
+    damper.carrier = carrier;
+    const model::BeamDefinition& beam = carrier == Carrier::tower ? d.tower : d.blades.beam;
+    const bool is_held = carrier == Carrier::blade && !beam.end_support.is_none();
+    damper.at = !is_held && draw.one_in(2)  ? 1.0
+                : beam.point_masses.empty() ? 0.55
+                                            : beam.point_masses.front().at;
+    if (is_held && damper.at == 1.0) continue;
+    damper.position = Vector3(draw.some(0.3), draw.some(0.2), draw.some(0.4));
+    damper.mass = 1.5;
+    const bool has_stops = draw.one_in(2);
+    damper.axes.push_back({draw.one_in(2) ? 1 : 2, 30.0, draw.some(2.0), 0.0, 0.0, 0.0});
+    if (has_stops) {
+      damper.axes[0].stop = 0.01;
+      damper.axes[0].stop_stiffness = 400.0;
+      damper.axes[0].stop_damping = draw.some(3.0);
+    }
+    if (draw.one_in(2)) damper.axes.push_back({0, 50.0, 0.0, 0.0, 0.0, 0.0});
+    d.mass_dampers.push_back(damper);
+  }
+}
+
 model::TurbineDefinition random_turbine(unsigned seed) {
   Draw draw(seed);
   const std::vector<sample::Choice> choices = sample::choices();
@@ -126,6 +152,7 @@ model::TurbineDefinition random_turbine(unsigned seed) {
   }
   vary(d.tower, draw, false);
   vary(d.blades.beam, draw, true);
+  if (draw.one_in(3)) add_mass_dampers(d, draw);
   if (draw.one_in(2)) {
     model::LoadDefinition load;
     load.from = draw.one_in(2) ? 1.0 : 0.2;

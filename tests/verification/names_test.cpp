@@ -148,7 +148,15 @@ BOOST_AUTO_TEST_CASE(motion_energies_of_a_standing_turbine_sum_to_the_kinetic_en
                "shaft.generator={joint: free, own_inertia: 534.116}", "nacelle.yaw=" + spring,
                "blades.elements=2", "tower.elements=1"}),
         input("nrel5mw/beam_blades", {"shaft.speed_rpm=0", "blades.elements=2", "tower.elements=1",
-                                      "nacelle.yaw=" + spring})}) {
+                                      "nacelle.yaw=" + spring}),
+        input("nrel5mw/beam_blades",
+              {"shaft.speed_rpm=0", "gravity=0", "blades.elements=2", "tower.elements=2",
+               "nacelle.yaw=" + spring,
+               "tuned_mass_dampers=[{on: nacelle, position: [1, 3, 2], mass: 2e4, fore_aft: "
+               "{stiffness: 9e4}, side_side: {stiffness: 7e4}}, {on: tower, at: 0.6, position: [0, "
+               "1, 2], mass: 1e4, fore_aft: {stiffness: 3e5}}, {on: blades, at: 0.7, position: "
+               "[0.3, 0.1, 0.2], mass: 200, flap: {stiffness: 3000}, axial: {stiffness: 5e4}}, "
+               "{on: blade 2, at: 1, mass: 50, lead_lag: {stiffness: 900}}]"})}) {
     Run run(turbine);
     const analysis::ModeSet set = run.constant();
     const petsc::Handle<Vec> z = run.system.make_state();

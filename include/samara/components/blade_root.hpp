@@ -55,6 +55,7 @@ class BladeRoot {
 
   const model::BladeRoot& root() const { return turbine_.roots[k_]; }
   std::vector<Argument> hinge_arguments(bool with_rates) const;
+  void describe_channel(Registry& registry, model::HingeAxis axis, int angle) const;
   bool is_unloaded() const;
 
   const model::Turbine& turbine_;

@@ -9,6 +9,16 @@
 
 namespace samara::components {
 
+/// A quantity that users ask for by name and that is an unknown.
+struct Channel {
+  std::string name;
+  std::string unit;  ///< OpenFAST's
+  std::string frame;
+  std::string description;
+  int unknown = 0;
+  double factor = 1.0;  ///< value per SI unit of the unknown
+};
+
 /// What components say of themselves.
 struct Declarations {
   std::vector<system::Unknown> unknowns;
@@ -17,6 +27,8 @@ struct Declarations {
   std::vector<system::NeutralCoordinate> neutral;
   std::vector<system::NeutralCoordinate> free;  ///< PeriodicSystem::free_coordinates
   std::vector<system::MeshError> mesh_errors;
+  std::vector<system::Motion> motions;
+  std::vector<Channel> channels;
   std::vector<int> port_sizes;
   /// Unknowns that nothing describes: they fill blocks, and stay zero.
   std::vector<int> padding;
@@ -48,6 +60,8 @@ class Registry {
   void add(const system::EnergyGroup& group);
   void add(const system::NeutralCoordinate& neutral);
   void add(const system::MeshError& error);
+  void add(const system::Motion& motion);
+  void add(const Channel& channel);
   /// The unknown becomes its negative where the rotor turns from one blade to the next.
   void reverse(int unknown);
 

@@ -215,6 +215,28 @@ struct BladesDefinition {
   std::map<int, BladeDifference> each;  ///< by blade number from 1
 };
 
+/// A spring and a damper between a mass and what carries it, along an axis of that.
+struct MassDamperAxis {
+  int axis = 0;                 ///< 0 to 2: b1 b2 b3 of the section, or y1 y2 y3
+  double stiffness = 0.0;       ///< [N/m]
+  double damping = 0.0;         ///< [N s/m]
+  double stop = 0.0;            ///< displacement from which the stop holds, both ways [m]; 0: none
+  double stop_stiffness = 0.0;  ///< [N/m]
+  double stop_damping = 0.0;    ///< [N s/m]
+};
+
+/// A point mass on a beam or on the nacelle that moves along one or two axes.
+struct MassDamperDefinition {
+  enum class Carrier { tower, nacelle, blade };
+  Carrier carrier = Carrier::nacelle;
+  int blade = 0;                       ///< from 1; 0: each of them has one
+  double at = 1.0;                     ///< fraction of the beam's length, above 0, to 1
+  Vector3 position = Vector3::Zero();  ///< of the mass where its springs are at rest, from the line
+                                       ///< in the section's axes, or the tower top in y1 y2 y3 [m]
+  double mass = 0.0;                   ///< [kg], > 0
+  std::vector<MassDamperAxis> axes;    ///< one or two, each another
+};
+
 /// How a load changes with time: mean + amplitude cos(frequency t + phase), or a table.
 struct LoadHistory {
   double mean = 1.0;
@@ -253,6 +275,7 @@ struct TurbineDefinition {
   HubDefinition hub;
   BladesDefinition blades;
   std::vector<LoadDefinition> loads;
+  std::vector<MassDamperDefinition> mass_dampers;
 };
 
 /// Returns what is wrong with a support, or an empty string: springs that are not symmetric, finite

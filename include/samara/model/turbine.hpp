@@ -40,11 +40,27 @@ struct BladeRoot {
   int flap_hinge = -1;         ///< among hinges; -1: none
 };
 
+/// A mass damper in its place.
+struct MassDamper {
+  MassDamperDefinition definition;
+  int number = 1;  ///< from 1, among those on the tower, the nacelle or a blade
+  int blade = -1;  ///< from 0; -1: on none
+  int node = -1;   ///< mass node of the beam that carries it; -1: its end
+  Matrix3 axes = Matrix3::Identity();  ///< of the definition, as columns in those of the node
+  Vector3 place = Vector3::Zero();     ///< of the mass at rest, from the node, in its axes [m]
+
+  bool is_on_nacelle() const {
+    return definition.carrier == MassDamperDefinition::Carrier::nacelle;
+  }
+  Vector3 axis(std::size_t i) const { return axes.col(definition.axes[i].axis); }
+};
+
 struct Turbine {
   bool has_tower = false;
   Beam tower;
   std::vector<Beam> blades;
   std::vector<BladeRoot> roots;  ///< one a blade
+  std::vector<MassDamper> mass_dampers;
   elements::RigidChain chain;
   JointHistory yaw_motion;     ///< of a yaw that is not free
   JointHistory teeter_motion;  ///< of a teeter that is not free

@@ -31,6 +31,7 @@ struct ChannelStations {
 struct ChannelPick {
   int slot = 0;
   double factor = 1.0;
+  int unknown = -1;  ///< that it is; -1: it is the quantity in the slot
 };
 
 class ChannelCatalogue;

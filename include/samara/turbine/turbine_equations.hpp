@@ -8,6 +8,7 @@
 #include "samara/base/error.hpp"
 #include "samara/components/beam.hpp"
 #include "samara/components/inputs.hpp"
+#include "samara/components/mass_damper.hpp"
 #include "samara/components/rigid_bodies.hpp"
 #include "samara/model/turbine.hpp"
 
@@ -82,6 +83,9 @@ class TurbineEquations {
   const components::Declarations& declarations() const { return declarations_; }
   const system::RotorSymmetry& symmetry() const { return symmetry_; }
   bool is_conservative() const;
+  const std::vector<std::unique_ptr<components::MassDamper>>& mass_dampers() const {
+    return mass_dampers_;
+  }
 
   /// r(t, z, z_dot, u, u_dot), all of layout().size(). T: double, or std::complex<double> to
   /// differentiate by a complex step. @throws DomainError where a rotation is out of range.
@@ -114,6 +118,7 @@ class TurbineEquations {
   model::Turbine turbine_;
   std::vector<std::unique_ptr<components::Beam>> beams_;  ///< of the blades, then of the tower
   std::unique_ptr<components::RigidBodies> bodies_;
+  std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
   std::vector<components::Component*> components_;  ///< in the order of their equations
   components::Declarations declarations_;
   system::RotorSymmetry symmetry_;
