@@ -2,10 +2,13 @@
 #include "samara/analysis/trim.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "samara/petsc/session.hpp"
+#include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
@@ -74,8 +77,8 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
   for (const auto& damper : system.equations().mass_dampers()) {
     if (damper->owner().instance > shown) continue;
     for (std::size_t i = 0; i < damper->definition().axes.size(); ++i)
-      outputs.push_back({damper->owner().name() + " " + damper->direction(i), "m",
-                         damper->first(i), 1.0, rounding});
+      outputs.push_back({damper->owner().name() + " " + damper->direction(i), "m", damper->first(i),
+                         1.0, rounding});
   }
   if (!turbine.has_tower) return outputs;
   add_three("tower top", layout.tower_tip(), "m", rounding * turbine.tower.tip.norm(),
@@ -155,6 +158,24 @@ std::string generator_words(const io::Case& input, double shaft_load, double sha
   return text + "\n";
 }
 
+/// What the controller does in the mean of a revolution.
+std::string controller_words(const turbine::TurbineSystem& system, const Trim& trim) {
+  const turbine::TurbineChannels channels(system, {}, {"GenSpeed", "GenTq", "BldPitch1"});
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  std::array<double, 3> sum{};
+  for (int i = 0; i < instants; ++i) {
+    const double t = system.period() * i / instants;
+    trim.solution.evaluate(t, z.get(), z_dot.get());
+    std::array<double, 3> values{};
+    channels.evaluate(t, z.get(), z_dot.get(), values);
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += values[j] / instants;
+  }
+  return "controller   holds the generator at " + general(sum[0], 6) + " rpm, with " +
+         general(1e3 * sum[1], 5) + " N m against its turning and a pitch of " +
+         general(sum[2], 5) + " deg\n";
+}
+
 std::string summary(const io::Case& input, const turbine::TurbineSystem& system, const Trim& trim) {
   const int harmonics = trim.solution.harmonics();
   std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
@@ -177,7 +198,9 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   for (const analysis::HeldCoordinate& held : trim.held) {
     const double zero = rounding * std::max(trim.load_level, 1.0);
     if (held.unknown == system.layout().generator()) {
-      text += generator_words(input, held.load, zero);
+      const std::optional<model::ControllerDefinition>& controller = system.turbine().controller;
+      text += controller && controller->has_integral() ? controller_words(system, trim)
+                                                       : generator_words(input, held.load, zero);
       continue;
     }
     const bool is_zero = std::abs(held.load) < zero;

@@ -22,6 +22,8 @@ BladeRoot::BladeRoot(const model::Turbine& turbine, std::size_t k) : turbine_(tu
 void BladeRoot::place(Registry& registry, int rank) {
   const int count = static_cast<int>(root().hinges.size());
   if (count > 0) first_ = registry.add_shared(rank, 2 * count);
+  if (turbine_.pitch_actuator || (turbine_.controller && turbine_.controller->pitch))
+    pitch_port_ = registry.add_port(2);
 }
 
 /// Of q, U and, where wanted, the rates of q.
@@ -45,8 +47,9 @@ void BladeRoot::describe(Registry& registry, int reactions, int hub_port, int lo
   using system::Frame;
   using system::PartKind;
   const int number = static_cast<int>(k_) + 1;
-  load_.arguments = {unknowns(reactions, 6)};
-  motion_.arguments = {port_values(hub_port, 9)};
+  const Argument pitch = pitch_port_ < 0 ? zeros(2) : port_values(pitch_port_, 2);
+  load_.arguments = {unknowns(reactions, 6), pitch};
+  motion_.arguments = {port_values(hub_port, 9), pitch};
   for (const Argument& argument : hinge_arguments(true)) load_.arguments.push_back(argument);
   for (const Argument& argument : hinge_arguments(false)) motion_.arguments.push_back(argument);
   load_.provisions = {{load_port, 0}};
@@ -98,6 +101,8 @@ bool BladeRoot::is_unloaded() const {
 }
 
 bool BladeRoot::is_conservative() const {
+  if (turbine_.rotor_pitch_slope != 0.0 && (pitch_port_ >= 0 || !root().hinges.empty()))
+    return false;
   for (const model::RootHinge& hinge : root().hinges)
     if (hinge.damping != 0.0) return false;
   return true;

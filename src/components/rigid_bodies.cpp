@@ -206,6 +206,7 @@ BodiesReport<T> RigidBodies::report(Residual<T>& residual) const {
   report.rotor_load << teeter.passed.force, teeter.passed.moment;
   report.top_load << walk.on_top.force, walk.on_top.moment;
   report.top_acceleration = walk.top.a;
+  for (const BladeRoot& root : roots_) report.pitch.push_back(root.pitch(residual));
   report.generator_rate = generator.rate * chain.gear();
   report.brake_torque = T(0);
   if (chain.generator.free && chain.brake_torque != 0.0)

@@ -14,6 +14,7 @@
 #include "samara/io/yaml_tree.hpp"
 
 #include "case_beam.hpp"
+#include "case_controls.hpp"
 #include "case_linearize.hpp"
 #include "case_mass_dampers.hpp"
 #include "case_transient.hpp"
@@ -234,6 +235,7 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
   if (const YamlNode* entry = map.find("rotor")) {
     MapReader rotor(*entry, map.where("rotor"), errors);
     read_torque(rotor, {"shaft.speed", shaft.speed}, true, shaft.rotor);
+    rotor.read("torque_pitch_slope", shaft.rotor_pitch_slope, any_number);
     rotor.finish();
   }
   map.finish();
@@ -394,6 +396,7 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   if (const YamlNode* entry = map.find("each")) {
     read_each(*entry, map.where("each"), blades, errors);
   }
+  read_pitch_actuator(map, blades);
   map.finish();
 }
 
@@ -603,6 +606,7 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
     refuse_rotor(map, turbine);
   if (const YamlNode* node = map.find("loads")) read_loads(map, *node, turbine);
   read_mass_dampers(map, turbine);
+  read_controller(map, turbine);
   if (const YamlNode* node = map.find("trim")) read_trim(*node, result.trim, errors);
   if (const YamlNode* node = map.find("floquet")) read_floquet(*node, result.floquet, errors);
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);

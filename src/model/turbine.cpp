@@ -247,6 +247,12 @@ Turbine build_turbine(const TurbineDefinition& definition) {
                                         d.mass_factor, d.stiffness_factor));
     turbine.roots.push_back(root_of(blades, definition.hub.radius, k));
   }
+  turbine.pitch = blades.pitch;
+  turbine.pitch_actuator = blades.actuator;
+  if (definition.shaft.speed != 0.0) {
+    turbine.controller = definition.controller;
+    turbine.rotor_pitch_slope = definition.shaft.rotor_pitch_slope;
+  }
   add_loads(definition, turbine);
   place_mass_dampers(definition, turbine);
   turbine.chain = chain_of(definition);

@@ -166,8 +166,10 @@ class Quantities {
 
   const T& operator[](int slot) const { return values_[static_cast<std::size_t>(slot)]; }
 
+  /// First: blades ask for what it finds.
   void add_chain(double t, const std::vector<T>& z, const std::vector<T>& z_dot) {
     const components::BodiesReport<T> chain = equations_.report<T>(t, z, z_dot, inputs_);
+    pitch_ = chain.pitch;
     constexpr double turn = 2.0 * std::numbers::pi;
     put(azimuth_slot, chain.azimuth - T(turn * std::floor(real_of(chain.azimuth) / turn)));
     put(rotor_speed, chain.shaft_rate);
@@ -186,11 +188,9 @@ class Quantities {
               of_body<T>(chain.top_load.template tail<3>()));
   }
 
-  void add_blade(double t, int k, const std::vector<T>& z, const std::vector<T>& z_dot) {
+  void add_blade(int k, const std::vector<T>& z, const std::vector<T>& z_dot) {
     const int first = ChannelCatalogue::blade_slot(k);
-    const auto number = static_cast<std::size_t>(k);
-    T pitch(turbine_.pitch_at(number, t).value);
-    if (!inputs_.pitch.empty()) pitch += inputs_.pitch[number];
+    const T& pitch = pitch_[static_cast<std::size_t>(k)];
     const Mat3<T> to_cone = math::turn_about<T>(-Vector3::UnitX(), pitch);
     const Vec6<T> root = Eigen::Map<const Vec6<T>>(z.data() + layout_.blade_root(k));
     const Vec3<T> force = root.template head<3>();
@@ -288,6 +288,7 @@ class Quantities {
   const model::Turbine& turbine_;
   const turbine::TurbineLayout& layout_;
   std::vector<T> values_;
+  std::vector<T> pitch_;  ///< of each blade
 };
 
 }  // namespace
@@ -299,7 +300,7 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
   const int blades = static_cast<int>(turbine.blades.size());
   Quantities<T> quantities(system_, inputs, size_);
   quantities.add_chain(t, z, z_dot);
-  for (int k = 0; k < blades; ++k) quantities.add_blade(t, k, z, z_dot);
+  for (int k = 0; k < blades; ++k) quantities.add_blade(k, z, z_dot);
   for (const Section& section : sections_) {
     const components::PlacedBeam& placed =
         system_.equations().beams()[static_cast<std::size_t>(section.beam)];

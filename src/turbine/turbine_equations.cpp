@@ -68,7 +68,8 @@ TurbineEquations::TurbineEquations(const model::Turbine& turbine,
 
 TurbineEquations::~TurbineEquations() = default;
 
-/// The bodies come first: they provide what the roots of the beams move with.
+/// The controls come first, which provide pitch, then the bodies, which provide what the roots of
+/// the beams move with.
 void TurbineEquations::make_components() {
   components::BodiesSetting bodies;
   bodies.shared_rank = shared_rank;
@@ -82,6 +83,14 @@ void TurbineEquations::make_components() {
     bodies.tower = beams_.back().get();
   }
   bodies_ = std::make_unique<components::RigidBodies>(turbine_, bodies);
+  if (turbine_.controller) {
+    controller_ = std::make_unique<components::Controller>(turbine_, hinge_rank);
+    components_.push_back(controller_.get());
+  }
+  for (std::size_t k = 0; turbine_.pitch_actuator && k < turbine_.blades.size(); ++k) {
+    actuators_.push_back(std::make_unique<components::PitchActuator>(turbine_, k, hinge_rank));
+    components_.push_back(actuators_.back().get());
+  }
   components_.push_back(bodies_.get());
   for (const auto& beam : beams_) components_.push_back(beam.get());
   for (const model::MassDamper& damper : turbine_.mass_dampers) {
@@ -106,7 +115,31 @@ components::Registry TurbineEquations::place() {
   return registry;
 }
 
+/// A controller acts on the pitch through the actuators, or without them by itself.
+void TurbineEquations::tie_controls() {
+  components::ControllerTies ties;
+  ties.tower_top = bodies_->tower_top();
+  ties.yaw = bodies_->yaw();
+  ties.generator = bodies_->generator();
+  const bool has_pitch_loop = controller_ && turbine_.controller->pitch;
+  for (std::size_t k = 0; k < turbine_.blades.size(); ++k) {
+    const int pitch_port = bodies_->roots()[k].pitch_port();
+    if (actuators_.empty()) {
+      if (has_pitch_loop) ties.pitch_ports.push_back(pitch_port);
+      continue;
+    }
+    actuators_[k]->set_pitch(pitch_port);
+    if (has_pitch_loop) ties.pitch_ports.push_back(actuators_[k]->command_port());
+  }
+  if (!controller_) return;
+  controller_->tie(ties);
+  bodies_->set_integral(controller_->integral());
+}
+
 void TurbineEquations::describe(components::Registry& registry) {
+  tie_controls();
+  if (controller_) controller_->describe(registry);
+  for (const auto& actuator : actuators_) actuator->describe(registry);
   for (const auto& beam : beams_) beam->describe(registry);
   bodies_->describe(registry);
   for (const auto& damper : mass_dampers_) {
@@ -155,6 +188,8 @@ components::BodiesReport<T> TurbineEquations::report(double t, const std::vector
                                                      const TurbineInputs<T>& inputs) const {
   std::vector<T> unused(z.size());  // rows of hinges; only the ports count
   Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
+  if (controller_) controller_->add_to(residual);
+  for (const auto& actuator : actuators_) actuator->add_to(residual);
   return bodies_->report(residual);
 }
 

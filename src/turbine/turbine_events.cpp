@@ -12,7 +12,10 @@ model::Turbine apply_event(const model::Turbine& turbine, const TurbineEvent& ev
                                                          event.pitch->to, event.pitch->rate);
     }
   }
-  if (event.generator_off) changed.chain.generator_torque = {};
+  if (event.generator_off) {
+    changed.chain.generator_torque = {};
+    changed.operation.generator_off = true;
+  }
   changed.chain.brake_torque += event.brake;
   return changed;
 }

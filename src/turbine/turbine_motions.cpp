@@ -269,6 +269,8 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
         size_(numbering_.size + static_cast<int>(equations.declarations().motions.size())) {
     const model::Turbine& turbine = equations.turbine();
     const TurbineLayout& layout = layout_;
+    const std::vector<double> z(steady.begin(), steady.end());
+    pitch_ = equations.report<double>(t, z, std::vector<double>(z.size()), {}).pitch;
     Matrix3 C = Matrix3::Identity();  // of T
     if (has_tower_) place_tower(steady, C);
     yaw_axis_ = C.col(2);
@@ -362,11 +364,12 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
       at += axes * link.arm;
       axes = (axes * link.axes).eval();
       const Vector3 axis = axes * link.axis;
+      double angle = link.motion.at(t, turbine.speed).angle;
       if (link.is_pitch) {
         place_of_pitch = at;
         pitch_axis = axis;
+        angle += pitch_[k] - root.pitch;
       }
-      double angle = link.motion.at(t, turbine.speed).angle;
       if (link.hinge >= 0) {
         const auto i = static_cast<std::size_t>(link.hinge);
         points[i] = at;
@@ -475,6 +478,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
   std::vector<SteadyBeam> blades_;
   std::vector<std::vector<SteadyHinge>> hinges_;  ///< of each blade
   Mass nacelle_, shaft_, hub_;
+  std::vector<double> pitch_;  ///< of each blade
   Matrix3 nacelle_axes_ = Matrix3::Identity();
   std::vector<Rider> nacelle_riders_;
   Vector3 top_ = Vector3::Zero();

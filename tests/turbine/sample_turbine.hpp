@@ -175,6 +175,7 @@ inline RandomState random_state(const turbine::TurbineSystem& turbine, unsigned 
     // theta has three components of up to 2 / sqrt(3).
     const double size = role == system::UnknownRole::position   ? 1.15
                         : role == system::UnknownRole::velocity ? 3.0
+                        : role == system::UnknownRole::state    ? 0.3
                                                                 : 60.0;
     state.z(i) = size * uniform(random);
     state.z_dot(i) = size * uniform(random);

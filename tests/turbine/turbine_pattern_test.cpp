@@ -98,6 +98,24 @@ void add_mass_dampers(model::TurbineDefinition& d, Draw& draw) {
   }
 }
 
+void add_controls(model::TurbineDefinition& d, Draw& draw) {
+  d.shaft.rotor_pitch_slope = draw.some(-40.0);
+  if (draw.one_in(2)) {
+    d.blades.actuator = {5.0, 0.7};
+    if (draw.one_in(2)) d.blades.actuator->rate_limit = 0.1;
+    if (draw.one_in(2)) d.blades.actuator->highest = 0.3;
+  }
+  if (d.shaft.generator.kind != model::JointKind::free) return;
+  model::ControllerDefinition controller;
+  controller.filter = 2.0;
+  controller.set_point = d.shaft.generator_speed();
+  if (draw.one_in(2)) controller.torque = {3.0, draw.some(2.0)};
+  if (!controller.torque || draw.one_in(2)) controller.pitch = {0.1, 0.0};
+  if (!controller.has_integral() && controller.pitch) controller.pitch->integral = draw.some(0.2);
+  controller.schedule = draw.some(2.0);
+  d.controller = controller;
+}
+
 model::TurbineDefinition random_turbine(unsigned seed) {
   Draw draw(seed);
   const std::vector<sample::Choice> choices = sample::choices();
@@ -153,6 +171,7 @@ model::TurbineDefinition random_turbine(unsigned seed) {
   vary(d.tower, draw, false);
   vary(d.blades.beam, draw, true);
   if (draw.one_in(3)) add_mass_dampers(d, draw);
+  if (draw.one_in(3)) add_controls(d, draw);
   if (draw.one_in(2)) {
     model::LoadDefinition load;
     load.from = draw.one_in(2) ? 1.0 : 0.2;
@@ -291,6 +310,28 @@ BOOST_AUTO_TEST_CASE(tangents_are_inside_after_large_rotations) {
     BOOST_TEST_REQUIRE(bool(counted));
     check_pattern(dynamic_cast<const turbine::TurbineSystem&>(*counted));
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_controller_measures_the_speed_of_the_generator) {
+  // On a tower that moves under a nacelle that yaws and is tilted: the row of the speed error
+  // against what the bodies report.
+  sample::Choice choice = sample::choices().front();
+  model::TurbineDefinition d = sample::turbine_definition(choice);
+  d.shaft.generator.kind = model::JointKind::free;
+  d.shaft.gear_ratio = -3.7;
+  d.controller = {2.0, 11.0, model::ControlLoop{1.0, 0.5}, {}, 0.0};
+  const turbine::TurbineSystem system(model::build_turbine(d), PETSC_COMM_SELF);
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < system.unknowns().size(); ++i)
+    if (system.unknowns()[i].quantity == "speed error") row = i;
+  const sample::RandomState state = sample::random_state(system, 3);
+  const std::vector<double> z(state.z.begin(), state.z.end());
+  const std::vector<double> z_dot(state.z_dot.begin(), state.z_dot.end());
+  std::vector<double> r(z.size());
+  system.equations().evaluate(0.4, z, z_dot, r);
+  const double speed = 11.0 + z[row] + (z_dot[row] - r[row]) / 2.0;
+  const double wanted = system.equations().report<double>(0.4, z, z_dot, {}).generator_rate;
+  BOOST_TEST(std::abs(speed - wanted) < 1e-12 * std::abs(wanted));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -28,6 +28,12 @@ class BladeRoot {
 
   /// First of q, U of each free hinge.
   int first() const { return first_; }
+  /// Of the angle and rate that an actuator or a controller adds to the blade's own pitch; -1: none
+  /// does.
+  int pitch_port() const { return pitch_port_; }
+  /// Pitch by all but a hinge and a pitch link [rad], after state_load.
+  template <class T>
+  T pitch(const Residual<T>& residual) const;
 
   /// The load on the hub, and the rows of the hinges.
   template <class System>
@@ -38,9 +44,11 @@ class BladeRoot {
 
  private:
   static constexpr int most_hinges = 3;
-  static constexpr int load_arguments = 6 + 3 * most_hinges;    ///< root load; q, U, rate of q
-  static constexpr int load_values = 6 + 2 * most_hinges;       ///< load on the hub; rows
-  static constexpr int motion_arguments = 9 + 2 * most_hinges;  ///< of the hub; q, U
+  /// Root load; pitch and its rate from a port; q, U, rate of q.
+  static constexpr int load_arguments = 8 + 3 * most_hinges;
+  static constexpr int load_values = 6 + 2 * most_hinges;  ///< load on the hub; rows
+  /// Motion of the hub; pitch and its rate; q, U.
+  static constexpr int motion_arguments = 11 + 2 * most_hinges;
 
   /// How the links turn.
   template <class T>
@@ -49,9 +57,12 @@ class BladeRoot {
     T angle = T(0);
     T rate = T(0);
   };
-  /// `hinges`: q, then U.
-  template <class T, class System, class Hinges>
-  Turn<T> turn_of(const System& system, const model::RootLink& link, const Hinges& hinges) const;
+  /// Of the pitch, but for a hinge and a pitch link: `added` by its port.
+  template <class T, class System>
+  Turn<T> pitch_turn(const System& system, const Eigen::Matrix<T, 2, 1>& added) const;
+  /// `angles`: pitch and its rate from the port, q, then U.
+  template <class T, class System, class Angles>
+  Turn<T> turn_of(const System& system, const model::RootLink& link, const Angles& angles) const;
 
   const model::BladeRoot& root() const { return turbine_.roots[k_]; }
   std::vector<Argument> hinge_arguments(bool with_rates) const;
@@ -61,19 +72,22 @@ class BladeRoot {
   const model::Turbine& turbine_;
   std::size_t k_;
   int first_ = 0;
+  int pitch_port_ = -1;
   Connections load_;
   Connections motion_;
 };
 
-/// As prescribed, by the turbine's operation, by inputs, by a hinge, and by a pitch link together.
-template <class T, class System, class Hinges>
+/// As prescribed, as the blade is pitched, by a hinge, and by a pitch link together.
+template <class T, class System, class Angles>
 BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLink& link,
-                                      const Hinges& hinges) const {
+                                      const Angles& angles) const {
   Turn<T> turn;
+  if (link.is_pitch)
+    turn = pitch_turn<T>(system, Eigen::Matrix<T, 2, 1>(angles.template head<2>()));
   const auto add = [&](int hinge, double ratio) {
     turn.moves = true;
-    turn.angle += hinges(hinge) * ratio;
-    turn.rate += hinges(most_hinges + hinge) * ratio;
+    turn.angle += angles(2 + hinge) * ratio;
+    turn.rate += angles(2 + most_hinges + hinge) * ratio;
   };
   if (link.hinge >= 0) add(link.hinge, 1.0);
   if (link.is_prescribed()) {
@@ -83,9 +97,20 @@ BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLin
     turn.angle += T(varies ? system.varying(now.angle) : now.angle);
     turn.rate += T(varies ? system.varying(now.rate) : 0.0);
   }
-  if (!link.is_pitch) return turn;
-  if (root().pitch_by_flap != 0.0) add(root().flap_hinge, root().pitch_by_flap);
-  if (!turbine_.operation.pitch.empty()) {
+  if (link.is_pitch && root().pitch_by_flap != 0.0) add(root().flap_hinge, root().pitch_by_flap);
+  return turn;
+}
+
+/// An actuator follows curves and inputs itself; a curve takes the place of a controller.
+template <class T, class System>
+BladeRoot::Turn<T> BladeRoot::pitch_turn(const System& system,
+                                         const Eigen::Matrix<T, 2, 1>& added) const {
+  Turn<T> turn;
+  const bool is_direct = !turbine_.pitch_actuator;
+  if (pitch_port_ >= 0 && !(is_direct && turbine_.has_pitch_curve(k_)))
+    turn = {true, added(0), added(1)};
+  if (!is_direct) return turn;
+  if (turbine_.has_pitch_curve(k_)) {
     const math::TimeCurve::Value now = turbine_.pitch_at(k_, system.time());
     turn.moves = true;
     turn.angle += T(system.varying(now.value - root().pitch));
@@ -101,15 +126,28 @@ BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLin
   return turn;
 }
 
+template <class T>
+T BladeRoot::pitch(const Residual<T>& residual) const {
+  Eigen::Matrix<T, 2, 1> added = Eigen::Matrix<T, 2, 1>::Zero();
+  if (pitch_port_ >= 0) added = residual.port(pitch_port_);
+  return pitch_turn<T>(residual, added).angle + T(root().pitch);
+}
+
 template <class System>
 void BladeRoot::state_load(System& system) const {
+  const double pitch_slope =
+      turbine_.rotor_pitch_slope / static_cast<double>(turbine_.blades.size());
   const auto rows_of = [&]<class T>(const Eigen::Matrix<T, load_arguments, 1>& x) {
-    const Eigen::Matrix<T, 2 * most_hinges, 1> hinges = x.template segment<2 * most_hinges>(6);
+    const Eigen::Matrix<T, 2 + 2 * most_hinges, 1> angles =
+        x.template segment<2 + 2 * most_hinges>(6);
+    const auto hinges = angles.template tail<2 * most_hinges>();
+    T pitch(0.0);
     Vec3<T> force = x.template head<3>();
     Vec3<T> moment = x.template segment<3>(3);
     Eigen::Matrix<T, load_values, 1> y = Eigen::Matrix<T, load_values, 1>::Zero();
     for (auto link = root().links.rbegin(); link != root().links.rend(); ++link) {
-      if (const Turn<T> turn = turn_of<T>(system, *link, hinges); turn.moves) {
+      if (const Turn<T> turn = turn_of<T>(system, *link, angles); turn.moves) {
+        if (link->is_pitch) pitch = turn.angle;
         const Vec3<T> axis = link->axis.template cast<T>();
         const T torque = math::dot(axis, moment);
         if (link->hinge >= 0) y(6 + link->hinge) += torque;
@@ -131,11 +169,12 @@ void BladeRoot::state_load(System& system) const {
     }
     y.template head<3>() = force;
     y.template segment<3>(3) = moment;
+    y(4) += pitch * pitch_slope;  // what the rotor's torque changes by the mean of all pitches
     for (std::size_t i = 0; i < root().hinges.size(); ++i) {
       const model::RootHinge& hinge = root().hinges[i];
       const auto at = static_cast<Eigen::Index>(i);
       y(6 + at) -= hinges(at) * hinge.stiffness + hinges(most_hinges + at) * hinge.damping;
-      y(6 + most_hinges + at) = x(6 + 2 * most_hinges + at) - hinges(most_hinges + at);
+      y(6 + most_hinges + at) = x(8 + 2 * most_hinges + at) - hinges(most_hinges + at);
     }
     return y;
   };
@@ -145,7 +184,8 @@ void BladeRoot::state_load(System& system) const {
 template <class System>
 void BladeRoot::state_motion(System& system) const {
   const auto motion_of = [&]<class T>(const Eigen::Matrix<T, motion_arguments, 1>& x) {
-    const Eigen::Matrix<T, 2 * most_hinges, 1> hinges = x.template tail<2 * most_hinges>();
+    const Eigen::Matrix<T, 2 + 2 * most_hinges, 1> angles =
+        x.template tail<2 + 2 * most_hinges>();
     Vec3<T> velocity = x.template head<3>();
     Vec3<T> omega = x.template segment<3>(3);
     Vec3<T> gravity = x.template segment<3>(6);
@@ -159,7 +199,7 @@ void BladeRoot::state_motion(System& system) const {
         velocity += math::cross(omega, arm);
       }
       if (!link.axes.isIdentity(0.0)) turn_back(link.axes.template cast<T>());
-      if (const Turn<T> turn = turn_of<T>(system, link, hinges); turn.moves) {
+      if (const Turn<T> turn = turn_of<T>(system, link, angles); turn.moves) {
         turn_back(math::turn_about<T>(link.axis, turn.angle));
         for (int i = 0; i < 3; ++i)
           if (link.axis(i) != 0.0) omega(i) += turn.rate * link.axis(i);

@@ -36,6 +36,9 @@ class Residual {
     components::require_rotation(z_.data() + first, place);
   }
 
+  /// The sum of what has been provided to a port.
+  const Eigen::Matrix<T, Eigen::Dynamic, 1>& port(int number) const { return ports_[at(number)]; }
+
   void add(const std::vector<LinearShare>& shares) {
     for (const LinearShare& share : shares)
       for (int i = 0; i < share.count; ++i)

@@ -35,6 +35,7 @@ struct BodiesReport {
   Vec6<T> rotor_load;        ///< of the hub on the shaft at the teeter pin, in S [N, N m]
   Vec6<T> top_load;          ///< of the nacelle on T at the tower top, in t1 t2 t3 [N, N m]
   Vec3<T> top_acceleration;  ///< of T, in t1 t2 t3 [m/s^2]
+  std::vector<T> pitch;      ///< of each blade, without hinges and pitch links [rad]
 };
 
 class RigidBodies final : public Stated<RigidBodies> {
@@ -49,6 +50,13 @@ class RigidBodies final : public Stated<RigidBodies> {
   /// First of q_y, U1, q_h, U2, q_s, U_s, q_g, U_g.
   int joints() const { return joints_; }
   const std::vector<BladeRoot>& roots() const { return roots_; }
+  int yaw() const;        ///< angle; speed follows
+  int generator() const;  ///< the same
+  /// First unknown of the tower's end; -1 where there is no tower.
+  int tower_top() const;
+  /// The integral of a controller, whose evolution row then holds the mean of the generator's
+  /// angle; -1: none.
+  void set_integral(int integral) { integral_ = integral; }
 
   template <class System>
   void state(System& system) const;
@@ -59,7 +67,6 @@ class RigidBodies final : public Stated<RigidBodies> {
 
  private:
   int joint(int number) const;
-  int tower_top() const;
   void describe_joint(Registry& registry, int number, const std::string& name, system::Frame frame,
                       bool free) const;
   Matrix3 bearing_axes() const;
@@ -96,6 +103,7 @@ class RigidBodies final : public Stated<RigidBodies> {
   const model::Turbine& turbine_;
   BodiesSetting setting_;
   int joints_ = 0;
+  int integral_ = -1;
   int hub_port_ = 0;   ///< of the motion of the apex and the gravity there, in H
   int load_port_ = 0;  ///< sum of the root loads: force and moment about the apex, in H
   elements::RigidTree tree_;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -151,6 +152,7 @@ struct ShaftDefinition {
   double gear_ratio =
       1.0;          ///< turns of the generator for one of the shaft, < 0 the other way; not 0
   TorqueLaw rotor;  ///< on the hub about h2
+  double rotor_pitch_slope = 0.0;  ///< that torque by the mean pitch of the blades [N m/rad]
 
   /// Mean speed of the generator against the nacelle, in the sense of its turning [rad/s].
   double generator_speed() const { return std::abs(gear_ratio) * speed; }
@@ -190,6 +192,15 @@ struct HingeDefinition {
   double delta3 = 0.0;
 };
 
+/// Pitch that follows its command as a second-order system.
+struct PitchActuatorDefinition {
+  double frequency = 0.0;      ///< undamped natural one [rad/s], > 0
+  double damping_ratio = 0.0;  ///< > 0
+  double rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s], > 0
+  double lowest = -std::numeric_limits<double>::infinity();     ///< of the pitch [rad]
+  double highest = std::numeric_limits<double>::infinity();
+};
+
 /// What differs of a hinge on one blade.
 struct HingeDifference {
   std::optional<double> stiffness;  ///< [N m/rad]
@@ -209,6 +220,7 @@ struct BladesDefinition {
   double precone = 0.0;  ///< > 0 moves the tips toward +s2 [rad]
   double pitch = 0.0;    ///< > 0 toward feather [rad], at a pitch hinge, or at the root
   std::vector<HingeDefinition> hinges;  ///< from the hub outward, one of each axis at the most
+  std::optional<PitchActuatorDefinition> actuator;
   /// Pitch by -tan(pitch_link) times the flap angle: the geometry of a pitch link [rad].
   double pitch_link = 0.0;
   BeamDefinition beam;
@@ -264,6 +276,26 @@ struct LoadDefinition {
   LoadHistory history;
 };
 
+/// Of the speed error and its integral.
+struct ControlLoop {
+  double proportional = 0.0;  ///< torque [N m s/rad] or pitch [s] by the speed error
+  double integral = 0.0;      ///< [N m/rad] or [1] by its integral
+};
+
+/// Of the generator's speed, all on its side of the gear.
+struct ControllerDefinition {
+  double filter = 0.0;     ///< corner of the first-order filter of the measured speed [rad/s], > 0
+  double set_point = 0.0;  ///< [rad/s]
+  std::optional<ControlLoop> torque;  ///< against its turning
+  std::optional<ControlLoop> pitch;   ///< of all blades, toward feather
+  /// The gains of the pitch are divided by 1 + pitch/schedule [rad]; 0: they are constant.
+  double schedule = 0.0;
+
+  bool has_integral() const {
+    return (torque && torque->integral != 0.0) || (pitch && pitch->integral != 0.0);
+  }
+};
+
 struct TurbineDefinition {
   std::string title;
   double gravity = 9.80665;  ///< along -n3 [m/s^2]
@@ -276,6 +308,7 @@ struct TurbineDefinition {
   BladesDefinition blades;
   std::vector<LoadDefinition> loads;
   std::vector<MassDamperDefinition> mass_dampers;
+  std::optional<ControllerDefinition> controller;
 };
 
 /// Returns what is wrong with a support, or an empty string: springs that are not symmetric, finite

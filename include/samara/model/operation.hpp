@@ -16,6 +16,8 @@ struct Operation {
   /// Angle [rad] of a prescribed joint instead of the definition's.
   std::optional<math::TimeCurve> yaw;
   std::optional<math::TimeCurve> teeter;
+  /// The generator is lost: the controller gives no torque.
+  bool generator_off = false;
 };
 
 }  // namespace samara::model

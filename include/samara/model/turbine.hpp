@@ -1,6 +1,7 @@
 // The turbine, cut into elements and ready for assembly; immutable after build_turbine.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "samara/elements/rigid_chain.hpp"
@@ -61,6 +62,10 @@ struct Turbine {
   std::vector<Beam> blades;
   std::vector<BladeRoot> roots;  ///< one a blade
   std::vector<MassDamper> mass_dampers;
+  std::optional<PitchActuatorDefinition> pitch_actuator;  ///< one a blade, all alike
+  std::optional<ControllerDefinition> controller;
+  double rotor_pitch_slope = 0.0;  ///< torque on the hub by the mean pitch [N m/rad]
+  double pitch = 0.0;              ///< common to all blades [rad]
   elements::RigidChain chain;
   JointHistory yaw_motion;     ///< of a yaw that is not free
   JointHistory teeter_motion;  ///< of a teeter that is not free
@@ -92,9 +97,13 @@ struct Turbine {
   elements::JointMotion teeter_at(double t) const {
     return motion_at(operation.teeter, teeter_motion, t);
   }
-  /// Pitch of blade k (0-based) and its rates.
+  /// Whether a curve gives the pitch of blade k.
+  bool has_pitch_curve(std::size_t k) const {
+    return k < operation.pitch.size() && operation.pitch[k].has_value();
+  }
+  /// Pitch of blade k (0-based) and its rates; with actuators, what they are to make.
   math::TimeCurve::Value pitch_at(std::size_t k, double t) const {
-    if (k >= operation.pitch.size() || !operation.pitch[k]) return {roots[k].pitch, 0.0, 0.0};
+    if (!has_pitch_curve(k)) return {roots[k].pitch, 0.0, 0.0};
     return operation.pitch[k]->at(t);
   }
 

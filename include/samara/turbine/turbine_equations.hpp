@@ -7,8 +7,10 @@
 
 #include "samara/base/error.hpp"
 #include "samara/components/beam.hpp"
+#include "samara/components/controller.hpp"
 #include "samara/components/inputs.hpp"
 #include "samara/components/mass_damper.hpp"
+#include "samara/components/pitch_actuator.hpp"
 #include "samara/components/rigid_bodies.hpp"
 #include "samara/model/turbine.hpp"
 
@@ -113,10 +115,13 @@ class TurbineEquations {
  private:
   void make_components();
   components::Registry place();
+  void tie_controls();
   void describe(components::Registry& registry);
 
   model::Turbine turbine_;
   std::vector<std::unique_ptr<components::Beam>> beams_;  ///< of the blades, then of the tower
+  std::unique_ptr<components::Controller> controller_;                        ///< null: none
+  std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< of each blade, if any
   std::unique_ptr<components::RigidBodies> bodies_;
   std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
   std::vector<components::Component*> components_;  ///< in the order of their equations

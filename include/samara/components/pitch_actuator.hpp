@@ -1,0 +1,42 @@
+// The pitch actuator of a blade: second order, its angle and rate are first-order states
+// (docs/theory.md, section 3.5).
+#pragma once
+
+#include "samara/components/component.hpp"
+#include "samara/model/turbine.hpp"
+
+namespace samara::components {
+
+class PitchActuator final : public Stated<PitchActuator> {
+ public:
+  /// Of blade `k` from 0. The turbine, which has actuators, must live on.
+  PitchActuator(const model::Turbine& turbine, std::size_t k, int rank);
+
+  /// Of one value: a controller's pitch beside that of the blade [rad].
+  int command_port() const { return command_port_; }
+  /// Of angle and rate beside the blade's own pitch [rad, rad/s]: what the actuator makes.
+  void set_pitch(int port) { pitch_port_ = port; }
+
+  void place(Registry& registry) override;
+  void describe(Registry& registry) override;
+  bool is_conservative() const override { return false; }
+
+  template <class System>
+  void state(System& system) const;
+
+ private:
+  static constexpr int arguments = 5;  ///< angle, rate, their rates, command
+  static constexpr int values = 4;     ///< two rows, angle and rate
+
+  const model::Turbine& turbine_;
+  std::size_t k_;
+  int rank_;
+  int first_ = 0;
+  int command_port_ = 0;
+  int pitch_port_ = 0;
+  Connections connections_;
+};
+
+extern template class Stated<PitchActuator>;
+
+}  // namespace samara::components
