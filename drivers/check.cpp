@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "samara/model/beam_modes.hpp"
 #include "samara/petsc/session.hpp"
@@ -135,8 +138,11 @@ std::string support_words(const model::SupportDefinition& support) {
     if (support.free[i]) ++free;
     if (!support.free[i] && !support.rigid[i]) ++springs;
   }
-  return "on springs in " + count(springs, "direction") + ", free in " + std::to_string(free) +
-         ", with " + general(support.mass, 6) + " kg, which count with the beam";
+  std::string text = "on springs in " + count(springs, "direction") + ", free in " +
+                     std::to_string(free) + ", with " + general(support.mass, 6) +
+                     " kg, which count with the beam";
+  if (!support.added_mass.isZero(0.0)) text += ", and an added mass, which does not";
+  return text;
 }
 
 double rotor_radius(const model::TurbineDefinition& definition) {
@@ -193,6 +199,41 @@ std::vector<std::string> mass_damper_lines(const turbine::TurbineSystem& system)
     }
     lines.push_back(text);
   }
+  return lines;
+}
+
+/// What acts on the speed of the generator, and how the blades are pitched.
+std::vector<std::pair<std::string, std::string>> control_lines(
+    const model::TurbineDefinition& definition, const model::Turbine& turbine) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  if (turbine.rotor_pitch_slope != 0.0)
+    lines.emplace_back("torque by pitch", general(turbine.rotor_pitch_slope, 5) + " N m/rad");
+  if (turbine.pitch_actuator) {
+    const model::PitchActuatorDefinition& actuator = *turbine.pitch_actuator;
+    std::string text = general(actuator.frequency / (2.0 * std::numbers::pi), 4) + " Hz, damping " +
+                       general(100.0 * actuator.damping_ratio, 4) + " %";
+    if (std::isfinite(actuator.rate_limit))
+      text += ", at most " + degrees(actuator.rate_limit) + " deg/s";
+    lines.emplace_back("pitch actuators", text);
+  }
+  if (!definition.controller) return lines;
+  if (!turbine.controller) {
+    lines.emplace_back("controller", "none, the rotor is parked");
+    return lines;
+  }
+  const model::ControllerDefinition& law = *turbine.controller;
+  std::string text = "set point " + general(law.set_point, 6) + " rad/s, filter " +
+                     general(law.filter, 4) + " rad/s";
+  const auto add = [&text](const char* name, const std::optional<model::ControlLoop>& loop,
+                           const char* p_unit, const char* i_unit) {
+    if (loop)
+      text += std::string("; ") + name + " " + general(loop->proportional, 5) + p_unit +
+              ", integral " + general(loop->integral, 5) + i_unit;
+  };
+  add("torque", law.torque, " N m s/rad", " N m/rad");
+  add("pitch", law.pitch, " s", "");
+  if (law.schedule > 0.0) text += ", gains halved at " + degrees(law.schedule) + " deg";
+  lines.emplace_back("controller", text);
   return lines;
 }
 
@@ -259,6 +300,7 @@ std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
   if (definition.has_tower) line("tower foot", support_words(definition.tower.support));
   if (has_rotor && !definition.blades.beam.support.is_clamp())
     line("blade roots", support_words(definition.blades.beam.support));
+  for (const auto& [name, words] : control_lines(definition, turbine)) line(name, words);
   std::string dampers = "mass dampers";
   for (const std::string& words : mass_damper_lines(system)) {
     line(dampers, words);

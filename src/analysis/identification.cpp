@@ -258,7 +258,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   std::vector<Name> names;
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
-    if (set.modes[m].state) {
+    if (leading.empty() && set.modes[m].state) {
       names.push_back({{*set.modes[m].state}, ""});
       continue;
     }

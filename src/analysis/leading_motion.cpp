@@ -242,6 +242,28 @@ Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, in
   return total > 0.0 ? Eigen::VectorXd(shares / total) : Eigen::VectorXd();
 }
 
+/// The states of parts alike, one of them `one`, as motions.
+std::vector<system::Motion> motions_of_states(const system::PeriodicSystem& system,
+                                              const system::Owner& one) {
+  std::vector<system::Motion> motions;
+  for (std::size_t i = 0; i < system.unknowns().size(); ++i) {
+    const system::Unknown& unknown = system.unknowns()[i];
+    if (unknown.role != system::UnknownRole::state || !unknown.owner.is_alike(one)) continue;
+    if (motions.empty() || motions.back().owner != unknown.owner)
+      motions.push_back({unknown.owner});
+    motions.back().unknowns.push_back(static_cast<PetscInt>(i));
+    motions.back().weight.push_back(1.0 / (unknown.scale * unknown.scale));
+  }
+  return motions;
+}
+
+/// The multiblade component that a motion clearly is, -1 where it is none.
+int clear_component(const Eigen::VectorXd& shares) {
+  Eigen::Index largest = 0;
+  return shares.size() > 0 && shares.maxCoeff(&largest) > clear_share ? static_cast<int>(largest)
+                                                                      : -1;
+}
+
 }  // namespace
 
 int count_instances(const std::vector<system::Motion>& motions) {
@@ -263,7 +285,11 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     const Mode& mode = set.modes[m];
     if (mode.state) {
-      leading.push_back({{*mode.state}, -1, mode.harmonic, true});
+      LeadingMotion one{{*mode.state}, -1, mode.harmonic, true};
+      if (mode.state->instance > 0 && together && mode.exponent.imag() > zero)
+        one.component = clear_component(multiblade_shares(motions_of_states(system, *mode.state),
+                                                          count, one.motion, set.shapes[m]));
+      leading.push_back(one);
       continue;
     }
     const NamedShape named = named_shape(set, m);
@@ -272,12 +298,9 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
     const int shift = found.shift.value_or(0);
     LeadingMotion one{motion, -1, mode.harmonic + shift, found.shift.has_value()};
     if (motion.owner.instance > 0 && together && mode.exponent.imag() > zero) {
-      Eigen::Index largest = 0;
-      const Eigen::VectorXd shares = multiblade_shares(
+      one.component = clear_component(multiblade_shares(
           motions, count, motion,
-          shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]));
-      if (shares.size() > 0 && shares.maxCoeff(&largest) > clear_share)
-        one.component = static_cast<int>(largest);
+          shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m])));
       // The mode will be its conjugate, in which the blades follow each other the other way.
       if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
         one.component = count - one.component;

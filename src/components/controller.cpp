@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "samara/base/error.hpp"
+#include "samara/components/tower_axes.hpp"
 #include "samara/math/rotation.hpp"
 
 namespace samara::components {
@@ -48,7 +49,7 @@ void Controller::describe(Registry& registry) {
 template <class T>
 T Controller::generator_speed(const Eigen::Matrix<T, arguments, 1>& x) const {
   const elements::RigidChain& chain = turbine_.chain;
-  const Vec3<T> top(x(1), x(2), x(0));  // in t1 t2 t3
+  const Vec3<T> top = from_beam_order<T>(x.template head<3>());
   const Vec3<T> nacelle =
       math::turn_about<T>(Vector3::UnitZ(), x(at_yaw)).transpose() * top;  // but for the yaw's rate
   const T carried = nacelle(1) * std::cos(chain.tilt) + x(at_yaw + 1) * std::sin(chain.tilt);

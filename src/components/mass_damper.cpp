@@ -3,6 +3,7 @@
 #include <array>
 
 #include "samara/base/index.hpp"
+#include "samara/components/tower_axes.hpp"
 #include "samara/elements/torque_laws.hpp"
 
 namespace samara::components {
@@ -11,16 +12,6 @@ namespace {
 using Carrier = model::MassDamperDefinition::Carrier;
 using elements::FrameMotion;
 using system::PartKind;
-
-/// From the order of the tower's axes, (t3, t1, t2), to t1 t2 t3, and back.
-template <class T>
-Vec3<T> from_top(const Vec3<T>& b) {
-  return Vec3<T>(b(1), b(2), b(0));
-}
-template <class T>
-Vec3<T> to_top(const Vec3<T>& t) {
-  return Vec3<T>(t(2), t(0), t(1));
-}
 
 }  // namespace
 
@@ -224,7 +215,7 @@ void MassDamper::state(System& system) const {
     if (damper.is_on_nacelle()) {
       for (Vec3<T>* vector :
            {&carrier.omega, &carrier.alpha, &carrier.v, &carrier.a, &carrier.gravity})
-        *vector = from_top<T>(*vector);
+        *vector = from_beam_order<T>(*vector);
       carrier = nacelle_motion<T>(system, x, carrier, turn);
     }
     Vec3<T> r = damper.place.template cast<T>();
@@ -262,8 +253,8 @@ void MassDamper::state(System& system) const {
         y(yaw_row) = moment(2);
         moment = elements::detail::across<T>(axis, moment);
       }
-      on_node = to_top<T>(Vec3<T>(turn.transpose() * on_node));
-      moment = to_top<T>(Vec3<T>(turn.transpose() * moment));
+      on_node = to_beam_order<T>(Vec3<T>(turn.transpose() * on_node));
+      moment = to_beam_order<T>(Vec3<T>(turn.transpose() * moment));
     } else if (!is_on_bodies()) {
       on_node = (R * on_node).eval();
       moment = (R * moment).eval();

@@ -52,9 +52,8 @@ void PitchActuator::state(System& system) const {
   const double own = turbine_.roots[k_].pitch;
   const auto rows_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
     T command = x(4);
-    if (turbine_.has_pitch_curve(
-            k_))  // an event or a given curve takes the place of the controller
-      command = T(system.varying(turbine_.pitch_at(k_, system.time()).value - own));
+    if (turbine_.has_pitch_curve(k_))
+      command += T(system.varying(turbine_.pitch_at(k_, system.time()).value - own));
     if constexpr (System::has_inputs)
       if (!system.inputs().pitch.empty()) command += system.inputs().pitch[k_];
     command = limited<T>(command, law.lowest - own, law.highest - own);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "samara/base/index.hpp"
+#include "samara/components/tower_axes.hpp"
 #include "samara/elements/torque_laws.hpp"
 
 namespace samara::components {
@@ -31,16 +32,6 @@ using elements::JointState;
 using elements::NodeResult;
 using elements::RigidTree;
 using elements::Wrench;
-
-/// From the order of the tower's axes, (t3, t1, t2), to t1 t2 t3, and back.
-template <class T>
-Vec3<T> from_top(const Vec3<T>& b) {
-  return Vec3<T>(b(1), b(2), b(0));
-}
-template <class T>
-Vec3<T> to_top(const Vec3<T>& t) {
-  return Vec3<T>(t(2), t(0), t(1));
-}
 
 template <class T>
 using RootMotion = Eigen::Matrix<T, 9, 1>;
@@ -113,11 +104,12 @@ FrameMotion<T> RigidBodies::base_motion(const System& system, const ChainArgumen
   Vec3<T> up = Vec3<T>::UnitX();
   if constexpr (System::has_inputs) up = system.inputs().up();
   FrameMotion<T> top;
-  top.v = from_top<T>(x.template segment<3>(at_top_velocity));
-  top.omega = from_top<T>(x.template segment<3>(at_top_velocity + 3));
-  top.alpha = from_top<T>(x.template segment<3>(at_top_velocity_dot + 3));
-  top.a = from_top<T>(x.template segment<3>(at_top_velocity_dot)) + math::cross(top.omega, top.v);
-  top.gravity = from_top<T>(C_top * Vec3<T>(up * T(-turbine_.chain.gravity)));
+  top.v = from_beam_order<T>(x.template segment<3>(at_top_velocity));
+  top.omega = from_beam_order<T>(x.template segment<3>(at_top_velocity + 3));
+  top.alpha = from_beam_order<T>(x.template segment<3>(at_top_velocity_dot + 3));
+  top.a = from_beam_order<T>(x.template segment<3>(at_top_velocity_dot)) +
+          math::cross(top.omega, top.v);
+  top.gravity = from_beam_order<T>(C_top * Vec3<T>(up * T(-turbine_.chain.gravity)));
   return top;
 }
 
@@ -163,10 +155,10 @@ void RigidBodies::state(System& system) const {
   const auto rows_of = [&]<class T>(const ChainArguments<T>& x) {
     const Walk<T> walk = this->walk<T>(system, x);
     Eigen::Matrix<T, chain_values, 1> y;
-    y.template segment<3>(top_rows) =
-        to_top<T>(walk.on_top.force) - walk.C_top * Vec3<T>(x.template segment<3>(at_top_load));
+    y.template segment<3>(top_rows) = to_beam_order<T>(walk.on_top.force) -
+                                      walk.C_top * Vec3<T>(x.template segment<3>(at_top_load));
     y.template segment<3>(top_rows + 3) =
-        to_top<T>(walk.on_top.moment) -
+        to_beam_order<T>(walk.on_top.moment) -
         walk.C_top * Vec3<T>(x.template segment<3>(at_top_load + 3));
     for (int node = 0; node < tree_.size(); ++node) {
       const elements::JointRows<T>& rows = walk.nodes[at(node)].rows;

@@ -222,6 +222,11 @@ bool RigidBodies::is_conservative() const {
                      [](const BladeRoot& root) { return root.is_conservative(); });
 }
 
+bool RigidBodies::has_autonomous_constraints() const {
+  return turbine_.yaw_motion.is_constant() && turbine_.teeter_motion.is_constant() &&
+         !turbine_.operation.yaw && !turbine_.operation.teeter;
+}
+
 bool RigidBodies::axis_moves() const {
   return setting_.tower != nullptr || turbine_.chain.yaw.free || turbine_.chain.teeter.free;
 }

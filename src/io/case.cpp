@@ -14,7 +14,9 @@
 #include "samara/io/yaml_tree.hpp"
 
 #include "case_beam.hpp"
+#include "case_blades.hpp"
 #include "case_controls.hpp"
+#include "case_joint.hpp"
 #include "case_linearize.hpp"
 #include "case_mass_dampers.hpp"
 #include "case_transient.hpp"
@@ -28,62 +30,9 @@ using model::JointKind;
 
 constexpr int schema_version = 1;
 constexpr std::size_t max_megabytes = 16;
-constexpr int max_blades = 100;
-constexpr int max_harmonics = 200;
 constexpr int min_steps = 4;
 constexpr int max_steps = 10000000;
 constexpr int max_load_steps = 100000;
-
-/// Reads `per_rev` or `frequency` of something that oscillates.
-void read_frequency(MapReader& map, int& per_rev, double& frequency) {
-  const bool has_multiple = map.read("per_rev", per_rev, 1, max_harmonics);
-  const bool has_frequency = map.read("frequency", frequency, positive);
-  if (has_multiple && has_frequency)
-    map.refuse(*map.node().find("frequency"), "frequency",
-               "given together with per_rev; leave one of them out");
-  if (map.node().find("per_rev") == nullptr && map.node().find("frequency") == nullptr)
-    map.require("per_rev", "or \"frequency\"");
-}
-
-/// Reads the motion of a prescribed joint; refuses it for one of another kind.
-void read_motion(MapReader& map, model::JointDefinition& joint) {
-  const YamlNode* angle = map.find("angle_deg");
-  const YamlNode* harmonic = map.find("harmonic");
-  if (joint.kind != JointKind::prescribed) {
-    for (const auto& [key, entry] :
-         {std::pair("angle_deg", angle), std::pair("harmonic", harmonic)})
-      if (entry != nullptr) map.refuse(*entry, key, "only a joint: prescribed has a motion");
-    return;
-  }
-  for (const char* key : {"stiffness", "damping"})
-    if (const YamlNode* entry = map.node().find(key))
-      map.refuse(*entry, key, "a prescribed joint moves as it is told, whatever springs it has");
-  if (angle == nullptr && harmonic == nullptr)
-    map.require("angle_deg", "of a prescribed joint, or \"harmonic\"");
-  read_angle(map, "angle_deg", joint.motion.angle, half_turn);
-  if (harmonic == nullptr) return;
-  MapReader wave(*harmonic, map.where("harmonic"), map.errors());
-  read_frequency(wave, joint.motion.per_rev, joint.motion.frequency);
-  wave.require("amplitude_deg");
-  read_angle(wave, "amplitude_deg", joint.motion.amplitude, half_turn);
-  read_angle(wave, "phase_deg", joint.motion.phase, any_number);
-  wave.finish();
-}
-
-/// Reads stiffness, damping and the word of a joint that may be prescribed.
-void read_joint(MapReader& map, model::JointDefinition& joint) {
-  map.read("stiffness", joint.stiffness, non_negative);
-  map.read("damping", joint.damping, non_negative);
-  if (map.read("joint", joint.kind,
-               {{"free", JointKind::free},
-                {"locked", JointKind::locked},
-                {"prescribed", JointKind::prescribed}}) ||
-      map.node().find("joint") == nullptr) {
-    read_motion(map, joint);
-    return;
-  }
-  for (const char* key : {"angle_deg", "harmonic"}) map.find(key);
-}
 
 void read_tower(const YamlNode& node, model::TurbineDefinition& turbine, ErrorList& errors) {
   turbine.has_tower = true;
@@ -272,134 +221,6 @@ void read_hub(const YamlNode& node, model::HubDefinition& hub, ErrorList& errors
   map.finish();
 }
 
-constexpr std::array<std::pair<const char*, model::HingeAxis>, 3> hinge_axes{
-    {{"flap", model::HingeAxis::flap},
-     {"lag", model::HingeAxis::lag},
-     {"pitch", model::HingeAxis::pitch}}};
-
-/// Spring and damper of the hinges of one blade where they are others than those of all.
-void read_hinge_differences(const YamlNode& node, const std::string& where,
-                            const model::BladesDefinition& blades,
-                            model::BladeDifference& difference, ErrorList& errors) {
-  MapReader map(node, where, errors);
-  for (const auto& [word, axis] : hinge_axes) {
-    const YamlNode* entry = map.find(word);
-    if (entry == nullptr) continue;
-    const auto found = std::ranges::find(blades.hinges, axis, &model::HingeDefinition::axis);
-    if (found == blades.hinges.end() || found->joint.kind != JointKind::free)
-      map.refuse(*entry, word, "no free hinge of blades.hinges");
-    MapReader hinge(*entry, map.where(word), errors);
-    model::HingeDifference& own = difference.hinges[axis];
-    double value = 0.0;
-    if (hinge.read("stiffness", value, non_negative)) own.stiffness = value;
-    if (hinge.read("damping", value, non_negative)) own.damping = value;
-    hinge.finish();
-  }
-  map.finish();
-}
-
-/// From the hub outward.
-void read_hinges(MapReader& map, const YamlNode& list, model::BladesDefinition& blades) {
-  if (list.kind != YamlNode::Kind::list) {
-    map.refuse(list, "hinges",
-               "expected a list of hinges, from the hub outward, " + describe(list));
-    return;
-  }
-  for (std::size_t i = 0; i < list.children.size(); ++i) {
-    const std::string place = "hinges[" + std::to_string(i) + "]";
-    MapReader hinge(list.children[i], map.where(place), map.errors());
-    model::HingeDefinition definition;
-    hinge.require("axis", "flap, lag or pitch");
-    hinge.require("joint", "free, locked or prescribed");
-    hinge.read("axis", definition.axis,
-               {{"flap", model::HingeAxis::flap},
-                {"lag", model::HingeAxis::lag},
-                {"pitch", model::HingeAxis::pitch}});
-    hinge.read("offset", definition.offset, non_negative);
-    read_joint(hinge, definition.joint);
-    const YamlNode* delta3 = hinge.node().find("delta3_deg");
-    read_angle(hinge, "delta3_deg", definition.delta3, quarter_turn);
-    if (delta3 != nullptr && definition.axis != model::HingeAxis::flap)
-      hinge.refuse(*delta3, "delta3_deg", "only the axis of a flap hinge is skewed");
-    if (std::ranges::find(blades.hinges, definition.axis, &model::HingeDefinition::axis) !=
-        blades.hinges.end())
-      hinge.refuse(list.children[i], "axis", "given twice; each axis has one hinge at the most");
-    hinge.finish();
-    blades.hinges.push_back(definition);
-  }
-}
-
-void read_each(const YamlNode& node, const std::string& where, model::BladesDefinition& blades,
-               ErrorList& errors) {
-  MapReader map(node, where, errors);
-  for (int number = 1; number <= blades.count; ++number) {
-    const std::string key = std::to_string(number);
-    const YamlNode* entry = map.find(key);
-    if (entry == nullptr) continue;
-    MapReader blade(*entry, map.where(key), errors);
-    model::BladeDifference& difference = blades.each[number];
-    read_angle(blade, "pitch_deg", difference.pitch, half_turn);
-    blade.read("mass_factor", difference.mass_factor, positive);
-    blade.read("stiffness_factor", difference.stiffness_factor, positive);
-    if (const YamlNode* hinges = blade.find("hinges"))
-      read_hinge_differences(*hinges, blade.where("hinges"), blades, difference, errors);
-    blade.finish();
-  }
-  if (node.kind != YamlNode::Kind::map) return;
-  for (const YamlNode& entry : node.children) {
-    const bool is_known =
-        std::any_of(blades.each.begin(), blades.each.end(),
-                    [&](const auto& known) { return entry.key == std::to_string(known.first); });
-    if (!is_known) {
-      errors.add(entry.place, where,
-                 "expected a blade number from 1 to " + std::to_string(blades.count) + ", got \"" +
-                     entry.key + "\"");
-    }
-  }
-}
-
-/// A blade turns on hinges; a beam between two supports stands on them, in axes that do not turn.
-void refuse_free_root(MapReader& map, const model::BladesDefinition& blades) {
-  const bool is_free = blades.beam.support.free != std::array<bool, 6>{};
-  if (blades.beam.end_support.is_none()) {
-    if (is_free)
-      map.refuse(*map.node().find("support"), "support",
-                 "the root of a blade is free on hinges; hint: instead of the support hinges: "
-                 "[{axis: flap, joint: free}], axis pitch for theta1, flap for theta2, lag for "
-                 "theta3");
-    return;
-  }
-  if (std::ranges::any_of(blades.hinges, [](const model::HingeDefinition& hinge) {
-        return hinge.joint.kind != JointKind::locked;
-      }))
-    map.refuse(*map.node().find("end_support"), "end_support",
-               "holds the end in axes that blades.hinges turn; hint: a beam between two supports "
-               "has support: pinned or stiffness: {theta2: free, ...} instead of hinges");
-}
-
-void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorList& errors) {
-  MapReader map(node, "blades", errors);
-  map.read("count", blades.count, 1, max_blades);
-  read_angle(map, "precone_deg", blades.precone, quarter_turn);
-  read_angle(map, "pitch_deg", blades.pitch, half_turn);
-  read_beam(map, Matrix3::Identity(), blade_ratios, blades.beam);
-  read_support(map, "end_support", false, blades.beam.end_support);
-  if (const YamlNode* entry = map.find("hinges")) read_hinges(map, *entry, blades);
-  refuse_free_root(map, blades);
-  if (const YamlNode* entry = map.find("pitch_link_delta3_deg")) {
-    read_angle(map, "pitch_link_delta3_deg", blades.pitch_link, quarter_turn);
-    const auto flap =
-        std::ranges::find(blades.hinges, model::HingeAxis::flap, &model::HingeDefinition::axis);
-    if (flap == blades.hinges.end() || flap->joint.kind != JointKind::free)
-      map.refuse(*entry, "pitch_link_delta3_deg", "blades.hinges has no free flap hinge");
-  }
-  if (const YamlNode* entry = map.find("each")) {
-    read_each(*entry, map.where("each"), blades, errors);
-  }
-  read_pitch_actuator(map, blades);
-  map.finish();
-}
-
 /// A tower may stand alone: nothing turns about a shaft then.
 void refuse_rotor(MapReader& map, model::TurbineDefinition& turbine) {
   turbine.blades.count = 0;
@@ -569,21 +390,6 @@ void check_teeter(const YamlNode& root, const model::TurbineDefinition& turbine,
                  std::to_string(turbine.blades.count) + "; use joint: locked, or leave teeter out");
 }
 
-/// The hinges stand between the shaft axis and the root.
-void check_hinges(const YamlNode& root, const model::TurbineDefinition& turbine,
-                  ErrorList& errors) {
-  const YamlNode* blades = root.find("blades");
-  const YamlNode* hinges = blades == nullptr ? nullptr : blades->find("hinges");
-  if (hinges == nullptr) return;
-  double along = 0.0;
-  for (const model::HingeDefinition& hinge : turbine.blades.hinges) along += hinge.offset;
-  if (along <= turbine.hub.radius) return;
-  std::ostringstream text;
-  text << "the offsets add to " << along << " m, beyond the root at hub.radius, "
-       << turbine.hub.radius << " m";
-  errors.add(hinges->place, "blades.hinges", text.str());
-}
-
 void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   model::TurbineDefinition& turbine = result.turbine;
   MapReader map(root, "", errors);
@@ -612,6 +418,7 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
   if (const YamlNode* node = map.find("transient"))
     read_transient(*node, turbine, result.transient, errors);
+  if (const YamlNode* node = root.find("transient")) check_pitch_curves(*node, turbine, errors);
   if (const YamlNode* node = map.find("linearize"))
     read_linearize(*node, turbine, result.linearize, errors);
   map.finish();

@@ -16,9 +16,6 @@ constexpr int max_elements = 100000;
 /// `length` beside `reference_line` must agree to this, relative.
 constexpr double length_tolerance = 1e-3;
 
-constexpr NumberRule beyond_the_root{"a number above 0, to 1", std::numeric_limits<double>::min(),
-                                     1.0};
-
 bool is_word(const YamlNode& node, std::string_view word) {
   return node.kind == YamlNode::Kind::scalar && node.text == word;
 }
@@ -175,10 +172,22 @@ void read_sections(MapReader& map, std::vector<model::SectionDefinition>& sectio
   }
 }
 
+/// Reads `damping`: one mu for all directions, or six.
+void read_one_or_six(MapReader& map, const YamlNode& entry, const char* expected,
+                     Vector6& damping) {
+  const std::string where = map.where("damping");
+  if (entry.kind == YamlNode::Kind::list) {
+    read_numbers(entry, where, non_negative, std::span<double>(damping.data(), 6), map.errors());
+    return;
+  }
+  const NumberRule rule{expected, non_negative.low};
+  double mu = 0.0;
+  if (read_number(entry, where, rule, mu, map.errors())) damping.setConstant(mu);
+}
+
 void read_damping(MapReader& map, const RatioKeys& ratios, model::BeamDefinition& beam) {
   const YamlNode* entry = map.find("damping");
   if (entry == nullptr) return;
-  Vector6& damping = beam.damping;
   if (entry->kind == YamlNode::Kind::map) {
     MapReader modes(*entry, map.where("damping"), map.errors());
     for (std::size_t d = 0; d < ratios.size(); ++d) {
@@ -188,14 +197,7 @@ void read_damping(MapReader& map, const RatioKeys& ratios, model::BeamDefinition
     modes.finish();
     return;
   }
-  if (entry->kind == YamlNode::Kind::list) {
-    read_numbers(*entry, map.where("damping"), non_negative, std::span<double>(damping.data(), 6),
-                 map.errors());
-    return;
-  }
-  constexpr NumberRule rule{"a number >= 0, a list of 6 or damping ratios", non_negative.low};
-  double mu = 0.0;
-  if (read_number(*entry, map.where("damping"), rule, mu, map.errors())) damping.setConstant(mu);
+  read_one_or_six(map, *entry, "a number >= 0, a list of 6 or damping ratios", beam.damping);
 }
 
 void read_mass_damping(MapReader& map, model::BeamDefinition& beam) {
@@ -296,19 +298,6 @@ void read_springs(const YamlNode& node, const std::string& where, model::Support
   map.finish();
 }
 
-void read_support_damping(MapReader& map, Vector6& damping) {
-  const YamlNode* entry = map.find("damping");
-  if (entry == nullptr) return;
-  if (entry->kind == YamlNode::Kind::list) {
-    read_numbers(*entry, map.where("damping"), non_negative, std::span<double>(damping.data(), 6),
-                 map.errors());
-    return;
-  }
-  constexpr NumberRule rule{"a number >= 0 or a list of 6", non_negative.low};
-  double mu = 0.0;
-  if (read_number(*entry, map.where("damping"), rule, mu, map.errors())) damping.setConstant(mu);
-}
-
 void read_added_mass(MapReader& map, Vector6& mass) {
   const YamlNode* entry = map.find("added_mass");
   if (entry == nullptr) return;
@@ -373,12 +362,13 @@ void read_support(MapReader& beam, std::string_view key, bool at_root,
     read_vector(map, "center", support.center, any_number);
     read_vector(map, "inertia", support.inertia, non_negative);
     read_added_mass(map, support.added_mass);
-    read_support_damping(map, support.damping);
+    if (const YamlNode* entry = map.find("damping"))
+      read_one_or_six(map, *entry, "a number >= 0 or a list of 6", support.damping);
   }
   map.finish();
   if (errors.size() > errors_before) return;
-  const bool does_something = support.mass > 0.0 || !support.added_mass.isZero(0.0) ||
-                              !support.damping.isZero(0.0);
+  const bool does_something =
+      support.mass > 0.0 || !support.added_mass.isZero(0.0) || !support.damping.isZero(0.0);
   if (support.is_clamp() && does_something)
     errors.add(find_blame(*node), beam.where(key),
                "mass and damping of a support that is rigid in all directions do nothing");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "yaml_reader.hpp"
 
 namespace samara::io {
+
+inline constexpr NumberRule beyond_the_root{"a number above 0, to 1",
+                                            std::numeric_limits<double>::min(), 1.0};
 
 /// Gauss points an element, at the most.
 inline constexpr int max_order = 6;

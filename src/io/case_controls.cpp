@@ -44,10 +44,15 @@ void check_loops(const MapReader& map, const YamlNode& node,
                  const model::TurbineDefinition& turbine,
                  const model::ControllerDefinition& controller) {
   if (turbine.shaft.generator.kind != model::JointKind::free)
-    map.refuse(node, "controller",
-               "the generator is locked, its speed is given; hint: shaft.generator: {joint: free}");
+    map.errors().add(
+        find_blame(node), map.where(),
+        "the generator is locked, its speed is given; hint: shaft.generator: {joint: free}");
   if (!controller.torque && !controller.pitch)
-    map.refuse(node, "controller", "expected torque, pitch or both");
+    map.errors().add(find_blame(node), map.where(), "expected torque, pitch or both");
+  if (controller.schedule > 0.0 && !(controller.schedule + turbine.blades.pitch > 0.0))
+    map.refuse(*node.find("pitch"), "pitch.gain_schedule_deg",
+               "the gains are divided by 1 + pitch/gain_schedule, which is not > 0 at "
+               "blades.pitch_deg");
   if (controller.torque && controller.pitch && controller.torque->integral != 0.0 &&
       controller.pitch->integral != 0.0)
     map.refuse(*node.find("pitch"), "pitch.integral",
@@ -109,6 +114,21 @@ void read_controller(MapReader& map, model::TurbineDefinition& turbine) {
   if (node->kind != YamlNode::Kind::map) return;
   check_set_point(reader, turbine.shaft, controller);
   check_loops(reader, *node, turbine, controller);
+}
+
+void check_pitch_curves(const YamlNode& transient, const model::TurbineDefinition& turbine,
+                        ErrorList& errors) {
+  if (!turbine.controller || !turbine.controller->pitch || turbine.shaft.speed == 0.0) return;
+  const auto refuse = [&](const YamlNode& node, const std::string& where) {
+    errors.add(find_blame(node), where,
+               "controller.pitch gives the pitch, which is not that of the case when this begins; "
+               "hint: a case without controller.pitch");
+  };
+  if (const YamlNode* curve = transient.find("pitch_deg")) refuse(*curve, "transient.pitch_deg");
+  const YamlNode* events = transient.find("events");
+  for (std::size_t i = 0; events != nullptr && i < events->children.size(); ++i)
+    if (const YamlNode* pitch = events->children[i].find("pitch"))
+      refuse(*pitch, "transient.events[" + std::to_string(i) + "].pitch");
 }
 
 }  // namespace samara::io

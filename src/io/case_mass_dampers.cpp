@@ -1,15 +1,13 @@
 #include "case_mass_dampers.hpp"
 
 #include <array>
-#include <limits>
+
+#include "case_beam.hpp"
 
 namespace samara::io {
 namespace {
 
 using Carrier = model::MassDamperDefinition::Carrier;
-
-constexpr NumberRule beyond_the_root{"a number above 0, to 1", std::numeric_limits<double>::min(),
-                                     1.0};
 
 /// The words of the axes b1 b2 b3 of a section or y1 y2 y3 of the nacelle.
 using AxisWords = std::array<const char*, 3>;

@@ -55,8 +55,10 @@ std::vector<double> element_ends(const std::string& name, const BeamDefinition& 
   }
   for (std::size_t e = 1; e < ends.size(); ++e)
     if (last >= n || !(ends[e] - ends[e - 1] >= least_element / n))
-      throw InputError(name + ".point_masses: the mesh of " + std::to_string(n) +
-                       " elements is too coarse for their places; hint: more elements");
+      throw InputError(name + ": the mesh of " + std::to_string(n) +
+                       (n == 1 ? " element" : " elements") +
+                       " is too coarse for the places of its point masses and mass dampers; hint: "
+                       "more elements");
   return ends;
 }
 

@@ -166,6 +166,12 @@ bool TurbineEquations::is_conservative() const {
                      [](const components::Component* one) { return one->is_conservative(); });
 }
 
+bool TurbineEquations::constraints_are_autonomous() const {
+  return std::all_of(components_.begin(), components_.end(), [](const components::Component* one) {
+    return one->has_autonomous_constraints();
+  });
+}
+
 template <class T>
 void TurbineEquations::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
                                 const TurbineInputs<T>& inputs, std::vector<T>& r) const {

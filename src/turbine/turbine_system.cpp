@@ -204,9 +204,7 @@ std::vector<system::MeshError> TurbineSystem::mesh_errors() const {
 }
 
 bool TurbineSystem::constraints_are_autonomous() const {
-  const model::Operation& operation = turbine().operation;
-  return turbine().yaw_motion.is_constant() && turbine().teeter_motion.is_constant() &&
-         !operation.yaw && !operation.teeter;
+  return assembly_->equations.constraints_are_autonomous();
 }
 
 bool TurbineSystem::is_conservative() const { return assembly_->equations.is_conservative(); }
@@ -291,37 +289,33 @@ std::vector<std::vector<PetscInt>> TurbineSystem::pattern() const {
   return columns;
 }
 
+/// With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The row of
+/// a joint that is not free is its angle less the prescribed one; those of free joints ask for the
+/// same of their speeds as that of a beam does, one after the other from the tower outward.
 void TurbineSystem::reference_state(double t, Vec z) const {
   const Assembly& assembly = *assembly_;
   const auto n = static_cast<std::size_t>(size());
   std::vector<double> values(n, 0.0);
   const std::vector<double> rates(n, 0.0);
-  // With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The
-  // rows of free joints ask for the same of their speeds, one after the other from the tower
-  // outward.
-  const auto angle_at = [&](int joint) -> double& {
-    return values[static_cast<std::size_t>(joint)];
-  };
-  angle_at(assembly.layout.yaw()) = assembly.turbine.yaw_at(t).angle;
-  angle_at(assembly.layout.teeter()) = assembly.turbine.teeter_at(t).angle;
   std::vector<double> r(n, 0.0);
+  const components::Declarations& declared = assembly.equations.declarations();
+  const auto is_joint = [&declared](std::size_t i) {
+    const system::Unknown& unknown = declared.unknowns[i];
+    return unknown.owner.kind == system::PartKind::joint &&
+           unknown.role == system::UnknownRole::position;
+  };
   assembly.undo_references(values);
-  for (int pass = 0; pass < 5; ++pass) {
+  assembly.equations.evaluate(t, values, rates, r);
+  for (std::size_t i = 0; i < n; ++i)
+    if (is_joint(i) && declared.rows[i] == system::RowRole::constraint) values[i] -= r[i];
+  constexpr int most_joints_in_a_row = 5;
+  for (int pass = 0; pass < most_joints_in_a_row; ++pass) {
     assembly.equations.evaluate(t, values, rates, r);
-    const std::vector<system::RowRole>& roles = assembly.equations.declarations().rows;
     for (std::size_t i = 0; i < n; ++i) {
-      if (assembly.equations.declarations().unknowns[i].role != system::UnknownRole::velocity)
-        continue;
-      if (roles[i] == system::RowRole::kinematic) values[i] -= r[i];
+      if (declared.rows[i] != system::RowRole::kinematic) continue;
+      if (declared.unknowns[i].role == system::UnknownRole::velocity) values[i] -= r[i];
+      if (is_joint(i)) values[i + 1] += r[i];  // its speed
     }
-    const elements::RigidChain& chain = assembly.turbine.chain;
-    const auto set_speed = [&](bool free, int first) {
-      const auto at = static_cast<std::size_t>(first);
-      if (free) values[at + 1] += r[at];
-    };
-    set_speed(chain.generator.free, assembly.layout.generator());
-    set_speed(chain.torsion.free, assembly.layout.shaft_torsion());
-    set_speed(chain.teeter.free, assembly.layout.teeter());
   }
   assembly.write_own(values, z);
 }

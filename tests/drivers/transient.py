@@ -530,6 +530,44 @@ class Operation(ProgramTest):
         calm = (times > 1.1) & (times < 1 + time - 0.1)
         numpy.testing.assert_allclose(values["RootMzb1"][calm], moment[calm], atol=2e-4)
 
+    def test_an_actuator_limits_the_rate_of_the_pitch(self):
+        # An event asks for 30 deg/s and 20 deg; the actuator gives 8 deg/s, and ends at 12 deg.
+        case = ROTOR.replace("blades:", "blades:\n  pitch_actuator: {frequency: 6, damping_ratio: 0.7, "
+                             "rate_limit_deg: 8, highest_deg: 12}")
+        _, times, values = self.run_rotor(
+            "duration: 6, step: 0.01, start: undeformed, output: {channels: [BldPitch1]}, "
+            "events: [{at: 1, pitch: {to_deg: 20, rate_deg: 30}}]", case)
+        pitch = values["BldPitch1"]
+        rate = numpy.diff(pitch) / 0.01
+        self.assertLess(numpy.abs(rate).max(), 8 + 1e-6)
+        self.assertGreater(rate.max(), 7.9)
+        self.assertLess(numpy.abs(pitch[times < 1]).max(), 1e-9)
+        self.assertAlmostEqual(pitch[-1], 12, delta=1e-3)
+
+    def test_controlled_rotors_restart_bit_by_bit_and_hold_their_speed(self):
+        case = ROTOR.replace("generator: {joint: free, torque: 100", "generator: {joint: free")
+        case = case.replace("blades:", "controller: {speed_filter: 3, torque: {proportional: 40, "
+                            "integral: 20}}\ntuned_mass_dampers:\n  - {on: blades, at: 1, mass: 0.1, "
+                            "lead_lag: {stiffness: 30, damping: 0.1}}\nblades:")
+        keys = "step: 0.01, checkpoint: 0.5, output: {channels: [GenSpeed, GenTq, CtrlSpdErr, BStC1_B1_YQ]}"
+        path = self.write("rotor.yaml", case)
+        for name, parts in (("whole", (3,)), ("parts", (1.2, 3))):
+            for i, duration in enumerate(parts):
+                restart = ["--restart", f"{name}.h5"] if i > 0 else []
+                self.succeed("transient", path, "-o", f"{name}.h5", *restart, "--set",
+                             f"transient={{duration: {duration}, {keys}}}")
+        whole = history(self.folder / "whole.h5")
+        parts = history(self.folder / "parts.h5")
+        numpy.testing.assert_array_equal(whole[1], parts[1])
+        numpy.testing.assert_allclose(whole[1][:, 0], 60 * 3 / numpy.pi, rtol=1e-6)
+        numpy.testing.assert_allclose(whole[1][:, 1], 0.1, rtol=1e-5)
+        # A lost generator: no torque of the controller.
+        _, times, values = self.run_rotor(
+            "duration: 2, step: 0.01, output: {channels: [GenTq, GenSpeed]}, "
+            "events: [{at: 1, generator_off: true}]", case)
+        numpy.testing.assert_allclose(values["GenTq"][times > 1.02], 0, atol=1e-9)
+        self.assertGreater(values["GenSpeed"][-1], values["GenSpeed"][0] + 0.1)
+
     def test_prescribed_speed_turns_and_loads_the_shaft(self):
         case = ROTOR.replace("generator: {joint: free, torque: 100, own_inertia: 50}",
                              "generator: {joint: locked}").replace("  rotor: {torque: 100}\n", "")

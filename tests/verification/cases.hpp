@@ -12,6 +12,7 @@
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/analysis/floquet.hpp"
 #include "samara/analysis/trim.hpp"
+#include "samara/base/error.hpp"
 #include "samara/io/case.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
@@ -65,6 +66,16 @@ inline analysis::Floquet floquet_of(
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, trim_options, observer);
   return analysis::find_floquet_modes(system, trim.solution, {steps, period}, comm, observer);
+}
+
+/// The errors of a case; empty where it has none.
+inline std::string message_of(const std::string& text) {
+  try {
+    io::parse_case("test", text, {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 /// Frequencies of the modes whose labels start with `label`, ascending [rad/s].

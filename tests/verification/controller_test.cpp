@@ -1,5 +1,6 @@
 // Control of the generator's speed by torque and by pitch, with and without actuators, against the
 // characteristic polynomials of a rigid rotor.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -10,7 +11,6 @@
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
-#include "samara/base/error.hpp"
 #include "samara/linear/linear_model.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_input_output.hpp"
@@ -107,15 +107,6 @@ void require_modes(const analysis::ModeSet& set, const std::vector<Complex>& wan
   }
 }
 
-std::string message_of(const std::string& text) {
-  try {
-    io::parse_case("test", text, {});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(controller)
@@ -162,6 +153,12 @@ BOOST_AUTO_TEST_CASE(an_integral_holds_its_set_point) {
   BOOST_TEST(pitch[0] == 1.2 * gear * 30.0 / pi, tolerance(1e-9));
   BOOST_TEST(1e3 * pitch[1] == 30000.0, tolerance(1e-9));
   BOOST_TEST(pitch[2] == 4.0 + (4e6 - 30000.0 * gear) / pitched * 180.0 / pi, tolerance(1e-9));
+  // The mean of all pitches counts.
+  const Solved unequal(
+      rotor("  torque: {proportional: 800, integral: 100}\n", "  each: {1: {pitch_deg: 0.5}}\n"));
+  BOOST_TEST(
+      1e3 * unequal.channels({"GenTq"})[0] == (4e6 - pitched * 0.5 * pi / 180.0 / 3.0) / gear,
+      tolerance(1e-8));
   // A blade that is heavier than the others: the mean of the measured speed is the set point.
   const Solved uneven([] {
     std::string one = rotor("  torque: {proportional: 800, integral: 100}\ntrim: {harmonics: 4}\n",
@@ -195,6 +192,13 @@ BOOST_AUTO_TEST_CASE(actuators_are_of_second_order) {
   require_modes(set, closed_loop(pitched, {0.0188, 0.008}, A), 1e-8);
   require_modes(set, roots(A), 1e-8);  // of pitches whose sum is zero
   BOOST_TEST(solved.system.symmetry().sectors == 3);
+  // They move together as blades do.
+  analysis::Observer observer;
+  const analysis::Floquet floquet = analysis::find_floquet_modes(
+      solved.system, solved.trim.solution, {150}, PETSC_COMM_SELF, observer);
+  for (const std::string word : {"collective", "regressive", "progressive"})
+    BOOST_TEST(std::ranges::count(floquet.set.modes, "pitch actuator " + word,
+                                  &analysis::Mode::label) == 1);
   // What a pitch input makes of the pitch, without a controller.
   std::string open = rotor("", actuator);
   open.erase(open.find("controller:"));
@@ -231,6 +235,12 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_with_its_place) {
   has(rotor(loop, "  pitch_actuator: {frequency: 4}\n"), "missing key \"damping_ratio\"");
   has(rotor(loop, "  pitch_actuator: {frequency: 4, damping_ratio: 1, lowest_deg: 2}\n"),
       "is not within lowest_deg and highest_deg");
+  has(rotor("  pitch: {integral: 1, gain_schedule_deg: 3}\n", "  pitch_deg: -3\n"),
+      "which is not > 0 at blades.pitch_deg");
+  for (const std::string block :
+       {"{pitch_deg: {formula: t}}", "{events: [{at: 1, pitch: {to_deg: 9, rate_deg: 1}}]}"})
+    has(rotor("  pitch: {integral: 1}\ntransient: " + block + "\n"),
+        "controller.pitch gives the pitch, which is not that of the case");
   BOOST_TEST(message_of(rotor("  set_point_rpm: 1100\n  torque: {proportional: 1}\n")) == "");
 }
 

@@ -11,7 +11,6 @@
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
-#include "samara/base/error.hpp"
 #include "samara/math/quadrature.hpp"
 #include "samara/turbine/turbine_input_output.hpp"
 
@@ -151,15 +150,6 @@ struct ParticleBlade {
 
 const char* word_of(HingeAxis axis) {
   return axis == HingeAxis::flap ? "flap" : axis == HingeAxis::lag ? "lag" : "pitch";
-}
-
-std::string message_of(const std::string& text) {
-  try {
-    io::parse_case("test", text, {});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace

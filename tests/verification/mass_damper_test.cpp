@@ -12,7 +12,6 @@
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
-#include "samara/base/error.hpp"
 #include "samara/linear/linear_model.hpp"
 #include "samara/model/masses.hpp"
 #include "samara/turbine/turbine_channels.hpp"
@@ -71,15 +70,6 @@ double distance(const analysis::ModeSet& set, const std::vector<Complex>& wanted
 
 analysis::ModeSet modes_of(const std::string& text) {
   return constant_modes_of(io::parse_case("test", text, {}).turbine);
-}
-
-std::string message_of(const std::string& text) {
-  try {
-    io::parse_case("test", text, {});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 /// A rotor that turns at 3 rad/s without gravity, its blades rigid.

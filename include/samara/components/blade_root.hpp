@@ -101,15 +101,13 @@ BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLin
   return turn;
 }
 
-/// An actuator follows curves and inputs itself; a curve takes the place of a controller.
+/// An actuator follows curves and inputs itself.
 template <class T, class System>
 BladeRoot::Turn<T> BladeRoot::pitch_turn(const System& system,
                                          const Eigen::Matrix<T, 2, 1>& added) const {
   Turn<T> turn;
-  const bool is_direct = !turbine_.pitch_actuator;
-  if (pitch_port_ >= 0 && !(is_direct && turbine_.has_pitch_curve(k_)))
-    turn = {true, added(0), added(1)};
-  if (!is_direct) return turn;
+  if (pitch_port_ >= 0) turn = {true, added(0), added(1)};
+  if (turbine_.pitch_actuator) return turn;
   if (turbine_.has_pitch_curve(k_)) {
     const math::TimeCurve::Value now = turbine_.pitch_at(k_, system.time());
     turn.moves = true;
@@ -169,7 +167,8 @@ void BladeRoot::state_load(System& system) const {
     }
     y.template head<3>() = force;
     y.template segment<3>(3) = moment;
-    y(4) += pitch * pitch_slope;  // what the rotor's torque changes by the mean of all pitches
+    // What the rotor's torque changes by the mean of all pitches.
+    if (pitch_slope != 0.0) y(4) += (pitch + T(root().pitch - turbine_.pitch)) * pitch_slope;
     for (std::size_t i = 0; i < root().hinges.size(); ++i) {
       const model::RootHinge& hinge = root().hinges[i];
       const auto at = static_cast<Eigen::Index>(i);
@@ -184,8 +183,7 @@ void BladeRoot::state_load(System& system) const {
 template <class System>
 void BladeRoot::state_motion(System& system) const {
   const auto motion_of = [&]<class T>(const Eigen::Matrix<T, motion_arguments, 1>& x) {
-    const Eigen::Matrix<T, 2 + 2 * most_hinges, 1> angles =
-        x.template tail<2 + 2 * most_hinges>();
+    const Eigen::Matrix<T, 2 + 2 * most_hinges, 1> angles = x.template tail<2 + 2 * most_hinges>();
     Vec3<T> velocity = x.template head<3>();
     Vec3<T> omega = x.template segment<3>(3);
     Vec3<T> gravity = x.template segment<3>(6);

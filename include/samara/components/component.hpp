@@ -26,6 +26,8 @@ class Component {
   virtual void describe(Registry& registry) = 0;
   /// True where it neither dissipates nor feeds energy (PeriodicSystem::is_conservative).
   virtual bool is_conservative() const = 0;
+  /// True where its constraint rows do not depend on time other than through the unknowns.
+  virtual bool has_autonomous_constraints() const { return true; }
 
   virtual void add_to(Residual<double>& residual) const = 0;
   virtual void add_to(Residual<std::complex<double>>& residual) const = 0;

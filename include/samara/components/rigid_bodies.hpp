@@ -46,6 +46,7 @@ class RigidBodies final : public Stated<RigidBodies> {
   void place(Registry& registry) override;
   void describe(Registry& registry) override;
   bool is_conservative() const override;
+  bool has_autonomous_constraints() const override;
 
   /// First of q_y, U1, q_h, U2, q_s, U_s, q_g, U_g.
   int joints() const { return joints_; }

@@ -85,6 +85,7 @@ class TurbineEquations {
   const components::Declarations& declarations() const { return declarations_; }
   const system::RotorSymmetry& symmetry() const { return symmetry_; }
   bool is_conservative() const;
+  bool constraints_are_autonomous() const;
   const std::vector<std::unique_ptr<components::MassDamper>>& mass_dampers() const {
     return mass_dampers_;
   }

@@ -1,0 +1,164 @@
+#include "case_blades.hpp"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "case_beam.hpp"
+#include "case_controls.hpp"
+#include "case_joint.hpp"
+
+namespace samara::io {
+namespace {
+
+using model::JointKind;
+
+constexpr int max_blades = 100;
+
+constexpr std::array<std::pair<const char*, model::HingeAxis>, 3> hinge_axes{
+    {{"flap", model::HingeAxis::flap},
+     {"lag", model::HingeAxis::lag},
+     {"pitch", model::HingeAxis::pitch}}};
+
+/// Spring and damper of the hinges of one blade where they are others than those of all.
+void read_hinge_differences(const YamlNode& node, const std::string& where,
+                            const model::BladesDefinition& blades,
+                            model::BladeDifference& difference, ErrorList& errors) {
+  MapReader map(node, where, errors);
+  for (const auto& [word, axis] : hinge_axes) {
+    const YamlNode* entry = map.find(word);
+    if (entry == nullptr) continue;
+    const auto found = std::ranges::find(blades.hinges, axis, &model::HingeDefinition::axis);
+    if (found == blades.hinges.end() || found->joint.kind != JointKind::free)
+      map.refuse(*entry, word, "no free hinge of blades.hinges");
+    MapReader hinge(*entry, map.where(word), errors);
+    model::HingeDifference& own = difference.hinges[axis];
+    double value = 0.0;
+    if (hinge.read("stiffness", value, non_negative)) own.stiffness = value;
+    if (hinge.read("damping", value, non_negative)) own.damping = value;
+    hinge.finish();
+  }
+  map.finish();
+}
+
+/// From the hub outward.
+void read_hinges(MapReader& map, const YamlNode& list, model::BladesDefinition& blades) {
+  if (list.kind != YamlNode::Kind::list) {
+    map.refuse(list, "hinges",
+               "expected a list of hinges, from the hub outward, " + describe(list));
+    return;
+  }
+  for (std::size_t i = 0; i < list.children.size(); ++i) {
+    const std::string place = "hinges[" + std::to_string(i) + "]";
+    MapReader hinge(list.children[i], map.where(place), map.errors());
+    model::HingeDefinition definition;
+    hinge.require("axis", "flap, lag or pitch");
+    hinge.require("joint", "free, locked or prescribed");
+    hinge.read("axis", definition.axis,
+               {{"flap", model::HingeAxis::flap},
+                {"lag", model::HingeAxis::lag},
+                {"pitch", model::HingeAxis::pitch}});
+    hinge.read("offset", definition.offset, non_negative);
+    read_joint(hinge, definition.joint);
+    const YamlNode* delta3 = hinge.node().find("delta3_deg");
+    read_angle(hinge, "delta3_deg", definition.delta3, quarter_turn);
+    if (delta3 != nullptr && definition.axis != model::HingeAxis::flap)
+      hinge.refuse(*delta3, "delta3_deg", "only the axis of a flap hinge is skewed");
+    if (std::ranges::find(blades.hinges, definition.axis, &model::HingeDefinition::axis) !=
+        blades.hinges.end())
+      hinge.refuse(list.children[i], "axis", "given twice; each axis has one hinge at the most");
+    hinge.finish();
+    blades.hinges.push_back(definition);
+  }
+}
+
+void read_each(const YamlNode& node, const std::string& where, model::BladesDefinition& blades,
+               ErrorList& errors) {
+  MapReader map(node, where, errors);
+  for (int number = 1; number <= blades.count; ++number) {
+    const std::string key = std::to_string(number);
+    const YamlNode* entry = map.find(key);
+    if (entry == nullptr) continue;
+    MapReader blade(*entry, map.where(key), errors);
+    model::BladeDifference& difference = blades.each[number];
+    read_angle(blade, "pitch_deg", difference.pitch, half_turn);
+    blade.read("mass_factor", difference.mass_factor, positive);
+    blade.read("stiffness_factor", difference.stiffness_factor, positive);
+    if (const YamlNode* hinges = blade.find("hinges"))
+      read_hinge_differences(*hinges, blade.where("hinges"), blades, difference, errors);
+    blade.finish();
+  }
+  if (node.kind != YamlNode::Kind::map) return;
+  for (const YamlNode& entry : node.children) {
+    const bool is_known =
+        std::any_of(blades.each.begin(), blades.each.end(),
+                    [&](const auto& known) { return entry.key == std::to_string(known.first); });
+    if (!is_known) {
+      errors.add(entry.place, where,
+                 "expected a blade number from 1 to " + std::to_string(blades.count) + ", got \"" +
+                     entry.key + "\"");
+    }
+  }
+}
+
+/// A blade turns on hinges; a beam between two supports stands on them, in axes that do not turn.
+void refuse_free_root(MapReader& map, const model::BladesDefinition& blades) {
+  const bool is_free = blades.beam.support.free != std::array<bool, 6>{};
+  if (blades.beam.end_support.is_none()) {
+    if (is_free)
+      map.refuse(*map.node().find("support"), "support",
+                 "the root of a blade is free on hinges; hint: instead of the support hinges: "
+                 "[{axis: flap, joint: free}], axis pitch for theta1, flap for theta2, lag for "
+                 "theta3");
+    return;
+  }
+  if (std::ranges::any_of(blades.hinges, [](const model::HingeDefinition& hinge) {
+        return hinge.joint.kind != JointKind::locked;
+      }))
+    map.refuse(*map.node().find("end_support"), "end_support",
+               "holds the end in axes that blades.hinges turn; hint: a beam between two supports "
+               "has support: pinned or stiffness: {theta2: free, ...} instead of hinges");
+}
+
+}  // namespace
+
+void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorList& errors) {
+  MapReader map(node, "blades", errors);
+  map.read("count", blades.count, 1, max_blades);
+  read_angle(map, "precone_deg", blades.precone, quarter_turn);
+  read_angle(map, "pitch_deg", blades.pitch, half_turn);
+  read_beam(map, Matrix3::Identity(), blade_ratios, blades.beam);
+  read_support(map, "end_support", false, blades.beam.end_support);
+  if (const YamlNode* entry = map.find("hinges")) read_hinges(map, *entry, blades);
+  refuse_free_root(map, blades);
+  if (const YamlNode* entry = map.find("pitch_link_delta3_deg")) {
+    read_angle(map, "pitch_link_delta3_deg", blades.pitch_link, quarter_turn);
+    const auto flap =
+        std::ranges::find(blades.hinges, model::HingeAxis::flap, &model::HingeDefinition::axis);
+    if (flap == blades.hinges.end() || flap->joint.kind != JointKind::free)
+      map.refuse(*entry, "pitch_link_delta3_deg", "blades.hinges has no free flap hinge");
+  }
+  if (const YamlNode* entry = map.find("each")) {
+    read_each(*entry, map.where("each"), blades, errors);
+  }
+  read_pitch_actuator(map, blades);
+  map.finish();
+}
+
+void check_hinges(const YamlNode& root, const model::TurbineDefinition& turbine,
+                  ErrorList& errors) {
+  const YamlNode* blades = root.find("blades");
+  const YamlNode* hinges = blades == nullptr ? nullptr : blades->find("hinges");
+  if (hinges == nullptr) return;
+  double along = 0.0;
+  for (const model::HingeDefinition& hinge : turbine.blades.hinges) along += hinge.offset;
+  if (along <= turbine.hub.radius) return;
+  std::ostringstream text;
+  text << "the offsets add to " << along << " m, beyond the root at hub.radius, "
+       << turbine.hub.radius << " m";
+  errors.add(hinges->place, "blades.hinges", text.str());
+}
+
+}  // namespace samara::io
