@@ -551,7 +551,7 @@ class Operation(ProgramTest):
                             "lead_lag: {stiffness: 30, damping: 0.1}}\nblades:")
         keys = "step: 0.01, checkpoint: 0.5, output: {channels: [GenSpeed, GenTq, CtrlSpdErr, BStC1_B1_YQ]}"
         path = self.write("rotor.yaml", case)
-        for name, parts in (("whole", (3,)), ("parts", (1.2, 3))):
+        for name, parts in (("whole", (3,)), ("parts", (1.5, 3))):
             for i, duration in enumerate(parts):
                 restart = ["--restart", f"{name}.h5"] if i > 0 else []
                 self.succeed("transient", path, "-o", f"{name}.h5", *restart, "--set",
