@@ -479,10 +479,10 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
   return trim;
 }
 
-/// Where coordinates are free, with their means held at zero: what restores a hinge, the centrifugal
-/// force or the weight, acts through loads that the undeformed system does not carry yet, and
-/// Newton's method could go anywhere from there. None where nothing is free or a beam would be held
-/// twice.
+/// Where coordinates are free, with their means held at zero: what restores a hinge, the
+/// centrifugal force or the weight, acts through loads that the undeformed system does not carry
+/// yet, and Newton's method could go anywhere from there. None where nothing is free or a beam
+/// would be held twice.
 std::optional<Trim> hold_supports(const system::PeriodicSystem& system, int harmonics,
                                   double tolerance) {
   const Coordinates free = system.free_coordinates();

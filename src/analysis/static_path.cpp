@@ -112,8 +112,8 @@ class Equilibrium {
     for (const system::NeutralCoordinate& held : held_) r(held.row) += point.x(held.unknown);
     for (std::size_t n = 0; n < easing_.unknowns.size(); ++n) {
       const PetscInt at = easing_.unknowns[n];
-      r(easing_.rows[n]) += easing_.remaining *
-               (easing_.loads(static_cast<Eigen::Index>(n)) - easing_.stiffness * point.x(at));
+      r(easing_.rows[n]) += easing_.remaining * (easing_.loads(static_cast<Eigen::Index>(n)) -
+                                                 easing_.stiffness * point.x(at));
     }
   }
 
@@ -141,7 +141,8 @@ class Equilibrium {
   Eigen::MatrixXd eased_compliance(const Point& point) {
     const auto n = static_cast<Eigen::Index>(easing_.rows.size());
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size_, n);
-    for (Eigen::Index j = 0; j < n; ++j) columns(easing_.rows[static_cast<std::size_t>(j)], j) = 1.0;
+    for (Eigen::Index j = 0; j < n; ++j)
+      columns(easing_.rows[static_cast<std::size_t>(j)], j) = 1.0;
     solve(point, columns);
     return at(columns, easing_.unknowns);
   }

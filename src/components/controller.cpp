@@ -74,8 +74,8 @@ void Controller::schedule(T& angle, T& rate) const {
 template <class System>
 void Controller::state(System& system) const {
   const auto rows_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
-    const T error = x(at_states);
-    const T integral = x(at_states + 1);
+    const T& error = x(at_states);
+    const T& integral = x(at_states + 1);
     const T error_dot = (generator_speed<T>(x) - T(law().set_point) - error) * law().filter;
     Eigen::Matrix<T, values, 1> y = Eigen::Matrix<T, values, 1>::Zero();
     y(0) = x(at_states + 2) - error_dot;

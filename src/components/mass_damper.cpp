@@ -185,8 +185,8 @@ FrameMotion<T> MassDamper::nacelle_motion(const System& system,
   const Vec3<T> axis = Vector3::UnitZ().cast<T>();
   if (turbine.chain.yaw.free) {
     turn = math::turn_about<T>(Vector3::UnitZ(), x(at_yaw)).transpose();
-    const T speed = x(at_yaw + 1);
-    const T speed_dot = x(at_yaw + 2);
+    const T& speed = x(at_yaw + 1);
+    const T& speed_dot = x(at_yaw + 2);
     return elements::detail::with_outer_speed<T>(axis, speed, speed_dot,
                                                  elements::detail::seen_from<T>(turn, top));
   }
@@ -237,8 +237,8 @@ void MassDamper::state(System& system) const {
       const Vec3<T> axis = damper.axis(i).template cast<T>();
       const int own = at_axes + 4 * static_cast<int>(i);
       const int row = 2 * static_cast<int>(i);
-      const T q = x(own);
-      const T speed = x(own + 1);
+      const T& q = x(own);
+      const T& speed = x(own + 1);
       y(row) = x(own + 2) - speed;
       y(row + 1) = math::dot(axis, force) - q * law.stiffness - speed * law.damping;
       if (law.stop > 0.0)

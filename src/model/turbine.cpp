@@ -206,8 +206,7 @@ void place_mass_dampers(const TurbineDefinition& definition, Turbine& turbine) {
       if (other.definition.carrier == damper.carrier && other.blade == blade) ++placed.number;
     if (carrier != nullptr) {
       const ReferenceLine line(beam.name, *carrier);
-      placed.axes =
-          line.at(damper.at, interpolate_section(*carrier, damper.at).twist).C_ab;
+      placed.axes = line.at(damper.at, interpolate_section(*carrier, damper.at).twist).C_ab;
       const auto end = std::ranges::find(beam.ends, damper.at) - beam.ends.begin();
       for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m)
         if (damper.at < 1.0 && beam.mass_nodes[m].end == end) placed.node = static_cast<int>(m);

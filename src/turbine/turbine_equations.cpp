@@ -98,8 +98,8 @@ void TurbineEquations::make_components() {
     components::MassDamperSetting setting;
     setting.turbine = &turbine_;
     setting.damper = &damper;
-    setting.beam = is_on_blade ? beams_[static_cast<std::size_t>(damper.blade)].get()
-                               : beams_.back().get();
+    setting.beam =
+        is_on_blade ? beams_[static_cast<std::size_t>(damper.blade)].get() : beams_.back().get();
     setting.has_bodies = !is_on_blade;
     setting.shared_rank = shared_rank;
     mass_dampers_.push_back(std::make_unique<components::MassDamper>(setting));

@@ -181,8 +181,8 @@ struct Rider {
       velocity += axes[i].cast<Complex>() * z(displacements[i]);
     const Vector3c linear = mass * velocity;
     for (std::size_t i = 0; i < axes.size(); ++i)
-      energies(motion + static_cast<int>(i)) += half_product(
-          z_dot(displacements[i]), axes[i].cast<Complex>().cwiseProduct(linear).sum());
+      energies(motion + static_cast<int>(i)) +=
+          half_product(z_dot(displacements[i]), axes[i].cast<Complex>().cwiseProduct(linear).sum());
     return Momentum{linear, Vector3c::Zero()}.from(place - at);
   }
 };
@@ -192,7 +192,7 @@ struct SteadyBeam {
   struct Point {
     Node node;
     Mass mass;
-    Matrix3 axes = Matrix3::Identity();  ///< of the section, undeformed on the root's support
+    Matrix3 axes = Matrix3::Identity();       ///< of the section, undeformed on the root's support
     Matrix3 node_axes = Matrix3::Identity();  ///< of its velocities, as columns
     std::vector<Rider> riders{};
   };

@@ -289,9 +289,9 @@ std::vector<std::vector<PetscInt>> TurbineSystem::pattern() const {
   return columns;
 }
 
-/// With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The row of
-/// a joint that is not free is its angle less the prescribed one; those of free joints ask for the
-/// same of their speeds as that of a beam does, one after the other from the tower outward.
+/// With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The row
+/// of a joint that is not free is its angle less the prescribed one; those of free joints ask for
+/// the same of their speeds as that of a beam does, one after the other from the tower outward.
 void TurbineSystem::reference_state(double t, Vec z) const {
   const Assembly& assembly = *assembly_;
   const auto n = static_cast<std::size_t>(size());

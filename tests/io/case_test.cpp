@@ -431,8 +431,9 @@ BOOST_AUTO_TEST_CASE(supports_are_words_or_springs) {
   BOOST_TEST((springs.inertia == Vector3(4, 5, 6)));
   BOOST_TEST((springs.damping == Vector6::Constant(0.1)));
   BOOST_TEST((springs.added_mass == Vector6(0, 8, 0, 0, 0, 9)));
-  BOOST_TEST((beam("  support: {stiffness: {u1: 3}, damping: [1, 2, 3, 4, 5, 6]}\n")
-                  .support.damping == Vector6(1, 2, 3, 4, 5, 6)));
+  BOOST_TEST(
+      (beam("  support: {stiffness: {u1: 3}, damping: [1, 2, 3, 4, 5, 6]}\n").support.damping ==
+       Vector6(1, 2, 3, 4, 5, 6)));
   const model::SupportDefinition matrix =
       beam(
           "  end_support:\n    stiffness_matrix:\n"

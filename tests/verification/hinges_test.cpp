@@ -41,8 +41,7 @@ struct Solved {
   explicit Solved(const std::string& text, const analysis::TrimOptions& options = {})
       : system(model::build_turbine(io::parse_case("test", text, {}).turbine), PETSC_COMM_SELF),
         trim(analysis::find_trim(system, options, observer)) {
-    if (trim.solution.harmonics() == 0)
-      set = analysis::find_constant_modes(system, trim.solution);
+    if (trim.solution.harmonics() == 0) set = analysis::find_constant_modes(system, trim.solution);
   }
   double frequency_of(const std::string& label) const {
     for (const analysis::Mode& mode : set.modes)
@@ -272,14 +271,14 @@ BOOST_AUTO_TEST_CASE(a_blade_hangs_on_its_flap_hinge_and_swings_about_it) {
   for (const double force : {0.0, 20.0, 150.0})
     for (const double azimuth : {180.0, 0.0}) {
       if (force == 0.0 && azimuth == 0.0) continue;  // it stands
-      const Solved solved("samara: 1\ngravity: 9.81\nshaft: {azimuth_deg: " +
-                          std::to_string(azimuth) +
-                          "}\nblades:\n  length: 10\n  elements: 2\n  order: 3\n"
-                          "  sections: [{mass: 4, inertia: [0, 0, 0], stiffness: {EA: rigid, GA2: "
-                          "rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}]\n"
-                          "  hinges: [{axis: flap, joint: free}]\n"
-                          "loads: [{beam: blades, at: 1.0, force: [0, 0, " +
-                          std::to_string(force) + "]}]\n");
+      const Solved solved(
+          "samara: 1\ngravity: 9.81\nshaft: {azimuth_deg: " + std::to_string(azimuth) +
+          "}\nblades:\n  length: 10\n  elements: 2\n  order: 3\n"
+          "  sections: [{mass: 4, inertia: [0, 0, 0], stiffness: {EA: rigid, GA2: "
+          "rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}]\n"
+          "  hinges: [{axis: flap, joint: free}]\n"
+          "loads: [{beam: blades, at: 1.0, force: [0, 0, " +
+          std::to_string(force) + "]}]\n");
       const double turned = std::asin(2.0 * force / weight) + (azimuth == 0.0 ? pi : 0.0);
       BOOST_TEST(std::abs(std::remainder(solved.angle(0) - turned, 2.0 * pi)) < 1e-8);
       const double omega = std::sqrt(1.5 * 9.81 / 10.0 * std::cos(std::asin(2.0 * force / weight)));
@@ -289,8 +288,8 @@ BOOST_AUTO_TEST_CASE(a_blade_hangs_on_its_flap_hinge_and_swings_about_it) {
 
 BOOST_AUTO_TEST_CASE(a_coned_blade_flaps_into_the_plane_of_its_rotation) {
   // Hinged at 0.4 m: sin(beta) (cos(beta) l/3 + e/2) = 0 for the angle beta to the plane.
-  const Solved solved(rotor(0.4, "[0, 0, 0]",
-                            "  precone_deg: 3\n  hinges: [{axis: flap, offset: 0.4, joint: free}]\n"));
+  const Solved solved(rotor(
+      0.4, "[0, 0, 0]", "  precone_deg: 3\n  hinges: [{axis: flap, offset: 0.4, joint: free}]\n"));
   const double offset = 0.4 * std::cos(3.0 * pi / 180.0);
   BOOST_TEST(std::abs(solved.angle(0) + 3.0 * pi / 180.0) < 1e-9);
   const double nu = solved.set.modes[0].exponent.imag() / speed;
@@ -302,13 +301,12 @@ BOOST_AUTO_TEST_CASE(prescribed_flapping_takes_the_moment_of_a_rigid_blade) {
   // own azimuth.
   const double mean = 0.05;
   const double size = 4.0 * pi / 180.0;
-  const Solved solved(
-      rotor(0.0, "[0, 0, 0]",
-            "  hinges: [{axis: flap, joint: prescribed, angle_deg: " +
-                std::to_string(mean * 180.0 / pi) +
-                ", harmonic: {per_rev: 1, amplitude_deg: 4, phase_deg: 20}}]\n",
-            3),
-      {.harmonics = 8});
+  const Solved solved(rotor(0.0, "[0, 0, 0]",
+                            "  hinges: [{axis: flap, joint: prescribed, angle_deg: " +
+                                std::to_string(mean * 180.0 / pi) +
+                                ", harmonic: {per_rev: 1, amplitude_deg: 4, phase_deg: 20}}]\n",
+                            3),
+                      {.harmonics = 8});
   BOOST_TEST(solved.system.symmetry().sectors == 3);
   const double I = 4.0 * 1000.0 / 3.0;
   const petsc::Handle<Vec> z = solved.system.make_state();
@@ -317,8 +315,7 @@ BOOST_AUTO_TEST_CASE(prescribed_flapping_takes_the_moment_of_a_rigid_blade) {
     solved.trim.solution.evaluate(t, z.get(), z_dot.get());
     const petsc::ReadView view(z.get());
     for (int k = 0; k < 3; ++k) {
-      const double wave =
-          size * std::cos(speed * t + 2.0 * pi * k / 3.0 + 20.0 * pi / 180.0);
+      const double wave = size * std::cos(speed * t + 2.0 * pi * k / 3.0 + 20.0 * pi / 180.0);
       const double beta = std::stod(std::to_string(mean * 180.0 / pi)) * pi / 180.0 + wave;
       const double wanted = I * speed * speed * (std::sin(beta) * std::cos(beta) - wave);
       const double moment = view[solved.system.layout().blade_root(k) + 4];

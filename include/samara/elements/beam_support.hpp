@@ -63,8 +63,8 @@ template <class T>
 Vec6<T> added_mass_load(const RootSupport& support, const Eigen::Matrix<T, point_size, 1>& z,
                         const Eigen::Matrix<T, point_size, 1>& z_dot) {
   const Mat3<T> R = math::direction_cosines(Vec3<T>(z.template segment<3>(3))).transpose();
-  const Vec6<T> load = inertial_load<T>(support.added_mass, z.template segment<6>(6),
-                                        z_dot.template segment<6>(6));
+  const Vec6<T> load =
+      inertial_load<T>(support.added_mass, z.template segment<6>(6), z_dot.template segment<6>(6));
   Vec6<T> in_a;
   in_a << R * Vec3<T>(load.template head<3>()), R * Vec3<T>(load.template tail<3>());
   return in_a;

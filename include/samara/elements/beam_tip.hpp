@@ -29,8 +29,8 @@ Vec6<T> inertial_load(const Matrix6& inertia, const Vec6<T>& velocity,
   const Vec3<T> P = momentum.template head<3>();
   const Vec3<T> H = momentum.template tail<3>();
   const Vec3<T> force = Vec3<T>(momentum_dot.template head<3>()) + math::cross(Omega, P);
-  const Vec3<T> moment = Vec3<T>(momentum_dot.template tail<3>()) + math::cross(Omega, H) +
-                         math::cross(V, P);
+  const Vec3<T> moment =
+      Vec3<T>(momentum_dot.template tail<3>()) + math::cross(Omega, H) + math::cross(V, P);
   Vec6<T> load;
   load << force, moment;
   return load;

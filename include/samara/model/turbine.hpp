@@ -44,9 +44,9 @@ struct BladeRoot {
 /// A mass damper in its place.
 struct MassDamper {
   MassDamperDefinition definition;
-  int number = 1;  ///< from 1, among those on the tower, the nacelle or a blade
-  int blade = -1;  ///< from 0; -1: on none
-  int node = -1;   ///< mass node of the beam that carries it; -1: its end
+  int number = 1;                      ///< from 1, among those on the tower, the nacelle or a blade
+  int blade = -1;                      ///< from 0; -1: on none
+  int node = -1;                       ///< mass node of the beam that carries it; -1: its end
   Matrix3 axes = Matrix3::Identity();  ///< of the definition, as columns in those of the node
   Vector3 place = Vector3::Zero();     ///< of the mass at rest, from the node, in its axes [m]
 

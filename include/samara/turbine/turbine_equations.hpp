@@ -21,9 +21,9 @@ using TurbineInputs = components::TurbineInputs<T>;
 
 /// Where each unknown of a turbine is. Blocks of 18: every Gauss point, every beam end and every
 /// mass node is one; the joints and the root reactions share the last ones. Blades come first, tip
-/// to root, then the tower, foot to top, then the joints and the roots' reactions, then the hinges of
-/// blades: an elimination in this order fills in nothing but the columns of the joints, the hinges
-/// and the tower top.
+/// to root, then the tower, foot to top, then the joints and the roots' reactions, then the hinges
+/// of blades: an elimination in this order fills in nothing but the columns of the joints, the
+/// hinges and the tower top.
 class TurbineLayout {
  public:
   static constexpr int block = elements::point_size;
@@ -121,7 +121,7 @@ class TurbineEquations {
 
   model::Turbine turbine_;
   std::vector<std::unique_ptr<components::Beam>> beams_;  ///< of the blades, then of the tower
-  std::unique_ptr<components::Controller> controller_;                        ///< null: none
+  std::unique_ptr<components::Controller> controller_;    ///< null: none
   std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< of each blade, if any
   std::unique_ptr<components::RigidBodies> bodies_;
   std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
