@@ -202,7 +202,7 @@ std::vector<std::string> mass_damper_lines(const turbine::TurbineSystem& system)
   return lines;
 }
 
-/// What acts on the speed of the generator, and how the blades are pitched.
+/// The controller, the pitch actuators and the rotor's torque by the pitch.
 std::vector<std::pair<std::string, std::string>> control_lines(
     const model::TurbineDefinition& definition, const model::Turbine& turbine) {
   std::vector<std::pair<std::string, std::string>> lines;

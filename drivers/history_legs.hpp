@@ -26,8 +26,7 @@ model::Turbine turbine_after(const io::TransientCase& transient, model::Turbine 
 class HistoryLegs {
  public:
   /// `fired`: time of each event; may be shorter than their number. `generator`: unknown of its
-  /// angle. The case, the recorder and the
-  /// file must live on.
+  /// angle. The case, the recorder and the file must live on.
   HistoryLegs(const io::TransientCase& transient, const model::Turbine& turbine,
               analysis::TransientStart start, std::vector<double> fired, int generator,
               HistoryRecorder& recorder, io::HistoryFile& file);

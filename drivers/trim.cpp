@@ -158,7 +158,7 @@ std::string generator_words(const io::Case& input, double shaft_load, double sha
   return text + "\n";
 }
 
-/// What the controller does in the mean of a revolution.
+/// The work of the controller in the mean of a revolution.
 std::string controller_words(const turbine::TurbineSystem& system, const Trim& trim) {
   const turbine::TurbineChannels channels(system, {}, {"GenSpeed", "GenTq", "BldPitch1"});
   const petsc::Handle<Vec> z = system.make_state();

@@ -483,8 +483,8 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
 /// centrifugal force or the weight, acts through loads that the undeformed system does not carry
 /// yet, and Newton's method could go anywhere from there. None where nothing is free or a beam
 /// would be held twice.
-std::optional<Trim> hold_supports(const system::PeriodicSystem& system, int harmonics,
-                                  double tolerance) {
+std::optional<Trim> hold_free(const system::PeriodicSystem& system, int harmonics,
+                              double tolerance) {
   const Coordinates free = system.free_coordinates();
   if (free.empty()) return std::nullopt;
   Coordinates held = system.neutral_coordinates();
@@ -581,7 +581,7 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
     throw InternalError("harmonics of a system without a period");
   const Coordinates& neutral = system.neutral_coordinates();
   const std::optional<Trim> held =
-      start == nullptr ? hold_supports(system, harmonics, tolerance) : std::nullopt;
+      start == nullptr ? hold_free(system, harmonics, tolerance) : std::nullopt;
   Trim trim = solve(system, neutral, harmonics, tolerance, held ? &held->solution : start);
   finish_trim(system, trim);
   trim.history = {{harmonics, trim.residual_between}};

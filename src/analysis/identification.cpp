@@ -258,12 +258,11 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   std::vector<Name> names;
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
-    if (leading.empty() && set.modes[m].state) {
-      names.push_back({{*set.modes[m].state}, ""});
-      continue;
-    }
+    const Mode& mode = set.modes[m];
     if (leading.empty()) {
-      names.push_back({strained_motion(system, set.shapes[m], set.modes[m], zero), ""});
+      names.push_back({mode.state ? system::Motion{*mode.state}
+                                  : strained_motion(system, set.shapes[m], mode, zero),
+                       ""});
       continue;
     }
     const int component = leading[m].component;

@@ -31,15 +31,16 @@ constexpr double rounding = 1e-12;
 /// Cosine between the tangents at both ends of an arc; below it the step may have changed branches.
 constexpr double least_cosine = 0.3;
 
-/// Of free supports, relative to the stiffness that takes their place at the start: what restores
-/// less leaves them to the loads, what still restores less under loads does not restore at all.
+/// Of free coordinates, relative to the stiffness that takes their place at the start: what
+/// restores less leaves them to the loads, what still restores less under loads does not restore at
+/// all.
 constexpr double weak = 1e-6;
 constexpr double restored = 1e-8;
 
-/// Relative to the largest internal load: what supports feel of the loads, if anything.
+/// Relative to the largest internal load: what free coordinates feel of the loads, if anything.
 constexpr double unfelt = 1e-10;
 
-/// Parts in which supports are set free, the least of them, and how far one may move in one of
+/// Parts in which coordinates are set free, the least of them, and how far one may move in one of
 /// them, beside its whole way [rad, m].
 constexpr double first_part = 0.125;
 constexpr double least_part = 1e-6;
@@ -255,7 +256,7 @@ class Equilibrium {
     return info.nz_used;
   }
 
-  /// The tangent as it is, with what eases free supports.
+  /// The tangent as it is, with what eases free coordinates.
   void assemble(const Point& point) {
     put(state_of(point.x));
     loaded_.tangents(0.0, z_.get(), rest_.get(), 0.0, jacobian_.get(), nullptr);
@@ -331,8 +332,7 @@ class PathFollower {
 
   StaticPath run() {
     Point point = equilibrium_->start();
-    if (!free_supports(point) && !attempt([&] { accept(point, correct(point, nullptr)); }))
-      give_up();
+    if (!release(point) && !attempt([&] { accept(point, correct(point, nullptr)); })) give_up();
     if (options_.method == StaticMethod::load)
       follow_loads(point);
     else
@@ -492,7 +492,7 @@ class PathFollower {
   };
 
   /// None where it cannot be done, because the beam would be held twice.
-  std::optional<Held> hold_supports() {
+  std::optional<Held> hold_free() {
     std::vector<system::NeutralCoordinate> coordinates = system_.neutral_coordinates();
     coordinates.insert(coordinates.end(), free_.begin(), free_.end());
     Equilibrium& equilibrium =
@@ -516,9 +516,9 @@ class PathFollower {
   /// A hinge that loads alone restore turns as soon as there are any: at the factor 0 the tangent
   /// is singular, and the path starts at the first step, with the supports held there and then set
   /// free. False where that is not needed, or not possible.
-  bool free_supports(Point& point) {
+  bool release(Point& point) {
     if (free_.empty()) return false;
-    const std::optional<Held> held = hold_supports();
+    const std::optional<Held> held = hold_free();
     const double level = held ? equilibrium_->load_level(held->loaded) : 0.0;
     equilibrium_ = make_equilibrium(system_);
     if (!held) return false;
@@ -542,8 +542,9 @@ class PathFollower {
     return true;
   }
 
-  /// What holds the free supports, and a spring beside it, go to zero at a constant load factor:
-  /// the spring keeps the path away from other branches. Returns the number of Newton's steps.
+  /// The loads that hold free coordinates, and a spring beside them, go to zero at a constant load
+  /// factor: the spring keeps the path away from other branches. Returns the number of Newton's
+  /// steps.
   int set_free(Point& point) {
     int newton_steps = 0;
     const bool at_once = easing_.loads.cwiseAbs().maxCoeff() <= rounding * easing_.stiffness;
@@ -576,7 +577,7 @@ class PathFollower {
   void refuse_leap(const Point& point, const Point& next) const {
     for (const PetscInt at : easing_.unknowns)
       if (std::abs(next.x(at) - point.x(at)) > longest_stride * (1.0 + std::abs(point.x(at))))
-        throw ConvergenceError("a support that was set free moves too far in one step");
+        throw ConvergenceError("a coordinate that was set free moves too far in one step");
   }
 
   /// Of the free directions, under almost no spring beside the turbine and its loads.

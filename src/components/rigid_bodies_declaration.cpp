@@ -36,31 +36,26 @@ void RigidBodies::place(Registry& registry) {
 
 int RigidBodies::joint(int number) const { return joints_ + joint_unknowns * number; }
 
-int RigidBodies::yaw() const { return joint(Joint::yaw); }
-
-int RigidBodies::generator() const { return joint(Joint::generator); }
-
 int RigidBodies::tower_top() const {
   return setting_.tower == nullptr ? -1 : setting_.tower->placed().tip;
 }
 
 void RigidBodies::describe(Registry& registry) {
   const elements::RigidChain& chain = turbine_.chain;
-  describe_joint(registry, Joint::yaw, "yaw", Frame::fixed, chain.yaw.free);
+  describe_joint(registry, yaw, "yaw", Frame::fixed, chain.yaw.free);
   describe_joint(registry, teeter, "teeter", Frame::rotating, chain.teeter.free);
   describe_joint(registry, torsion, "shaft torsion", Frame::rotating, chain.torsion.free);
-  describe_joint(registry, Joint::generator, "generator", Frame::rotating, chain.generator.free);
+  describe_joint(registry, generator, "generator", Frame::rotating, chain.generator.free);
   const auto add_neutral = [&](const char* name, int number) {
     registry.add(system::NeutralCoordinate{name, joint(number), joint(number) + 1, "N m"});
   };
-  if (chain.yaw.free && chain.yaw.stiffness == 0.0) add_neutral("yaw", Joint::yaw);
+  if (chain.yaw.free && chain.yaw.stiffness == 0.0) add_neutral("yaw", yaw);
   if (chain.teeter.free && chain.teeter.stiffness == 0.0 && turbine_.speed == 0.0)
     add_neutral("teeter", teeter);
   if (integral_ >= 0)
-    registry.add(
-        system::NeutralCoordinate{"generator", joint(Joint::generator), integral_, "rad/s"});
+    registry.add(system::NeutralCoordinate{"generator", joint(generator), integral_, "rad/s"});
   else if (chain.generator.free)
-    add_neutral("generator", Joint::generator);
+    add_neutral("generator", generator);
   if (setting_.blades.size() == 2)  // the hinge axis turns with the shaft: half a turn reverses it
     for (int i = 0; i < joint_unknowns; ++i) registry.reverse(joint(teeter) + i);
   describe_energies(registry);
@@ -127,11 +122,11 @@ void RigidBodies::describe_energies(Registry& registry) const {
   EnergyGroup group{EnergyGroup::Kind::kinetic, body_owner("nacelle"), "", Frame::fixed, {}, {}};
   if (setting_.tower != nullptr) {
     const int top = tower_top();  // V = (U6 U7 U8), omega = (U3 U4 U1)
-    group.unknowns = {top + 7, top + 8, top + 6, top + 10, top + 11, joint(Joint::yaw) + 1};
+    group.unknowns = {top + 7, top + 8, top + 6, top + 10, top + 11, joint(yaw) + 1};
     group.weight.assign(carried.data(), carried.data() + carried.size());
     registry.add(group);
   } else if (chain.yaw.free && carried(5, 5) > 0.0) {
-    group.unknowns = {joint(Joint::yaw) + 1};
+    group.unknowns = {joint(yaw) + 1};
     group.weight = {carried(5, 5)};
     registry.add(group);
   }
@@ -161,7 +156,7 @@ void RigidBodies::describe_energies(Registry& registry) const {
   const double turning = chain.shaft.inertia(1, 1) + (chain.teeter.free ? 0.0 : hub_turning);
   if (turns_freely(chain)) add_shaft(joint(torsion) + 1, turning);
   if (chain.generator.free) describe_generator(registry);
-  describe_spring(registry, chain.yaw, "yaw", Frame::fixed, joint(Joint::yaw));
+  describe_spring(registry, chain.yaw, "yaw", Frame::fixed, joint(yaw));
   describe_spring(registry, chain.teeter, "teeter", Frame::rotating, joint(teeter));
   describe_spring(registry, chain.torsion, "shaft torsion", Frame::rotating, joint(torsion));
 }
@@ -174,7 +169,7 @@ void RigidBodies::describe_generator(Registry& registry) const {
                     body_owner("drivetrain"),
                     "",
                     Frame::rotating,
-                    {joint(Joint::generator) + 1},
+                    {joint(generator) + 1},
                     {}};
   std::vector<double> shares{chain.gear_ratio};
   const Vector3 along = (1.0 - chain.gear_ratio) * bearing_axes().col(1);
@@ -187,7 +182,7 @@ void RigidBodies::describe_generator(Registry& registry) const {
     add_share(tower_top() + 10, along(0));
     add_share(tower_top() + 11, along(1));
   }
-  if (setting_.tower != nullptr || chain.yaw.free) add_share(joint(Joint::yaw) + 1, along(2));
+  if (setting_.tower != nullptr || chain.yaw.free) add_share(joint(yaw) + 1, along(2));
   for (const double a : shares)
     for (const double b : shares) group.weight.push_back(chain.generator_inertia * a * b);
   registry.add(group);

@@ -16,7 +16,8 @@ using system::PartKind;
 constexpr int blade_rank = 0;
 constexpr int tower_rank = 1;
 constexpr int shared_rank = 2;
-constexpr int hinge_rank = 3;  // a hinge's balance is a moment of its root's reaction, no more
+constexpr int last_rank = 3;  // of hinges, whose balance is a moment of the roots' reactions and no
+                              // more, and of the states of controls
 
 BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
   const elements::RigidChain& chain = turbine.chain;
@@ -73,7 +74,7 @@ TurbineEquations::~TurbineEquations() = default;
 void TurbineEquations::make_components() {
   components::BodiesSetting bodies;
   bodies.shared_rank = shared_rank;
-  bodies.hinge_rank = hinge_rank;
+  bodies.hinge_rank = last_rank;
   for (std::size_t k = 0; k < turbine_.blades.size(); ++k) {
     beams_.push_back(std::make_unique<components::Beam>(blade_setting(turbine_, k)));
     bodies.blades.push_back(beams_.back().get());
@@ -84,11 +85,11 @@ void TurbineEquations::make_components() {
   }
   bodies_ = std::make_unique<components::RigidBodies>(turbine_, bodies);
   if (turbine_.controller) {
-    controller_ = std::make_unique<components::Controller>(turbine_, hinge_rank);
+    controller_ = std::make_unique<components::Controller>(turbine_, last_rank);
     components_.push_back(controller_.get());
   }
   for (std::size_t k = 0; turbine_.pitch_actuator && k < turbine_.blades.size(); ++k) {
-    actuators_.push_back(std::make_unique<components::PitchActuator>(turbine_, k, hinge_rank));
+    actuators_.push_back(std::make_unique<components::PitchActuator>(turbine_, k, last_rank));
     components_.push_back(actuators_.back().get());
   }
   components_.push_back(bodies_.get());
@@ -100,7 +101,6 @@ void TurbineEquations::make_components() {
     setting.damper = &damper;
     setting.beam =
         is_on_blade ? beams_[static_cast<std::size_t>(damper.blade)].get() : beams_.back().get();
-    setting.has_bodies = !is_on_blade;
     setting.shared_rank = shared_rank;
     mass_dampers_.push_back(std::make_unique<components::MassDamper>(setting));
     components_.push_back(mass_dampers_.back().get());
@@ -118,9 +118,9 @@ components::Registry TurbineEquations::place() {
 /// A controller acts on the pitch through the actuators, or without them by itself.
 void TurbineEquations::tie_controls() {
   components::ControllerTies ties;
-  ties.tower_top = bodies_->tower_top();
-  ties.yaw = bodies_->yaw();
-  ties.generator = bodies_->generator();
+  if (turbine_.has_tower) ties.tower_top = layout_.tower_tip();
+  ties.yaw = layout_.yaw();
+  ties.generator = layout_.generator();
   const bool has_pitch_loop = controller_ && turbine_.controller->pitch;
   for (std::size_t k = 0; k < turbine_.blades.size(); ++k) {
     const int pitch_port = bodies_->roots()[k].pitch_port();
@@ -137,13 +137,18 @@ void TurbineEquations::tie_controls() {
 }
 
 void TurbineEquations::describe(components::Registry& registry) {
+  for (const auto& beam : beams_) layout_.beams_.push_back(beam->placed());
+  layout_.has_tower_ = turbine_.has_tower;
+  layout_.joints_ = bodies_->joints();
+  for (const components::BladeRoot& root : bodies_->roots())
+    layout_.hinges_.push_back(root.first());
   tie_controls();
   if (controller_) controller_->describe(registry);
   for (const auto& actuator : actuators_) actuator->describe(registry);
   for (const auto& beam : beams_) beam->describe(registry);
   bodies_->describe(registry);
   for (const auto& damper : mass_dampers_) {
-    damper->set_yaw(bodies_->joints());
+    damper->set_yaw(layout_.yaw());
     damper->describe(registry);
   }
   declarations_ = registry.finish();
@@ -151,11 +156,6 @@ void TurbineEquations::describe(components::Registry& registry) {
   const std::string fault = blades < 2 ? "" : find_symmetry_fault(turbine_);
   symmetry_ = registry.symmetry(fault.empty() ? std::max(blades, 1) : 1);
   symmetry_.broken_by = fault;
-  for (const auto& beam : beams_) layout_.beams_.push_back(beam->placed());
-  layout_.has_tower_ = turbine_.has_tower;
-  layout_.joints_ = bodies_->joints();
-  for (const components::BladeRoot& root : bodies_->roots())
-    layout_.hinges_.push_back(root.first());
   layout_.size_ = static_cast<int>(declarations_.unknowns.size());
   layout_.padding_ = declarations_.padding;
   for (const int i : layout_.padding()) padding_.push_back({i, i, 1, 1.0});

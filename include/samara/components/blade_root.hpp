@@ -167,7 +167,7 @@ void BladeRoot::state_load(System& system) const {
     }
     y.template head<3>() = force;
     y.template segment<3>(3) = moment;
-    // What the rotor's torque changes by the mean of all pitches.
+    // The rotor's torque changes with the mean of all pitches.
     if (pitch_slope != 0.0) y(4) += (pitch + T(root().pitch - turbine_.pitch)) * pitch_slope;
     for (std::size_t i = 0; i < root().hinges.size(); ++i) {
       const model::RootHinge& hinge = root().hinges[i];

@@ -9,7 +9,7 @@
 
 namespace samara::components {
 
-/// What the controller measures and acts on, when all have their places.
+/// The unknowns that the controller measures and the ports that it acts on.
 struct ControllerTies {
   int tower_top = -1;            ///< first unknown of the tower's end; -1: there is no tower
   int yaw = 0;                   ///< its angle; its speed follows

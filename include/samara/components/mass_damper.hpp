@@ -16,7 +16,6 @@ struct MassDamperSetting {
   const model::Turbine* turbine = nullptr;
   const model::MassDamper* damper = nullptr;
   const Beam* beam = nullptr;  ///< that carries it, or the nacelle
-  bool has_bodies = false;     ///< the beam's end carries bodies, which have its balance
   int shared_rank = 0;         ///< of elimination
 };
 
@@ -57,7 +56,8 @@ class MassDamper final : public Stated<MassDamper> {
   static constexpr int yaw_row = node_moment + 3;
   static constexpr int values = yaw_row + 1;
 
-  bool is_on_bodies() const { return setting_.has_bodies && setting_.damper->node < 0; }
+  /// At the tower's end, whose balance is that of the bodies on it.
+  bool is_on_bodies() const { return setting_.damper->blade < 0 && setting_.damper->node < 0; }
   std::size_t axis_count() const { return definition().axes.size(); }
   int node() const;
   system::Frame frame() const;

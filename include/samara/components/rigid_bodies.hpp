@@ -51,10 +51,6 @@ class RigidBodies final : public Stated<RigidBodies> {
   /// First of q_y, U1, q_h, U2, q_s, U_s, q_g, U_g.
   int joints() const { return joints_; }
   const std::vector<BladeRoot>& roots() const { return roots_; }
-  int yaw() const;        ///< angle; speed follows
-  int generator() const;  ///< the same
-  /// First unknown of the tower's end; -1 where there is no tower.
-  int tower_top() const;
   /// The integral of a controller, whose evolution row then holds the mean of the generator's
   /// angle; -1: none.
   void set_integral(int integral) { integral_ = integral; }
@@ -68,6 +64,7 @@ class RigidBodies final : public Stated<RigidBodies> {
 
  private:
   int joint(int number) const;
+  int tower_top() const;
   void describe_joint(Registry& registry, int number, const std::string& name, system::Frame frame,
                       bool free) const;
   Matrix3 bearing_axes() const;

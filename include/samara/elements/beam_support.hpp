@@ -58,7 +58,8 @@ RootSupportTerms<T> root_support_terms(const RootSupport& support,
   return terms;
 }
 
-/// What changes the momenta of the water around the body, in a (Kirchhoff's equations).
+/// Force and moment that change the momenta of the water around the body, in a (Kirchhoff's
+/// equations).
 template <class T>
 Vec6<T> added_mass_load(const RootSupport& support, const Eigen::Matrix<T, point_size, 1>& z,
                         const Eigen::Matrix<T, point_size, 1>& z_dot) {
