@@ -9,10 +9,10 @@
 
 #include "samara/model/beam_modes.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/transient_simulation.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
-#include "history_recorder.hpp"
 #include "masses.hpp"
 #include "table.hpp"
 
@@ -222,7 +222,7 @@ std::vector<std::pair<std::string, std::string>> control_lines(
     return lines;
   }
   const model::ControllerDefinition& law = *turbine.controller;
-  std::string text = "set point " + general(law.set_point, 6) + " rad/s, filter " +
+  std::string text = "set point " + general(*law.set_point, 6) + " rad/s, filter " +
                      general(law.filter, 4) + " rad/s";
   const auto add = [&text](const char* name, const std::optional<model::ControlLoop>& loop,
                            const char* p_unit, const char* i_unit) {
@@ -337,8 +337,11 @@ void run_check(const Job& job) {
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   if (petsc::Session::rank() != 0) return;
-  if (job.input.transient.is_given) find_channels(job.input, system);
-  if (job.input.linearize.is_given) make_input_output(job.input, system);
+  const simulation::TransientSetup& transient = job.input.transient;
+  if (transient.options.duration > 0.0)
+    at_place(job.input.path, [&] { simulation::find_channels(transient, system); });
+  const simulation::LinearizeSetup& linearize = job.input.linearize;
+  if (!linearize.inputs.empty() || !linearize.outputs.empty()) make_input_output(job.input, system);
   const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
   const std::string& title = job.input.turbine.title;
   deliver(

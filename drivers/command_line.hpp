@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "samara/decks/import.hpp"
+#include "samara/simulation/validation.hpp"
 
 #include "job.hpp"
 
@@ -23,7 +24,8 @@ struct Command {
   bool writes_result = false;         ///< also without -o
   bool has_csv = false;
   bool lists_modes = false;
-  void (*require)(const io::Case&) = nullptr;  ///< refuses before anything is solved; may be null
+  /// For which a case must be valid before anything is solved.
+  simulation::Analysis analysis = simulation::Analysis::check;
   void (*run)(const Job&) = nullptr;
   const char* formats = nullptr;  ///< of decks, with bars between: the word before the path
   void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`

@@ -24,17 +24,4 @@ void run_export(const CommandLine& line);
 turbine::TurbineInputOutput make_input_output(const io::Case& input,
                                               const turbine::TurbineSystem& system);
 
-/// Floquet's theory needs a period.
-void require_speed(const io::Case& input);
-
-/// A history needs its length and its step.
-void require_transient(const io::Case& input);
-
-/// Statics is of what stands still.
-void require_rest(const io::Case& input);
-
-/// What modes, trim and floquet ask: loads and prescribed motions that are constant or go with the
-/// rotor, and inertia where the root of a beam may move.
-void require_motion(const io::Case& input);
-
 }  // namespace samara::drivers

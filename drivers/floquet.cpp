@@ -5,6 +5,7 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
@@ -12,7 +13,6 @@
 #include "mode_report.hpp"
 #include "progress.hpp"
 #include "table.hpp"
-#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -30,31 +30,23 @@ std::string headline(const io::Case& input, const analysis::Floquet& floquet) {
 
 }  // namespace
 
-void require_speed(const io::Case& input) {
-  if (input.turbine.shaft.speed == 0.0)
-    throw InputError(input.path +
-                     ": shaft.speed is 0, a rotor that stands still has no period; hint: use "
-                     "samara modes, or --set shaft.speed=...");
-  require_motion(input);
-}
-
 void run_floquet(const Job& job) {
   analysis::require_whole_spectrum("floquet_");
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
-  note_roughness(trim, progress);
+  const analysis::Trim trim = simulation::find_trim(job.input, system, progress);
   const analysis::Floquet floquet = analysis::find_floquet_modes(
       system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
   progress.finish();
   if (!is_first) return;
-  const Verdict verdict = find_verdict(floquet.set, job.all_modes);
+  const simulation::StabilityAssessment assessment = simulation::assess_stability(floquet.set);
   deliver(
       job,
-      headline(job.input, floquet) + mode_table(floquet.set, {job.all_modes, job.first_modes}) +
-          "\n" + verdict.text,
+      headline(job.input, floquet) +
+          mode_table(floquet.set, assessment, {job.all_modes, job.first_modes}) + "\n" +
+          verdict_text(floquet.set, assessment, job.all_modes),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
@@ -62,7 +54,7 @@ void run_floquet(const Job& job) {
         file.write_floquet(floquet);
       },
       [&](const std::string& path) { io::write_mode_table(path, floquet.set); });
-  require_verdict(verdict);
+  require_verdict(floquet.set, assessment);
 }
 
 }  // namespace samara::drivers

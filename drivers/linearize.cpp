@@ -4,13 +4,13 @@
 #include "samara/io/whole_file.hpp"
 #include "samara/linear/linearization.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_input_output.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
 #include "progress.hpp"
 #include "table.hpp"
-#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -46,17 +46,17 @@ std::string form_table(const linear::Linearization& linear) {
 
 turbine::TurbineInputOutput make_input_output(const io::Case& input,
                                               const turbine::TurbineSystem& system) {
-  const io::LinearizeCase& asked = input.linearize;
+  const simulation::LinearizeSetup& asked = input.linearize;
   return at_place(input.path + ": linearize", [&] {
     return turbine::TurbineInputOutput(system, asked.inputs, asked.stations, asked.outputs);
   });
 }
 
 void run_linearize(const Job& job) {
-  const io::LinearizeCase& asked = job.input.linearize;
-  if (!asked.mat_path.empty()) {
-    io::require_mat_path(asked.mat_path);
-    if (io::is_same_file(asked.mat_path, job.result_path))
+  const simulation::LinearizeSetup& asked = job.input.linearize;
+  if (!job.input.mat_path.empty()) {
+    io::require_mat_path(job.input.mat_path);
+    if (io::is_same_file(job.input.mat_path, job.result_path))
       throw InputError(job.input.path +
                        ": linearize.mat and -o name the same file; give each its own");
   }
@@ -65,16 +65,15 @@ void run_linearize(const Job& job) {
   const turbine::TurbineInputOutput input_output = make_input_output(job.input, system);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  const analysis::Trim trim = analysis::find_trim(system, job.input.trim, progress);
-  note_roughness(trim, progress);
+  const analysis::Trim trim = simulation::find_trim(job.input, system, progress);
   const linear::Linearization linear = linear::linearize(system, input_output, trim.solution,
                                                          turbine.azimuth, asked.options, progress);
   progress.finish();
   if (!is_first) return;
   std::string text = summary(job.input, linear) + form_table(linear);
-  if (!asked.mat_path.empty()) {
-    io::write_mat_file(asked.mat_path, linear);
-    text += "MAT-file: " + asked.mat_path + "\n";
+  if (!job.input.mat_path.empty()) {
+    io::write_mat_file(job.input.mat_path, linear);
+    text += "MAT-file: " + job.input.mat_path + "\n";
   }
   deliver(job, text,
           [&](io::ResultFile& file) {

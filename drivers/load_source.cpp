@@ -10,10 +10,10 @@
 #include "samara/io/history_file.hpp"
 #include "samara/io/result_reader.hpp"
 #include "samara/petsc/handle.hpp"
+#include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "table.hpp"
-#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -150,7 +150,7 @@ std::vector<std::string> channel_names(const io::LoadOptions& options) {
 }
 
 turbine::TurbineChannels make_channels(const turbine::TurbineSystem& system,
-                                       const io::TransientCase& transient,
+                                       const simulation::TransientSetup& transient,
                                        const io::LoadOptions& options) {
   return at_place("--set channels", [&] {
     return turbine::TurbineChannels(system, transient.stations, channel_names(options));
@@ -164,7 +164,7 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
                      ": a steady state is one revolution; hint: leave `from` and `until` out");
   const io::Case input = io::read_result_case(path);
   const analysis::Trim trim = io::read_result_trim(path);
-  note_roughness(trim, observer, path);
+  simulation::note_roughness(trim, observer, path);
   const analysis::PeriodicSolution& solution = trim.solution;
   if (!(solution.period() > 0.0))
     throw InputError(path +

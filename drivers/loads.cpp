@@ -7,13 +7,13 @@
 #include "samara/base/words.hpp"
 #include "samara/io/load_result.hpp"
 #include "samara/io/result_reader.hpp"
+#include "samara/io/same_model.hpp"
 #include "samara/petsc/session.hpp"
 
 #include "commands.hpp"
 #include "load_source.hpp"
 #include "load_tables.hpp"
 #include "progress.hpp"
-#include "same_model.hpp"
 #include "table.hpp"
 
 namespace samara::drivers {
@@ -38,8 +38,8 @@ constexpr std::array<std::string_view, 10> operation_keys{
 void require_one_turbine(const std::vector<std::string>& sources) {
   const std::string first = io::read_result_case(sources.front()).model_text;
   for (std::size_t i = 1; i < sources.size(); ++i)
-    require_same_model(sources[i], io::read_result_case(sources[i]).model_text, first,
-                       operation_keys);
+    io::require_same_model(sources[i], io::read_result_case(sources[i]).model_text, first,
+                           operation_keys);
 }
 
 /// The options of the evaluation, with Goodman's corrections by channel.

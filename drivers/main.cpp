@@ -47,7 +47,7 @@ constexpr std::array<Command, 10> commands{{
      .example = "inputs/lee2002/baseline.yaml --set shaft.speed=0 --set gravity=9.81",
      .writes_result = true,
      .has_csv = true,
-     .require = require_rest,
+     .analysis = simulation::Analysis::statics,
      .run = run_static},
     {.name = "modes",
      .summary = "modes of a parked rotor, or of a balanced one in its own axes",
@@ -59,7 +59,7 @@ constexpr std::array<Command, 10> commands{{
      .writes_result = true,
      .has_csv = true,
      .lists_modes = true,
-     .require = require_motion,
+     .analysis = simulation::Analysis::modes,
      .run = run_modes},
     {.name = "trim",
      .summary = "the periodic steady state",
@@ -68,7 +68,7 @@ constexpr std::array<Command, 10> commands{{
      .example = "inputs/lee2002/baseline.yaml --set gravity=9.81 --set trim.harmonics=6",
      .writes_result = true,
      .has_csv = true,
-     .require = require_motion,
+     .analysis = simulation::Analysis::trim,
      .run = run_trim},
     {.name = "floquet",
      .summary = "the stability of the periodic steady state: all modes",
@@ -78,7 +78,7 @@ constexpr std::array<Command, 10> commands{{
      .writes_result = true,
      .has_csv = true,
      .lists_modes = true,
-     .require = require_speed,
+     .analysis = simulation::Analysis::floquet,
      .run = run_floquet},
     {.name = "transient",
      .summary = "the motion in time, with loads by OpenFAST's channel names",
@@ -88,7 +88,7 @@ constexpr std::array<Command, 10> commands{{
          "names of OpenFAST.\n",
      .example = "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"",
      .writes_result = true,
-     .require = require_transient,
+     .analysis = simulation::Analysis::transient,
      .run = run_transient},
     {.name = "linearize",
      .summary = "the linear model about the periodic steady state, for control design",
@@ -99,7 +99,7 @@ constexpr std::array<Command, 10> commands{{
      .example = "inputs/lee2002/baseline.yaml "
                 "--set \"linearize={inputs: [yaw_torque], outputs: [NacYaw]}\"",
      .writes_result = true,
-     .require = require_motion,
+     .analysis = simulation::Analysis::linearize,
      .run = run_linearize},
     {.name = "import",
      .summary = "a case file from a turbine of OpenFAST or windIO",
@@ -190,8 +190,8 @@ Job prepare(const CommandLine& line) {
     job.input = io::read_case(line.case_path, settings);
     if (Session::launch_rank() == 0)
       for (const std::string& note : job.input.notes) std::cerr << note << "\n";
+    io::require_valid(job.input, simulation::validate(job.input, line.command->analysis));
   }
-  if (line.command->require != nullptr) line.command->require(job.input);
   job.command_line = line.text;
   job.result_path = line.result_path;
   job.csv_path = line.csv_path;

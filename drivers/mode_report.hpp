@@ -1,17 +1,12 @@
-// Modes as a table, and what they say about stability.
+// Modes as a table, and the verdict on stability in words.
 #pragma once
 
 #include <string>
 
 #include "samara/analysis/mode.hpp"
+#include "samara/simulation/stability.hpp"
 
 namespace samara::drivers {
-
-enum class Motion { rigid_body, undamped, growing, decaying };
-
-/// What the exponent says; rates below their error, and exponents below analysis::zero_exponent,
-/// count as zero.
-Motion motion_of(const analysis::Mode& mode, double rotor_speed);
 
 /// Which modes are listed.
 struct ModeListing {
@@ -21,17 +16,17 @@ struct ModeListing {
 
 /// One line a mode, by its number in the result; those that are not resolved stand below the
 /// others. Harmonics stand there where the set has participations.
-std::string mode_table(const analysis::ModeSet& set, const ModeListing& listing);
+std::string mode_table(const analysis::ModeSet& set,
+                       const simulation::StabilityAssessment& assessment,
+                       const ModeListing& listing);
 
-struct Verdict {
-  /// "stable: ...", "neutral: ..." or "unstable: ...", the frequency up to which it holds and what
-  /// was left out; or "no verdict: ..." and what to change.
-  std::string text;
-  bool is_given = true;
-};
-Verdict find_verdict(const analysis::ModeSet& set, bool all);
+/// "stable: ...", "neutral: ..." or "unstable: ...", the frequency up to which it holds and what
+/// was left out; or "no verdict: ..." and what to change. `all`: unresolved modes are listed.
+std::string verdict_text(const analysis::ModeSet& set,
+                         const simulation::StabilityAssessment& assessment, bool all);
 
 /// @throws ConvergenceError where there is no verdict, for the exit code
-void require_verdict(const Verdict& verdict);
+void require_verdict(const analysis::ModeSet& set,
+                     const simulation::StabilityAssessment& assessment);
 
 }  // namespace samara::drivers

@@ -4,6 +4,7 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
@@ -11,7 +12,6 @@
 #include "mode_report.hpp"
 #include "progress.hpp"
 #include "table.hpp"
-#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -33,7 +33,7 @@ void run_modes(const Job& job) {
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  analysis::TrimOptions options = job.input.trim;
+  analysis::TrimOptions options = simulation::trim_options(job.input);
   if (turbine.speed == 0.0) options.harmonics = 0;
   const analysis::Trim trim = analysis::find_trim(system, options, progress);
   if (!trim.solution.is_constant())
@@ -41,15 +41,15 @@ void run_modes(const Job& job) {
         job.input.path +
         ": the coefficients are periodic, the steady state changes with the "
         "azimuth; hint: samara floquet, or samara modes --parked for the rotor at rest");
-  note_roughness(trim, progress);
+  simulation::note_roughness(trim, progress);
   const analysis::ModeSet set = analysis::find_constant_modes(system, trim.solution);
   progress.finish();
   if (!is_first) return;
-  const Verdict verdict = find_verdict(set, job.all_modes);
+  const simulation::StabilityAssessment assessment = simulation::assess_stability(set);
   deliver(
       job,
-      headline(job.input, set) + mode_table(set, {job.all_modes, job.first_modes}) + "\n" +
-          verdict.text,
+      headline(job.input, set) + mode_table(set, assessment, {job.all_modes, job.first_modes}) +
+          "\n" + verdict_text(set, assessment, job.all_modes),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
@@ -57,7 +57,7 @@ void run_modes(const Job& job) {
         file.write_modes(set);
       },
       [&](const std::string& path) { io::write_mode_table(path, set); });
-  require_verdict(verdict);
+  require_verdict(set, assessment);
 }
 
 }  // namespace samara::drivers

@@ -125,13 +125,6 @@ std::string tables(const turbine::TurbineSystem& system, const StaticPath& path)
 
 }  // namespace
 
-void require_rest(const io::Case& input) {
-  if (input.turbine.shaft.speed != 0.0)
-    throw InputError(input.path +
-                     ": shaft.speed is not 0, and static is at rest; hint: use samara trim, or "
-                     "--set shaft.speed=0");
-}
-
 void run_static(const Job& job) {
   model::Turbine turbine = model::build_turbine(job.input.turbine);
   turbine.for_each_motion([](model::JointHistory& motion) {

@@ -1,8 +1,6 @@
 #include "table.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace samara::drivers {
 namespace {
@@ -12,14 +10,6 @@ std::size_t width_of(const std::string& word) {
   return static_cast<std::size_t>(std::count_if(word.begin(), word.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
   }));
-}
-
-std::string print(const char* format, int digits, double value) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), format, digits, value);
-  const std::string word(text.data());
-  const bool is_zero = word.find_first_of("123456789ni") >= word.find('e');
-  return is_zero && word[0] == '-' ? word.substr(1) : word;
 }
 
 }  // namespace
@@ -55,16 +45,6 @@ std::string Table::text() const {
     text += row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
   }
   return text;
-}
-
-std::string fixed(double value, int digits) { return print("%.*f", digits, value); }
-
-std::string scientific(double value, int digits) { return print("%.*e", digits, value); }
-
-std::string general(double value, int digits) { return print("%.*g", digits, value); }
-
-std::string count(int number, const std::string& noun) {
-  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
 }  // namespace samara::drivers

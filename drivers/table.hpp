@@ -1,8 +1,10 @@
-// Aligned tables and clean numbers for people.
+// Aligned tables for people.
 #pragma once
 
 #include <string>
 #include <vector>
+
+#include "samara/base/format.hpp"
 
 namespace samara::drivers {
 
@@ -25,17 +27,5 @@ class Table {
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
-
-/// "12.300"; what rounds to zero has no sign.
-std::string fixed(double value, int digits);
-
-/// "1.23e-04" with the given digits behind the point.
-std::string scientific(double value, int digits);
-
-/// The shortest of both forms with the given significant digits: "67.58", "1.2e+07".
-std::string general(double value, int digits);
-
-/// "1 mode", "3 modes".
-std::string count(int number, const std::string& noun);
 
 }  // namespace samara::drivers

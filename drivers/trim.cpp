@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
@@ -15,7 +16,6 @@
 #include "masses.hpp"
 #include "progress.hpp"
 #include "table.hpp"
-#include "trim_accuracy.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -193,7 +193,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   text += "residual     " + scientific(trim.residual, 1) + " at the samples, " +
           scientific(trim.residual_between, 1) + " between them [N, N m]; largest load " +
           general(trim.load_level, 4) + "\n";
-  if (const std::string words = roughness(trim); !words.empty())
+  if (const std::string words = simulation::roughness(trim); !words.empty())
     text += "rough        " + words + "\n";
   for (const analysis::HeldCoordinate& held : trim.held) {
     const double zero = rounding * std::max(trim.load_level, 1.0);
@@ -218,7 +218,7 @@ void run_trim(const Job& job) {
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  const Trim trim = analysis::find_trim(system, job.input.trim, progress);
+  const Trim trim = analysis::find_trim(system, simulation::trim_options(job.input), progress);
   progress.finish();
   if (!is_first) return;
   deliver(

@@ -21,7 +21,7 @@ void Controller::describe(Registry& registry) {
   using system::RowRole;
   using system::UnknownRole;
   const system::Owner owner(system::PartKind::law, "controller");
-  const double usual = std::max(law().set_point, 1.0);
+  const double usual = std::max(*law().set_point, 1.0);
   registry.describe(
       first_, {owner, "", "speed error", "rad/s", UnknownRole::state, Frame::fixed, false, usual},
       RowRole::evolution);
@@ -76,7 +76,7 @@ void Controller::state(System& system) const {
   const auto rows_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
     const T& error = x(at_states);
     const T& integral = x(at_states + 1);
-    const T error_dot = (generator_speed<T>(x) - T(law().set_point) - error) * law().filter;
+    const T error_dot = (generator_speed<T>(x) - T(*law().set_point) - error) * law().filter;
     Eigen::Matrix<T, values, 1> y = Eigen::Matrix<T, values, 1>::Zero();
     y(0) = x(at_states + 2) - error_dot;
     y(1) = x(at_states + 3) - error;

@@ -10,8 +10,10 @@
 #include <system_error>
 
 #include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
 #include "samara/io/whole_file.hpp"
 #include "samara/io/yaml_tree.hpp"
+#include "samara/model/validation.hpp"
 
 #include "case_beam.hpp"
 #include "case_blades.hpp"
@@ -75,42 +77,15 @@ void read_speed(MapReader& map, double& speed) {
 void read_torsion(const YamlNode& node, const std::string& where, model::JointDefinition& torsion,
                   ErrorList& errors) {
   MapReader map(node, where, errors);
-  const YamlNode* word = map.require("joint", "free or locked");
+  map.require("joint", "free or locked");
   map.read("stiffness", torsion.stiffness, non_negative);
   map.read("damping", torsion.damping, non_negative);
   map.read("joint", torsion.kind, {{"free", JointKind::free}, {"locked", JointKind::locked}});
-  if (torsion.kind == JointKind::free && torsion.stiffness == 0.0)
-    map.refuse(*word, "joint", "a shaft that may twist needs a stiffness > 0");
   map.finish();
 }
 
-/// The mean speed that a torque law is about.
-struct MeanSpeed {
-  const char* what;
-  double value = 0.0;  ///< [rad/s]
-};
-
-/// Refuses a table that does not reach to the speed. At rest it gives no torque then, which is
-/// noted.
-void check_reach(MapReader& map, const YamlNode& table, const MeanSpeed& speed,
-                 model::TorqueLaw& law) {
-  if (law.covers(speed.value)) return;
-  std::ostringstream text;
-  text << "the table reaches from " << law.table.front().first << " to " << law.table.back().first
-       << " rad/s, ";
-  if (speed.value == 0.0) {
-    text << "the rotor is parked: no torque";
-    map.note(table, "torque_table", text.str());
-  } else {
-    text << speed.what << " is " << speed.value << " rad/s; hint: entries up to there, or torque "
-         << "and torque_slope at this speed";
-    map.refuse(table, "torque_table", text.str());
-    law.table.clear();
-  }
-}
-
 /// Reads the keys of a torque law. A law that does not act is read, and said to have no effect.
-void read_torque(MapReader& map, const MeanSpeed& speed, bool acts, model::TorqueLaw& law) {
+void read_torque(MapReader& map, double speed, bool acts, model::TorqueLaw& law) {
   map.read("torque", law.torque, any_number);
   map.read("torque_slope", law.slope, any_number);
   const YamlNode* table = map.find("torque_table");
@@ -123,14 +98,12 @@ void read_torque(MapReader& map, const MeanSpeed& speed, bool acts, model::Torqu
       map.refuse(*entry, key, "given together with torque_table; leave one of them out");
   const std::size_t errors_before = map.errors().size();
   read_pairs(map, "torque_table", *table, {"speed", "torque"}, law.table);
-  if (map.errors().size() > errors_before) {
+  if (map.errors().size() > errors_before)
     law.table.clear();
-  } else if (law.table.size() < 2) {
-    map.refuse(*table, "torque_table", "expected at least 2 entries [speed, torque]");
-    law.table.clear();
-  } else if (acts) {
-    check_reach(map, *table, speed, law);
-  }
+  else if (acts && !law.table.empty() && speed == 0.0 && !law.covers(speed))
+    map.note(*table, "torque_table",
+             "the table reaches from " + general(law.table.front().first, 6) + " to " +
+                 general(law.table.back().first, 6) + " rad/s, the rotor is parked: no torque");
 }
 
 void read_generator(const YamlNode& node, const std::string& where, model::ShaftDefinition& shaft,
@@ -146,9 +119,7 @@ void read_generator(const YamlNode& node, const std::string& where, model::Shaft
         "was counted at the speed of the shaft, gears included, and is no longer read; hint: "
         "own_inertia, of the generator about its own axis, and shaft.gear_ratio (of an "
         "OpenFAST deck GenIner and GBRatio); without gears own_inertia is the same number");
-  const MeanSpeed speed{shaft.gear_ratio == 1.0 ? "shaft.speed" : "shaft.speed times gear_ratio",
-                        shaft.generator_speed()};
-  read_torque(map, speed, generator.kind == JointKind::free, generator.law);
+  read_torque(map, shaft.generator_speed(), generator.kind == JointKind::free, generator.law);
   map.finish();
 }
 
@@ -170,20 +141,13 @@ void read_shaft(const YamlNode& node, model::ShaftDefinition& shaft, ErrorList& 
   if (const YamlNode* entry = map.find("torsion")) {
     read_torsion(*entry, map.where("torsion"), shaft.torsion, errors);
   }
-  if (map.read("gear_ratio", shaft.gear_ratio, any_number) && shaft.gear_ratio == 0.0) {
-    map.refuse(*map.node().find("gear_ratio"), "gear_ratio", "expected a number other than 0");
-    shaft.gear_ratio = 1.0;
-  }
+  map.read("gear_ratio", shaft.gear_ratio, any_number);
   if (const YamlNode* entry = map.find("generator")) {
     read_generator(*entry, map.where("generator"), shaft, errors);
-    if (shaft.generator.kind == JointKind::free && shaft.torsion.kind == JointKind::free &&
-        shaft.generator.inertia == 0.0)
-      map.refuse(*entry, "generator",
-                 "a free generator behind a shaft that may twist needs an inertia > 0");
   }
   if (const YamlNode* entry = map.find("rotor")) {
     MapReader rotor(*entry, map.where("rotor"), errors);
-    read_torque(rotor, {"shaft.speed", shaft.speed}, true, shaft.rotor);
+    read_torque(rotor, shaft.speed, true, shaft.rotor);
     rotor.read("torque_pitch_slope", shaft.rotor_pitch_slope, any_number);
     rotor.finish();
   }
@@ -232,13 +196,6 @@ void refuse_rotor(MapReader& map, model::TurbineDefinition& turbine) {
   for (const char* key : {"shaft", "hub"})
     if (const YamlNode* node = map.find(key); node != nullptr && !stands_still(*node))
       map.refuse(*node, key, "there are no blades; hint: what stands on the tower is the nacelle");
-  const model::NacelleDefinition& nacelle = turbine.nacelle;
-  const double about_yaw =
-      nacelle.inertia(2) + nacelle.mass * nacelle.center_of_mass.head<2>().squaredNorm();
-  if (nacelle.yaw.kind == model::JointKind::free && !(about_yaw > 0.0))
-    map.refuse(*map.find("nacelle"), "nacelle.yaw",
-               "free, but without blades nothing has inertia about the yaw axis; hint: "
-               "nacelle.inertia, or joint: locked");
 }
 
 /// Reads `tower`, `blades` or `blade 2`.
@@ -248,11 +205,6 @@ void read_loaded_beam(MapReader& map, const model::TurbineDefinition& turbine,
   if (entry == nullptr) return;
   const std::string& text = entry->text;
   load.on_tower = text == "tower";
-  if (load.on_tower && !turbine.has_tower) map.refuse(*entry, "beam", "there is no tower");
-  if (!load.on_tower && turbine.blades.count == 0) {
-    map.refuse(*entry, "beam", "there are no blades, only a tower; " + describe(*entry));
-    return;
-  }
   if (load.on_tower || text == "blades") return;
   for (int k = 1; k <= turbine.blades.count; ++k)
     if (text == "blade " + std::to_string(k)) load.blade = k;
@@ -376,20 +328,6 @@ void read_floquet(const YamlNode& node, analysis::FloquetOptions& floquet, Error
   map.finish();
 }
 
-/// Refuses what only shows in two blocks together.
-void check_teeter(const YamlNode& root, const model::TurbineDefinition& turbine,
-                  ErrorList& errors) {
-  if (turbine.hub.teeter.kind == JointKind::locked || turbine.blades.count <= 2) return;
-  const YamlNode& teeter = *root.find("hub")->find("teeter");
-  const YamlNode& count = *root.find("blades")->find("count");
-  const YamlNode* joint = teeter.find("joint");
-  Place place = joint != nullptr ? joint->place : teeter.place;
-  if (place.setting < count.place.setting) place = count.place;
-  errors.add(place, "hub.teeter",
-             "a teeter hinge carries two blades, blades.count is " +
-                 std::to_string(turbine.blades.count) + "; use joint: locked, or leave teeter out");
-}
-
 void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   model::TurbineDefinition& turbine = result.turbine;
   MapReader map(root, "", errors);
@@ -418,20 +356,11 @@ void read_turbine(const YamlNode& root, Case& result, ErrorList& errors) {
   if (const YamlNode* node = map.find("static")) read_static(*node, result.statics, errors);
   if (const YamlNode* node = map.find("transient"))
     read_transient(*node, turbine, result.transient, errors);
-  if (const YamlNode* node = root.find("transient")) check_pitch_curves(*node, turbine, errors);
   if (const YamlNode* node = map.find("linearize"))
-    read_linearize(*node, turbine, result.linearize, errors);
+    read_linearize(*node, turbine, result.linearize, result.mat_path, errors);
   map.finish();
-  check_hinges(root, turbine, errors);
-  check_teeter(root, turbine, errors);
-  if (turbine.shaft.speed == 0.0) return;
-  int& least = result.trim.least_harmonics;
-  for (const model::LoadDefinition& load : turbine.loads)
-    least = std::max(least, load.history.per_rev);
-  for (const model::JointDefinition* joint : {&turbine.nacelle.yaw, &turbine.hub.teeter})
-    least = std::max(least, joint->motion.per_rev);
-  for (const model::HingeDefinition& hinge : turbine.blades.hinges)
-    least = std::max(least, hinge.joint.motion.per_rev);
+  errors.add(model::find_faults(turbine), root);
+  if (errors.size() == 0) errors.add(model::complete(turbine), root);
 }
 
 /// Adds an error where `samara` is not the version this program reads. False: a newer version, of
@@ -461,6 +390,8 @@ bool check_version(const YamlNode& root, ErrorList& errors) {
   return true;
 }
 
+std::string setting_line(const std::string& setting) { return "# --set " + setting + "\n"; }
+
 std::string read_file(const std::string& path) {
   std::error_code error;
   const std::string with_suffix = path + ".yaml";
@@ -480,7 +411,7 @@ Case parse_case(const std::string& path, const std::string& text,
   Case result;
   result.path = path;
   result.settings = settings;
-  for (const std::string& setting : settings) result.text += "# --set " + setting + "\n";
+  for (const std::string& setting : settings) result.text += setting_line(setting);
   result.text += text;
 
   ErrorList errors(path, settings);
@@ -500,6 +431,18 @@ Case parse_case(const std::string& path, const std::string& text,
   result.model_text = model_text_of(root);
   result.notes = errors.notes();
   return result;
+}
+
+void require_valid(const Case& input, const std::vector<Fault>& faults) {
+  if (faults.empty()) return;
+  // The text has the settings in lines of their own in front.
+  std::size_t begin = 0;
+  for (const std::string& setting : input.settings) begin += setting_line(setting).size();
+  ErrorList errors(input.path, input.settings);
+  YamlNode root = parse_yaml(input.text.substr(begin));
+  apply_settings(input.settings, root, errors);
+  errors.add(faults, root);
+  errors.throw_if_any();
 }
 
 }  // namespace samara::io

@@ -68,9 +68,6 @@ void read_matrix(const YamlNode& node, const std::string& where, Matrix6& matrix
   if (errors.size() > errors_before) matrix.setZero();
 }
 
-/// Takes out what rounding in print left of asymmetry; what is more was refused before.
-Matrix6 symmetrize(const Matrix6& matrix) { return 0.5 * (matrix + matrix.transpose()); }
-
 void read_stiffness(MapReader& map, model::SectionDefinition& section) {
   const YamlNode* entries = map.find("stiffness");
   const YamlNode* matrix = map.find("stiffness_matrix");
@@ -126,7 +123,6 @@ void read_mass(MapReader& map, model::SectionDefinition& section) {
 /// Reads one section. `at` is compulsory where there are several.
 model::SectionDefinition read_section(const YamlNode& node, const std::string& where,
                                       bool is_single, ErrorList& errors) {
-  const std::size_t errors_before = errors.size();
   model::SectionDefinition section;
   MapReader map(node, where, errors);
   if (!is_single) map.require("at", "the fraction of the length, from 0 to 1");
@@ -135,12 +131,6 @@ model::SectionDefinition read_section(const YamlNode& node, const std::string& w
   read_stiffness(map, section);
   read_angle(map, "twist_deg", section.twist, any_number);
   map.finish();
-  if (errors.size() > errors_before) return section;
-
-  const std::string fault = model::find_section_fault(section);
-  if (!fault.empty()) errors.add(find_blame(node), where, fault);
-  section.stiffness = symmetrize(section.stiffness);
-  section.mass = symmetrize(section.mass);
   return section;
 }
 
@@ -156,19 +146,7 @@ void read_sections(MapReader& map, std::vector<model::SectionDefinition>& sectio
   for (std::size_t i = 0; i < list->children.size(); ++i) {
     const YamlNode& node = list->children[i];
     const std::string where = join_path(map.where("sections"), i);
-    const std::size_t errors_before = errors.size();
     sections.push_back(read_section(node, where, list->children.size() == 1, errors));
-    if (i == 0 || errors.size() > errors_before) continue;
-
-    const YamlNode* at = node.find("at");
-    if (at != nullptr && !(sections[i].at > sections[i - 1].at)) {
-      errors.add(at->place, join_path(where, "at"),
-                 "expected more than the section before has, " + describe(*at));
-    }
-    if (sections[i].rigid != sections[0].rigid) {
-      errors.add(find_blame(node), where,
-                 "a strain that is rigid in one section must be rigid in all sections of the beam");
-    }
   }
 }
 
@@ -204,13 +182,6 @@ void read_mass_damping(MapReader& map, model::BeamDefinition& beam) {
   const YamlNode* entry = map.find("mass_damping");
   if (entry == nullptr) return;
   const std::string where = map.where("mass_damping");
-  if (map.node().find("damping") != nullptr &&
-      map.node().find("damping")->kind == YamlNode::Kind::map) {
-    map.refuse(*entry, "mass_damping",
-               "not beside damping ratios, which are met by strain rates alone; hint: give damping "
-               "as mu");
-    return;
-  }
   if (entry->kind == YamlNode::Kind::list) {
     read_numbers(*entry, where, non_negative, std::span<double>(beam.mass_damping.data(), 3),
                  map.errors());
@@ -275,8 +246,6 @@ void read_point_masses(MapReader& map, std::vector<model::PointMassDefinition>& 
     entry.require("at");
     entry.read("at", lump.at, beyond_the_root);
   });
-  std::stable_sort(masses.begin(), masses.end(),
-                   [](const auto& a, const auto& b) { return a.at < b.at; });
 }
 
 constexpr std::array<const char*, 6> directions{"u1", "u2", "u3", "theta1", "theta2", "theta3"};
@@ -307,15 +276,6 @@ void read_added_mass(MapReader& map, Vector6& mass) {
   added.finish();
 }
 
-/// Turns damping ratios into mu per strain.
-void find_damping(MapReader& map, model::BeamDefinition& beam) {
-  try {
-    beam.damping = model::fit_damping(model::build_beam(map.where(), beam), beam.modal_damping);
-  } catch (const InputError& error) {
-    map.refuse(*map.node().find("damping"), "damping", error.what());
-  }
-}
-
 }  // namespace
 
 void read_support(MapReader& beam, std::string_view key, bool at_root,
@@ -342,7 +302,6 @@ void read_support(MapReader& beam, std::string_view key, bool at_root,
                                      : model::free_end();
     return;
   }
-  const std::size_t errors_before = errors.size();
   MapReader map(*node, beam.where(key), errors);
   const YamlNode* springs = map.find("stiffness");
   const YamlNode* matrix = map.find("stiffness_matrix");
@@ -366,20 +325,10 @@ void read_support(MapReader& beam, std::string_view key, bool at_root,
       read_one_or_six(map, *entry, "a number >= 0 or a list of 6", support.damping);
   }
   map.finish();
-  if (errors.size() > errors_before) return;
-  const bool does_something =
-      support.mass > 0.0 || !support.added_mass.isZero(0.0) || !support.damping.isZero(0.0);
-  if (support.is_clamp() && does_something)
-    errors.add(find_blame(*node), beam.where(key),
-               "mass and damping of a support that is rigid in all directions do nothing");
-  const std::string fault = model::find_support_fault(support);
-  if (!fault.empty()) errors.add(find_blame(*node), beam.where(key), fault);
-  support.stiffness = symmetrize(support.stiffness);
 }
 
 void read_beam(MapReader& map, const Matrix3& to_a, const RatioKeys& ratios,
                model::BeamDefinition& beam) {
-  const std::size_t errors_before = map.errors().size();
   read_length(map, to_a, beam);
   map.read("elements", beam.elements, 1, max_elements);
   map.read("order", beam.order, 1, max_order);
@@ -388,10 +337,6 @@ void read_beam(MapReader& map, const Matrix3& to_a, const RatioKeys& ratios,
   read_mass_damping(map, beam);
   map.read("tip_mass", beam.tip_mass, non_negative);
   read_point_masses(map, beam.point_masses);
-  const bool has_ratios = std::any_of(beam.modal_damping.begin(), beam.modal_damping.end(),
-                                      [](const auto& ratio) { return ratio.has_value(); });
-  if (has_ratios && map.is_complete() && map.errors().size() == errors_before)
-    find_damping(map, beam);
   read_support(map, "support", true, beam.support);
 }
 

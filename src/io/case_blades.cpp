@@ -13,8 +13,6 @@
 namespace samara::io {
 namespace {
 
-using model::JointKind;
-
 constexpr int max_blades = 100;
 
 constexpr std::array<std::pair<const char*, model::HingeAxis>, 3> hinge_axes{
@@ -24,15 +22,11 @@ constexpr std::array<std::pair<const char*, model::HingeAxis>, 3> hinge_axes{
 
 /// Spring and damper of the hinges of one blade where they are others than those of all.
 void read_hinge_differences(const YamlNode& node, const std::string& where,
-                            const model::BladesDefinition& blades,
                             model::BladeDifference& difference, ErrorList& errors) {
   MapReader map(node, where, errors);
   for (const auto& [word, axis] : hinge_axes) {
     const YamlNode* entry = map.find(word);
     if (entry == nullptr) continue;
-    const auto found = std::ranges::find(blades.hinges, axis, &model::HingeDefinition::axis);
-    if (found == blades.hinges.end() || found->joint.kind != JointKind::free)
-      map.refuse(*entry, word, "no free hinge of blades.hinges");
     MapReader hinge(*entry, map.where(word), errors);
     model::HingeDifference& own = difference.hinges[axis];
     double value = 0.0;
@@ -62,13 +56,7 @@ void read_hinges(MapReader& map, const YamlNode& list, model::BladesDefinition& 
                 {"pitch", model::HingeAxis::pitch}});
     hinge.read("offset", definition.offset, non_negative);
     read_joint(hinge, definition.joint);
-    const YamlNode* delta3 = hinge.node().find("delta3_deg");
     read_angle(hinge, "delta3_deg", definition.delta3, quarter_turn);
-    if (delta3 != nullptr && definition.axis != model::HingeAxis::flap)
-      hinge.refuse(*delta3, "delta3_deg", "only the axis of a flap hinge is skewed");
-    if (std::ranges::find(blades.hinges, definition.axis, &model::HingeDefinition::axis) !=
-        blades.hinges.end())
-      hinge.refuse(list.children[i], "axis", "given twice; each axis has one hinge at the most");
     hinge.finish();
     blades.hinges.push_back(definition);
   }
@@ -87,7 +75,7 @@ void read_each(const YamlNode& node, const std::string& where, model::BladesDefi
     blade.read("mass_factor", difference.mass_factor, positive);
     blade.read("stiffness_factor", difference.stiffness_factor, positive);
     if (const YamlNode* hinges = blade.find("hinges"))
-      read_hinge_differences(*hinges, blade.where("hinges"), blades, difference, errors);
+      read_hinge_differences(*hinges, blade.where("hinges"), difference, errors);
     blade.finish();
   }
   if (node.kind != YamlNode::Kind::map) return;
@@ -103,25 +91,6 @@ void read_each(const YamlNode& node, const std::string& where, model::BladesDefi
   }
 }
 
-/// A blade turns on hinges; a beam between two supports stands on them, in axes that do not turn.
-void refuse_free_root(MapReader& map, const model::BladesDefinition& blades) {
-  const bool is_free = blades.beam.support.free != std::array<bool, 6>{};
-  if (blades.beam.end_support.is_none()) {
-    if (is_free)
-      map.refuse(*map.node().find("support"), "support",
-                 "the root of a blade is free on hinges; hint: instead of the support hinges: "
-                 "[{axis: flap, joint: free}], axis pitch for theta1, flap for theta2, lag for "
-                 "theta3");
-    return;
-  }
-  if (std::ranges::any_of(blades.hinges, [](const model::HingeDefinition& hinge) {
-        return hinge.joint.kind != JointKind::locked;
-      }))
-    map.refuse(*map.node().find("end_support"), "end_support",
-               "holds the end in axes that blades.hinges turn; hint: a beam between two supports "
-               "has support: pinned or stiffness: {theta2: free, ...} instead of hinges");
-}
-
 }  // namespace
 
 void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorList& errors) {
@@ -132,33 +101,12 @@ void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorLis
   read_beam(map, Matrix3::Identity(), blade_ratios, blades.beam);
   read_support(map, "end_support", false, blades.beam.end_support);
   if (const YamlNode* entry = map.find("hinges")) read_hinges(map, *entry, blades);
-  refuse_free_root(map, blades);
-  if (const YamlNode* entry = map.find("pitch_link_delta3_deg")) {
-    read_angle(map, "pitch_link_delta3_deg", blades.pitch_link, quarter_turn);
-    const auto flap =
-        std::ranges::find(blades.hinges, model::HingeAxis::flap, &model::HingeDefinition::axis);
-    if (flap == blades.hinges.end() || flap->joint.kind != JointKind::free)
-      map.refuse(*entry, "pitch_link_delta3_deg", "blades.hinges has no free flap hinge");
-  }
+  read_angle(map, "pitch_link_delta3_deg", blades.pitch_link, quarter_turn);
   if (const YamlNode* entry = map.find("each")) {
     read_each(*entry, map.where("each"), blades, errors);
   }
   read_pitch_actuator(map, blades);
   map.finish();
-}
-
-void check_hinges(const YamlNode& root, const model::TurbineDefinition& turbine,
-                  ErrorList& errors) {
-  const YamlNode* blades = root.find("blades");
-  const YamlNode* hinges = blades == nullptr ? nullptr : blades->find("hinges");
-  if (hinges == nullptr) return;
-  double along = 0.0;
-  for (const model::HingeDefinition& hinge : turbine.blades.hinges) along += hinge.offset;
-  if (along <= turbine.hub.radius) return;
-  std::ostringstream text;
-  text << "the offsets add to " << along << " m, beyond the root at hub.radius, "
-       << turbine.hub.radius << " m";
-  errors.add(hinges->place, "blades.hinges", text.str());
 }
 
 }  // namespace samara::io

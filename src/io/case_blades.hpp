@@ -10,8 +10,4 @@ namespace samara::io {
 /// Reads `blades`.
 void read_blades(const YamlNode& node, model::BladesDefinition& blades, ErrorList& errors);
 
-/// Adds an error where the hinges do not stand between the shaft axis and the root. `root`: the
-/// whole case, which has been read.
-void check_hinges(const YamlNode& root, const model::TurbineDefinition& turbine, ErrorList& errors);
-
 }  // namespace samara::io

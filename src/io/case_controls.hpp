@@ -13,9 +13,4 @@ void read_pitch_actuator(MapReader& blades, model::BladesDefinition& definition)
 /// Reads `controller`, after shaft and blades.
 void read_controller(MapReader& map, model::TurbineDefinition& turbine);
 
-/// Refuses curves and events of the pitch in the block `transient` beside a controller of the
-/// pitch.
-void check_pitch_curves(const YamlNode& transient, const model::TurbineDefinition& turbine,
-                        ErrorList& errors);
-
 }  // namespace samara::io

@@ -41,9 +41,9 @@ void read_forms(MapReader& map, linear::LinearizeOptions& options) {
 }  // namespace
 
 void read_linearize(const YamlNode& node, const model::TurbineDefinition& turbine,
-                    LinearizeCase& linearize, ErrorList& errors) {
+                    simulation::LinearizeSetup& linearize, std::string& mat_path,
+                    ErrorList& errors) {
   linear::LinearizeOptions& options = linearize.options;
-  linearize.is_given = true;
   MapReader map(node, "linearize", errors);
   map.read("azimuths", options.azimuths, 1, most_azimuths);
   map.read("harmonics", options.harmonics, 0, most_harmonics);
@@ -76,7 +76,7 @@ void read_linearize(const YamlNode& node, const model::TurbineDefinition& turbin
   if (const YamlNode* mat = map.find("mat")) {
     if (mat->kind != YamlNode::Kind::scalar || mat->text.empty())
       map.refuse(*mat, "mat", "expected the name of a file, " + describe(*mat));
-    linearize.mat_path = mat->text;
+    mat_path = mat->text;
   }
   map.finish();
 }

@@ -9,6 +9,7 @@ namespace samara::io {
 
 /// `turbine` has been read.
 void read_linearize(const YamlNode& node, const model::TurbineDefinition& turbine,
-                    LinearizeCase& linearize, ErrorList& errors);
+                    simulation::LinearizeSetup& linearize, std::string& mat_path,
+                    ErrorList& errors);
 
 }  // namespace samara::io

@@ -24,10 +24,7 @@ bool read_carrier(MapReader& map, const model::TurbineDefinition& turbine,
   const int blades = turbine.blades.count;
   if (text == "nacelle" || text == "tower") {
     damper.carrier = text == "tower" ? Carrier::tower : Carrier::nacelle;
-    if (turbine.has_tower) return true;
-    map.refuse(*entry, "on",
-               "there is no tower: nothing moves the " + text + "; " + describe(*entry));
-    return false;
+    return true;
   }
   damper.carrier = Carrier::blade;
   if (text == "blades" && blades > 0) return true;
@@ -69,20 +66,10 @@ void read_axes(MapReader& map, const AxisWords& words, model::MassDamperDefiniti
     axis.axis = static_cast<int>(i);
     read_axis(*entry, map.where(words[i]), axis, map.errors());
     damper.axes.push_back(axis);
-    if (damper.axes.size() == 3)
-      map.refuse(*entry, words[i], "a mass damper has one axis or two; leave one of them out");
   }
   if (damper.axes.empty())
     map.require(words[2], "or \"" + std::string(words[1]) + "\", \"" + words[0] +
                               "\": spring and damper of an axis");
-}
-
-/// At the end of a blade that is held there, the balance is the support's.
-void check_place(MapReader& map, const model::TurbineDefinition& turbine,
-                 const model::MassDamperDefinition& damper) {
-  if (damper.carrier == Carrier::blade && damper.at == 1.0 &&
-      !turbine.blades.beam.end_support.is_none())
-    map.refuse(*map.node().find("at"), "at", "blades.end_support holds the end; hint: at: 0.99");
 }
 
 model::MassDamperDefinition read_mass_damper(MapReader& map,
@@ -98,9 +85,8 @@ model::MassDamperDefinition read_mass_damper(MapReader& map,
     return damper;
   }
   if (damper.carrier != Carrier::nacelle &&
-      map.require("at", "its place along the beam") != nullptr &&
-      map.read("at", damper.at, beyond_the_root))
-    check_place(map, turbine, damper);
+      map.require("at", "its place along the beam") != nullptr)
+    map.read("at", damper.at, beyond_the_root);
   read_axes(map,
             damper.carrier == Carrier::nacelle ? on_nacelle
             : damper.carrier == Carrier::tower ? on_tower

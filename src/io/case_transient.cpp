@@ -41,7 +41,7 @@ void read_steps(MapReader& map, std::string_view key, double step, long& steps) 
 }
 
 void read_output(const YamlNode& node, const std::string& where,
-                 const model::TurbineDefinition& turbine, TransientCase& transient,
+                 const model::TurbineDefinition& turbine, simulation::TransientSetup& transient,
                  ErrorList& errors) {
   MapReader map(node, where, errors);
   read_steps(map, "every", transient.options.step, transient.output_steps);
@@ -174,11 +174,11 @@ void add_lines(const YamlNode& node, const std::string& where,
 }
 
 /// A word, or the name of a result.
-void read_start(MapReader& map, TransientCase& transient) {
+void read_start(MapReader& map, simulation::TransientSetup& transient) {
   const YamlNode* start = map.node().find("start");
   if (start != nullptr && start->kind == YamlNode::Kind::scalar && start->text.ends_with(".h5")) {
     map.find("start");
-    transient.start = TransientOrigin::result;
+    transient.start = simulation::TransientOrigin::result;
     transient.start_path = start->text;
     return;
   }
@@ -189,15 +189,15 @@ void read_start(MapReader& map, TransientCase& transient) {
     return;
   }
   map.read("start", transient.start,
-           {{"trim", TransientOrigin::trim}, {"undeformed", TransientOrigin::undeformed}});
+           {{"trim", simulation::TransientOrigin::trim},
+            {"undeformed", simulation::TransientOrigin::undeformed}});
 }
 
 }  // namespace
 
 void read_transient(const YamlNode& node, const model::TurbineDefinition& turbine,
-                    TransientCase& transient, ErrorList& errors) {
+                    simulation::TransientSetup& transient, ErrorList& errors) {
   analysis::TransientOptions& options = transient.options;
-  transient.is_given = true;
   MapReader map(node, "transient", errors);
   map.require("duration", "the time to compute [s]");
   map.require("step", "the time step [s]");
@@ -218,13 +218,14 @@ void read_transient(const YamlNode& node, const model::TurbineDefinition& turbin
             {"midpoint", analysis::TransientMethod::midpoint}});
   map.read("tolerance", options.tolerance, tolerance);
   map.read("step_tolerance", options.step_tolerance, step_error);
-  options.checkpoint_steps = std::max(1L, std::lround(default_checkpoint / options.step));
   const YamlNode* checkpoint = node.find("checkpoint");
   if (checkpoint != nullptr && checkpoint->text == "none") {
     map.find("checkpoint");
-    options.checkpoint_steps = 0;
+    transient.checkpoint = 0.0;
   } else {
-    read_steps(map, "checkpoint", options.step, options.checkpoint_steps);
+    long steps = 0;
+    read_steps(map, "checkpoint", options.step, steps);
+    if (steps > 0) transient.checkpoint = static_cast<double>(steps) * options.step;
   }
   constexpr double degree = std::numbers::pi / 180.0;
   read_curve(map, "speed", 1.0, true, options.duration, transient.speed);

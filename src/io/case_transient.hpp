@@ -11,7 +11,7 @@ namespace samara::io {
 
 /// `turbine` has been read.
 void read_transient(const YamlNode& node, const model::TurbineDefinition& turbine,
-                    TransientCase& transient, ErrorList& errors);
+                    simulation::TransientSetup& transient, ErrorList& errors);
 
 /// The keys that make the model, one a line in the order of their names: `blades.length: 8.42`.
 /// Numbers are spelled one way, comments and the keys of the analyses are not in it.

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -101,6 +102,32 @@ std::string to_setting_path(const std::string& where) {
   return path;
 }
 
+/// Whether a field is that of `outer` or stands below it.
+bool is_within(const std::string& field, const std::string& outer) {
+  return field.starts_with(outer) && (field.size() == outer.size() || outer.empty() ||
+                                      field[outer.size()] == '.' || field[outer.size()] == '[');
+}
+
+/// The last --set argument in a field, or its place; of one that is left out, that of the innermost
+/// field around it.
+Place find_place(const YamlNode& root, const std::string& field) {
+  const YamlNode* node = &root;
+  std::istringstream keys(to_setting_path(field));
+  for (std::string key; std::getline(keys, key, '.');) {
+    const YamlNode* next = nullptr;
+    if (node->kind == YamlNode::Kind::list) {
+      std::size_t index = node->children.size();
+      std::from_chars(key.data(), key.data() + key.size(), index);
+      if (index < node->children.size()) next = &node->children[index];
+    } else {
+      next = node->find(key);
+    }
+    if (next == nullptr) break;
+    node = next;
+  }
+  return find_blame(*node);
+}
+
 }  // namespace
 
 std::string ErrorList::compose(const Place& place, const std::string& where,
@@ -123,7 +150,28 @@ std::string ErrorList::compose(const Place& place, const std::string& where,
 }
 
 void ErrorList::add(const Place& place, const std::string& where, const std::string& what) {
-  errors_.push_back({place, compose(place, where, what)});
+  errors_.push_back({place, where, compose(place, where, what)});
+}
+
+bool ErrorList::has_error_at(const std::string& field) const {
+  return std::ranges::any_of(errors_, [&field](const Error& error) {
+    return is_within(field, error.where) || is_within(error.where, field);
+  });
+}
+
+void ErrorList::add(const std::vector<Fault>& faults, const YamlNode& root) {
+  std::vector<Error> found;
+  for (const Fault& fault : faults) {
+    std::vector<std::string> fields = fault.others;
+    fields.push_back(fault.field);
+    if (std::ranges::any_of(fields, [this](const auto& field) { return has_error_at(field); }))
+      continue;
+    Place blame = find_place(root, fault.field);
+    for (const std::string& other : fault.others)
+      if (const Place place = find_place(root, other); place.setting > blame.setting) blame = place;
+    found.push_back({blame, fault.field, compose(blame, fault.field, fault.text)});
+  }
+  errors_.insert(errors_.end(), found.begin(), found.end());
 }
 
 void ErrorList::note(const Place& place, const std::string& where, const std::string& what) {

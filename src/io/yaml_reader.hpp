@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "samara/base/fault.hpp"
 #include "samara/io/yaml_tree.hpp"
 #include "samara/math/types.hpp"
 
@@ -23,6 +24,8 @@ class ErrorList {
 
   /// `where` is the path of the key (`shaft.speed`); empty where `what` says it all.
   void add(const Place& place, const std::string& where, const std::string& what);
+  /// Faults of fields, at their places in `root`; what was read with errors has enough of them.
+  void add(const std::vector<Fault>& faults, const YamlNode& root);
   /// What is no error, but has not the effect that it seems to have.
   void note(const Place& place, const std::string& where, const std::string& what);
   const std::vector<std::string>& notes() const { return notes_; }
@@ -34,8 +37,10 @@ class ErrorList {
  private:
   struct Error {
     Place place;
+    std::string where;
     std::string message;
   };
+  bool has_error_at(const std::string& field) const;
   std::string compose(const Place& place, const std::string& where, const std::string& what) const;
 
   std::string path_;

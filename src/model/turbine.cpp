@@ -231,7 +231,9 @@ bool differs(const BladeDifference& d) {
 
 }  // namespace
 
-Turbine build_turbine(const TurbineDefinition& definition) {
+Turbine build_turbine(const TurbineDefinition& given) {
+  TurbineDefinition definition = given;
+  require_none(complete(definition), "");
   Turbine turbine;
   turbine.has_tower = definition.has_tower;
   BeamDefinition tower = definition.tower;

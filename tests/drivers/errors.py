@@ -120,8 +120,8 @@ class Physics(ProgramTest):
 
     def test_floquet_needs_a_speed(self):
         self.write("case.yaml", MINIMAL.replace("speed: 6", "speed: 0"))
-        self.refuse("floquet", "case.yaml", words=["shaft.speed is 0", "use samara modes"],
-                    place=r"case\.yaml: ")
+        self.refuse("floquet", "case.yaml", words=["shaft.speed: must not be 0", "use samara modes"],
+                    place=r"case\.yaml:2:9: ")
 
     def test_modes_need_constant_coefficients(self):
         self.refuse("modes", BASELINE, words=["periodic", "samara floquet, or samara modes --parked"])

@@ -305,7 +305,7 @@ class Turbines(ProgramTest):
         self.succeed("check", "case.yaml")
         self.assertIn("tower", self.succeed("modes", "case.yaml", "--parked").stdout)
         self.succeed("static", "case.yaml")
-        self.refuse("floquet", "case.yaml", words="shaft.speed is 0")
+        self.refuse("floquet", "case.yaml", words="shaft.speed: must not be 0")
         for setting, words in (("shaft.speed=1", "there are no blades"),
                                ("loads=[{beam: blades, at: 1, force: [0, 0, 1]}]", "no blades"),
                                ("nacelle={mass: 5, yaw: {joint: free}}", "yaw axis"),

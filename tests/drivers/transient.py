@@ -219,7 +219,7 @@ class Starts(ProgramTest):
         keys = block(duration=0.1, step=0.01, start="trim.h5")
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY[:2], "-o", "a.h5", *keys)
         for setting, words in (
-                ("shaft.speed=6.5", "the speed 6.02 rad/s, this history begins with 6.5"),
+                ("shaft.speed=6.5", "the speed 6.02 rad/s, this time series begins with 6.5"),
                 ("blades.pitch_deg=3", "the pitch of blade 1 0 deg"),
                 ("blades.elements=3", "is of another model (blades.elements: 2 there")):
             run = self.samara("transient", BASELINE, *COARSE, "--set", setting, "-o", "b.h5", *keys)
@@ -420,7 +420,7 @@ class Operation(ProgramTest):
         run = self.samara("transient", land, *COARSE, "-o", "c.h5", "--set",
                           "transient={duration: 1, step: 0.02, pitch_deg: {formula: 2 + t}}")
         self.assertEqual(run.returncode, 2)
-        self.assertIn("transient.start: trim: has the pitch of blade 1 0 deg, this history begins "
+        self.assertIn("transient.start: trim: has the pitch of blade 1 0 deg, this time series begins "
                       "with 2", run.stderr)
 
     def test_a_new_torque_law_takes_the_place_of_what_held_the_speed(self):
@@ -444,7 +444,8 @@ class Operation(ProgramTest):
         for name, start in (("second", "first.h5"), ("third", "second.h5")):
             run = self.succeed("transient", path, "-o", f"{name}.h5", "--set",
                                f"transient={{duration: 1, {keys}, start: {start}}}")
-            self.assertIn("its generator lost and its brake set", run.stderr)
+            self.assertIn("the generator stays lost", run.stderr)
+            self.assertIn("the brake stays set", run.stderr)
         speed = history(self.folder / "third.h5")[1][:, 0] * 2 * numpy.pi / 60
         time = history(self.folder / "third.h5")[0] + 2
         numpy.testing.assert_allclose(speed, 6 - 200 / INERTIA * (time - 0.5), rtol=1e-5)

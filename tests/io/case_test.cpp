@@ -601,7 +601,7 @@ BOOST_AUTO_TEST_CASE(loads_are_read) {
   BOOST_TEST(loads[3].from == 0.0);
   BOOST_TEST(
       (loads[3].history.table == std::vector<std::pair<double, double>>{{0.0, 1.0}, {2.5, -1.0}}));
-  BOOST_TEST(result.trim.least_harmonics == 3);
+  BOOST_TEST(simulation::highest_harmonic(result.turbine) == 3);
 }
 
 BOOST_AUTO_TEST_CASE(a_tower_line_is_stated_in_n1_n2_n3_and_kept_in_the_beams_axes) {
@@ -933,7 +933,7 @@ BOOST_AUTO_TEST_CASE(prescribed_angles_are_constant_or_harmonic) {
   const Case many = read_text(minimal +
                               "nacelle: {yaw: {joint: prescribed, harmonic: {per_rev: 7, "
                               "amplitude_deg: 2}}}\nshaft: {speed: 2}\n");
-  BOOST_TEST(many.trim.least_harmonics == 7);
+  BOOST_TEST(simulation::highest_harmonic(many.turbine) == 7);
 }
 
 BOOST_AUTO_TEST_CASE(a_prescribed_angle_must_be_stated_and_only_there) {
@@ -954,17 +954,19 @@ BOOST_AUTO_TEST_CASE(a_prescribed_angle_must_be_stated_and_only_there) {
                   "amplitude_deg: 1}}\n",
               "case.yaml:10:51: nacelle.yaw.harmonic.frequency: given together with per_rev; "
               "leave one of them out");
-  check_error(replace(minimal, "count: 2", "count: 3") +
-                  "hub:\n  teeter: {joint: prescribed, angle_deg: 1}\n",
-              "case.yaml:10:12: hub.teeter: a teeter hinge carries two blades, blades.count is 3; "
-              "use joint: locked, or leave teeter out");
+  check_error(
+      replace(minimal, "count: 2", "count: 3") +
+          "hub:\n  teeter: {joint: prescribed, angle_deg: 1}\n",
+      "case.yaml:10:12: hub.teeter.joint: a teeter hinge carries two blades, blades.count is 3; "
+      "use joint: locked, or leave teeter out");
 }
 
 BOOST_AUTO_TEST_CASE(a_teeter_hinge_is_for_two_blades) {
   const std::string three = replace(minimal, "count: 2", "count: 3");
-  check_error(three + "hub:\n  teeter: {joint: free}\n",
-              "case.yaml:10:12: hub.teeter: a teeter hinge carries two blades, blades.count is 3; "
-              "use joint: locked, or leave teeter out");
+  check_error(
+      three + "hub:\n  teeter: {joint: free}\n",
+      "case.yaml:10:12: hub.teeter.joint: a teeter hinge carries two blades, blades.count is 3; "
+      "use joint: locked, or leave teeter out");
   BOOST_TEST(read_text(three + "hub: {teeter: {joint: locked}}\n").turbine.blades.count == 3);
   const std::string one = replace(minimal, "count: 2", "count: 1");
   BOOST_TEST(read_text(one + "hub: {teeter: {joint: free}}\n").turbine.blades.count == 1);
@@ -1202,9 +1204,10 @@ BOOST_AUTO_TEST_CASE(a_setting_that_makes_a_section_faulty_is_blamed) {
       "blades.sections.0.inertia.0=0",
       "blades.sections[0]: the section has no inertia about b1: give it one, or make "
       "GJ rigid");
-  check_errors(minimal + "hub: {teeter: {}}\n", {"blades.count=3"},
-               {"--set blades.count=3: hub.teeter: a teeter hinge carries two blades, blades.count "
-                "is 3; use joint: locked, or leave teeter out"});
+  check_errors(
+      minimal + "hub: {teeter: {}}\n", {"blades.count=3"},
+      {"--set blades.count=3: hub.teeter.joint: a teeter hinge carries two blades, blades.count "
+       "is 3; use joint: locked, or leave teeter out"});
 }
 
 BOOST_AUTO_TEST_CASE(malformed_settings_are_refused) {

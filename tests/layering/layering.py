@@ -18,9 +18,11 @@ ROOMS = {  # room: the rooms it may include, itself always
     "turbine": ["base", "math", "petsc", "elements", "model", "system", "components"],
     "analysis": ["base", "math", "petsc", "system"],
     "linear": ["base", "math", "petsc", "system", "analysis"],
+    "simulation": ["base", "math", "petsc", "elements", "model", "system", "turbine", "analysis",
+                   "linear"],
     "loads": ["base"],
     "io": ["base", "math", "petsc", "elements", "model", "system", "turbine", "analysis", "linear",
-           "loads"],
+           "simulation", "loads"],
     "decks": ["base", "math", "elements", "model", "io"],
 }
 DRIVERS = "drivers"  # may include every room

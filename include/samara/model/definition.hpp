@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "samara/base/fault.hpp"
 #include "samara/elements/joint_motion.hpp"
 #include "samara/elements/torque_line.hpp"
 #include "samara/math/types.hpp"
@@ -24,6 +25,8 @@ struct SectionDefinition {
   std::array<bool, 6> rigid{};          ///< strain components that cannot strain
   Matrix6 mass = Matrix6::Zero();       ///< I6 of (3) about the reference line [kg/m, kg, kg m]
   double twist = 0.0;                   ///< structural twist [rad], about -b1 (toward feather)
+
+  bool operator==(const SectionDefinition&) const = default;
 };
 
 /// A mass on a beam, with its rotary inertia.
@@ -32,6 +35,8 @@ struct PointMassDefinition {
   double mass = 0.0;                  ///< [kg], > 0
   Vector3 center = Vector3::Zero();   ///< from the line, section axes b [m]
   Vector3 inertia = Vector3::Zero();  ///< about its own centre, section axes [kg m^2]
+
+  bool operator==(const PointMassDefinition&) const = default;
 };
 
 /// What holds an end of a beam. Order of directions: u1 u2 u3 theta1 theta2 theta3, root axes.
@@ -48,6 +53,8 @@ struct SupportDefinition {
 
   bool is_clamp() const { return rigid == std::array<bool, 6>{true, true, true, true, true, true}; }
   bool is_none() const { return free == std::array<bool, 6>{true, true, true, true, true, true}; }
+
+  bool operator==(const SupportDefinition&) const = default;
 };
 
 /// Nothing at all.
@@ -63,13 +70,16 @@ struct BeamDefinition {
                                             ///< ends that point masses draw to them
   int order = 1;                            ///< Gauss points an element, 1 to 6
   std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
-  Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component
+  Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component; of `modal_damping`
+                                            ///< where that is given and this is zero
   Vector3 mass_damping = Vector3::Zero();   ///< alpha [1/s] along b1, b2, b3 of the sections
-  ModalDamping modal_damping{};             ///< from which mu was found, if it was
+  ModalDamping modal_damping{};             ///< from which mu is found
   double tip_mass = 0.0;                    ///< [kg], >= 0
   std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`
   SupportDefinition support;                      ///< of the root
   SupportDefinition end_support = free_end();     ///< of the end, without a mass
+
+  bool operator==(const BeamDefinition&) const = default;
 };
 
 /// locked: at zero; prescribed: its angle is a given function of time.
@@ -87,6 +97,8 @@ struct JointHistory {
 
   /// At time t [s] where the rotor turns with `rotor_speed` [rad/s].
   elements::JointMotion at(double t, double rotor_speed) const;
+
+  bool operator==(const JointHistory&) const = default;
 };
 
 /// A second spring and damper from an angle on, both ways.
@@ -94,6 +106,8 @@ struct StopDefinition {
   double angle = 0.0;      ///< [rad]; 0: no stops
   double stiffness = 0.0;  ///< [N m/rad]
   double damping = 0.0;    ///< [N m s/rad]
+
+  bool operator==(const StopDefinition&) const = default;
 };
 
 struct JointDefinition {
@@ -101,6 +115,8 @@ struct JointDefinition {
   double stiffness = 0.0;    ///< [N m/rad]
   double damping = 0.0;      ///< [N m s/rad]
   JointHistory motion = {};  ///< of a prescribed joint
+
+  bool operator==(const JointDefinition&) const = default;
 };
 
 /// A torque over a speed: by its value and slope at the mean speed, or a table.
@@ -121,6 +137,8 @@ struct TorqueLaw {
     if (!covers(mean_speed)) return {};
     return {torque, slope, mean_speed, table};
   }
+
+  bool operator==(const TorqueLaw&) const = default;
 };
 
 struct GeneratorDefinition {
@@ -128,6 +146,8 @@ struct GeneratorDefinition {
       JointKind::locked;  ///< locked: the shaft turns at `speed`; free: its angle varies
   double inertia = 0.0;   ///< about its own axis [kg m^2]
   TorqueLaw law;          ///< against its turning, by its own speed
+
+  bool operator==(const GeneratorDefinition&) const = default;
 };
 
 struct NacelleDefinition {
@@ -135,6 +155,8 @@ struct NacelleDefinition {
   Vector3 center_of_mass = Vector3::Zero();  ///< from the tower top, nacelle axes y1 y2 y3 [m]
   Vector3 inertia = Vector3::Zero();         ///< about its own centre, y1 y2 y3 [kg m^2]
   JointDefinition yaw;
+
+  bool operator==(const NacelleDefinition&) const = default;
 };
 
 struct ShaftDefinition {
@@ -156,6 +178,8 @@ struct ShaftDefinition {
 
   /// Mean speed of the generator against the nacelle, in the sense of its turning [rad/s].
   double generator_speed() const { return std::abs(gear_ratio) * speed; }
+
+  bool operator==(const ShaftDefinition&) const = default;
 };
 
 /// A mass on the hub.
@@ -163,6 +187,8 @@ struct HubMassDefinition {
   double mass = 0.0;                  ///< [kg], > 0
   Vector3 center = Vector3::Zero();   ///< from the teeter pin, h1 h2 h3 [m]
   Vector3 inertia = Vector3::Zero();  ///< about its own centre, h1 h2 h3 [kg m^2]
+
+  bool operator==(const HubMassDefinition&) const = default;
 };
 
 struct HubDefinition {
@@ -176,6 +202,8 @@ struct HubDefinition {
   StopDefinition teeter_stops;
   double undersling = 0.0;  ///< along s2 from teeter pin to rotor apex [m]
   double delta3 = 0.0;      ///< teeter axis from h1 toward h3 [rad]
+
+  bool operator==(const HubDefinition&) const = default;
 };
 
 /// How a hinge turns what is outboard of it: flap downwind, lag against the rotor's turning, pitch
@@ -190,6 +218,8 @@ struct HingeDefinition {
   /// Of a flap hinge: its axis is turned, so that flapping by a small angle beta pitches the blade
   /// by -tan(delta3) beta [rad].
   double delta3 = 0.0;
+
+  bool operator==(const HingeDefinition&) const = default;
 };
 
 /// Pitch that follows its command as a second-order system.
@@ -199,12 +229,16 @@ struct PitchActuatorDefinition {
   double rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s], > 0
   double lowest = -std::numeric_limits<double>::infinity();     ///< of the pitch [rad]
   double highest = std::numeric_limits<double>::infinity();
+
+  bool operator==(const PitchActuatorDefinition&) const = default;
 };
 
 /// What differs of a hinge on one blade.
 struct HingeDifference {
   std::optional<double> stiffness;  ///< [N m/rad]
   std::optional<double> damping;    ///< [N m s/rad]
+
+  bool operator==(const HingeDifference&) const = default;
 };
 
 /// What differs on one blade.
@@ -213,6 +247,8 @@ struct BladeDifference {
   double mass_factor = 1.0;       ///< times the section masses, > 0
   double stiffness_factor = 1.0;  ///< times the section stiffnesses, > 0
   std::map<HingeAxis, HingeDifference> hinges;
+
+  bool operator==(const BladeDifference&) const = default;
 };
 
 struct BladesDefinition {
@@ -225,6 +261,8 @@ struct BladesDefinition {
   double pitch_link = 0.0;
   BeamDefinition beam;
   std::map<int, BladeDifference> each;  ///< by blade number from 1
+
+  bool operator==(const BladesDefinition&) const = default;
 };
 
 /// A spring and a damper between a mass and what carries it, along an axis of that.
@@ -235,6 +273,8 @@ struct MassDamperAxis {
   double stop = 0.0;            ///< displacement from which the stop holds, both ways [m]; 0: none
   double stop_stiffness = 0.0;  ///< [N/m]
   double stop_damping = 0.0;    ///< [N s/m]
+
+  bool operator==(const MassDamperAxis&) const = default;
 };
 
 /// A point mass on a beam or on the nacelle that moves along one or two axes.
@@ -247,6 +287,8 @@ struct MassDamperDefinition {
                                        ///< in the section's axes, or the tower top in y1 y2 y3 [m]
   double mass = 0.0;                   ///< [kg], > 0
   std::vector<MassDamperAxis> axes;    ///< one or two, each another
+
+  bool operator==(const MassDamperDefinition&) const = default;
 };
 
 /// How a load changes with time: mean + amplitude cos(frequency t + phase), or a table.
@@ -262,6 +304,8 @@ struct LoadHistory {
 
   /// The factor at time t [s] where the rotor turns with `rotor_speed` [rad/s].
   double factor(double t, double rotor_speed) const;
+
+  bool operator==(const LoadHistory&) const = default;
 };
 
 /// A prescribed load on a beam: at a point (from = to), or uniform along a part of it.
@@ -274,18 +318,22 @@ struct LoadDefinition {
   Vector3 moment = Vector3::Zero();  ///< [N m], or [N m/m]
   bool follower = false;  ///< components in the deformed section; else in the axes of the root
   LoadHistory history;
+
+  bool operator==(const LoadDefinition&) const = default;
 };
 
 /// Of the speed error and its integral.
 struct ControlLoop {
   double proportional = 0.0;  ///< torque [N m s/rad] or pitch [s] by the speed error
   double integral = 0.0;      ///< [N m/rad] or [1] by its integral
+
+  bool operator==(const ControlLoop&) const = default;
 };
 
 /// Of the generator's speed, all on its side of the gear.
 struct ControllerDefinition {
-  double filter = 0.0;     ///< corner of the first-order filter of the measured speed [rad/s], > 0
-  double set_point = 0.0;  ///< [rad/s]
+  double filter = 0.0;  ///< corner of the first-order filter of the measured speed [rad/s], > 0
+  std::optional<double> set_point;    ///< [rad/s]; none: the generator's mean speed
   std::optional<ControlLoop> torque;  ///< against its turning
   std::optional<ControlLoop> pitch;   ///< of all blades, toward feather
   /// The gains of the pitch are divided by 1 + pitch/schedule [rad]; 0: they are constant.
@@ -294,6 +342,8 @@ struct ControllerDefinition {
   bool has_integral() const {
     return (torque && torque->integral != 0.0) || (pitch && pitch->integral != 0.0);
   }
+
+  bool operator==(const ControllerDefinition&) const = default;
 };
 
 struct TurbineDefinition {
@@ -309,6 +359,8 @@ struct TurbineDefinition {
   std::vector<LoadDefinition> loads;
   std::vector<MassDamperDefinition> mass_dampers;
   std::optional<ControllerDefinition> controller;
+
+  bool operator==(const TurbineDefinition&) const = default;
 };
 
 /// Returns what is wrong with a support, or an empty string: springs that are not symmetric, finite
@@ -323,6 +375,11 @@ SectionDefinition interpolate_section(const BeamDefinition& beam, double fractio
 /// not positive definite on its elastic strains; mass not symmetric, not finite or not positive
 /// semi-definite, no mass per length, or a massless direction that an elastic strain can move.
 std::string find_section_fault(const SectionDefinition& section);
+
+/// Adds what follows from the rest: point masses in order along their beams, matrices without what
+/// print leaves of asymmetry, mu of damping ratios, the controller's set point. Returns faults:
+/// ratios that no mu >= 0 gives.
+std::vector<Fault> complete(TurbineDefinition& definition);
 
 /// Arc length [m] of the natural cubic spline through the points of a reference line, its parameter
 /// the chord length. 0 for fewer than two points, nan where two neighbours coincide.

@@ -116,7 +116,8 @@ struct Turbine {
   }
 };
 
-/// @throws InputError where the definition cannot be built.
+/// Completes the definition and builds it. @throws InputError where that is not possible; faults
+/// that `find_faults` (validation.hpp) finds are not looked for.
 Turbine build_turbine(const TurbineDefinition& definition);
 
 }  // namespace samara::model

@@ -1,14 +1,21 @@
-#include "trim_accuracy.hpp"
+#include "samara/simulation/steady_state.hpp"
 
-#include "table.hpp"
+#include "samara/base/format.hpp"
 
-namespace samara::drivers {
+namespace samara::simulation {
 namespace {
 
 /// Of the largest load: loads out of balance by more make a steady state rough.
 constexpr double rough_imbalance = 1e-4;
 
 }  // namespace
+
+analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
+                         analysis::Observer& observer) {
+  analysis::Trim trim = analysis::find_trim(system, trim_options(scenario), observer);
+  note_roughness(trim, observer);
+  return trim;
+}
 
 std::string roughness(const analysis::Trim& trim) {
   if (trim.imbalance() <= rough_imbalance) return "";
@@ -30,4 +37,4 @@ void note_roughness(const analysis::Trim& trim, analysis::Observer& observer,
   if (!words.empty()) observer.note(source + ": the steady state is rough: " + words);
 }
 
-}  // namespace samara::drivers
+}  // namespace samara::simulation

@@ -1,11 +1,11 @@
-#include "same_model.hpp"
+#include "samara/io/same_model.hpp"
 
 #include <algorithm>
 #include <sstream>
 
 #include "samara/base/error.hpp"
 
-namespace samara::drivers {
+namespace samara::io {
 namespace {
 
 /// Whether a key begins with `start`, up to the end of a name.
@@ -54,4 +54,4 @@ void require_same_model(const std::string& path, const std::string& there, const
   }
 }
 
-}  // namespace samara::drivers
+}  // namespace samara::io

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace samara::drivers {
+namespace samara::io {
 
 /// Values by key, as the lines `key: value` of Case::model_text state them.
 using ModelKeys = std::map<std::string, std::string>;
@@ -18,4 +18,4 @@ ModelKeys model_keys(const std::string& text);
 void require_same_model(const std::string& path, const std::string& there, const std::string& here,
                         std::span<const std::string_view> free = {});
 
-}  // namespace samara::drivers
+}  // namespace samara::io

@@ -1,0 +1,39 @@
+// The time series of a transient on its way to the result, until a signal ends it.
+#pragma once
+
+#include "samara/io/history_file.hpp"
+#include "samara/simulation/transient_simulation.hpp"
+
+#include "interruption.hpp"
+#include "progress.hpp"
+
+namespace samara::drivers {
+
+class HistoryOutput final : public simulation::TransientOutput {
+ public:
+  /// Both must live on.
+  HistoryOutput(io::HistoryFile& file, Progress& progress) : file_(file), progress_(progress) {}
+
+  void row(double t, std::span<const double> values) override {
+    file_.append(t, values);
+    has_rows_ = true;
+  }
+  void checkpoint(const simulation::TransientState& state) override {
+    file_.note_events(state.events);
+    file_.write_checkpoint(state.point);
+  }
+  bool goes_on() override { return !Interruption::is_asked(); }
+  void note(const std::string& text) override { progress_.note(text); }
+  void progress(const std::string& stage, long done, long all) override {
+    progress_.progress(stage, done, all);
+  }
+
+  bool has_rows() const { return has_rows_; }
+
+ private:
+  io::HistoryFile& file_;
+  Progress& progress_;
+  bool has_rows_ = false;
+};
+
+}  // namespace samara::drivers

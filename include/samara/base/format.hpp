@@ -1,0 +1,20 @@
+// Numbers in words, as people read them.
+#pragma once
+
+#include <string>
+
+namespace samara {
+
+/// "12.300"; what rounds to zero has no sign.
+std::string fixed(double value, int digits);
+
+/// "1.23e-04" with the given digits behind the point.
+std::string scientific(double value, int digits);
+
+/// The shortest of both forms with the given significant digits: "67.58", "1.2e+07".
+std::string general(double value, int digits);
+
+/// "1 mode", "3 modes".
+std::string count(int number, const std::string& noun);
+
+}  // namespace samara

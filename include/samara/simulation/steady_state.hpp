@@ -1,0 +1,24 @@
+// The periodic steady state of a scenario, and how accurate it is.
+#pragma once
+
+#include <string>
+
+#include "samara/analysis/trim.hpp"
+#include "samara/simulation/scenario.hpp"
+#include "samara/turbine/turbine_system.hpp"
+
+namespace samara::simulation {
+
+/// As analysis::find_trim, with the scenario's options; `system`: of its turbine. Notes where the
+/// result is rough.
+analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
+                         analysis::Observer& observer);
+
+/// What is rough about the steady state and what makes it better; empty where nothing is.
+std::string roughness(const analysis::Trim& trim);
+
+/// Notes the same where there is something to note. `source`: where the steady state comes from.
+void note_roughness(const analysis::Trim& trim, analysis::Observer& observer,
+                    const std::string& source = "trim");
+
+}  // namespace samara::simulation

@@ -1,0 +1,18 @@
+#include "samara/base/fault.hpp"
+
+#include "samara/base/error.hpp"
+
+namespace samara {
+
+void require_none(const std::vector<Fault>& faults, const std::string& source) {
+  std::string text;
+  for (const Fault& fault : faults) {
+    if (!text.empty()) text += "\n";
+    if (!source.empty()) text += source + ": ";
+    if (!fault.field.empty()) text += fault.field + ": ";
+    text += fault.text;
+  }
+  if (!text.empty()) throw InputError(text);
+}
+
+}  // namespace samara

@@ -1,0 +1,29 @@
+#include "samara/base/format.hpp"
+
+#include <array>
+#include <cstdio>
+
+namespace samara {
+namespace {
+
+std::string print(const char* format, int digits, double value) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), format, digits, value);
+  const std::string word(text.data());
+  const bool is_zero = word.find_first_of("123456789ni") >= word.find('e');
+  return is_zero && word[0] == '-' ? word.substr(1) : word;
+}
+
+}  // namespace
+
+std::string fixed(double value, int digits) { return print("%.*f", digits, value); }
+
+std::string scientific(double value, int digits) { return print("%.*e", digits, value); }
+
+std::string general(double value, int digits) { return print("%.*g", digits, value); }
+
+std::string count(int number, const std::string& noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
+}  // namespace samara

@@ -1,0 +1,74 @@
+#include "samara/io/transient_start.hpp"
+
+#include <array>
+#include <string_view>
+
+#include "samara/base/error.hpp"
+#include "samara/io/history_file.hpp"
+#include "samara/io/result_reader.hpp"
+#include "samara/io/same_model.hpp"
+#include "samara/simulation/steady_state.hpp"
+
+namespace samara::io {
+namespace {
+
+/// Keys in which a transient may differ from the result that it starts from: what acts on the
+/// turbine, and motions, which are compared as they are at that instant.
+constexpr std::array<std::string_view, 8> acting_keys{
+    "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator.torque",
+    "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each.*.pitch_deg"};
+
+simulation::TransientState last_state(const std::string& path, const HistoryReader& history,
+                                      const Case& before, const turbine::TurbineSystem& system,
+                                      analysis::Observer& observer) {
+  const HistoryContent& content = history.content();
+  if (content.checkpoints.empty())
+    throw InputError(history.damage().empty()
+                         ? path +
+                               ": has no checkpoint; hint: transient.checkpoint sets their distance"
+                         : history.damage() + ", and no checkpoint");
+  if (!history.damage().empty()) observer.note(history.damage());
+  simulation::TransientState state;
+  state.point = content.checkpoints.back().point;
+  place_held(system, state.point.held);
+  state.events = content.checkpoints.back().events;
+  state.azimuth = content.azimuth.value_or(before.turbine.shaft.azimuth);
+  state.brake_torque = content.brake_torque;
+  state.is_generator_lost = content.is_generator_lost;
+  return state;
+}
+
+}  // namespace
+
+void restart_from(const std::string& path, const Case& input,
+                  simulation::TransientSimulation& simulation, analysis::Observer& observer) {
+  const HistoryReader history(path);
+  require_same_model(path, history.content().model, input.model_text);
+  const Case before = read_result_case(path);
+  const simulation::TransientState state =
+      last_state(path, history, before, simulation.system(), observer);
+  at_place(path, [&] { simulation.restart(before, state); });
+}
+
+void start_from(const std::string& path, const Case& input,
+                simulation::TransientSimulation& simulation, analysis::Observer& observer) {
+  const Case before = read_result_case(path);
+  require_same_model(path, before.model_text, input.model_text, acting_keys);
+  const ResultKind kind = find_result_kind(path);
+  if (kind == ResultKind::other)
+    throw InputError(
+        path + ": has no state to start from; hint: results of transient, trim and floquet have");
+  if (kind == ResultKind::history) {
+    const HistoryReader history(path);
+    const simulation::TransientState end =
+        last_state(path, history, before, simulation.system(), observer);
+    at_place(path, [&] { simulation.start_after(before, end, observer); });
+    return;
+  }
+  analysis::Trim trim = read_result_trim(path);
+  place_held(simulation.system(), trim.held);
+  simulation::note_roughness(trim, observer, path);
+  at_place(path, [&] { simulation.start_on(before, trim); });
+}
+
+}  // namespace samara::io

@@ -1,0 +1,131 @@
+#include "samara/simulation/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace samara::simulation {
+namespace {
+
+using analysis::Mode;
+using analysis::ModeSet;
+
+/// A verdict holds for the slowest modes, so many at the least.
+constexpr std::size_t first_modes = 10;
+
+double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
+
+/// Whether a mode decays as fast as this one grows, or grows as fast as it decays, in the same way.
+/// In a conservative system every growth has its decay, exponents lambda and -lambda*, but for the
+/// error of the mesh.
+bool has_partner(const ModeSet& set, const Mode& mode) {
+  constexpr double slack = 0.05;  // of the rate of growth
+  const double apart = std::max(slack * std::abs(mode.exponent.real()),
+                                analysis::zero_exponent * rate_scale(set.rotor_speed));
+  const double rate = mode.exponent.real();
+  return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& other) {
+    if (std::abs(other.exponent.real() + rate) > apart) return false;
+    // A row stands for its conjugate, too, and each has a multiple of the rotor speed of its own.
+    for (const double sign : {1.0, -1.0}) {
+      double distance = sign * other.exponent.imag() - mode.exponent.imag();
+      if (set.rotor_speed > 0.0) distance = std::remainder(distance, set.rotor_speed);
+      if (std::abs(distance) < apart) return true;
+    }
+    return false;
+  });
+}
+
+/// Where nothing damps, a growth or decay without its partner is an error: a small one of a mode
+/// that is undamped.
+Motion motion_in(const ModeSet& set, const Mode& mode) {
+  const Motion motion = motion_of(mode, set.rotor_speed);
+  const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
+  const bool is_small =
+      std::abs(mode.exponent.real()) <= marked_error * std::abs(mode.exponent.imag());
+  return set.conservative && has_rate && is_small && !has_partner(set, mode) ? Motion::undamped
+                                                                             : motion;
+}
+
+void sort_modes(const ModeSet& set, StabilityAssessment& result) {
+  for (std::size_t m = 0; m < set.modes.size(); ++m) {
+    const Mode& mode = set.modes[m];
+    const Motion motion = motion_in(set, mode);
+    result.motions.push_back(motion);
+    if (!mode.resolved)
+      ++result.unresolved;
+    else if (motion == Motion::rigid_body)
+      ++result.rigid_body;
+    else if (is_rough(mode))
+      ++result.rough;
+    else if (motion == Motion::growing && set.conservative && !has_partner(set, mode))
+      result.growing_alone.push_back(m);
+    else if (motion == Motion::growing)
+      result.growing.push_back(m);
+    else if (motion == Motion::decaying)
+      result.decaying.push_back(m);
+    else
+      ++result.undamped;
+  }
+  const auto grows_faster = [&set](std::size_t a, std::size_t b) {
+    return set.modes[a].exponent.real() > set.modes[b].exponent.real();
+  };
+  std::ranges::stable_sort(result.growing, grows_faster);
+  std::ranges::stable_sort(result.growing_alone, grows_faster);
+  const auto least = std::ranges::min_element(
+      result.decaying, {}, [&set](std::size_t m) { return set.modes[m].damping_ratio; });
+  if (least != result.decaying.end()) result.least_damped = *least;
+}
+
+/// Whether all of the first modes are known: none that is not resolved can be among them. Deflated
+/// decays are known to decay.
+bool knows_first_modes(const ModeSet& set) {
+  std::size_t below = static_cast<std::size_t>(set.deflated) / 2;
+  std::size_t others = 0;
+  for (const Mode& mode : set.modes)
+    ++(mode.resolved && std::abs(mode.exponent) <= set.reach ? below : others);
+  return below >= first_modes || others == 0;
+}
+
+}  // namespace
+
+Motion motion_of(const Mode& mode, double rotor_speed) {
+  const double zero = analysis::zero_exponent * rate_scale(rotor_speed);
+  // Of the error of a growth, what step and round-off make is about zero; the elements' is not.
+  const double unsure = mode.growth_error - mode.mesh_growth_error;
+  if (std::abs(mode.exponent) < zero ||
+      (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure))
+    return Motion::rigid_body;
+  if (std::abs(mode.exponent.real()) <= mode.growth_error) return Motion::undamped;
+  return mode.exponent.real() > 0.0 ? Motion::growing : Motion::decaying;
+}
+
+bool is_rough(const Mode& mode) {
+  return total_error(mode) > largest_error ||
+         mode.growth_error >
+             std::max(marked_error * std::abs(mode.exponent), std::abs(mode.exponent.real()));
+}
+
+StabilityAssessment assess_stability(const ModeSet& set) {
+  StabilityAssessment result;
+  sort_modes(set, result);
+  result.reach = set.reach;
+  for (const Mode& mode : set.modes)
+    if (mode.resolved && total_error(mode) > marked_error &&
+        motion_of(mode, set.rotor_speed) != Motion::rigid_body)
+      result.accurate_reach = std::min(result.accurate_reach, std::abs(mode.exponent));
+  if (!knows_first_modes(set))
+    result.doubt = Doubt::unresolved;
+  else if (!result.growing.empty())
+    result.stability = Stability::unstable;
+  else if (!result.growing_alone.empty())
+    result.doubt = Doubt::growing_alone;
+  else if (result.undamped + result.rigid_body > 0)
+    result.stability = Stability::neutral;
+  else if (!result.decaying.empty())
+    result.stability = Stability::stable;
+  else
+    result.doubt = Doubt::rough;
+  return result;
+}
+
+}  // namespace samara::simulation

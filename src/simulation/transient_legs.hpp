@@ -1,0 +1,89 @@
+// A simulation in legs: from event to event the turbine is the same.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "samara/simulation/transient_simulation.hpp"
+
+namespace samara::simulation {
+
+/// The turbine after the events that came at the times `fired`, one for each event of the setup.
+model::Turbine turbine_after(const TransientSetup& transient, model::Turbine turbine,
+                             const std::vector<double>& fired);
+
+/// A state event that a step has passed.
+struct Crossing {
+  std::size_t event = 0;
+  double time = 0.0;  ///< by the secant of its channel over the step
+};
+
+/// Evaluates channels after each step: rows for the output, and the levels of events.
+class ChannelWatch final : public analysis::TransientObserver {
+ public:
+  /// Both arguments must live on.
+  ChannelWatch(const TransientSetup& transient, TransientOutput& output);
+
+  /// The steps that follow are of this system, with these events still to come. It must live on.
+  /// `state`: of the simulation at checkpoints, but for the point.
+  void begin_leg(const turbine::TurbineSystem& system, const std::vector<std::size_t>& watched,
+                 const TransientState& state);
+
+  bool sample(const analysis::TransientSample& sample) override;
+  void checkpoint(const analysis::TransientStart& point) override;
+  void note(const std::string& text) override { output_.note(text); }
+
+  /// One for each channel.
+  const std::vector<ChannelRange>& ranges() const { return ranges_; }
+  /// The event that ended the leg.
+  const std::optional<Crossing>& crossing() const { return crossing_; }
+
+ private:
+  void take_row(const analysis::TransientSample& sample);
+  bool find_crossing(const analysis::TransientSample& sample);
+
+  const TransientSetup& transient_;
+  TransientOutput& output_;
+  TransientState state_;
+  std::optional<turbine::TurbineChannels> channels_;
+  std::optional<turbine::TurbineChannels> watch_;
+  std::vector<std::size_t> watched_;
+  std::vector<double> levels_;  ///< of the watched channels at the last sample
+  bool has_level_ = false;
+  double time_ = 0.0;  ///< of the last sample
+  std::optional<Crossing> crossing_;
+  std::vector<double> values_;
+  std::vector<ChannelRange> ranges_;
+  long steps_;
+  std::optional<double> last_row_;  ///< [s]
+};
+
+class TransientLegs {
+ public:
+  /// `turbine`: at the start, before the events that `state` says have come. `generator`: unknown
+  /// of its angle. The setup and the output must live on.
+  TransientLegs(const TransientSetup& transient, const model::Turbine& turbine,
+                TransientState state, int generator, TransientOutput& output);
+
+  /// @throws ConvergenceError as `analysis::run_transient`
+  TransientSummary run();
+
+ private:
+  analysis::TransientRun run_leg(std::optional<double> stop, const std::vector<std::size_t>& watch);
+  void pass(Crossing crossing, const analysis::TransientRun& leg);
+  void fire(std::size_t i);
+  void fire_at(double time);
+  double on_grid(double time) const;
+  std::optional<double> next_time() const;
+  std::vector<std::size_t> to_watch() const;
+
+  const TransientSetup& transient_;
+  analysis::TransientOptions options_;
+  model::Turbine turbine_;
+  TransientState state_;
+  int generator_;
+  ChannelWatch watch_;
+  analysis::TransientRun total_;
+};
+
+}  // namespace samara::simulation

@@ -1,0 +1,283 @@
+#include "samara/simulation/validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "samara/analysis/shooting.hpp"
+#include "samara/analysis/trim.hpp"
+#include "samara/base/format.hpp"
+#include "samara/math/curve_faults.hpp"
+#include "samara/model/validation.hpp"
+
+namespace samara::simulation {
+namespace {
+
+using model::JointKind;
+
+constexpr double least_steps_a_revolution = 40.0;
+
+/// A prescribed motion of a transient.
+struct Motion {
+  std::string key;
+  std::string unit;
+  double factor = 1.0;  ///< from SI to `unit`
+  const std::optional<math::TimeCurve>& curve;
+};
+
+/// Angles first.
+std::vector<Motion> motions_of(const TransientSetup& transient) {
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  return {{"pitch_deg", "deg", degrees, transient.pitch},
+          {"yaw_deg", "deg", degrees, transient.yaw},
+          {"teeter_deg", "deg", degrees, transient.teeter},
+          {"speed", "rad/s", 1.0, transient.speed}};
+}
+
+std::string indexed(const std::string& list, std::size_t i) {
+  return list + "[" + std::to_string(i) + "]";
+}
+
+class Validation {
+ public:
+  explicit Validation(const Scenario& scenario)
+      : scenario_(scenario),
+        turbine_(scenario.turbine),
+        faults_(model::find_faults(scenario.turbine)) {}
+
+  std::vector<Fault> find(Analysis analysis) {
+    switch (analysis) {
+      case Analysis::check:
+        break;
+      case Analysis::statics:
+        check_rest();
+        break;
+      case Analysis::modes:
+      case Analysis::trim:
+      case Analysis::linearize:
+        check_steady();
+        break;
+      case Analysis::floquet:
+        check_period();
+        check_steady();
+        break;
+      case Analysis::transient:
+        check_transient();
+        break;
+    }
+    return std::move(faults_);
+  }
+
+ private:
+  void add(const std::string& field, const std::string& text) { faults_.push_back({field, text}); }
+
+  void check_rest() {
+    if (turbine_.shaft.speed != 0.0)
+      add("shaft.speed",
+          "must be 0, static is at rest; hint: use samara trim, or --set shaft.speed=0");
+  }
+
+  /// Floquet's theory needs a period.
+  void check_period() {
+    if (turbine_.shaft.speed == 0.0)
+      add("shaft.speed",
+          "must not be 0: a rotor that stands still has no period; hint: use samara modes, or "
+          "--set "
+          "shaft.speed=...");
+  }
+
+  /// Loads and prescribed motions that are constant or go with the rotor, and inertia where the
+  /// root of a beam may move.
+  void check_steady() {
+    for (std::size_t i = 0; i < turbine_.loads.size(); ++i) {
+      const model::LoadHistory& history = turbine_.loads[i].history;
+      const std::string place = indexed("loads", i);
+      if (!history.is_constant() && (!history.table.empty() || history.per_rev == 0))
+        add(place,
+            "does not repeat with the rotor; hint: harmonic: {per_rev: ...}; samara static takes "
+            "the loads at t = 0, samara transient any with transient.start: undeformed or "
+            "RESULT.h5");
+      check_harmonics(place, history.per_rev);
+    }
+    check_motion("nacelle.yaw", turbine_.nacelle.yaw.motion);
+    check_motion("hub.teeter", turbine_.hub.teeter.motion);
+    for (std::size_t i = 0; i < turbine_.blades.hinges.size(); ++i)
+      check_motion(indexed("blades.hinges", i), turbine_.blades.hinges[i].joint.motion);
+    if (turbine_.has_tower) check_mass("tower.support", turbine_.tower.support);
+    check_mass("blades.support", turbine_.blades.beam.support);
+  }
+
+  void check_motion(const std::string& joint, const model::JointHistory& motion) {
+    if (!motion.is_constant() && motion.per_rev == 0)
+      add(joint,
+          "does not repeat with the rotor; hint: harmonic: {per_rev: ...}, or samara static, which "
+          "takes its angle at t = 0");
+    check_harmonics(joint, motion.per_rev);
+  }
+
+  /// A trim must have the harmonics of what drives it.
+  void check_harmonics(const std::string& place, int per_rev) {
+    if (turbine_.shaft.speed == 0.0) return;
+    const analysis::TrimOptions& trim = scenario_.trim;
+    const bool shoots = trim.method == analysis::TrimMethod::shooting;
+    const int most = shoots           ? analysis::shooting_harmonics(trim.steps)
+                     : trim.automatic ? analysis::auto_harmonics
+                                      : trim.harmonics;
+    if (per_rev <= most) return;
+    const std::string bound =
+        shoots           ? "the " + std::to_string(most) + " harmonics of trim.method: shooting"
+        : trim.automatic ? "the " + std::to_string(most) + " harmonics of trim.harmonics: auto"
+                         : "trim.harmonics";
+    add(place + ".harmonic.per_rev",
+        std::to_string(per_rev) + ", more than " + bound + "; hint: " +
+            (shoots ? "more trim.steps, or trim.method: harmonic_balance"
+                    : "--set trim.harmonics=" + std::to_string(per_rev)));
+  }
+
+  /// A root that moves needs inertia in every direction that moves.
+  void check_mass(const std::string& key, const model::SupportDefinition& support) {
+    bool displaces = false;
+    bool turns = false;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (!support.rigid[at] && !(support.mass + support.added_mass(i) > 0.0)) displaces = true;
+      if (!support.rigid[3 + at] && !(support.inertia(i) + support.added_mass(3 + i) > 0.0))
+        turns = true;
+    }
+    if (displaces)
+      add(key,
+          "may move without a mass; hint: give the mass and inertia of what stands on the springs "
+          "(a foundation, a bearing); samara static needs none");
+    if (turns)
+      add(key,
+          "may turn about an axis without inertia; hint: instead of a word give stiffness: "
+          "{theta1: free, ...} with inertia: [I1, I2, I3], > 0 where it may turn; samara static "
+          "needs none");
+  }
+
+  void check_transient() {
+    const TransientSetup& transient = scenario_.transient;
+    if (!(transient.options.duration > 0.0)) {
+      add("", "missing key \"transient\"; hint: --set \"transient={duration: 60, step: 0.01}\"");
+      return;
+    }
+    if (!(transient.options.step > 0.0 && transient.options.step <= transient.options.duration)) {
+      add("transient.step", "expected a number > 0, transient.duration at the most");
+      return;
+    }
+    if (transient.start == TransientOrigin::trim) check_steady();
+    check_curves();
+    for (std::size_t i = 0; i < transient.events.size(); ++i) check_event(i);
+    for (std::size_t i = 0; i < turbine_.loads.size(); ++i) {
+      const auto& table = turbine_.loads[i].history.table;
+      if (!table.empty() &&
+          (table.front().first > 0.0 || table.back().first < transient.options.duration))
+        add(indexed("loads", i) + ".table", "does not reach over the run, from 0 to " +
+                                                general(transient.options.duration, 6) +
+                                                " s; hint: entries at the start and at the end");
+    }
+    for (const Motion& motion : motions_of(transient)) check_followed(motion);
+  }
+
+  bool is_free() const { return turbine_.shaft.generator.kind == JointKind::free; }
+
+  bool has_blades(const std::string& field) {
+    if (turbine_.blades.count == 0)
+      add(field, "there are no blades; hint: loads and nacelle.yaw move a tower alone");
+    return turbine_.blades.count > 0;
+  }
+
+  void check_curves() {
+    const TransientSetup& transient = scenario_.transient;
+    if (transient.speed && has_blades("transient.speed") && is_free())
+      add("transient.speed",
+          "the generator is free, its torque makes the speed; hint: shaft.generator.joint: locked");
+    if (transient.yaw && turbine_.nacelle.yaw.kind != JointKind::prescribed)
+      add("transient.yaw_deg", "only a joint: prescribed has a motion");
+    if (transient.teeter && turbine_.hub.teeter.kind != JointKind::prescribed)
+      add("transient.teeter_deg", "only a joint: prescribed has a motion");
+    if (transient.pitch && has_blades("transient.pitch_deg"))
+      check_pitch_loop("transient.pitch_deg");
+  }
+
+  void check_event(std::size_t i) {
+    const turbine::TurbineEvent& event = scenario_.transient.events[i];
+    const std::string place = indexed("transient.events", i);
+    if (!has_blades(place)) return;
+    if (!is_free() && (event.brake > 0.0 || event.generator_off))
+      add(place, "the generator is locked and takes any torque; hint: shaft.generator.joint: free");
+    if (!event.pitch) return;
+    if (event.pitch->blade > turbine_.blades.count)
+      add(place + ".pitch.blade",
+          "there is no such blade, there are " + std::to_string(turbine_.blades.count));
+    check_pitch_loop(place + ".pitch");
+  }
+
+  void check_pitch_loop(const std::string& field) {
+    if (turbine_.controller && turbine_.controller->pitch && turbine_.shaft.speed != 0.0)
+      add(field,
+          "controller.pitch gives the pitch, which is not that of the case when this begins; hint: "
+          "a case without controller.pitch");
+  }
+
+  /// A motion that the steps cannot follow.
+  void check_followed(const Motion& motion) {
+    const analysis::TransientOptions& options = scenario_.transient.options;
+    if (!motion.curve) return;
+    const auto fault = math::find_jump(*motion.curve, options.duration, options.step);
+    if (!fault) return;
+    const std::string size = general(std::abs(fault->size) * motion.factor, 4) + " " + motion.unit;
+    if (fault->kind == math::CurveFault::Kind::jump)
+      add("transient." + motion.key,
+          "jumps, by " + size + " within less than a step, at t = " + general(fault->time, 6) +
+              " s; hint: a table or a formula that takes several steps for it");
+    else
+      add("transient." + motion.key,
+          "changes too fast for the steps: from t = " + general(fault->time, 6) +
+              " s on it is off the straight line by " + size + " within a step of " +
+              general(options.step, 6) + " s; hint: a smaller transient.step");
+  }
+
+  const Scenario& scenario_;
+  const model::TurbineDefinition& turbine_;
+  std::vector<Fault> faults_;
+};
+
+/// Too few steps a revolution for the loads that repeat with it; empty: there are enough.
+std::string step_note(const Scenario& scenario) {
+  const analysis::TransientOptions& options = scenario.transient.options;
+  double speed = std::abs(scenario.turbine.shaft.speed);
+  if (scenario.transient.speed)
+    for (double t = 0.0; t <= options.duration; t += std::max(options.step, options.duration / 1e3))
+      speed = std::max(speed, std::abs(scenario.transient.speed->at(t).value));
+  if (speed == 0.0) return "";
+  const double steps = 2.0 * std::numbers::pi / (speed * options.step);
+  if (steps >= least_steps_a_revolution) return "";
+  return "transient.step: " + general(steps, 3) + " steps a revolution at " + general(speed, 4) +
+         " rad/s, fewer than " + general(least_steps_a_revolution, 3) + "; motions faster than " +
+         general(1.0 / (steps_a_cycle * options.step), 3) + " Hz have fewer than " +
+         general(steps_a_cycle, 3) + " steps a cycle";
+}
+
+}  // namespace
+
+std::vector<Fault> validate(const Scenario& scenario, Analysis analysis) {
+  return Validation(scenario).find(analysis);
+}
+
+std::vector<std::string> transient_notes(const Scenario& scenario) {
+  const analysis::TransientOptions& options = scenario.transient.options;
+  std::vector<std::string> notes;
+  for (const Motion& motion : motions_of(scenario.transient)) {
+    if (!motion.curve || motion.key == "speed") continue;
+    if (const auto kink = math::find_kink(*motion.curve, options.duration, options.step))
+      notes.push_back("transient." + motion.key +
+                      ": the rate jumps at t = " + general(kink->time, 6) + " s by " +
+                      general(std::abs(kink->size) * motion.factor, 4) + " " + motion.unit +
+                      "/s: an impulse, whose loads depend on the step");
+  }
+  if (const std::string note = step_note(scenario); !note.empty()) notes.push_back(note);
+  return notes;
+}
+
+}  // namespace samara::simulation

@@ -1,0 +1,97 @@
+// The verdict, of modes whose exponents and errors are given here.
+#include "samara/simulation/stability.hpp"
+
+#include <complex>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace samara;
+using namespace samara::simulation;
+
+namespace {
+
+analysis::Mode mode(std::complex<double> exponent, double error = 1e-6) {
+  analysis::Mode result;
+  result.exponent = exponent;
+  result.damping_ratio = -exponent.real() / std::abs(exponent);
+  result.mesh_error = error;
+  result.growth_error = error * std::abs(exponent);
+  result.mesh_growth_error = result.growth_error;
+  return result;
+}
+
+analysis::ModeSet set_of(const std::vector<std::complex<double>>& exponents) {
+  analysis::ModeSet set;
+  for (const std::complex<double>& exponent : exponents) set.modes.push_back(mode(exponent));
+  set.rotor_speed = 1.0;
+  return set;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(stability)
+
+BOOST_AUTO_TEST_CASE(all_decay) {
+  const StabilityAssessment result = assess_stability(set_of({{-0.1, 2.0}, {-0.2, 20.0}}));
+  BOOST_TEST((result.stability == Stability::stable));
+  BOOST_TEST((result.doubt == Doubt::none));
+  BOOST_TEST(result.decaying.size() == 2U);
+  BOOST_TEST(*result.least_damped == 1U);  // 1 % is less than 5 %
+}
+
+BOOST_AUTO_TEST_CASE(the_fastest_growth_stands_first) {
+  const StabilityAssessment result =
+      assess_stability(set_of({{0.1, 2.0}, {-0.2, 3.0}, {0.3, 4.0}}));
+  BOOST_TEST((result.stability == Stability::unstable));
+  BOOST_TEST(result.growing == (std::vector<std::size_t>{2, 0}), boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(rates_below_their_error_are_none) {
+  analysis::ModeSet set = set_of({{-0.1, 2.0}, {1e-7, 3.0}, {0.0, 0.0}});
+  const StabilityAssessment result = assess_stability(set);
+  BOOST_TEST((result.stability == Stability::neutral));
+  BOOST_TEST(result.undamped == 1);
+  BOOST_TEST(result.rigid_body == 1);
+  BOOST_TEST((result.motions ==
+              std::vector<Motion>{Motion::decaying, Motion::undamped, Motion::rigid_body}));
+}
+
+BOOST_AUTO_TEST_CASE(rough_modes_do_not_count) {
+  analysis::ModeSet set = set_of({{-0.1, 2.0}});
+  set.modes.push_back(mode({5.0, 30.0}, 0.2));
+  StabilityAssessment result = assess_stability(set);
+  BOOST_TEST((result.stability == Stability::stable));
+  BOOST_TEST(result.rough == 1);
+  BOOST_TEST(result.accurate_reach == std::abs(set.modes[1].exponent));
+  set.modes.erase(set.modes.begin());
+  result = assess_stability(set);
+  BOOST_TEST((result.stability == Stability::unknown));
+  BOOST_TEST((result.doubt == Doubt::rough));
+}
+
+BOOST_AUTO_TEST_CASE(the_first_ten_must_be_resolved) {
+  analysis::ModeSet set;
+  for (int i = 0; i < 10; ++i) set.modes.push_back(mode({-0.1, 1.0 + i}));
+  set.modes.push_back(mode({1.0, 50.0}));
+  set.modes.back().resolved = false;
+  set.reach = 10.5;
+  BOOST_TEST((assess_stability(set).stability == Stability::stable));
+  BOOST_TEST(assess_stability(set).unresolved == 1);
+  set.reach = 9.5;  // the tenth is beyond
+  BOOST_TEST((assess_stability(set).doubt == Doubt::unresolved));
+  set.deflated = 2;  // a pair of exponents that decay is one mode more
+  BOOST_TEST((assess_stability(set).stability == Stability::stable));
+}
+
+BOOST_AUTO_TEST_CASE(a_conservative_system_grows_in_pairs) {
+  analysis::ModeSet set = set_of({{0.1, 2.0}, {0.0, 3.0}});
+  set.conservative = true;
+  BOOST_TEST((assess_stability(set).doubt == Doubt::growing_alone));
+  set.modes.push_back(mode({-0.1, 3.0}));  // the same modulo the rotor speed
+  const StabilityAssessment result = assess_stability(set);
+  BOOST_TEST((result.stability == Stability::unstable));
+  BOOST_TEST(result.growing_alone.empty());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
