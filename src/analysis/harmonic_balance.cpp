@@ -518,6 +518,32 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
   return largest;
 }
 
+/// Largest mean, cosine or sine of a balance row, up to the solution's harmonics.
+double harmonic_residual(const system::PeriodicSystem& system, const Trim& trim) {
+  const PeriodicSolution& solution = trim.solution;
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Vec> r = system.make_state();
+  const int samples = sample_count(solution.harmonics());
+  Eigen::MatrixXd harmonics = Eigen::MatrixXd::Zero(system.size(), solution.coefficients().cols());
+  for (int k = 0; k < samples; ++k) {
+    const double t = system.period() * k / samples;
+    solution.evaluate(t, z.get(), z_dot.get());
+    system.residual(t, z.get(), z_dot.get(), r.get());
+    add_held_loads(system, trim.held, r.get());
+    const petsc::ReadView view(r.get());
+    harmonics += 2.0 / samples * Eigen::Map<const Eigen::VectorXd>(view.data(), system.size()) *
+                 PeriodicSolution::basis(solution.harmonics(), solution.period(), t).transpose();
+  }
+  harmonics.col(0) *= 0.5;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < system.rows().size(); ++i)
+    if (system.rows()[i] == system::RowRole::balance)
+      largest =
+          std::max(largest, harmonics.row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
+  return largest;
+}
+
 double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                       const std::vector<HeldCoordinate>& loads) {
   std::vector<PetscInt> rows;
@@ -584,6 +610,7 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
       start == nullptr ? hold_free(system, harmonics, tolerance) : std::nullopt;
   Trim trim = solve(system, neutral, harmonics, tolerance, held ? &held->solution : start);
   finish_trim(system, trim);
+  trim.harmonic_residual = harmonic_residual(system, trim);
   trim.history = {{harmonics, trim.residual_between}};
   return trim;
 }

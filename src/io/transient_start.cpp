@@ -32,6 +32,10 @@ simulation::TransientState last_state(const std::string& path, const HistoryRead
   state.point = content.checkpoints.back().point;
   place_held(system, state.point.held);
   state.events = content.checkpoints.back().events;
+  if (state.events.size() != before.transient.events.size())
+    throw InputError(path + ": /transient/checkpoint/event_time has " +
+                     std::to_string(state.events.size()) + " times, its case has " +
+                     std::to_string(before.transient.events.size()) + " events");
   state.azimuth = content.azimuth.value_or(before.turbine.shaft.azimuth);
   state.brake_torque = content.brake_torque;
   state.is_generator_lost = content.is_generator_lost;

@@ -1,5 +1,7 @@
 #include "samara/simulation/steady_state.hpp"
 
+#include <algorithm>
+
 #include "samara/base/format.hpp"
 
 namespace samara::simulation {
@@ -23,12 +25,10 @@ std::string roughness(const analysis::Trim& trim) {
   const std::string bound = " (more than " + general(rough_imbalance, 1) + ")";
   if (trim.method == analysis::TrimMethod::shooting)
     return "loads are out of balance by " + part + bound + "; hint: more trim.steps";
-  // At the samples Newton's method balances the loads, between them the harmonics do.
-  const bool is_newton = trim.residual > 0.5 * trim.residual_between;
-  return "loads are out of balance by " + part + (is_newton ? " at" : " between") + " the samples" +
-         bound +
-         (is_newton ? "; hint: a smaller trim.tolerance, or more trim.harmonics"
-                    : "; hint: more trim.harmonics");
+  const bool is_newton =
+      trim.harmonic_residual > 0.5 * std::max(trim.residual, trim.residual_between);
+  return "loads are out of balance by " + part + bound +
+         (is_newton ? "; hint: a smaller trim.tolerance" : "; hint: more trim.harmonics");
 }
 
 void note_roughness(const analysis::Trim& trim, analysis::Observer& observer,

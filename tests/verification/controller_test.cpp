@@ -12,6 +12,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/linear/linear_model.hpp"
+#include "samara/simulation/validation.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_input_output.hpp"
 
@@ -238,9 +239,14 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_with_its_place) {
   has(rotor("  pitch: {integral: 1, gain_schedule_deg: 3}\n", "  pitch_deg: -3\n"),
       "which is not > 0 at blades.pitch_deg");
   for (const std::string block :
-       {"{pitch_deg: {formula: t}}", "{events: [{at: 1, pitch: {to_deg: 9, rate_deg: 1}}]}"})
-    has(rotor("  pitch: {integral: 1}\ntransient: " + block + "\n"),
-        "controller.pitch gives the pitch, which is not that of the case");
+       {"pitch_deg: {formula: t}", "events: [{at: 1, pitch: {to_deg: 9, rate_deg: 1}}]"}) {
+    const std::string text =
+        rotor("  pitch: {integral: 1}\ntransient: {duration: 2, step: 0.01, " + block + "}\n");
+    const std::vector<Fault> faults =
+        simulation::validate(io::parse_case("test", text, {}), simulation::Analysis::transient);
+    BOOST_TEST_REQUIRE(faults.size() == 1U);
+    BOOST_TEST(faults[0].text.starts_with("controller.pitch gives the pitch"));
+  }
   BOOST_TEST(message_of(rotor("  set_point_rpm: 1100\n  torque: {proportional: 1}\n")) == "");
 }
 

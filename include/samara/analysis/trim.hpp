@@ -42,6 +42,9 @@ struct Trim {
   std::vector<std::pair<int, double>> history = {};
   /// Largest evolution or definition row, at the samples and between them, relative to its terms.
   double state_residual = 0.0;
+  /// Of harmonic balance: largest harmonic of a balance row that is to vanish [N, N m]; what the
+  /// samples show beyond it are harmonics that were left out.
+  double harmonic_residual = 0.0;
 };
 
 /// Harmonics that `harmonics: auto` tries, at the most.
