@@ -37,6 +37,9 @@ constexpr double rounding = 1e-9;
 /// be twice as long each. So the error of the start is a thousandth of what it would be.
 constexpr double first_step = 1.0 / 32.0;
 constexpr int most_newton_steps = 20;
+/// How far an angle may be from where its rate leads within a step [rad]. The equations of a step
+/// have other solutions, whole turns away or with a hinge folded back.
+constexpr double largest_deviation = 0.1;
 /// Of a step: the one that finds the rates at the start.
 constexpr double start_fraction = 1e-3;
 constexpr int start_iterations = 4;
@@ -59,6 +62,7 @@ class Integration {
         r_(system.make_state()),
         jacobian_(system.make_jacobian()) {
     scale_system();
+    find_angles();
     petsc::check(VecDuplicate(z_.get(), x_.fill()));
     petsc::check(VecDuplicate(z_.get(), before_.fill()));
     write_state(start.z);
@@ -112,6 +116,47 @@ class Integration {
     system_.tangents(origin_, z_.get(), z_dot_.get(), shift, jacobian_.get(), nullptr);
     scaling_ = scale_by_role(system_, jacobian_.get(), 1.0 / options_.step);
     round_to_powers_of_two(scaling_);
+  }
+
+  void find_angles() {
+    for (std::size_t i = 0; i < system_.unknowns().size(); ++i) {
+      const system::Unknown& unknown = system_.unknowns()[i];
+      if (unknown.role != system::UnknownRole::position || unknown.unit != "rad") continue;
+      const double rate =
+          start_.z_dot.size() > 0 ? start_.z_dot(static_cast<Eigen::Index>(i)) : 0.0;
+      angles_.push_back(
+          {static_cast<PetscInt>(i), unknown.owner.kind == system::PartKind::joint, 0.0, rate});
+    }
+  }
+
+  /// Where a step begins.
+  void note_angles() {
+    const petsc::ReadView view(before_.get());
+    const petsc::ReadView factors(scaling_.columns.get());
+    for (Angle& angle : angles_) angle.value = view[angle.unknown] * factors[angle.unknown];
+  }
+
+  /// Where it ends.
+  void note_rates() {
+    const petsc::ReadView view(z_dot_.get());
+    for (Angle& angle : angles_) angle.rate = view[angle.unknown];
+  }
+
+  /// Whether the solution of a step, of which the last residual is, goes on from the step before.
+  bool goes_on() {
+    const petsc::ReadView view(z_.get());
+    for (const Angle& angle : angles_) {
+      const double expected = angle.value + (t_ - time_before_) * angle.rate;
+      const double deviation =
+          (view[angle.unknown] - expected) / angle.stretch(view[angle.unknown]);
+      if (std::abs(deviation) <= largest_deviation) continue;
+      std::ostringstream text;
+      text << system_.unknowns()[static_cast<std::size_t>(angle.unknown)].name() << " turns by "
+           << deviation << " rad more than its rate says within a step";
+      error_ = std::make_exception_ptr(DomainError(text.str()));
+      return false;
+    }
+    return true;
   }
 
   void write_state(const Eigen::VectorXd& z) {
@@ -473,6 +518,7 @@ class Integration {
       petsc::check(TSGetTime(ts, &t));
       petsc::check(VecCopy(self.x_.get(), self.before_.get()));
       self.time_before_ = t;
+      self.note_angles();
       self.step_before_ = self.step_;
       const double rest = self.target() - t;
       const double parts = std::ceil(rest / self.limit_ * (1.0 - rounding));
@@ -532,6 +578,7 @@ class Integration {
       petsc::check(TSSetTime(ts, grid(step_)));
     }
     finish_midpoint(t, taken);
+    note_rates();
     const bool goes_on = observer_.sample({t_, z_.get(), z_dot_.get(), step_, on_grid});
     if (on_grid && step_ < last_step_ && options_.checkpoint_steps > 0 &&
         step_ % options_.checkpoint_steps == 0)
@@ -604,14 +651,13 @@ class Integration {
     if (iteration == 0) return 0;
     ++self.newton_steps_;
     const double contraction = residual / before;
-    if (contraction < 1.0 &&
-        contraction / (1.0 - contraction) * change <= self.options_.tolerance * size) {
-      *reason = SNES_CONVERGED_SNORM_RELATIVE;
-      return 0;
-    }
+    const bool is_solved = contraction < 1.0 && contraction / (1.0 - contraction) * change <=
+                                                    self.options_.tolerance * size;
     // The tangent is as good as it can be: what is left is rounding.
-    if (self.is_new_tangent_ && contraction > slow_contraction && change <= stagnation * size) {
-      *reason = SNES_CONVERGED_SNORM_RELATIVE;
+    const bool is_stagnant =
+        self.is_new_tangent_ && contraction > slow_contraction && change <= stagnation * size;
+    if (is_solved || is_stagnant) {
+      *reason = self.goes_on() ? SNES_CONVERGED_SNORM_RELATIVE : SNES_DIVERGED_DTOL;
       return 0;
     }
     self.is_new_tangent_ = false;
@@ -646,6 +692,17 @@ class Integration {
     text << "; hint: a smaller transient.step; -transient_snes_monitor shows the corrections";
     throw ConvergenceError(text.str());
   }
+
+  /// A position that is an angle: of a joint, or a component of a rotation, 2 tan(angle/2).
+  struct Angle {
+    PetscInt unknown = 0;
+    bool is_joint = false;
+    double value = 0.0;  ///< before the step [rad]
+    double rate = 0.0;   ///< at the end of the step before [rad/s]
+
+    /// The change of the unknown by that of the angle.
+    double stretch(double now) const { return is_joint ? 1.0 : 1.0 + 0.25 * now * now; }
+  };
 
   const system::PeriodicSystem& system_;
   const TransientOptions& options_;
@@ -684,6 +741,7 @@ class Integration {
   TransientEnd reason_ = TransientEnd::complete;
   petsc::Handle<Vec> before_;  ///< x before the last step
   double time_before_ = 0.0;
+  std::vector<Angle> angles_;
   long step_before_ = 0;
   long steps_ = 0;
   long newton_steps_ = 0;

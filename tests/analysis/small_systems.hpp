@@ -108,8 +108,8 @@ class SmallSystem : public system::PeriodicSystem {
 
  protected:
   /// Adds an unknown and the row in its place; velocities and positions are differential.
-  void add(const std::string& name, UnknownRole role, RowRole row) {
-    unknowns_.push_back({Owner(PartKind::body, ""), "", name, "", role});
+  void add(const std::string& name, UnknownRole role, RowRole row, const std::string& unit = "") {
+    unknowns_.push_back({Owner(PartKind::body, ""), "", name, unit, role});
     rows_.push_back(row);
     differential_.push_back(role != UnknownRole::internal && role != UnknownRole::auxiliary);
     symmetry_.source.push_back(static_cast<PetscInt>(symmetry_.source.size()));
