@@ -3,6 +3,8 @@ add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion
                     $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast>
                     # g++ 12 sees overlaps in std::string that are not there (GCC bug 105651)
                     $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>)
+# Objects are in the program and in the shared library: functions may be inlined in both.
+add_compile_options(-fno-semantic-interposition)
 if(SAMARA_WERROR)
   add_compile_options(-Werror)
 endif()

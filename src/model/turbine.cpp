@@ -248,6 +248,7 @@ Turbine build_turbine(const TurbineDefinition& given) {
                                         d.mass_factor, d.stiffness_factor));
     turbine.roots.push_back(root_of(blades, definition.hub.radius, k));
   }
+  turbine.extensions = definition.extensions;
   turbine.pitch = blades.pitch;
   turbine.pitch_actuator = blades.actuator;
   if (definition.shaft.speed != 0.0) {

@@ -67,7 +67,15 @@ void prepare_transport() {
 }  // namespace
 
 Session::Session(const std::vector<std::string>& options) {
-  prepare_transport();
+  PetscBool is_running = PETSC_FALSE;
+  PetscInitialized(&is_running);
+  if (is_running != PETSC_FALSE) {
+    adopt(options);
+    return;
+  }
+  int has_mpi = 0;
+  MPI_Initialized(&has_mpi);
+  if (has_mpi == 0) prepare_transport();
   take_home_options();
   std::vector<std::string> words{"samara"};
   words.insert(words.end(), own_options.begin(), own_options.end());
@@ -79,26 +87,42 @@ Session::Session(const std::vector<std::string>& options) {
   char** pointer = argv.data();
   if (SlepcInitialize(&argc, &pointer, nullptr, nullptr) != 0)
     throw InternalError("PETSc and SLEPc do not start");
+  has_slepc_ = true;
   // Errors come back as codes and become exceptions; the default handler would print a page.
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-  if (size() > 1) MPI_Comm_dup(MPI_COMM_WORLD, &agreement_);
+  if (size() > 1) MPI_Comm_dup(PETSC_COMM_WORLD, &agreement_);
+}
+
+/// PETSc runs: its options are added to, and what is not started here is not ended here.
+void Session::adopt(const std::vector<std::string>& options) {
+  std::string text;
+  for (const std::string& word : options) text += (text.empty() ? "" : " ") + word;
+  check(PetscOptionsInsertString(nullptr, text.c_str()));
+  PetscBool has_slepc = PETSC_FALSE;
+  SlepcInitialized(&has_slepc);
+  if (has_slepc == PETSC_FALSE) {
+    check(SlepcInitializeNoArguments());
+    has_slepc_ = true;
+  }
+  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  if (size() > 1) MPI_Comm_dup(PETSC_COMM_WORLD, &agreement_);
 }
 
 Session::~Session() {
   if (agreement_ != MPI_COMM_NULL) MPI_Comm_free(&agreement_);
   PetscPopErrorHandler();
-  SlepcFinalize();
+  if (has_slepc_) SlepcFinalize();  // which ends PETSc where it began it, and PETSc so with MPI
 }
 
 int Session::rank() {
   int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   return rank;
 }
 
 int Session::size() {
   int size = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
   return size;
 }
 

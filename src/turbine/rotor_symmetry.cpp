@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "samara/turbine/extension.hpp"
+
 namespace samara::turbine {
 namespace {
 
@@ -74,6 +76,8 @@ std::string find_symmetry_fault(const model::Turbine& turbine) {
   const auto blades = turbine.blades.size();
   if (!turbine.identical_blades) return "the blades differ";
   if (blades > 2 && chain.teeter.free) return "the hub teeters";
+  for (const auto& extension : turbine.extensions)
+    if (!extension->keeps_rotor_symmetry()) return "a component of the program differs by blade";
   for (const std::string& fault :
        {hub_fault(turbine, blades > 2), motion_fault(turbine), load_fault(turbine)})
     if (!fault.empty()) return fault;

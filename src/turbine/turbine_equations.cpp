@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "samara/turbine/extension.hpp"
+
 #include "rotor_symmetry.hpp"
 
 namespace samara::turbine {
@@ -16,8 +18,9 @@ using system::PartKind;
 constexpr int blade_rank = 0;
 constexpr int tower_rank = 1;
 constexpr int shared_rank = 2;
-constexpr int last_rank = 3;  // of hinges, whose balance is a moment of the roots' reactions and no
-                              // more, and of the states of controls
+/// Of hinges, whose balance is a moment of the roots' reactions and no more, of the states of
+/// controls, and of extensions.
+constexpr int last_rank = extension_rank;
 
 BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
   const elements::RigidChain& chain = turbine.chain;
@@ -105,6 +108,10 @@ void TurbineEquations::make_components() {
     mass_dampers_.push_back(std::make_unique<components::MassDamper>(setting));
     components_.push_back(mass_dampers_.back().get());
   }
+  for (const auto& extension : turbine_.extensions) {
+    extensions_.push_back(extension->make(turbine_, layout_));
+    components_.push_back(extensions_.back().get());
+  }
 }
 
 components::Registry TurbineEquations::place() {
@@ -151,6 +158,7 @@ void TurbineEquations::describe(components::Registry& registry) {
     damper->set_yaw(layout_.yaw());
     damper->describe(registry);
   }
+  for (const auto& extension : extensions_) extension->describe(registry);
   declarations_ = registry.finish();
   const int blades = static_cast<int>(turbine_.blades.size());
   const std::string fault = blades < 2 ? "" : find_symmetry_fault(turbine_);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +16,10 @@
 #include "samara/elements/joint_motion.hpp"
 #include "samara/elements/torque_line.hpp"
 #include "samara/math/types.hpp"
+
+namespace samara::turbine {
+class Extension;
+}
 
 namespace samara::model {
 
@@ -359,6 +364,8 @@ struct TurbineDefinition {
   std::vector<LoadDefinition> loads;
   std::vector<MassDamperDefinition> mass_dampers;
   std::optional<ControllerDefinition> controller;
+  /// Components that a program adds (turbine/extension.hpp).
+  std::vector<std::shared_ptr<const turbine::Extension>> extensions;
 
   bool operator==(const TurbineDefinition&) const = default;
 };

@@ -1,6 +1,7 @@
 // The turbine, cut into elements and ready for assembly; immutable after build_turbine.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -64,6 +65,7 @@ struct Turbine {
   std::vector<MassDamper> mass_dampers;
   std::optional<PitchActuatorDefinition> pitch_actuator;  ///< one a blade, all alike
   std::optional<ControllerDefinition> controller;
+  std::vector<std::shared_ptr<const turbine::Extension>> extensions;
   double rotor_pitch_slope = 0.0;  ///< torque on the hub by the mean pitch [N m/rad]
   double pitch = 0.0;              ///< common to all blades [rad]
   elements::RigidChain chain;

@@ -8,7 +8,9 @@
 
 namespace samara::petsc {
 
-/// One per process. Takes the arguments that belong to PETSc's options database.
+/// Starts MPI, PETSc and SLEPc where they do not run, and ends what it started; others that live at
+/// the same time, and callers that have started them, keep them. Takes the arguments that belong to
+/// PETSc's options database.
 class Session {
  public:
   explicit Session(const std::vector<std::string>& options);
@@ -37,6 +39,9 @@ class Session {
   static std::string options();
 
  private:
+  void adopt(const std::vector<std::string>& options);
+
+  bool has_slepc_ = false;              ///< it started SLEPc
   MPI_Comm agreement_ = MPI_COMM_NULL;  ///< apart from all communication of the analyses
 };
 
