@@ -10,6 +10,7 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/system/angles.hpp"
 
 #include "admissible_velocities.hpp"
 #include "matrix_entries.hpp"
@@ -121,12 +122,11 @@ class Integration {
   void find_angles() {
     for (std::size_t i = 0; i < system_.unknowns().size(); ++i) {
       const system::Unknown& unknown = system_.unknowns()[i];
-      if (unknown.role != system::UnknownRole::position || unknown.unit != "rad") continue;
-      const double rate =
-          start_.z_dot.size() > 0 ? start_.z_dot(static_cast<Eigen::Index>(i)) : 0.0;
-      angles_.push_back(
-          {static_cast<PetscInt>(i), unknown.owner.kind == system::PartKind::joint, 0.0, rate});
+      if (!system::is_angle(unknown)) continue;
+      angles_.push_back({static_cast<PetscInt>(i)});
+      if (start_.z_dot.size() > 0) angles_.back().rate = start_.z_dot(static_cast<Eigen::Index>(i));
     }
+    has_rates_ = start_.z_dot.size() > 0;
   }
 
   /// Where a step begins.
@@ -140,15 +140,19 @@ class Integration {
   void note_rates() {
     const petsc::ReadView view(z_dot_.get());
     for (Angle& angle : angles_) angle.rate = view[angle.unknown];
+    has_rates_ = true;
   }
 
   /// Whether the solution of a step, of which the last residual is, goes on from the step before.
   bool goes_on() {
+    if (!has_rates_) return true;
     const petsc::ReadView view(z_.get());
     for (const Angle& angle : angles_) {
       const double expected = angle.value + (t_ - time_before_) * angle.rate;
       const double deviation =
-          (view[angle.unknown] - expected) / angle.stretch(view[angle.unknown]);
+          (view[angle.unknown] - expected) /
+          system::angle_stretch(system_.unknowns()[static_cast<std::size_t>(angle.unknown)],
+                                view[angle.unknown]);
       if (std::abs(deviation) <= largest_deviation) continue;
       std::ostringstream text;
       text << system_.unknowns()[static_cast<std::size_t>(angle.unknown)].name() << " turns by "
@@ -379,6 +383,7 @@ class Integration {
     }
     put(z, z_.get());
     put(z_dot, z_dot_.get());
+    note_rates();
     return observer_.sample({start_.time, z_.get(), z_dot_.get(), 0, true});
   }
 
@@ -693,15 +698,10 @@ class Integration {
     throw ConvergenceError(text.str());
   }
 
-  /// A position that is an angle: of a joint, or a component of a rotation, 2 tan(angle/2).
   struct Angle {
     PetscInt unknown = 0;
-    bool is_joint = false;
     double value = 0.0;  ///< before the step [rad]
     double rate = 0.0;   ///< at the end of the step before [rad/s]
-
-    /// The change of the unknown by that of the angle.
-    double stretch(double now) const { return is_joint ? 1.0 : 1.0 + 0.25 * now * now; }
   };
 
   const system::PeriodicSystem& system_;
@@ -742,6 +742,7 @@ class Integration {
   petsc::Handle<Vec> before_;  ///< x before the last step
   double time_before_ = 0.0;
   std::vector<Angle> angles_;
+  bool has_rates_ = false;  ///< of them
   long step_before_ = 0;
   long steps_ = 0;
   long newton_steps_ = 0;

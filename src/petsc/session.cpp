@@ -156,6 +156,7 @@ int Session::agree(int code, const std::string& message) const {
       if (done == 0 && waited.count() > spinning)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    MPI_Wait(&request, MPI_STATUS_IGNORE);  // ended: returns at once
   }
   if (ticket > 0 && ticket == all[1]) {
     std::fputs(message.c_str(), stderr);
