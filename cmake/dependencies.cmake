@@ -11,6 +11,7 @@ pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3>=3.3)
 pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser>=2.3)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(yaml-cpp 0.7 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
 # Not FindHDF5: it fails in a folder whose name has a space.
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi>=1.10 hdf5-mpi>=1.10 hdf5>=1.10)
 # Dimension scales are in its high-level part, whose name the pkg-config file does not give.
@@ -31,4 +32,4 @@ target_link_libraries(samara_external_petsc
 # What the file formats need: only the room io may name it.
 add_library(samara_external_files INTERFACE)
 target_include_directories(samara_external_files SYSTEM INTERFACE ${YAML_CPP_INCLUDE_DIR})
-target_link_libraries(samara_external_files INTERFACE yaml-cpp ${HDF5_HL} PkgConfig::HDF5 MPI::MPI_CXX)
+target_link_libraries(samara_external_files INTERFACE yaml-cpp nlohmann_json::nlohmann_json ${HDF5_HL} PkgConfig::HDF5 MPI::MPI_CXX)

@@ -26,7 +26,7 @@ function(samara_add_program)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/drivers/*.cpp)
   if(sources)
     add_executable(samara ${sources})
-    target_link_libraries(samara PRIVATE samara::decks samara::io samara::simulation samara::linear samara::loads
+    target_link_libraries(samara PRIVATE samara::decks samara::io samara::simulation samara::fields samara::linear samara::loads
                                          samara::analysis samara::turbine samara::components
                                          samara::system samara::model samara::elements samara::math samara::petsc
                                          samara::base)

@@ -61,6 +61,8 @@ class Parser {
     for (const std::string& argument : arguments_) line_.text += " " + quote(argument);
     while (next_ < arguments_.size()) take(arguments_[next_++]);
     if (line_.request == Request::run) require_operands();
+    if (line_.request == Request::run && line_.command->print != nullptr)
+      line_.request = Request::print;
     return line_;
   }
 
@@ -207,6 +209,9 @@ class Parser {
     } else if (line_.command->formats != nullptr && line_.format.empty()) {
       require_format(word);
       line_.format = word;
+    } else if (line_.command->print != nullptr) {
+      throw InputError("unexpected argument \"" + word + "\": samara " + line_.command->name +
+                       " takes none");
     } else if (line_.case_path.empty() && !word.empty()) {
       line_.case_path = word;
     } else if (static_cast<int>(line_.more_results.size()) + 1 < line_.command->most_results &&
@@ -247,6 +252,10 @@ class Parser {
       throw InputError("missing command; hint: the commands are " +
                        join(names_of(commands_), ", ") + "; samara --help explains them");
     const std::string name = line_.command->name;
+    if (line_.command->print != nullptr) {
+      if (arguments_.size() > 1) throw InputError("samara " + name + " takes no options");
+      return;
+    }
     if (line_.command->formats != nullptr) {
       require_deck(name);
       return;
@@ -388,6 +397,9 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
              (command.run == nullptr ? " -o FILE" : " [RESULT.h5 ...] [options]") + "\n\n" +
              command.description + "\nexample\n  samara " + command.name + " " + command.example +
              "\n\n" + (command.run == nullptr ? export_lines : load_lines);
+    if (command.print != nullptr)
+      return std::string("samara ") + command.name + "\n\n" + command.description +
+             "\nexample\n  samara " + command.name + " " + command.example + "\n";
     return std::string("samara ") + command.name + options + "\n\n" + command.description +
            "\nexample\n  samara " + command.name + " " + command.example + "\n\n" + option_lines;
   }

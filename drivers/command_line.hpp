@@ -27,12 +27,13 @@ struct Command {
   /// For which a case must be valid before anything is solved.
   simulation::Analysis analysis = simulation::Analysis::check;
   void (*run)(const Job&) = nullptr;
-  const char* formats = nullptr;  ///< of decks, with bars between: the word before the path
+  std::string (*print)() = nullptr;  ///< instead of all else: it takes no operand
+  const char* formats = nullptr;     ///< of decks, with bars between: the word before the path
   void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`
   int most_results = 0;                           ///< that it reads at once
 };
 
-enum class Request { run, help, solver_options, version };
+enum class Request { run, help, solver_options, version, print };
 
 struct CommandLine {
   Request request = Request::run;

@@ -54,9 +54,9 @@ turbine::TurbineInputOutput make_input_output(const io::Case& input,
 
 void run_linearize(const Job& job) {
   const simulation::LinearizeSetup& asked = job.input.linearize;
-  if (!job.input.mat_path.empty()) {
-    io::require_mat_path(job.input.mat_path);
-    if (io::is_same_file(job.input.mat_path, job.result_path))
+  if (!job.input.linearize.mat_path.empty()) {
+    io::require_mat_path(job.input.linearize.mat_path);
+    if (io::is_same_file(job.input.linearize.mat_path, job.result_path))
       throw InputError(job.input.path +
                        ": linearize.mat and -o name the same file; give each its own");
   }
@@ -71,9 +71,9 @@ void run_linearize(const Job& job) {
   progress.finish();
   if (!is_first) return;
   std::string text = summary(job.input, linear) + form_table(linear);
-  if (!job.input.mat_path.empty()) {
-    io::write_mat_file(job.input.mat_path, linear);
-    text += "MAT-file: " + job.input.mat_path + "\n";
+  if (!job.input.linearize.mat_path.empty()) {
+    io::write_mat_file(job.input.linearize.mat_path, linear);
+    text += "MAT-file: " + job.input.linearize.mat_path + "\n";
   }
   deliver(job, text,
           [&](io::ResultFile& file) {

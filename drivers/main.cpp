@@ -18,6 +18,7 @@
 #include "samara/io/file_lock.hpp"
 #include "samara/io/result_file.hpp"
 #include "samara/io/result_reader.hpp"
+#include "samara/io/schema.hpp"
 #include "samara/petsc/session.hpp"
 
 #include "command_line.hpp"
@@ -30,7 +31,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 10> commands{{
+constexpr std::array<Command, 11> commands{{
     {.name = "check",
      .summary = "what the case describes: masses, sizes, unknowns; solves nothing",
      .description =
@@ -133,6 +134,15 @@ constexpr std::array<Command, 10> commands{{
      .has_csv = true,
      .run = run_loads,
      .most_results = 1000},
+    {.name = "schema",
+     .summary = "the keys of a case file as a JSON Schema, for editors",
+     .description =
+         "Prints the JSON Schema (draft 7) of case files: every key with its unit, range, default\n"
+         "and meaning. Editors with a YAML language server complete and check keys with it, where\n"
+         "the first line of a case is\n"
+         "  # yaml-language-server: $schema=samara.schema.json\n",
+     .example = "> samara.schema.json",
+     .print = io::case_schema},
 }};
 
 /// How a piece of work ended.
@@ -244,6 +254,8 @@ void print_text(const CommandLine& line) {
     std::cout << help_text(line, commands);
   else if (line.request == Request::solver_options)
     std::cout << solver_options_text();
+  else if (line.request == Request::print)
+    std::cout << line.command->print();
   else
     std::cout << "samara " << version << "\n"
               << petsc::library_versions() << "\n"

@@ -4,6 +4,11 @@
 
 namespace samara {
 
+bool is_within(const std::string& field, const std::string& outer) {
+  return field.starts_with(outer) && (field.size() == outer.size() || outer.empty() ||
+                                      field[outer.size()] == '.' || field[outer.size()] == '[');
+}
+
 void require_none(const std::vector<Fault>& faults, const std::string& source) {
   std::string text;
   for (const Fault& fault : faults) {

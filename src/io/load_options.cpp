@@ -11,7 +11,7 @@ namespace {
 constexpr int most_harmonics = 200;
 constexpr int most_bins = 10000;
 constexpr int most_azimuths = 100000;
-constexpr NumberRule woehler{"a number >= 1", 1.0};
+constexpr Range woehler{"a number >= 1", 1.0};
 
 /// Reads `bins: 20`, or `bins: [20, 5]` of ranges and means.
 void read_bins(MapReader& map, loads::LoadEvaluationOptions& options) {
@@ -48,16 +48,16 @@ void read_goodman(const YamlNode& node, const std::string& where, LoadOptions& o
     MapReader map(entry, join_path(where, entry.key), errors);
     loads::GoodmanCorrection& correction = options.goodman[entry.key];
     map.require("ultimate_load", "in the unit of the channel");
-    map.read("ultimate_load", correction.ultimate_load, positive);
-    map.read("fixed_mean", correction.fixed_mean, any_number);
+    map.read("ultimate_load", correction.ultimate_load, fields::positive);
+    map.read("fixed_mean", correction.fixed_mean, fields::any_number);
     map.finish();
   }
 }
 
-void read_optional(MapReader& map, std::string_view key, const NumberRule& rule,
+void read_optional(MapReader& map, std::string_view key, const Range& range,
                    std::optional<double>& value) {
   double number = 0.0;
-  if (map.read(key, number, rule)) value = number;
+  if (map.read(key, number, range)) value = number;
 }
 
 }  // namespace
@@ -70,20 +70,20 @@ LoadOptions read_load_options(const std::vector<std::string>& settings) {
   apply_settings(settings, root, errors);
   MapReader map(root, "", errors);
   read_words(map, "channels", options.channels);
-  read_optional(map, "from", any_number, options.from);
-  read_optional(map, "until", any_number, options.until);
+  read_optional(map, "from", fields::any_number, options.from);
+  read_optional(map, "until", fields::any_number, options.until);
   if (options.from && options.until && !(*options.from < *options.until))
     map.refuse(*root.find("until"), "until",
                "expected more than from, " + describe(*root.find("until")));
   map.read("azimuths", options.azimuths, 2, most_azimuths);
   read_numbers(map, "exponents", woehler, options.evaluation.exponents);
-  map.read("equivalent_frequency", options.evaluation.frequency, positive);
+  map.read("equivalent_frequency", options.evaluation.frequency, fields::positive);
   options.evaluation.harmonics_are_asked_for =
       map.read("harmonics", options.evaluation.harmonics, 0, most_harmonics);
   read_bins(map, options.evaluation);
   if (const YamlNode* entry = map.find("goodman")) read_goodman(*entry, "goodman", options, errors);
-  read_numbers(map, "hours", non_negative, options.hours);
-  read_optional(map, "equivalent_cycles", positive, options.equivalent_cycles);
+  read_numbers(map, "hours", fields::non_negative, options.hours);
+  read_optional(map, "equivalent_cycles", fields::positive, options.equivalent_cycles);
   if (options.equivalent_cycles && options.hours.empty())
     map.refuse(*root.find("equivalent_cycles"), "equivalent_cycles",
                "is of a lifetime; hint: hours=[...], one number a result, makes one");

@@ -24,13 +24,13 @@ void read_words(MapReader& map, std::string_view key, std::vector<std::string>& 
   }
 }
 
-void read_numbers(MapReader& map, std::string_view key, const NumberRule& rule,
+void read_numbers(MapReader& map, std::string_view key, const Range& range,
                   std::vector<double>& values, const std::string& items) {
   const YamlNode* list = find_list(map, key, items);
   if (list == nullptr) return;
   values.resize(list->children.size());
   for (std::size_t i = 0; i < values.size(); ++i)
-    read_number(list->children[i], join_path(map.where(key), i), rule, values[i], map.errors());
+    read_number(list->children[i], join_path(map.where(key), i), range, values[i], map.errors());
 }
 
 }  // namespace samara::io

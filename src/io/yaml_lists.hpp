@@ -15,7 +15,7 @@ const YamlNode* find_list(MapReader& map, std::string_view key, const std::strin
 /// Reads names, none of them twice.
 void read_words(MapReader& map, std::string_view key, std::vector<std::string>& words);
 
-void read_numbers(MapReader& map, std::string_view key, const NumberRule& rule,
+void read_numbers(MapReader& map, std::string_view key, const Range& range,
                   std::vector<double>& values, const std::string& items = "numbers");
 
 }  // namespace samara::io

@@ -18,10 +18,6 @@
 namespace samara::io {
 namespace {
 
-/// Sizes of numbers, in SI units: beyond them squares and products leave what a double holds.
-constexpr double largest_number = 1e30;
-constexpr double least_number = 1e-30;
-
 constexpr std::size_t max_errors_shown = 100;
 constexpr std::size_t max_text_shown = 40;
 
@@ -102,12 +98,6 @@ std::string to_setting_path(const std::string& where) {
   return path;
 }
 
-/// Whether a field is that of `outer` or stands below it.
-bool is_within(const std::string& field, const std::string& outer) {
-  return field.starts_with(outer) && (field.size() == outer.size() || outer.empty() ||
-                                      field[outer.size()] == '.' || field[outer.size()] == '[');
-}
-
 /// The last --set argument in a field, or its place; of one that is left out, that of the innermost
 /// field around it.
 Place find_place(const YamlNode& root, const std::string& field) {
@@ -122,7 +112,7 @@ Place find_place(const YamlNode& root, const std::string& field) {
     } else {
       next = node->find(key);
     }
-    if (next == nullptr) break;
+    if (next == nullptr) return node->place;
     node = next;
   }
   return find_blame(*node);
@@ -149,8 +139,9 @@ std::string ErrorList::compose(const Place& place, const std::string& where,
   return message + what;
 }
 
-void ErrorList::add(const Place& place, const std::string& where, const std::string& what) {
-  errors_.push_back({place, where, compose(place, where, what)});
+void ErrorList::add(const Place& place, const std::string& where, const std::string& what,
+                    const std::string& mapping) {
+  errors_.push_back({place, mapping, compose(place, where, what)});
 }
 
 bool ErrorList::has_error_at(const std::string& field) const {
@@ -174,8 +165,9 @@ void ErrorList::add(const std::vector<Fault>& faults, const YamlNode& root) {
   errors_.insert(errors_.end(), found.begin(), found.end());
 }
 
-void ErrorList::note(const Place& place, const std::string& where, const std::string& what) {
-  notes_.push_back(compose(place, where, what));
+void ErrorList::note(const std::vector<Fault>& notes, const YamlNode& root) {
+  for (const Fault& note : notes)
+    notes_.push_back(compose(find_place(root, note.field), note.field, "note: " + note.text));
 }
 
 void ErrorList::throw_if_any() const {
@@ -194,14 +186,6 @@ void ErrorList::throw_if_any() const {
         "\n" + path_ + ": and " + std::to_string(sorted.size() - max_errors_shown) + " more errors";
   }
   throw InputError(text);
-}
-
-std::string join_path(const std::string& where, std::string_view key) {
-  return where.empty() ? std::string(key) : where + "." + std::string(key);
-}
-
-std::string join_path(const std::string& where, std::size_t index) {
-  return where + "[" + std::to_string(index) + "]";
 }
 
 std::string describe(const YamlNode& node) {
@@ -227,19 +211,20 @@ Place find_blame(const YamlNode& node) {
   return blame;
 }
 
-bool read_number(const YamlNode& node, const std::string& where, const NumberRule& rule,
-                 double& value, ErrorList& errors) {
+bool read_number(const YamlNode& node, const std::string& where, const Range& range, double& value,
+                 ErrorList& errors) {
   const std::optional<double> number = parse_number(node);
   const bool accepted = number && std::isfinite(*number) &&
-                        (rule.open ? *number > rule.low && *number < rule.high
-                                   : *number >= rule.low && *number <= rule.high);
+                        (range.open ? *number > range.low && *number < range.high
+                                    : *number >= range.low && *number <= range.high);
   if (!accepted) {
     errors.add(
         node.place, where,
-        std::string("expected ") + rule.words + ", " + describe(node) + suggest_number(node));
+        std::string("expected ") + range.words + ", " + describe(node) + suggest_number(node));
     return false;
   }
-  if (*number != 0.0 && (std::abs(*number) > largest_number || std::abs(*number) < least_number)) {
+  if (*number != 0.0 &&
+      (std::abs(*number) > fields::largest_number || std::abs(*number) < fields::least_number)) {
     errors.add(node.place, where,
                "expected 0 or a number from 1e-30 to 1e30 in size, " + describe(node));
     return false;
@@ -248,7 +233,7 @@ bool read_number(const YamlNode& node, const std::string& where, const NumberRul
   return true;
 }
 
-bool read_numbers(const YamlNode& node, const std::string& where, const NumberRule& rule,
+bool read_numbers(const YamlNode& node, const std::string& where, const Range& range,
                   std::span<double> values, ErrorList& errors) {
   if (node.kind != YamlNode::Kind::list || node.children.size() != values.size()) {
     errors.add(
@@ -258,7 +243,7 @@ bool read_numbers(const YamlNode& node, const std::string& where, const NumberRu
   }
   bool accepted = true;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    accepted &= read_number(node.children[i], join_path(where, i), rule, values[i], errors);
+    accepted &= read_number(node.children[i], join_path(where, i), range, values[i], errors);
   }
   return accepted;
 }
@@ -278,7 +263,7 @@ MapReader::MapReader(const YamlNode& node, std::string where, ErrorList& errors)
     std::string what = "duplicate key " + quote(entry.key);
     if (!where_.empty()) what += " in " + where_;
     if (first->place.line > 0) what += ", first given in line " + std::to_string(first->place.line);
-    errors_.add(entry.place, "", what);
+    errors_.add(entry.place, "", what, where_);
   }
 }
 
@@ -295,12 +280,13 @@ const YamlNode* MapReader::require(std::string_view key, std::string_view hint) 
   return entry;
 }
 
-bool MapReader::read(std::string_view key, double& value, const NumberRule& rule) {
+bool MapReader::read(std::string_view key, double& value, const Range& range) {
   const YamlNode* entry = find(key);
-  return entry != nullptr && read_number(*entry, where(key), rule, value, errors_);
+  return entry != nullptr && read_number(*entry, where(key), range, value, errors_);
 }
 
-bool MapReader::read(std::string_view key, int& value, int low, int high) {
+bool MapReader::read(std::string_view key, int& value, int low, int high,
+                     const std::string& others) {
   const YamlNode* entry = find(key);
   if (entry == nullptr) return false;
   int number = 0;
@@ -312,24 +298,20 @@ bool MapReader::read(std::string_view key, int& value, int low, int high) {
   if (!is_integer || number < low || number > high) {
     refuse(*entry, key,
            "expected an integer from " + std::to_string(low) + " to " + std::to_string(high) +
-               ", " + describe(*entry));
+               others + ", " + describe(*entry));
     return false;
   }
   value = number;
   return true;
 }
 
-bool MapReader::read(std::string_view key, std::span<double> values, const NumberRule& rule) {
+bool MapReader::read(std::string_view key, std::span<double> values, const Range& range) {
   const YamlNode* entry = find(key);
-  return entry != nullptr && read_numbers(*entry, where(key), rule, values, errors_);
+  return entry != nullptr && read_numbers(*entry, where(key), range, values, errors_);
 }
 
 void MapReader::refuse(const YamlNode& entry, std::string_view key, const std::string& what) const {
   errors_.add(entry.place, key.empty() ? where_ : where(key), what);
-}
-
-void MapReader::note(const YamlNode& entry, std::string_view key, const std::string& what) const {
-  errors_.note(entry.place, where(key), "note: " + what);
 }
 
 void MapReader::refuse_word(const YamlNode& entry, std::string_view key,
@@ -350,7 +332,7 @@ std::string MapReader::report_unknown(const YamlNode& entry) const {
   } else {
     what += "; known keys: " + list_words(known_, ", ");
   }
-  errors_.add(entry.place, "", what);
+  errors_.add(entry.place, "", what, where_);
   return similar;
 }
 
@@ -371,11 +353,6 @@ void MapReader::finish() {
   }
 }
 
-void read_angle(MapReader& map, std::string_view key, double& angle, const NumberRule& rule) {
-  double degrees = 0.0;
-  if (map.read(key, degrees, rule)) angle = degrees * std::numbers::pi / 180.0;
-}
-
 void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
                 const std::array<const char*, 2>& names,
                 std::vector<std::pair<double, double>>& pairs) {
@@ -388,7 +365,7 @@ void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
   for (std::size_t i = 0; i < node.children.size(); ++i) {
     const std::string where = join_path(map.where(key), i);
     std::array<double, 2> entry{};
-    if (!read_numbers(node.children[i], where, any_number, std::span<double>(entry),
+    if (!read_numbers(node.children[i], where, fields::any_number, std::span<double>(entry),
                       map.errors())) {
       continue;
     }
@@ -397,10 +374,6 @@ void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
                        std::string(names[0]) + " must be more than in the entry before");
     pairs.emplace_back(entry[0], entry[1]);
   }
-}
-
-void read_vector(MapReader& map, std::string_view key, Vector3& vector, const NumberRule& rule) {
-  map.read(key, std::span<double>(vector.data(), 3), rule);
 }
 
 }  // namespace samara::io

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "samara/base/fault.hpp"
+#include "samara/fields/ranges.hpp"
 #include "samara/io/yaml_tree.hpp"
 #include "samara/math/types.hpp"
 
@@ -23,11 +24,16 @@ class ErrorList {
       : path_(std::move(path)), settings_(std::move(settings)) {}
 
   /// `where` is the path of the key (`shaft.speed`); empty where `what` says it all.
-  void add(const Place& place, const std::string& where, const std::string& what);
+  void add(const Place& place, const std::string& where, const std::string& what) {
+    add(place, where, what, where);
+  }
+  /// `mapping`: the path of what was read with this error.
+  void add(const Place& place, const std::string& where, const std::string& what,
+           const std::string& mapping);
   /// Faults of fields, at their places in `root`; what was read with errors has enough of them.
   void add(const std::vector<Fault>& faults, const YamlNode& root);
-  /// What is no error, but has not the effect that it seems to have.
-  void note(const Place& place, const std::string& where, const std::string& what);
+  /// Fields that are no errors, but have not the effect that they seem to have.
+  void note(const std::vector<Fault>& notes, const YamlNode& root);
   const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return errors_.size(); }
 
@@ -49,26 +55,8 @@ class ErrorList {
   std::vector<std::string> notes_;
 };
 
-/// Which numbers are accepted, and how to say so.
-struct NumberRule {
-  const char* words;
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool open = false;  ///< the limits themselves are refused
-};
-
-inline constexpr NumberRule any_number{"a finite number"};
-inline constexpr NumberRule positive{"a number > 0", 0.0, std::numeric_limits<double>::infinity(),
-                                     true};
-inline constexpr NumberRule non_negative{"a number >= 0", 0.0};
-/// Beyond it nothing converges; below it rounding decides.
-inline constexpr NumberRule tolerance{"a number from 1e-14 to 1e-3", 1e-14, 1e-3};
-inline constexpr NumberRule fraction_of_one{"a number from 0 to 1", 0.0, 1.0};
-inline constexpr NumberRule quarter_turn{"an angle between -90 and 90 degrees", -90.0, 90.0, true};
-inline constexpr NumberRule half_turn{"an angle from -180 to 180 degrees", -180.0, 180.0};
-
-std::string join_path(const std::string& where, std::string_view key);
-std::string join_path(const std::string& where, std::size_t index);
+using fields::join_path;
+using fields::Range;
 
 /// Says what was given, for the end of a message: `got "fast"`.
 std::string describe(const YamlNode& node);
@@ -77,9 +65,9 @@ std::string describe(const YamlNode& node);
 Place find_blame(const YamlNode& node);
 
 /// These leave `value` alone and add an error where the node is not what the rule asks for.
-bool read_number(const YamlNode& node, const std::string& where, const NumberRule& rule,
-                 double& value, ErrorList& errors);
-bool read_numbers(const YamlNode& node, const std::string& where, const NumberRule& rule,
+bool read_number(const YamlNode& node, const std::string& where, const Range& range, double& value,
+                 ErrorList& errors);
+bool read_numbers(const YamlNode& node, const std::string& where, const Range& range,
                   std::span<double> values, ErrorList& errors);
 
 /// Reads the entries of one mapping. The keys that are asked for are the keys that are known, so
@@ -102,38 +90,21 @@ class MapReader {
   bool is_complete() const { return missing_.empty(); }
 
   /// Optional values: false, and `value` untouched, where the key is left out or wrong.
-  bool read(std::string_view key, double& value, const NumberRule& rule);
-  bool read(std::string_view key, int& value, int low, int high);
-  bool read(std::string_view key, std::span<double> values, const NumberRule& rule);
-
-  template <class Choice>
-  bool read(std::string_view key, Choice& value,
-            std::initializer_list<std::pair<const char*, Choice>> choices) {
-    const YamlNode* entry = find(key);
-    if (entry == nullptr) return false;
-    std::vector<std::string> words;
-    for (const auto& [word, choice] : choices) {
-      if (entry->kind == YamlNode::Kind::scalar && entry->text == word) {
-        value = choice;
-        return true;
-      }
-      words.emplace_back(word);
-    }
-    refuse_word(*entry, key, words);
-    return false;
-  }
+  bool read(std::string_view key, double& value, const Range& range);
+  /// `others`: words that are accepted, too, as the message says: " or auto".
+  bool read(std::string_view key, int& value, int low, int high, const std::string& others = {});
+  bool read(std::string_view key, std::span<double> values, const Range& range);
 
   /// Adds an error about the value of an entry.
   void refuse(const YamlNode& entry, std::string_view key, const std::string& what) const;
-  /// Adds a note about it.
-  void note(const YamlNode& entry, std::string_view key, const std::string& what) const;
+  /// The same of a value that is none of the words.
+  void refuse_word(const YamlNode& entry, std::string_view key,
+                   const std::vector<std::string>& words) const;
 
   /// Reports unknown and missing keys. Call it last.
   void finish();
 
  private:
-  void refuse_word(const YamlNode& entry, std::string_view key,
-                   const std::vector<std::string>& words) const;
   /// Reports an unknown key; returns the known one it resembles.
   std::string report_unknown(const YamlNode& entry) const;
 
@@ -148,14 +119,9 @@ class MapReader {
   std::vector<Missing> missing_;
 };
 
-/// Reads an angle key in degrees into radians.
-void read_angle(MapReader& map, std::string_view key, double& angle, const NumberRule& rule);
-
 /// Reads [[x, y], ...] with rising x, of which `names` are the words.
 void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
                 const std::array<const char*, 2>& names,
                 std::vector<std::pair<double, double>>& pairs);
-
-void read_vector(MapReader& map, std::string_view key, Vector3& vector, const NumberRule& rule);
 
 }  // namespace samara::io

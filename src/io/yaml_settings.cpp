@@ -6,39 +6,10 @@
 #include <string_view>
 #include <system_error>
 
+#include "exclusive_keys.hpp"
+
 namespace samara::io {
 namespace {
-
-struct Spelling {
-  std::string_view key;
-  std::string_view replaced;
-};
-
-/// What a key replaces where it is set: the other ways to state the same thing.
-constexpr Spelling other_spellings[] = {
-    {"speed", "speed_rpm"},
-    {"speed_rpm", "speed"},
-    {"stiffness", "stiffness_matrix"},
-    {"stiffness_matrix", "stiffness"},
-    {"mass_matrix", "mass"},
-    {"mass_matrix", "inertia"},
-    {"mass_matrix", "mass_center"},
-    {"mass", "mass_matrix"},
-    {"inertia", "mass_matrix"},
-    {"mass_center", "mass_matrix"},
-    {"at", "from"},
-    {"at", "to"},
-    {"from", "at"},
-    {"to", "at"},
-    {"harmonic", "table"},
-    {"table", "harmonic"},
-    {"torque_table", "torque"},
-    {"torque_table", "torque_slope"},
-    {"torque", "torque_table"},
-    {"torque_slope", "torque_table"},
-    {"per_rev", "frequency"},
-    {"frequency", "per_rev"},
-};
 
 constexpr std::size_t max_path_length = 16;
 
@@ -56,11 +27,10 @@ std::vector<std::string> split_path(std::string_view path) {
 }
 
 void remove_other_spellings(YamlNode& map, std::string_view key) {
-  for (const Spelling& spelling : other_spellings) {
-    if (spelling.key != key) continue;
-    std::erase_if(map.children,
-                  [&](const YamlNode& child) { return child.key == spelling.replaced; });
-  }
+  static const ExclusiveKeys others = find_exclusive_keys();
+  std::erase_if(map.children, [&](const YamlNode& child) {
+    return others.contains({std::string(key), child.key});
+  });
 }
 
 /// Returns the child to go on with, made where it is not there; null after an error.

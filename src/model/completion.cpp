@@ -15,6 +15,7 @@ bool has_ratios(const BeamDefinition& beam) {
 }
 
 void complete_beam(const std::string& key, BeamDefinition& beam, std::vector<Fault>& faults) {
+  if (!beam.reference_line.empty()) beam.length = compute_arc_length(beam.reference_line);
   for (SectionDefinition& section : beam.sections) {
     section.stiffness = symmetric(section.stiffness);
     section.mass = symmetric(section.mass);

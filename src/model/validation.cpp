@@ -13,6 +13,8 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 /// Of a set point that is meant to be the mean speed.
 constexpr double speed_rounding = 1e-6;
+/// `length` beside `reference_line` must agree to this, relative.
+constexpr double length_tolerance = 1e-3;
 
 std::string indexed(const std::string& list, std::size_t i) {
   return list + "[" + std::to_string(i) + "]";
@@ -54,8 +56,9 @@ class Validation {
   // ---- beams -----------------------------------------------------------------------------------
 
   void check_beam(const std::string& key, const BeamDefinition& beam) {
-    if (!(beam.length > 0.0))
+    if (beam.reference_line.empty() && !(beam.length > 0.0))
       add(key + ".length", "expected a number > 0", {key + ".reference_line"});
+    check_line(key, beam);
     if (beam.sections.empty()) add(key + ".sections", "expected one section or more");
     for (std::size_t i = 0; i < beam.sections.size(); ++i) {
       const std::string place = indexed(key + ".sections", i);
@@ -77,6 +80,25 @@ class Validation {
       add(key + ".mass_damping",
           "not beside damping ratios, which are met by strain rates alone; hint: give damping as "
           "mu");
+  }
+
+  void check_line(const std::string& key, const BeamDefinition& beam) {
+    const std::vector<Vector3>& line = beam.reference_line;
+    if (line.empty()) return;
+    const std::size_t before = faults_.size();
+    const std::string field = key + ".reference_line";
+    if (line.size() < 2) add(field, "expected at least 2 points");
+    if (!line[0].isZero(0.0))
+      add(indexed(field, 0), "the first point must be [0, 0, 0], the root of the beam");
+    for (std::size_t i = 1; i < line.size(); ++i)
+      if (line[i] == line[i - 1]) add(indexed(field, i), "the same point as the one before");
+    if (faults_.size() > before) return;
+    const double length = compute_arc_length(line);
+    if (!std::isfinite(length))
+      add(field, "the points are too far apart");
+    else if (beam.length != 0.0 && std::abs(beam.length - length) > length_tolerance * length)
+      add(key + ".length", "the arc length of reference_line is " + std::to_string(length) +
+                               ", got " + general(beam.length, 6) + "; leave length out");
   }
 
   void check_support(const std::string& key, const SupportDefinition& support) {
@@ -232,6 +254,10 @@ class Validation {
 
   /// Without blades nothing turns about a shaft.
   void check_tower_alone() {
+    constexpr const char* text =
+        "there are no blades; hint: what stands on the tower is the nacelle";
+    if (!(turbine_.shaft == ShaftDefinition())) add("shaft", text);
+    if (!(turbine_.hub == HubDefinition())) add("hub", text);
     const NacelleDefinition& nacelle = turbine_.nacelle;
     const double about_yaw =
         nacelle.inertia(2) + nacelle.mass * nacelle.center_of_mass.head<2>().squaredNorm();
@@ -280,6 +306,29 @@ class Validation {
 };
 
 }  // namespace
+
+std::vector<Fault> find_notes(const TurbineDefinition& turbine) {
+  const ShaftDefinition& shaft = turbine.shaft;
+  const TorqueLaw& law = shaft.generator.law;
+  std::vector<Fault> notes;
+  const auto check_rest = [&notes](const std::string& field, const TorqueLaw& acting) {
+    if (acting.table.size() < 2 || acting.covers(0.0)) return;
+    notes.push_back({field + ".torque_table", "the table reaches from " +
+                                                  general(acting.table.front().first, 6) + " to " +
+                                                  general(acting.table.back().first, 6) +
+                                                  " rad/s, the rotor is parked: no torque"});
+  };
+  if (shaft.generator.kind != JointKind::free) {
+    constexpr const char* text = "without effect, the generator is locked";
+    if (law.torque != 0.0) notes.push_back({"shaft.generator.torque", text});
+    if (law.slope != 0.0) notes.push_back({"shaft.generator.torque_slope", text});
+    if (!law.table.empty()) notes.push_back({"shaft.generator.torque_table", text});
+  } else if (shaft.speed == 0.0) {
+    check_rest("shaft.generator", law);
+  }
+  if (shaft.speed == 0.0) check_rest("shaft.rotor", shaft.rotor);
+  return notes;
+}
 
 std::vector<Fault> find_faults(const TurbineDefinition& turbine) {
   return Validation(turbine).find();

@@ -9,6 +9,7 @@
 #include "samara/base/format.hpp"
 #include "samara/math/curve_faults.hpp"
 #include "samara/model/validation.hpp"
+#include "samara/simulation/scenario_fields.hpp"
 
 namespace samara::simulation {
 namespace {
@@ -41,9 +42,15 @@ std::string indexed(const std::string& list, std::size_t i) {
 class Validation {
  public:
   explicit Validation(const Scenario& scenario)
-      : scenario_(scenario),
-        turbine_(scenario.turbine),
-        faults_(model::find_faults(scenario.turbine)) {}
+      : scenario_(scenario), turbine_(scenario.turbine), faults_(find_range_faults(scenario)) {
+    // A number out of its range says enough of what it makes wrong.
+    const std::vector<Fault> ranges = faults_;
+    for (const Fault& fault : model::find_faults(turbine_))
+      if (std::ranges::none_of(ranges, [&fault](const Fault& range) {
+            return is_within(range.field, fault.field) || is_within(fault.field, range.field);
+          }))
+        faults_.push_back(fault);
+  }
 
   std::vector<Fault> find(Analysis analysis) {
     switch (analysis) {

@@ -14,21 +14,22 @@ ROOMS = {  # room: the rooms it may include, itself always
     "system": ["base", "petsc"],
     "elements": ["base", "math"],
     "model": ["base", "math", "elements"],
+    "fields": ["base", "math", "elements", "model"],
     "components": ["base", "math", "petsc", "elements", "model", "system"],
     "turbine": ["base", "math", "petsc", "elements", "model", "system", "components"],
     "analysis": ["base", "math", "petsc", "system"],
     "linear": ["base", "math", "petsc", "system", "analysis"],
-    "simulation": ["base", "math", "petsc", "elements", "model", "system", "turbine", "analysis",
-                   "linear"],
+    "simulation": ["base", "math", "petsc", "elements", "model", "fields", "system", "turbine",
+                   "analysis", "linear"],
     "loads": ["base"],
-    "io": ["base", "math", "petsc", "elements", "model", "system", "turbine", "analysis", "linear",
-           "simulation", "loads"],
+    "io": ["base", "math", "petsc", "elements", "model", "fields", "system", "turbine", "analysis",
+           "linear", "simulation", "loads"],
     "decks": ["base", "math", "elements", "model", "io"],
 }
 DRIVERS = "drivers"  # may include every room
 
 LIBRARIES = [  # pattern of its headers, the rooms that may include them
-    (re.compile(r"yaml-cpp/"), ["io"]),
+    (re.compile(r"(yaml-cpp|nlohmann)/"), ["io"]),
     (re.compile(r"(.*/)?(hdf5(_hl)?|H5\w+)\.h$"), ["io"]),
     (re.compile(r"(.*/)?(petsc|slepc)\w*\.(h|hpp)$"), ["petsc", "system", "components", "turbine", "analysis", "linear"]),
 ]

@@ -13,6 +13,9 @@ struct Fault {
   std::vector<std::string> others = {};
 };
 
+/// Whether a field is that of `outer` or stands below it.
+bool is_within(const std::string& field, const std::string& outer);
+
 /// @throws InputError of all faults, one a line: "source: field: text"
 void require_none(const std::vector<Fault>& faults, const std::string& source);
 

@@ -14,7 +14,6 @@ struct Case : simulation::Scenario {
   std::string path;
   std::string text;  ///< the file as read, with what --set changed stated in comment lines on top
   std::vector<std::string> settings;  ///< the --set arguments, as given
-  std::string mat_path;               ///< of the linear model; empty: no MAT-file is wanted
   std::string model_text;  ///< what makes the model, in one spelling: equal for equal models
   std::vector<std::string> notes;  ///< keys without the effect that they seem to have, by place
 };

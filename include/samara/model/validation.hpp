@@ -11,4 +11,7 @@ namespace samara::model {
 /// All faults, fields by the keys of a case file (docs/case_file.md).
 std::vector<Fault> find_faults(const TurbineDefinition& turbine);
 
+/// What is no fault, but has not the effect that it seems to have.
+std::vector<Fault> find_notes(const TurbineDefinition& turbine);
+
 }  // namespace samara::model

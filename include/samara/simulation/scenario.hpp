@@ -41,6 +41,7 @@ struct LinearizeSetup {
   std::vector<std::string> inputs;   ///< empty: all
   std::vector<std::string> outputs;  ///< channels; empty: all but those of stations
   turbine::ChannelStations stations;
+  std::string mat_path;  ///< of a MAT-file with the same matrices; empty: none is wanted
 };
 
 /// Fields are named by the keys of a case file (docs/case_file.md) in messages.

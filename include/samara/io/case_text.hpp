@@ -1,0 +1,24 @@
+// Writes a turbine as the text of a case file.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "samara/model/definition.hpp"
+
+namespace samara::io {
+
+struct CaseComments {
+  std::vector<std::string> head;            ///< lines on top
+  std::map<std::string, std::string> keys;  ///< behind keys, by their path: "shaft.overhang"
+};
+
+/// The keys that have a comment, are compulsory or have another value than by default. Numbers read
+/// back as the same doubles.
+std::string write_case_text(const model::TurbineDefinition& turbine, const CaseComments& comments);
+
+/// The shortest decimal that reads back as the same double.
+std::string exact(double value);
+
+}  // namespace samara::io
