@@ -32,7 +32,7 @@ class Reader {
  public:
   explicit Reader(OpenfastImport& import) : import_(import) {}
 
-  bool run(const std::string& path, bool speaks, DraftBeam& beam) {
+  bool run(const std::string& path, bool speaks, model::BeamDefinition& beam) {
     const std::unique_ptr<Deck> primary = import_.open(path);
     if (!primary) return false;
     Deck& deck = *primary;
@@ -136,7 +136,7 @@ class Reader {
     return members;
   }
 
-  void read_body(Deck& deck, const BeamdynLine& line, DraftBeam& beam) {
+  void read_body(Deck& deck, const BeamdynLine& line, model::BeamDefinition& beam) {
     deck.set_order({"station_total", "damp_type"});
     const int count = deck.has("station_total") ? deck.integer("station_total", 1, most_rows) : -1;
     if (count < 0) deck.number("station_total");
@@ -156,7 +156,7 @@ class Reader {
                      "needs more of them");
   }
 
-  void read_damping(Deck& deck, DraftBeam& beam) {
+  void read_damping(Deck& deck, model::BeamDefinition& beam) {
     // Older files call it damp_flag.
     const std::string key =
         !deck.has("damp_type") && deck.has("damp_flag") ? "damp_flag" : "damp_type";
@@ -191,7 +191,8 @@ class Reader {
                                                : "damp_type 0");
   }
 
-  void build_sections(Deck& deck, const BeamdynLine& line, Stations& stations, DraftBeam& beam) {
+  void build_sections(Deck& deck, const BeamdynLine& line, Stations& stations,
+                      model::BeamDefinition& beam) {
     std::vector<std::string> places;
     for (const BeamdynLine::Place& place : line.places(stations.grid)) {
       // The first station that is not before this place.
@@ -207,13 +208,13 @@ class Reader {
         return turn_to_section_axes(
             Matrix6(matrices[before] + part * (matrices[row] - matrices[before])));
       };
-      DraftSection section;
+      model::SectionDefinition section;
       section.at = std::min(1.0, place_of(Station{place.arc, place.jumps}));
       section.stiffness = between(stations.stiffness);
       section.mass = between(stations.mass);
       drop_round_off(section.stiffness);
       drop_round_off(section.mass);
-      section.twist_deg = place.twist_deg;
+      section.twist = fields::deg.to_si(place.twist_deg);
       places.push_back(deck.place(stations.lines[row]));
       beam.sections.push_back(section);
     }
@@ -286,7 +287,8 @@ class Reader {
 
 }  // namespace
 
-bool read_beamdyn(OpenfastImport& import, const std::string& path, bool speaks, DraftBeam& beam) {
+bool read_beamdyn(OpenfastImport& import, const std::string& path, bool speaks,
+                  model::BeamDefinition& beam) {
   return Reader(import).run(path, speaks, beam);
 }
 

@@ -8,6 +8,7 @@
 namespace samara::decks {
 
 /// False where an error has been found. Without `speaks` the report stays as it is.
-bool read_beamdyn(OpenfastImport& import, const std::string& path, bool speaks, DraftBeam& beam);
+bool read_beamdyn(OpenfastImport& import, const std::string& path, bool speaks,
+                  model::BeamDefinition& beam);
 
 }  // namespace samara::decks

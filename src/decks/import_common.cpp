@@ -126,7 +126,7 @@ Matrix6 build_mass_matrix(double mass, const Vector3& inertia) {
   return matrix;
 }
 
-void check_sections(const DraftBeam& beam, const std::string& what,
+void check_sections(const model::BeamDefinition& beam, const std::string& what,
                     const std::vector<std::string>& places, DeckErrors& errors) {
   struct Fault {
     std::size_t first;
@@ -135,12 +135,7 @@ void check_sections(const DraftBeam& beam, const std::string& what,
   };
   std::vector<Fault> faults;
   for (std::size_t i = 0; i < beam.sections.size(); ++i) {
-    const DraftSection& draft = beam.sections[i];
-    model::SectionDefinition section;
-    section.stiffness = draft.stiffness;
-    section.rigid = draft.rigid;
-    section.mass = draft.mass;
-    const std::string words = model::find_section_fault(section);
+    const std::string words = model::find_section_fault(beam.sections[i]);
     if (words.empty()) continue;
     const auto known = std::find_if(faults.begin(), faults.end(),
                                     [&](const Fault& fault) { return fault.words == words; });
@@ -165,14 +160,14 @@ void drop_round_off(Matrix6& matrix) {
         matrix(i, j) = 0.0;
 }
 
-BeamMass integrate_mass(const DraftBeam& beam, double length) {
+BeamMass integrate_mass(const model::BeamDefinition& beam, double length) {
   BeamMass total;
   const auto add = [&](double a, double b, double m, double n) {  // linear from m to n
     const double h = (b - a) * length;
     total.mass += 0.5 * h * (m + n);
     total.moment += h * (a * length * 0.5 * (m + n) + h * (m / 6.0 + n / 3.0));
   };
-  const std::vector<DraftSection>& s = beam.sections;
+  const std::vector<model::SectionDefinition>& s = beam.sections;
   if (s.empty()) return total;
   add(0.0, s.front().at, s.front().mass(0, 0), s.front().mass(0, 0));
   for (std::size_t i = 1; i < s.size(); ++i)

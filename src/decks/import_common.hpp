@@ -4,13 +4,33 @@
 #include <string>
 #include <vector>
 
+#include "samara/base/format.hpp"
 #include "samara/decks/import.hpp"
+#include "samara/fields/field.hpp"
+#include "samara/io/case_text.hpp"
 #include "samara/math/types.hpp"
+#include "samara/model/definition.hpp"
 
-#include "case_writer.hpp"
 #include "openfast_deck.hpp"
 
 namespace samara::decks {
+
+/// Elements of a beam and Gauss points of each.
+struct Mesh {
+  int elements = 1;
+  int order = 1;
+};
+
+/// Of imported beams: the first ten modes are within 0.5 % of converged ones (docs/import.md).
+inline constexpr Mesh bending_blade_mesh{3, 4};  ///< of blades that do nothing but bend
+inline constexpr Mesh blade_mesh{2, 4};          ///< of blades with all six strains
+inline constexpr Mesh bending_tower_mesh{1, 5};  ///< of towers below the former
+inline constexpr Mesh tower_mesh{1, 4};          ///< below the latter
+
+inline void set_mesh(model::BeamDefinition& beam, const Mesh& mesh) {
+  beam.elements = mesh.elements;
+  beam.order = mesh.order;
+}
 
 /// A property along a beam, linear between its points. A place given twice is a jump.
 struct Curve {
@@ -51,7 +71,7 @@ Matrix6 build_mass_matrix(double mass, const Vector3& inertia);
 void drop_round_off(Matrix6& matrix);
 
 /// Adds what is wrong with the sections of a beam, each fault once, by the first place that has it.
-void check_sections(const DraftBeam& beam, const std::string& what,
+void check_sections(const model::BeamDefinition& beam, const std::string& what,
                     const std::vector<std::string>& places, DeckErrors& errors);
 
 /// Mass [kg] and first moment [kg m] of a beam along its line.
@@ -59,11 +79,14 @@ struct BeamMass {
   double mass = 0.0;
   double moment = 0.0;
 };
-BeamMass integrate_mass(const DraftBeam& beam, double length);
+BeamMass integrate_mass(const model::BeamDefinition& beam, double length);
 
 /// Reads the case back: what it states may be refused as a case.
 /// @throws InputError
 void check_import(const Import& import);
+
+/// Few digits, for people.
+inline std::string rounded(double value, int digits = 6) { return general(value, digits); }
 
 /// Texts of a deck may be in any encoding; the case is UTF-8.
 std::string clean_text(const std::string& text);

@@ -226,7 +226,8 @@ void say_columns(OpenfastImport& import, const Deck& deck, const DeckTable& tabl
 /// Bending only, no rotary inertia.
 void build_sections(OpenfastImport& import, const Deck& deck, const DeckTable& table,
                     const BeamWords& words, const Curve& mass,
-                    const std::array<Curve, 2>& stiffness, const Curve* twist, DraftBeam& beam) {
+                    const std::array<Curve, 2>& stiffness, const Curve* twist,
+                    model::BeamDefinition& beam) {
   for (std::size_t i = 0; i < table.lines.size(); ++i) {
     const auto check = [&](const std::string& name, double value) {
       if (!(value > 0.0))
@@ -234,7 +235,7 @@ void build_sections(OpenfastImport& import, const Deck& deck, const DeckTable& t
             deck.place(table.lines[i]),
             name + ": " + rounded(value) + ", expected a number > 0, factors included");
     };
-    DraftSection section;
+    model::SectionDefinition section;
     section.at = std::min(table.columns[0][i], 1.0);
     check(words.mass, mass.values[i]);
     section.mass = build_mass_matrix(mass.values[i], Vector3::Zero());
@@ -245,13 +246,14 @@ void build_sections(OpenfastImport& import, const Deck& deck, const DeckTable& t
       section.rigid[4 + k] = false;
       section.stiffness.diagonal()(static_cast<Eigen::Index>(4 + k)) = stiffness[k].values[i];
     }
-    if (twist != nullptr) section.twist_deg = twist->values[i];
+    if (twist != nullptr) section.twist = fields::deg.to_si(twist->values[i]);
     beam.sections.push_back(section);
   }
 }
 
 /// Fills sections and damping of a beam whose length is known.
-void read_beam(OpenfastImport& import, Deck& deck, const BeamWords& words, DraftBeam& beam) {
+void read_beam(OpenfastImport& import, Deck& deck, const BeamWords& words,
+               model::BeamDefinition& beam) {
   std::vector<std::string> order{words.count};
   for (const Direction& direction : words.directions)
     order.insert(order.end(), direction.ratios.begin(), direction.ratios.end());
@@ -366,11 +368,11 @@ void read_elastodyn_tower(OpenfastImport& import, const std::string& path, bool 
                            {"SSStTunr(1)", "SSStTunr(2)"},
                            "3",
                            bends_sideways}}}};
-  read_beam(import, *deck, words, import.draft.tower);
+  read_beam(import, *deck, words, import.turbine.tower);
 }
 
 bool read_elastodyn_blade(OpenfastImport& import, const std::string& path, bool speaks,
-                          bool bends_flap, bool bends_edge, DraftBeam& beam) {
+                          bool bends_flap, bool bends_edge, model::BeamDefinition& beam) {
   const std::unique_ptr<Deck> deck = import.open(path);
   if (!deck) return false;
   const std::size_t lines_before = import.report.size();

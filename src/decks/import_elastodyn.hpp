@@ -19,6 +19,6 @@ void read_elastodyn_tower(OpenfastImport& import, const std::string& path, bool 
 /// Fills sections and damping of a blade, whose length is known. False where an error has been
 /// found. Without `speaks` the report stays as it is.
 bool read_elastodyn_blade(OpenfastImport& import, const std::string& path, bool speaks,
-                          bool bends_flap, bool bends_edge, DraftBeam& beam);
+                          bool bends_flap, bool bends_edge, model::BeamDefinition& beam);
 
 }  // namespace samara::decks

@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "import_common.hpp"
+
 namespace samara::decks {
 namespace {
 
@@ -45,18 +47,18 @@ void add_locked_furling(OpenfastImport& import, Deck& elastodyn) {
   if (!file) return;
   Deck& deck = *file;
   import.say(elastodyn, "FurlFile", Fate::taken, "read");
-  CaseDraft& draft = import.draft;
+  model::NacelleDefinition& definition = import.turbine.nacelle;
 
   const auto body = [&](const std::string& mass, const std::string& center) {
     const Body result{deck.number(mass), deck.point(center, "n"), Matrix3::Zero()};
     import.require(result.mass >= 0.0, deck, mass, "expected a number >= 0");
     return result;
   };
-  Body nacelle{draft.nacelle_mass,
-               {draft.nacelle_center(1), -draft.nacelle_center(0), draft.nacelle_center(2)},
-               Matrix3::Zero()};
-  nacelle.inertia.diagonal() << draft.nacelle_inertia(1), draft.nacelle_inertia(0),
-      draft.nacelle_inertia(2);
+  Body nacelle{
+      definition.mass,
+      {definition.center_of_mass(1), -definition.center_of_mass(0), definition.center_of_mass(2)},
+      Matrix3::Zero()};
+  nacelle.inertia.diagonal() << definition.inertia(1), definition.inertia(0), definition.inertia(2);
   std::array<Body, 4> bodies{nacelle, body("RFrlMass", "RFrlCM"), body("BoomMass", "BoomCM"),
                              body("TFinMass", "TFinCM")};
   Body& tail = bodies[2];
@@ -74,9 +76,9 @@ void add_locked_furling(OpenfastImport& import, Deck& elastodyn) {
     whole.inertia += part.inertia +
                      part.mass * (arm.squaredNorm() * Matrix3::Identity() - arm * arm.transpose());
   }
-  draft.nacelle_mass = whole.mass;
-  draft.nacelle_center = {-whole.center(1), whole.center(0), whole.center(2)};
-  draft.nacelle_inertia = {whole.inertia(1, 1), whole.inertia(0, 0), whole.inertia(2, 2)};
+  definition.mass = whole.mass;
+  definition.center_of_mass = {-whole.center(1), whole.center(0), whole.center(2)};
+  definition.inertia = {whole.inertia(1, 1), whole.inertia(0, 0), whole.inertia(2, 2)};
   const double products = std::max({std::abs(whole.inertia(0, 1)), std::abs(whole.inertia(0, 2)),
                                     std::abs(whole.inertia(1, 2))});
   for (const char* key : {"RFrlMass", "BoomMass", "TFinMass", "RFrlIner", "TFrlIner"})

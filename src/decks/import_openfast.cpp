@@ -22,7 +22,7 @@ constexpr double same_blade = 1e-12;
 
 /// One blade, from whichever module describes it.
 struct BladeData {
-  DraftBeam beam;
+  model::BeamDefinition beam;
   std::string path;
 };
 
@@ -69,13 +69,13 @@ class Importer {
     import_.report_unused(main_);
     import_.report_unused(*elastodyn_);
     Import result;
-    import_.draft.head.insert(
-        import_.draft.head.begin(),
+    import_.comments.head.insert(
+        import_.comments.head.begin(),
         {"Imported by samara from OpenFAST, " +
              clean_text(std::filesystem::path(path_).filename().string()) + ".",
          "Every key is explained in docs/case_file.md, the import in docs/import.md."
          " SI units."});
-    result.text = write_case_text(import_.draft);
+    result.text = io::write_case_text(import_.turbine, import_.comments);
     result.report = std::move(import_.report);
     result.warnings = std::move(import_.warnings);
     check_import(result);
@@ -135,12 +135,12 @@ class Importer {
   void read_gravity() {
     // FAST 8.16 has it in the file of ElastoDyn, OpenFAST in the main file.
     if (main_.has("Gravity"))
-      import_.draft.gravity = import_.take(main_, "Gravity", "gravity");
+      import_.turbine.gravity = import_.take(main_, "Gravity", "gravity");
     else if (elastodyn_ && elastodyn_->has("Gravity"))
-      import_.draft.gravity = import_.take(*elastodyn_, "Gravity", "gravity");
+      import_.turbine.gravity = import_.take(*elastodyn_, "Gravity", "gravity");
     else
       import_.errors.add(path_, "missing key \"Gravity\", here or in the file of ElastoDyn");
-    if (import_.draft.gravity < 0.0) import_.errors.add(path_, "Gravity: expected a number >= 0");
+    if (import_.turbine.gravity < 0.0) import_.errors.add(path_, "Gravity: expected a number >= 0");
   }
 
   // ---- ElastoDyn
@@ -148,7 +148,8 @@ class Importer {
   void read_freedoms() {
     Deck& deck = *elastodyn_;
     blades_ = deck.integer("NumBl", 1, 3);
-    import_.draft.blades = blades_;
+    import_.turbine.blades.count = blades_;
+    import_.turbine.has_nacelle = true;
     import_.say(deck, "NumBl", Fate::taken, "blades.count");
     import_.note("blades.count", "NumBl");
     const auto lock = [&](const std::string& key, const std::string& what, const std::string& why) {
@@ -157,14 +158,14 @@ class Importer {
                   deck.flag(key) ? "True, but " + what + " is locked: " + why
                                  : "False: " + what + " is locked");
     };
-    import_.draft.has_torsion = deck.flag("DrTrDOF");
-    if (import_.draft.has_torsion) {
+    if (deck.flag("DrTrDOF")) {
+      import_.turbine.shaft.torsion.kind = model::JointKind::free;
       import_.say(deck, "DrTrDOF", Fate::taken, "shaft.torsion");
-      import_.draft.torsion_stiffness = import_.take(deck, "DTTorSpr", "shaft.torsion");
-      import_.draft.torsion_damping = import_.take(deck, "DTTorDmp", "shaft.torsion");
-      import_.require(import_.draft.torsion_stiffness > 0.0, deck, "DTTorSpr",
+      import_.turbine.shaft.torsion.stiffness = import_.take(deck, "DTTorSpr", "shaft.torsion");
+      import_.turbine.shaft.torsion.damping = import_.take(deck, "DTTorDmp", "shaft.torsion");
+      import_.require(import_.turbine.shaft.torsion.stiffness > 0.0, deck, "DTTorSpr",
                       "expected a number > 0");
-      import_.require(import_.draft.torsion_damping >= 0.0, deck, "DTTorDmp",
+      import_.require(import_.turbine.shaft.torsion.damping >= 0.0, deck, "DTTorDmp",
                       "expected a number >= 0");
       import_.note("shaft.torsion", "DTTorSpr, DTTorDmp");
     } else {
@@ -191,9 +192,9 @@ class Importer {
       import_.say(deck, "YawDOF", Fate::taken, "nacelle.yaw: locked");
       return;
     }
-    CaseDraft& draft = import_.draft;
+    model::JointDefinition& yaw = import_.turbine.nacelle.yaw;
     if (main_.number("CompServo") == 0.0) {
-      draft.yaw_free = true;
+      yaw.kind = model::JointKind::free;
       import_.say(deck, "YawDOF", Fate::taken,
                   "nacelle.yaw: free, without spring and damper, for ServoDyn is off");
       return;
@@ -209,11 +210,11 @@ class Importer {
     import_.say(main_, "ServoFile", Fate::taken, "YawSpr and YawDamp");
     const std::unique_ptr<Deck> servo = import_.open(path);
     if (!servo) return;
-    draft.yaw_free = true;
-    draft.yaw_stiffness = servo->number("YawSpr");
-    draft.yaw_damping = servo->number("YawDamp");
-    import_.require(draft.yaw_stiffness >= 0.0, *servo, "YawSpr", "expected a number >= 0");
-    import_.require(draft.yaw_damping >= 0.0, *servo, "YawDamp", "expected a number >= 0");
+    yaw.kind = model::JointKind::free;
+    yaw.stiffness = servo->number("YawSpr");
+    yaw.damping = servo->number("YawDamp");
+    import_.require(yaw.stiffness >= 0.0, *servo, "YawSpr", "expected a number >= 0");
+    import_.require(yaw.damping >= 0.0, *servo, "YawDamp", "expected a number >= 0");
     import_.say(deck, "YawDOF", Fate::taken, "nacelle.yaw: free");
     import_.say(*servo, "YawSpr", Fate::taken, "nacelle.yaw.stiffness");
     import_.say(*servo, "YawDamp", Fate::taken, "nacelle.yaw.damping");
@@ -262,39 +263,44 @@ class Importer {
 
   void read_geometry() {
     Deck& deck = *elastodyn_;
-    import_.draft.speed_rpm = import_.take(deck, "RotSpeed", "shaft.speed_rpm");
-    import_.require(import_.draft.speed_rpm >= 0.0, deck, "RotSpeed", "expected a number >= 0");
-    import_.draft.overhang = import_.take(deck, "OverHang", "shaft.overhang");
-    import_.draft.tilt_deg = import_.take(deck, "ShftTilt", "shaft.tilt_deg");
-    import_.require(std::abs(import_.draft.tilt_deg) < 90.0, deck, "ShftTilt",
+    model::ShaftDefinition& shaft = import_.turbine.shaft;
+    shaft.speed = fields::rpm.to_si(import_.take(deck, "RotSpeed", "shaft.speed_rpm"));
+    import_.require(shaft.speed >= 0.0, deck, "RotSpeed", "expected a number >= 0");
+    shaft.overhang = import_.take(deck, "OverHang", "shaft.overhang");
+    const double tilt = import_.take(deck, "ShftTilt", "shaft.tilt_deg");
+    shaft.tilt = fields::deg.to_si(tilt);
+    import_.require(std::abs(tilt) < 90.0, deck, "ShftTilt",
                     "expected an angle between -90 and 90 degrees");
-    import_.draft.height = import_.take(deck, "Twr2Shft", "shaft.height");
-    import_.draft.hub_radius = import_.take(deck, "HubRad", "hub.radius");
-    import_.require(import_.draft.hub_radius >= 0.0, deck, "HubRad", "expected a number >= 0");
+    shaft.height = import_.take(deck, "Twr2Shft", "shaft.height");
+    import_.turbine.hub.radius = import_.take(deck, "HubRad", "hub.radius");
+    import_.require(import_.turbine.hub.radius >= 0.0, deck, "HubRad", "expected a number >= 0");
     const double start = deck.number("Azimuth");
     const double up = deck.number("AzimB1Up");
-    import_.draft.azimuth_deg = start - up;
+    shaft.azimuth = fields::deg.to_si(start - up);
     import_.say(deck, "Azimuth", Fate::derived, "shaft.azimuth_deg = Azimuth - AzimB1Up");
     import_.say(deck, "AzimB1Up", Fate::derived, "shaft.azimuth_deg = Azimuth - AzimB1Up");
     import_.note("shaft.azimuth_deg", "Azimuth - AzimB1Up");
     tip_radius_ = deck.number("TipRad");
 
+    double precone = 0.0;
+    double blade_pitch = 0.0;
     for (int k = 1; k <= blades_; ++k) {
       const std::string cone = "PreCone(" + std::to_string(k) + ")";
       const double value = import_.derive(deck, cone, "blades.precone_deg");
-      if (k == 1) import_.draft.precone_deg = value;
-      import_.require(value == import_.draft.precone_deg, deck, cone,
-                      "a case has one precone for all blades, blade 1 has " +
-                          rounded(import_.draft.precone_deg));
+      if (k == 1) precone = value;
+      import_.require(value == precone, deck, cone,
+                      "a case has one precone for all blades, blade 1 has " + rounded(precone));
       const std::string pitch = "BlPitch(" + std::to_string(k) + ")";
       const double angle = import_.derive(
           deck, pitch, k == 1 ? "blades.pitch_deg" : "blades.each: what differs from blade 1");
       if (k == 1)
-        import_.draft.pitch_deg = angle;
-      else if (angle != import_.draft.pitch_deg)
-        import_.draft.each[k].pitch_deg = angle - import_.draft.pitch_deg;
+        blade_pitch = angle;
+      else if (angle != blade_pitch)
+        import_.turbine.blades.each[k].pitch = fields::deg.to_si(angle - blade_pitch);
     }
-    import_.require(std::abs(import_.draft.precone_deg) < 90.0, deck, "PreCone(1)",
+    import_.turbine.blades.precone = fields::deg.to_si(precone);
+    import_.turbine.blades.pitch = fields::deg.to_si(blade_pitch);
+    import_.require(std::abs(precone) < 90.0, deck, "PreCone(1)",
                     "expected an angle between -90 and 90 degrees");
     import_.note("blades.precone_deg", "PreCone");
     import_.note("blades.pitch_deg", "BlPitch(1)");
@@ -302,20 +308,20 @@ class Importer {
 
   void read_masses() {
     Deck& deck = *elastodyn_;
-    import_.draft.nacelle_mass = import_.take(deck, "NacMass", "nacelle.mass");
+    import_.turbine.nacelle.mass = import_.take(deck, "NacMass", "nacelle.mass");
     const double x = import_.derive(deck, "NacCMxn", "nacelle.center_of_mass, y2 = x (downwind)");
     const double y =
         import_.derive(deck, "NacCMyn", "nacelle.center_of_mass, y1 = -y (y is to the left)");
     const double z = import_.derive(deck, "NacCMzn", "nacelle.center_of_mass, y3 = z (up)");
-    import_.draft.nacelle_center = {-y, x, z};
+    import_.turbine.nacelle.center_of_mass = {-y, x, z};
     import_.note("nacelle.center_of_mass", "-NacCMyn, NacCMxn, NacCMzn");
     const double about_yaw = deck.number("NacYIner");
-    const double own = about_yaw - import_.draft.nacelle_mass * (x * x + y * y);
+    const double own = about_yaw - import_.turbine.nacelle.mass * (x * x + y * y);
     import_.require(own >= 0.0, deck, "NacYIner",
                     "less than NacMass (NacCMxn^2 + NacCMyn^2) = " +
-                        rounded(import_.draft.nacelle_mass * (x * x + y * y)) +
+                        rounded(import_.turbine.nacelle.mass * (x * x + y * y)) +
                         ", which no body has");
-    import_.draft.nacelle_inertia = {0.0, 0.0, own};
+    import_.turbine.nacelle.inertia = {0.0, 0.0, own};
     import_.say(deck, "NacYIner", Fate::derived,
                 "nacelle.inertia about y3 = NacYIner - NacMass (NacCMxn^2 + NacCMyn^2) = " +
                     rounded(own) + " kg m^2; ElastoDyn has none about the other axes");
@@ -327,33 +333,35 @@ class Importer {
     else
       import_.ignore(deck, "Furling", "False: there is nothing that furls");
 
-    import_.draft.generator_inertia = import_.take(deck, "GenIner", "shaft.generator.own_inertia");
+    import_.turbine.shaft.generator.inertia =
+        import_.take(deck, "GenIner", "shaft.generator.own_inertia");
     const std::size_t errors_before = import_.errors.size();
-    import_.draft.gear_ratio = import_.take(deck, "GBRatio", "shaft.gear_ratio");
-    import_.require(import_.draft.gear_ratio != 0.0 || import_.errors.size() > errors_before, deck,
-                    "GBRatio", "expected a number other than 0");
+    import_.turbine.shaft.gear_ratio = import_.take(deck, "GBRatio", "shaft.gear_ratio");
+    import_.require(
+        import_.turbine.shaft.gear_ratio != 0.0 || import_.errors.size() > errors_before, deck,
+        "GBRatio", "expected a number other than 0");
     import_.note("shaft.generator", "GenIner; GenDOF: the torque of ServoDyn is not read");
 
-    import_.draft.tower.tip_mass = import_.take(deck, "YawBrMass", "tower.tip_mass");
+    import_.turbine.tower.tip_mass = import_.take(deck, "YawBrMass", "tower.tip_mass");
     read_hub();
     for (const auto& [key, value] :
-         {std::pair<const char*, double>{"NacMass", import_.draft.nacelle_mass},
-          {"YawBrMass", import_.draft.tower.tip_mass},
-          {"HubMass", import_.draft.hub_mass},
-          {"GenIner", import_.draft.generator_inertia}})
+         {std::pair<const char*, double>{"NacMass", import_.turbine.nacelle.mass},
+          {"YawBrMass", import_.turbine.tower.tip_mass},
+          {"HubMass", import_.turbine.hub.mass},
+          {"GenIner", import_.turbine.shaft.generator.inertia}})
       import_.require(value >= 0.0, deck, key, "expected a number >= 0");
   }
 
   void read_hub() {
     Deck& deck = *elastodyn_;
-    import_.draft.hub_mass = import_.take(deck, "HubMass", "hub.mass");
+    import_.turbine.hub.mass = import_.take(deck, "HubMass", "hub.mass");
     const double center = deck.number("HubCM");
     const double inertia = deck.number("HubIner");
     if (blades_ != 2) {
-      import_.draft.hub_center = center;
+      import_.turbine.hub.center_of_mass = center;
       import_.say(deck, "HubCM", Fate::taken, "hub.center_of_mass");
       import_.note("hub.center_of_mass", "HubCM");
-      import_.draft.hub_inertia = {0.0, inertia, 0.0};
+      import_.turbine.hub.inertia = {0.0, inertia, 0.0};
       import_.say(deck, "HubIner", Fate::taken, "hub.inertia about h2 (the shaft)");
       import_.note("hub.inertia", "HubIner about the shaft");
       import_.require(inertia >= 0.0, deck, "HubIner", "expected a number >= 0");
@@ -364,19 +372,19 @@ class Importer {
     // downwind: pin to apex = -UndSling, apex to centre = HubCM.
     const double sling = deck.number("UndSling");
     const double delta = deck.number("Delta3") * std::numbers::pi / 180.0;
-    import_.draft.hub_center = center - sling;
+    import_.turbine.hub.center_of_mass = center - sling;
     import_.say(deck, "HubCM", Fate::derived,
                 "hub.center_of_mass = HubCM - UndSling, from the teeter pin");
     import_.note("hub.center_of_mass", "HubCM - UndSling");
     const bool has_both = deck.has("HubIner_Teeter");
     const std::string key = has_both ? "HubIner_Teeter" : "HubIner";
     const double about_pin = has_both ? deck.number(key) : inertia;
-    const double shift = import_.draft.hub_mass * (sling - center) * (sling - center);
+    const double shift = import_.turbine.hub.mass * (sling - center) * (sling - center);
     const double own = (about_pin - shift) / (std::cos(delta) * std::cos(delta));
     import_.require(
         own >= 0.0, deck, key,
         "less than HubMass (UndSling - HubCM)^2 = " + rounded(shift) + ", which no body has");
-    import_.draft.hub_inertia = {own, has_both ? inertia : own, 0.0};
+    import_.turbine.hub.inertia = {own, has_both ? inertia : own, 0.0};
     const std::string words =
         "(" + key + " - HubMass (UndSling - HubCM)^2)/cos(Delta3)^2 = " + rounded(own) + " kg m^2";
     if (has_both) {
@@ -399,22 +407,23 @@ class Importer {
         import_.ignore(deck, key, "of two-bladed rotors only");
       return;
     }
-    import_.draft.has_teeter = true;
-    import_.draft.undersling = -deck.number("UndSling");
+    model::HubDefinition& hub = import_.turbine.hub;
+    hub.undersling = -deck.number("UndSling");
     import_.say(deck, "UndSling", Fate::derived,
                 "hub.teeter.undersling = -UndSling (OpenFAST counts the apex upwind of the pin)");
     import_.note("hub.teeter.undersling", "-UndSling: OpenFAST counts it upwind");
-    import_.draft.delta3_deg = deck.number("Delta3");
+    const double delta3 = deck.number("Delta3");
+    hub.delta3 = fields::deg.to_si(delta3);
     if (deck.has("Delta3")) {
       import_.say(deck, "Delta3", Fate::taken, "hub.teeter.delta3_deg");
-      import_.require(std::abs(import_.draft.delta3_deg) < 90.0, deck, "Delta3",
+      import_.require(std::abs(delta3) < 90.0, deck, "Delta3",
                       "expected an angle between -90 and 90 degrees");
     }
     import_.note("hub.teeter.delta3_deg", "Delta3");
-    import_.draft.teeter_free = deck.flag("TeetDOF");
+    bool is_free = deck.flag("TeetDOF");
     const int mode = deck.integer("TeetMod", 0, 2);
-    if (mode == 2 && import_.draft.teeter_free) {
-      import_.draft.teeter_free = false;
+    if (mode == 2 && is_free) {
+      is_free = false;
       import_.say(deck, "TeetMod", Fate::derived,
                   "2: teeter is locked, for the user's routine cannot be read");
     } else {
@@ -422,8 +431,9 @@ class Importer {
                   "0: no spring, no damper; 1: TeetDmp and TeetSSSp");
     }
     import_.say(deck, "TeetDOF", Fate::derived,
-                import_.draft.teeter_free ? "hub.teeter: free" : "hub.teeter: locked");
+                is_free ? "hub.teeter: free" : "hub.teeter: locked");
     import_.note("hub.teeter.joint", "TeetDOF");
+    hub.teeter.kind = is_free ? model::JointKind::free : model::JointKind::locked;
     if (mode != 1) return;
     const auto at_rest = [&](const char* edge, const char* key, double& value,
                              const std::string& what) {
@@ -437,8 +447,8 @@ class Importer {
                     std::string("acts beyond ") + edge + " = " + rounded(angle) + " deg only");
       }
     };
-    at_rest("TeetDmpP", "TeetDmp", import_.draft.teeter_damping, "damping");
-    at_rest("TeetSStP", "TeetSSSp", import_.draft.teeter_stiffness, "stiffness");
+    at_rest("TeetDmpP", "TeetDmp", hub.teeter.damping, "damping");
+    at_rest("TeetSStP", "TeetSSSp", hub.teeter.stiffness, "stiffness");
     import_.ignore(deck, "TeetCDmp", "dry friction is not linear");
     for (const char* key : {"TeetDmpP", "TeetSStP"})
       import_.ignore(deck, key, "the edge of the above");
@@ -452,8 +462,8 @@ class Importer {
     Deck& deck = *elastodyn_;
     const double top = deck.number("TowerHt");
     const double foot = deck.number("TowerBsHt");
-    import_.draft.has_tower = true;
-    import_.draft.tower.length = top - foot;
+    import_.turbine.has_tower = true;
+    import_.turbine.tower.length = top - foot;
     import_.require(top > foot, deck, "TowerHt", "expected more than TowerBsHt = " + rounded(foot));
     import_.say(deck, "TowerHt", Fate::derived, "tower.length = TowerHt - TowerBsHt");
     import_.say(deck, "TowerBsHt", Fate::derived,
@@ -505,13 +515,13 @@ class Importer {
                       });
     }
     if (!import_.errors.empty() || blades.empty()) return;
-    import_.draft.blade = blades[0].beam;
-    set_mesh(import_.draft.blade, uses_beamdyn_ ? blade_mesh : bending_blade_mesh);
-    set_mesh(import_.draft.tower, uses_beamdyn_ ? tower_mesh : bending_tower_mesh);
+    import_.turbine.blades.beam = blades[0].beam;
+    set_mesh(import_.turbine.blades.beam, uses_beamdyn_ ? blade_mesh : bending_blade_mesh);
+    set_mesh(import_.turbine.tower, uses_beamdyn_ ? tower_mesh : bending_tower_mesh);
     import_.note("blades.elements", "chosen by the importer");
     import_.note("tower.elements", "chosen by the importer");
     for (std::size_t k = 1; k < blades.size(); ++k) compare_blade(blades, k);
-    const double flexible = tip_radius_ - import_.draft.hub_radius;
+    const double flexible = tip_radius_ - import_.turbine.hub.radius;
     if (!uses_beamdyn_) {
       import_.say(*elastodyn_, "TipRad", Fate::derived, "blades.length = TipRad - HubRad");
       import_.note("blades.length", "TipRad - HubRad");
@@ -522,11 +532,11 @@ class Importer {
         "BeamDyn's key points give the length; TipRad - HubRad = " + rounded(flexible) + " m");
   }
 
-  bool read_elastodyn(const std::string& path, bool speaks, DraftBeam& beam) {
-    beam.length = tip_radius_ - import_.draft.hub_radius;
+  bool read_elastodyn(const std::string& path, bool speaks, model::BeamDefinition& beam) {
+    beam.length = tip_radius_ - import_.turbine.hub.radius;
     beam.tip_mass = tip_mass_;
     import_.require(beam.length > 0.0, *elastodyn_, "TipRad",
-                    "expected more than HubRad = " + rounded(import_.draft.hub_radius));
+                    "expected more than HubRad = " + rounded(import_.turbine.hub.radius));
     return import_.errors.empty() &&
            read_elastodyn_blade(import_, path, speaks, flap_, edge_, beam);
   }
@@ -553,8 +563,8 @@ class Importer {
   /// A blade may differ from the first by one factor of mass and one of stiffness.
   void compare_blade(const std::vector<BladeData>& blades, std::size_t k) {
     if (blades[k].path == blades[0].path) return;
-    const DraftBeam& first = blades[0].beam;
-    const DraftBeam& other = blades[k].beam;
+    const model::BeamDefinition& first = blades[0].beam;
+    const model::BeamDefinition& other = blades[k].beam;
     const int number = static_cast<int>(k + 1);
     bool alike = first.sections.size() == other.sections.size() &&
                  std::abs(first.length - other.length) <= same_blade * first.length &&
@@ -565,14 +575,14 @@ class Importer {
     double mass_factor = 1.0;
     double stiffness_factor = 1.0;
     for (std::size_t i = 0; alike && i < first.sections.size(); ++i) {
-      const DraftSection& a = first.sections[i];
-      const DraftSection& b = other.sections[i];
+      const model::SectionDefinition& a = first.sections[i];
+      const model::SectionDefinition& b = other.sections[i];
       if (i == 0) {
         mass_factor = b.mass(0, 0) / a.mass(0, 0);
         if (a.stiffness.norm() > 0.0) stiffness_factor = b.stiffness.norm() / a.stiffness.norm();
       }
       alike =
-          std::abs(a.at - b.at) <= same_blade && a.twist_deg == b.twist_deg && a.rigid == b.rigid &&
+          std::abs(a.at - b.at) <= same_blade && a.twist == b.twist && a.rigid == b.rigid &&
           (b.mass - mass_factor * a.mass).norm() <= same_blade * b.mass.norm() &&
           (b.stiffness - stiffness_factor * a.stiffness).norm() <= same_blade * b.stiffness.norm();
     }
@@ -585,8 +595,8 @@ class Importer {
       return;
     }
     if (mass_factor == 1.0 && stiffness_factor == 1.0) return;
-    import_.draft.each[number].mass_factor = mass_factor;
-    import_.draft.each[number].stiffness_factor = stiffness_factor;
+    import_.turbine.blades.each[number].mass_factor = mass_factor;
+    import_.turbine.blades.each[number].stiffness_factor = stiffness_factor;
     import_.report.push_back({blades[k].path, "blade " + std::to_string(number), Fate::derived,
                               "blades.each: mass_factor " + rounded(mass_factor) +
                                   ", stiffness_factor " + rounded(stiffness_factor) +
@@ -596,14 +606,16 @@ class Importer {
   // ---- what is left
 
   void report_masses() {
-    const BeamMass tower = integrate_mass(import_.draft.tower, import_.draft.tower.length);
-    const BeamMass blade = integrate_mass(import_.draft.blade, import_.draft.blade.length);
-    import_.draft.title =
+    const BeamMass tower = integrate_mass(import_.turbine.tower, import_.turbine.tower.length);
+    const BeamMass blade =
+        integrate_mass(import_.turbine.blades.beam, import_.turbine.blades.beam.length);
+    import_.turbine.title =
         clean_text(elastodyn_->title().empty() ? main_.title() : elastodyn_->title());
-    import_.draft.head.push_back(
-        "Masses [kg]: tower " + rounded(tower.mass) + ", each blade " + rounded(blade.mass) +
-        " (centre " + rounded(blade.moment / blade.mass, 5) + " m from its root), hub " +
-        rounded(import_.draft.hub_mass) + ", nacelle " + rounded(import_.draft.nacelle_mass) + ".");
+    import_.comments.head.push_back("Masses [kg]: tower " + rounded(tower.mass) + ", each blade " +
+                                    rounded(blade.mass) + " (centre " +
+                                    rounded(blade.moment / blade.mass, 5) +
+                                    " m from its root), hub " + rounded(import_.turbine.hub.mass) +
+                                    ", nacelle " + rounded(import_.turbine.nacelle.mass) + ".");
   }
 
   std::string path_;

@@ -73,8 +73,10 @@ class Importer {
     refuse_layups();
     read_top();
     read_supports();
-    draft_.has_rotor = find("components.blade") != nullptr;
-    if (draft_.has_rotor) {
+    const bool has_rotor = find("components.blade") != nullptr;
+    turbine_.has_nacelle = has_rotor;
+    if (!has_rotor) turbine_.blades.count = 0;
+    if (has_rotor) {
       read_rotor();
       read_nacelle();
       read_hub();
@@ -87,25 +89,25 @@ class Importer {
                                ": the deck has no blade, the case is a tower without anything on "
                                "it; hint: leave out what the command line states");
     }
-    if (draft_.has_rotor || find("components.tower") != nullptr) read_tower();
-    if (draft_.has_rotor) read_blade();
+    if (has_rotor || find("components.tower") != nullptr) read_tower();
+    if (has_rotor) read_blade();
     errors_.throw_if_any();
     warn_of_left_out();
     report_rest(root_, "");
     Import result;
-    draft_.head = {
+    comments_.head = {
         "Imported by samara from windIO " + std::string(is_first_ ? "1.0" : "2.0") + ", " +
             clean_text(std::filesystem::path(path_).filename().string()) + ".",
         "Every key is explained in docs/case_file.md, the import in docs/import.md. SI units."};
-    const BeamMass tower = integrate_mass(draft_.tower, draft_.tower.length);
-    const BeamMass blade = integrate_mass(draft_.blade, draft_.blade.length);
-    draft_.head.push_back("Masses [kg]: tower " + rounded(tower.mass) +
-                          (draft_.has_rotor ? ", each blade " + rounded(blade.mass) + ", hub " +
-                                                  rounded(draft_.hub_mass) + ", nacelle " +
-                                                  rounded(draft_.nacelle_mass)
-                                            : std::string()) +
-                          ".");
-    result.text = write_case_text(draft_);
+    const BeamMass tower = integrate_mass(turbine_.tower, turbine_.tower.length);
+    const BeamMass blade = integrate_mass(turbine_.blades.beam, turbine_.blades.beam.length);
+    comments_.head.push_back("Masses [kg]: tower " + rounded(tower.mass) +
+                             (has_rotor ? ", each blade " + rounded(blade.mass) + ", hub " +
+                                              rounded(turbine_.hub.mass) + ", nacelle " +
+                                              rounded(turbine_.nacelle.mass)
+                                        : std::string()) +
+                             ".");
+    result.text = io::write_case_text(turbine_, comments_);
     result.report = std::move(report_);
     result.warnings = std::move(warnings_);
     check_import(result);
@@ -165,7 +167,7 @@ class Importer {
     report_.push_back({place(*node), path, fate, words});
   }
 
-  void note(const std::string& key, const std::string& words) { draft_.notes[key] = words; }
+  void note(const std::string& key, const std::string& words) { comments_.keys[key] = words; }
 
   /// A key given twice would be read once, whichever was meant.
   void refuse_duplicates(const io::YamlNode& node, const std::string& path) {
@@ -302,11 +304,11 @@ class Importer {
 
   void read_top() {
     if (const io::YamlNode* name = root_.find("name")) {
-      draft_.title = clean_text(name->text);
+      turbine_.title = clean_text(name->text);
       say("name", Fate::taken, "title");
     }
     if (find("environment.gravity") != nullptr) {
-      draft_.gravity = number({"environment.gravity"}, Fate::taken, "gravity");
+      turbine_.gravity = number({"environment.gravity"}, Fate::taken, "gravity");
       note("gravity", "environment.gravity");
     } else {
       note("gravity", "not in the deck");
@@ -357,23 +359,24 @@ class Importer {
   // ---- bodies
 
   void read_rotor() {
+    double rpm = 0.0;  // [rev/min]
     const std::string count = require({"assembly.number_of_blades"});
     if (!count.empty()) {
       const double value = number_at(count, *find(count));
       if (!(value >= 1.0 && value <= 100.0 && value == std::floor(value)))
         refuse(count, "expected an integer from 1 to 100");
       else
-        draft_.blades = static_cast<int>(value);
+        turbine_.blades.count = static_cast<int>(value);
       say(count, Fate::taken, "blades.count");
       note("blades.count", "assembly.number_of_blades");
     }
     if (const std::string speed = choose({"control.rated_rotor_speed"}); !speed.empty()) {
-      draft_.speed_rpm = number({speed}, Fate::taken, "shaft.speed_rpm, the rated one");
+      rpm = number({speed}, Fate::taken, "shaft.speed_rpm, the rated one");
       note("shaft.speed_rpm", "control.rated_rotor_speed");
     } else if (const std::string torque = choose({"control.torque.VS_maxspd"}); !torque.empty()) {
       const double value = number({torque}, is_first_ ? Fate::derived : Fate::taken,
                                   is_first_ ? "shaft.speed_rpm, from rad/s" : "shaft.speed_rpm");
-      draft_.speed_rpm = is_first_ ? value * 30.0 / std::numbers::pi : value;
+      rpm = is_first_ ? value * 30.0 / std::numbers::pi : value;
       note("shaft.speed_rpm",
            is_first_ ? "control.torque.VS_maxspd, from rad/s" : "control.torque.VS_maxspd");
     } else if (!choose({"control.supervisory.maxTS"}).empty() &&
@@ -383,14 +386,15 @@ class Importer {
       const double diameter = number({"assembly.rotor_diameter"}, Fate::derived,
                                      "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
       if (diameter > 0.0)
-        draft_.speed_rpm = 60.0 * tip_speed / (std::numbers::pi * diameter);
+        rpm = 60.0 * tip_speed / (std::numbers::pi * diameter);
       else
         refuse("assembly.rotor_diameter", "expected a number > 0");
       note("shaft.speed_rpm", "from the greatest tip speed, control.supervisory.maxTS");
     } else if (!is_stated("shaft.speed_rpm")) {
       missing("the rated rotor speed", "shaft.speed_rpm");
     }
-    apply_stated("shaft.speed_rpm", draft_.speed_rpm);
+    apply_stated("shaft.speed_rpm", rpm);
+    turbine_.shaft.speed = fields::rpm.to_si(rpm);
     const double sign = is_upwind_ ? -1.0 : 1.0;
     const double tilt = to_degrees(number(
         {"components.drivetrain.outer_shape.uptilt", "components.drivetrain.outer_shape_bem.uptilt",
@@ -414,9 +418,9 @@ class Importer {
                   "uptilt: expected an angle between -90 and 90 degrees, got " + rounded(tilt));
       return;
     }
-    draft_.tilt_deg = sign * tilt;
-    draft_.overhang = sign * overhang / std::cos(tilt / degrees);
-    draft_.height = rise - overhang * std::tan(tilt / degrees);
+    turbine_.shaft.tilt = fields::deg.to_si(sign * tilt);
+    turbine_.shaft.overhang = sign * overhang / std::cos(tilt / degrees);
+    turbine_.shaft.height = rise - overhang * std::tan(tilt / degrees);
     note("shaft.tilt_deg", "uptilt");
     note("shaft.overhang", "overhang/cos(uptilt)");
     note("shaft.height", "distance_tt_hub - overhang tan(uptilt)");
@@ -477,33 +481,33 @@ class Importer {
                                       "components.nacelle.elastic_properties_mb"});
     const std::string mass = choose_in(block, ".mass", ".system_mass");
     if (!mass.empty()) {
-      draft_.nacelle_mass = number({mass}, Fate::taken, "nacelle.mass");
+      turbine_.nacelle.mass = number({mass}, Fate::taken, "nacelle.mass");
       note("nacelle.mass", "without the yaw bearing");
     } else if (!is_stated("nacelle.mass")) {
       missing("the mass of the nacelle (components.drivetrain.elastic_properties)", "nacelle.mass");
     }
-    apply_stated("nacelle.mass", draft_.nacelle_mass);
-    if (draft_.nacelle_mass < 0.0)
+    apply_stated("nacelle.mass", turbine_.nacelle.mass);
+    if (turbine_.nacelle.mass < 0.0)
       errors_.add(path_,
-                  "nacelle.mass: expected a number >= 0, got " + rounded(draft_.nacelle_mass));
+                  "nacelle.mass: expected a number >= 0, got " + rounded(turbine_.nacelle.mass));
 
     const std::string location = choose_in(block, ".location", ".system_center_mass");
     const bool has_body = !mass.empty() || is_stated("nacelle.mass");
     const Vector3 center =
         point_of(location, "nacelle.center_of_mass = [-y, x, z] (y is to the left)");
-    draft_.nacelle_center = {-center(1), center(0), center(2)};
+    turbine_.nacelle.center_of_mass = {-center(1), center(0), center(2)};
     if (!location.empty())
       note("nacelle.center_of_mass", "-y, x, z of windIO");
     else if (has_body && !is_stated("nacelle.center_of_mass"))
       missing("the centre of mass of the nacelle", "nacelle.center_of_mass");
-    apply_stated("nacelle.center_of_mass", draft_.nacelle_center);
+    apply_stated("nacelle.center_of_mass", turbine_.nacelle.center_of_mass);
 
     const std::string own = choose_in(block, ".inertia", ".system_inertia");
     const std::string about_top = choose_in(block, ".inertia_tt", ".system_inertia_tt");
     if (!own.empty()) {
       const Vector3 inertia =
           inertia_of(own, "nacelle.inertia = [Iyy, Ixx, Izz], about its own centre");
-      draft_.nacelle_inertia = {inertia(1), inertia(0), inertia(2)};
+      turbine_.nacelle.inertia = {inertia(1), inertia(0), inertia(2)};
       say(about_top, Fate::ignored, "the same body about the tower top");
       note("nacelle.inertia", "Iyy, Ixx, Izz, about its own centre");
     } else if (!about_top.empty() && !is_stated("nacelle.inertia")) {
@@ -511,18 +515,18 @@ class Importer {
           inertia_of(about_top,
                      "nacelle.inertia, moved from the tower top to its own centre, about which it "
                      "is not in the deck");
-      const Vector3& arm = draft_.nacelle_center;
-      draft_.nacelle_inertia =
+      const Vector3& arm = turbine_.nacelle.center_of_mass;
+      turbine_.nacelle.inertia =
           Vector3(inertia(1), inertia(0), inertia(2)) -
-          draft_.nacelle_mass * (Vector3::Constant(arm.squaredNorm()) - arm.cwiseProduct(arm));
-      if (draft_.nacelle_inertia.minCoeff() < 0.0)
+          turbine_.nacelle.mass * (Vector3::Constant(arm.squaredNorm()) - arm.cwiseProduct(arm));
+      if (turbine_.nacelle.inertia.minCoeff() < 0.0)
         refuse(about_top, "less than the mass times its squared distance, which no body has");
       note("nacelle.inertia", "Iyy, Ixx, Izz, moved from the tower top to its own centre");
     } else if (has_body && !is_stated("nacelle.inertia")) {
       missing("the inertia of the nacelle", "nacelle.inertia");
     }
-    apply_stated("nacelle.inertia", draft_.nacelle_inertia);
-    require_inertia("nacelle.inertia", draft_.nacelle_inertia);
+    apply_stated("nacelle.inertia", turbine_.nacelle.inertia);
+    require_inertia("nacelle.inertia", turbine_.nacelle.inertia);
   }
 
   void require_inertia(const std::string& key, const Vector3& inertia) {
@@ -536,12 +540,12 @@ class Importer {
     const std::string yaw = choose({"components.yaw.elastic_properties.mass",
                                     "components.nacelle.elastic_properties_mb.yaw_mass"});
     if (!yaw.empty()) {
-      draft_.tower.tip_mass = number({yaw}, Fate::taken, "tower.tip_mass");
+      turbine_.tower.tip_mass = number({yaw}, Fate::taken, "tower.tip_mass");
       note("tower.tip_mass", yaw.substr(yaw.find('.') + 1));
     } else if (!is_stated("tower.tip_mass")) {
       missing("the mass of the yaw bearing", "tower.tip_mass");
     }
-    apply_stated("tower.tip_mass", draft_.tower.tip_mass);
+    apply_stated("tower.tip_mass", turbine_.tower.tip_mass);
     const std::string generator =
         choose({"components.drivetrain.generator.elastic_properties.inertia",
                 "components.drivetrain.generator.elastic_properties_mb.rotor_inertia",
@@ -550,22 +554,22 @@ class Importer {
         {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"});
     if (!gear.empty() || !generator.empty()) {
       const std::size_t errors_before = errors_.size();
-      draft_.gear_ratio = number(
+      turbine_.shaft.gear_ratio = number(
           {"components.drivetrain.gearbox.gear_ratio", "components.nacelle.drivetrain.gear_ratio"},
           Fate::taken, "shaft.gear_ratio");
-      if (draft_.gear_ratio == 0.0 && errors_.size() == errors_before)
+      if (turbine_.shaft.gear_ratio == 0.0 && errors_.size() == errors_before)
         refuse(gear, "expected a number other than 0");
       note("shaft.gear_ratio", "gear_ratio");
     }
     if (!generator.empty()) {
       const Vector3 inertia =
           inertia_of(generator, "shaft.generator.own_inertia = Ixx; its mass is the nacelle's");
-      draft_.generator_inertia = inertia(0);
+      turbine_.shaft.generator.inertia = inertia(0);
       note("shaft.generator", "generator Ixx");
     } else if (!is_stated("shaft.generator.own_inertia")) {
       missing("the inertia of the generator", "shaft.generator.own_inertia");
     }
-    apply_stated("shaft.generator.own_inertia", draft_.generator_inertia);
+    apply_stated("shaft.generator.own_inertia", turbine_.shaft.generator.inertia);
   }
 
   void read_hub() {
@@ -573,10 +577,10 @@ class Importer {
         number({"components.hub.cone_angle"}, Fate::derived, "blades.precone_deg, < 0 upwind"));
     if (std::abs(cone) >= 90.0)
       refuse("components.hub.cone_angle", "expected an angle between -90 and 90 degrees");
-    draft_.precone_deg = is_upwind_ ? -cone : cone;
+    turbine_.blades.precone = fields::deg.to_si(is_upwind_ ? -cone : cone);
     note("blades.precone_deg", "hub.cone_angle");
     note("blades.pitch_deg", "not in the deck");
-    draft_.hub_radius =
+    turbine_.hub.radius =
         0.5 * number({"components.hub.diameter"}, Fate::derived, "hub.radius, half of it");
     note("hub.radius", "half of hub.diameter");
     read_hub_body();
@@ -588,12 +592,12 @@ class Importer {
         choose({"components.hub.elastic_properties", "components.hub.elastic_properties_mb"});
     const std::string mass = choose_in(block, ".mass", ".system_mass");
     if (!mass.empty())
-      draft_.hub_mass = number({mass}, Fate::taken, "hub.mass");
+      turbine_.hub.mass = number({mass}, Fate::taken, "hub.mass");
     else if (!is_stated("hub.mass"))
       missing("the mass of the hub (components.hub.elastic_properties)", "hub.mass");
-    apply_stated("hub.mass", draft_.hub_mass);
-    if (draft_.hub_mass < 0.0)
-      errors_.add(path_, "hub.mass: expected a number >= 0, got " + rounded(draft_.hub_mass));
+    apply_stated("hub.mass", turbine_.hub.mass);
+    if (turbine_.hub.mass < 0.0)
+      errors_.add(path_, "hub.mass: expected a number >= 0, got " + rounded(turbine_.hub.mass));
 
     const bool has_body = !mass.empty() || is_stated("hub.mass");
     const std::string location = choose_in(block, ".location", ".system_center_mass");
@@ -601,12 +605,12 @@ class Importer {
         point_of(location, "hub.center_of_mass (x from the apex toward the nacelle)");
     if (center(1) != 0.0 || center(2) != 0.0)
       refuse(location, "the centre of mass is off the shaft, which a case cannot state");
-    draft_.hub_center = is_upwind_ ? center(0) : -center(0);
+    turbine_.hub.center_of_mass = is_upwind_ ? center(0) : -center(0);
     if (!location.empty())
       note("hub.center_of_mass", "from the apex");
     else if (has_body && !is_stated("hub.center_of_mass"))
       missing("the hub's centre of mass", "hub.center_of_mass");
-    apply_stated("hub.center_of_mass", draft_.hub_center);
+    apply_stated("hub.center_of_mass", turbine_.hub.center_of_mass);
 
     const std::string path = choose_in(block, ".inertia", ".system_inertia");
     if (!path.empty() && !is_stated("hub.inertia")) {
@@ -614,8 +618,9 @@ class Importer {
           inertia_of(path,
                      "hub.inertia = [Iyy, Ixx, Izz] - mass x^2 across the shaft: from the apex to "
                      "its own centre");
-      const double shift = draft_.hub_mass * draft_.hub_center * draft_.hub_center;
-      draft_.hub_inertia = {inertia(1) - shift, inertia(0), inertia(2) - shift};
+      const double shift =
+          turbine_.hub.mass * turbine_.hub.center_of_mass * turbine_.hub.center_of_mass;
+      turbine_.hub.inertia = {inertia(1) - shift, inertia(0), inertia(2) - shift};
       if (inertia(1) < shift || inertia(2) < shift)
         refuse(path, "the inertia across the shaft is less than mass x^2 = " + rounded(shift) +
                          ", which no body has");
@@ -623,8 +628,8 @@ class Importer {
     } else if (path.empty() && has_body && !is_stated("hub.inertia")) {
       missing("the inertia of the hub", "hub.inertia");
     }
-    apply_stated("hub.inertia", draft_.hub_inertia);
-    require_inertia("hub.inertia", draft_.hub_inertia);
+    apply_stated("hub.inertia", turbine_.hub.inertia);
+    require_inertia("hub.inertia", turbine_.hub.inertia);
   }
 
   // ---- beams
@@ -647,7 +652,7 @@ class Importer {
   /// `turn` gives the axes of the case.
   template <class Turn>
   void set_line(const std::string& path, const std::vector<Vector3>& points, const Turn& turn,
-                DraftBeam& beam) {
+                model::BeamDefinition& beam) {
     if (points.size() < 2) {
       refuse(path, "expected at least two points");
       return;
@@ -692,7 +697,7 @@ class Importer {
   }
 
   /// `shear_is_rigid`: the deck's matrices have no shear stiffness.
-  void read_damping(const std::string& path, DraftBeam& beam, const std::string& key,
+  void read_damping(const std::string& path, model::BeamDefinition& beam, const std::string& key,
                     bool shear_is_rigid) {
     if (path.empty()) {
       missing("structural_damping", key);
@@ -781,18 +786,18 @@ class Importer {
     const std::string structure =
         require({"components.tower.structure", "components.tower.internal_structure_2d_fem"});
     if (axis.empty() || diameter_path.empty() || structure.empty()) return;
-    draft_.has_tower = true;
+    turbine_.has_tower = true;
     std::vector<Vector3> points = read_axis(axis);
     const Vector3 foot = points.empty() ? Vector3::Zero() : points[0];
     for (Vector3& point : points) point -= foot;
     set_line(
-        axis, points, [](const Vector3& p) { return Vector3(-p(1), p(0), p(2)); }, draft_.tower);
+        axis, points, [](const Vector3& p) { return Vector3(p(2), -p(1), p(0)); }, turbine_.tower);
     say(axis, Fate::derived,
         "tower, from its foot at z = " + rounded(foot(2)) + " m, where it is clamped");
     note("tower.length", "reference_axis, from its foot at z = " + rounded(foot(2)));
     note("tower.reference_line", "reference_axis from its foot, [-y, x, z]");
 
-    if (draft_.has_rotor) compare_height(foot(2) + draft_.tower.length);
+    if (turbine_.blades.count > 0) compare_height(foot(2) + turbine_.tower.length);
     const Curve diameter = curve(diameter_path);
     say(diameter_path, Fate::derived, "tower.sections");
     const std::string outfitting = structure + ".outfitting_factor";
@@ -813,10 +818,10 @@ class Importer {
     const std::string elastic =
         choose({structure + ".elastic_properties", "components.tower.elastic_properties",
                 "components.tower.elastic_properties_mb"});
-    read_damping(elastic.empty() ? "" : choose({elastic + ".structural_damping"}), draft_.tower,
+    read_damping(elastic.empty() ? "" : choose({elastic + ".structural_damping"}), turbine_.tower,
                  "tower.damping", elastic.empty() || !states_shear(elastic));
     if (!elastic.empty()) compare_tower(elastic);
-    set_mesh(draft_.tower, tower_mesh);
+    set_mesh(turbine_.tower, tower_mesh);
     note("tower.elements", "chosen by the importer");
     note("tower.sections",
          "rings of the layers of the wall; mass and inertia times "
@@ -828,7 +833,8 @@ class Importer {
     const std::string path = choose({"assembly.hub_height"});
     if (path.empty()) return;
     const double stated = number_at(path, *find(path));
-    const double hub = top + draft_.height + draft_.overhang * std::sin(draft_.tilt_deg / degrees);
+    const double hub =
+        top + turbine_.shaft.height + turbine_.shaft.overhang * std::sin(turbine_.shaft.tilt);
     say(path, Fate::ignored,
         "the parts put the hub at " + rounded(hub) + " m" +
             (std::abs(hub - stated) > height_tolerance
@@ -872,7 +878,7 @@ class Importer {
     say(path, Fate::derived, "tower.sections, exact rings");
     for (const Station& station : merge_grids(grids)) {
       double outer = interpolate(diameter, station);
-      DraftSection section;
+      model::SectionDefinition section;
       section.at = place_of(station);
       Vector6 stiffness = Vector6::Zero();
       double mass = 0.0;
@@ -896,7 +902,7 @@ class Importer {
                          "); hint: diameters and thickness are in m, rho in kg/m^3");
       section.stiffness.diagonal() = stiffness;
       section.mass = build_mass_matrix(mass, Vector3(2.0 * inertia, inertia, inertia));
-      draft_.tower.sections.push_back(section);
+      turbine_.tower.sections.push_back(section);
     }
   }
 
@@ -925,7 +931,7 @@ class Importer {
     const Curve mass = curve(inertia, "mass");
     double furthest = 0.0;
     for (std::size_t i = 0; i < mass.grid.size(); ++i) {
-      const auto& sections = draft_.tower.sections;
+      const auto& sections = turbine_.tower.sections;
       const auto near = std::find_if(sections.begin(), sections.end(), [&](const auto& section) {
         return std::abs(section.at - mass.grid[i]) < straight_tolerance;
       });
@@ -964,10 +970,11 @@ class Importer {
       refuse(axis, "the first point must be 0, 0, 0, the root of the blade");
     else
       set_line(
-          axis, points, [](const Vector3& p) { return turn_to_section_axes(p); }, draft_.blade);
+          axis, points, [](const Vector3& p) { return turn_to_section_axes(p); },
+          turbine_.blades.beam);
     say(axis, Fate::taken,
-        draft_.blade.reference_line.empty() ? "blades.length"
-                                            : "blades.reference_line, [z, -y, x]");
+        turbine_.blades.beam.reference_line.empty() ? "blades.length"
+                                                    : "blades.reference_line, [z, -y, x]");
     note("blades.length", "reference_axis");
     note("blades.reference_line", "reference_axis, [z, -y, x]");
     Curve twist = curve(twist_path);
@@ -983,9 +990,9 @@ class Importer {
       }
     }
     read_blade_sections(elastic, twist);
-    read_damping(choose({elastic + ".structural_damping"}), draft_.blade, "blades.damping",
+    read_damping(choose({elastic + ".structural_damping"}), turbine_.blades.beam, "blades.damping",
                  blade_shear_is_rigid_);
-    set_mesh(draft_.blade, blade_mesh);
+    set_mesh(turbine_.blades.beam, blade_mesh);
     note("blades.elements", "chosen by the importer");
     note("blades.sections", "matrices of windIO, turned to b1 = z, b2 = -y, b3 = x");
   }
@@ -1017,18 +1024,18 @@ class Importer {
     const std::array<bool, 6> rigid = find_rigid(stiffness);
     std::vector<std::string> places;
     for (const Station& station : merge_grids({&mass[0].grid, &stiffness[0].grid, &twist.grid})) {
-      DraftSection section;
+      model::SectionDefinition section;
       section.at = place_of(station);
       section.rigid = rigid;
       section.stiffness = turn_to_section_axes(assemble(stiffness, station));
       section.mass = turn_to_section_axes(assemble(mass, station));
       drop_round_off(section.stiffness);
       drop_round_off(section.mass);
-      section.twist_deg = interpolate(twist, station);
-      draft_.blade.sections.push_back(section);
+      section.twist = fields::deg.to_si(interpolate(twist, station));
+      turbine_.blades.beam.sections.push_back(section);
     }
     places.push_back(place(*find(inertia)));
-    check_sections(draft_.blade, "blade", places, errors_);
+    check_sections(turbine_.blades.beam, "blade", places, errors_);
   }
 
   /// windIO 2.0: a list for each entry. A matrix that stops at the diagonal is diagonal; K11 and
@@ -1233,7 +1240,8 @@ class Importer {
   ImportOptions options_;
   io::YamlNode root_;
   DeckErrors errors_;
-  CaseDraft draft_;
+  model::TurbineDefinition turbine_;
+  io::CaseComments comments_;
   std::vector<ImportLine> report_;
   std::vector<std::string> warnings_;
   std::set<std::string> used_;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "samara/decks/import.hpp"
+#include "samara/io/case_text.hpp"
 
-#include "case_writer.hpp"
 #include "openfast_deck.hpp"
 
 namespace samara::decks {
@@ -17,7 +17,8 @@ struct OpenfastImport {
 
   ImportOptions options;
   DeckErrors errors;
-  CaseDraft draft;
+  model::TurbineDefinition turbine;
+  io::CaseComments comments;
   std::vector<ImportLine> report;
   std::vector<std::string> warnings;
 
@@ -29,7 +30,7 @@ struct OpenfastImport {
     report.push_back({deck.place(line), key, fate, words});
   }
   /// The comment behind a key of the case.
-  void note(const std::string& key, const std::string& words) { draft.notes[key] = words; }
+  void note(const std::string& key, const std::string& words) { comments.keys[key] = words; }
   /// Says on standard error what the user would not expect of the case.
   void warn(const std::string& place, const std::string& words) {
     warnings.push_back(place + ": " + words);

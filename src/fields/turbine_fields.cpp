@@ -44,12 +44,12 @@ void declare_loaded_place(Visitor& fields, model::LoadDefinition& load) {
   fields.at_least_one({"at", "from", "to"}, "a point load, or \"from\" and \"to\"");
   const bool is_point = fields.given("at") || (!fields.wants_all() && load.from == load.to);
   if (fields.describes() || is_point) {
-    fields.number(at.or_else(""), load.from);
+    fields.number(at.or_else("").required("", !fields.wants_all()), load.from);
     if (fields.reads()) load.to = load.from;
   }
   if (is_point) return;
-  const bool is_line = fields.given("from") || fields.given("to");
-  if (is_line) load.from = load.to = unread;
+  const bool is_line = fields.given("from") || fields.given("to") || !fields.wants_all();
+  if (is_line && fields.reads()) load.from = load.to = unread;
   fields.number(from.or_else("").required("beside \"to\"", is_line), load.from);
   fields.number(to.or_else("").required("beside \"from\"", is_line), load.to);
   if (is_line && load.from != unread && load.to != unread && !(load.from < load.to))

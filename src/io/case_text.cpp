@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -32,19 +33,22 @@ std::string quote(const std::string& text) {
   return quoted + "\"";
 }
 
-/// The shortest decimal in `unit` that reads back as the value in SI.
+/// The shortest decimal in `unit` that reads back as the value in SI; where rounding leaves none,
+/// the nearest one.
 std::string exact_in(const Unit& unit, double value) {
   const double converted = unit.from_si(value);
   if (unit.factor == unit.divisor) return exact(converted);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr int most_digits = 17;
   std::array<char, 48> text{};
-  for (int digits = 1; digits <= most_digits; ++digits) {
-    const int size = std::snprintf(text.data(), text.size(), "%.*g", digits, converted);
-    double read = 0.0;
-    std::from_chars(text.data(), text.data() + size, read);
-    if (unit.to_si(read) == value) return exact(read);
-  }
-  // Between two decimals that read back as its neighbours.
+  for (const double near :
+       {converted, std::nextafter(converted, infinity), std::nextafter(converted, -infinity)})
+    for (int digits = 1; digits <= most_digits; ++digits) {
+      const int size = std::snprintf(text.data(), text.size(), "%.*g", digits, near);
+      double read = 0.0;
+      std::from_chars(text.data(), text.data() + size, read);
+      if (unit.to_si(read) == value) return exact(read);
+    }
   return exact(converted);
 }
 
@@ -69,18 +73,25 @@ bool has_comments(const Entry& entry) {
   return !entry.comment.empty() || std::ranges::any_of(entry.entries, has_comments);
 }
 
-/// The entry in one line; empty: it needs several.
+/// The entry in one line; empty: it needs several. A mapping of values may be long, one of
+/// mappings may not.
 std::string in_one_line(const Entry& entry) {
+  constexpr std::size_t most_of_values = 200;
   if (entry.entries.empty() && entry.rows.empty()) return entry.value;
-  if (!entry.rows.empty() || std::ranges::any_of(entry.entries, has_comments)) return "";
+  if (!entry.rows.empty() || entry.is_list || std::ranges::any_of(entry.entries, has_comments))
+    return "";
   std::vector<std::string> parts;
+  bool has_mappings = false;
   for (const Entry& inner : entry.entries) {
     const std::string text = in_one_line(inner);
     if (text.empty()) return "";
-    parts.push_back(inner.key.empty() ? text : inner.key + ": " + text);
+    has_mappings |= !inner.entries.empty();
+    parts.push_back(inner.key + ": " + text);
   }
-  const std::string text = in_brackets(parts, entry.is_list ? '[' : '{', entry.is_list ? ']' : '}');
-  return text.size() <= most_in_line ? text : "";
+  const std::string text = in_brackets(parts, '{', '}');
+  const bool fits =
+      text.size() <= (has_mappings || entry.key.empty() ? most_in_line : most_of_values);
+  return fits && !(has_mappings && entry.key.empty()) ? text : "";
 }
 
 void print(const Entry& entry, std::size_t indent, const std::string& bullet, std::string& text) {
@@ -92,6 +103,11 @@ void print(const Entry& entry, std::size_t indent, const std::string& bullet, st
   std::string comment = entry.unit;
   if (!entry.comment.empty()) comment += (comment.empty() ? "" : "; ") + entry.comment;
   if (!value.empty()) line += (is_item ? "" : " ") + value;
+  if (value.empty() && !comment.empty() && !is_item &&
+      line.size() + comment.size() > most_in_line) {
+    text += std::string(indent, ' ') + "# " + comment + "\n";
+    comment.clear();
+  }
   if (!comment.empty() && !is_item)
     line += std::string(line.size() < comment_column ? comment_column - line.size() : 1, ' ') +
             "# " + comment;
@@ -127,7 +143,11 @@ class CaseWriter : public fields::Description {
   }
 
   const Field& spelling(const Field& field, const Field& other, double value) override {
-    return exact_in(other.unit, value).size() < exact_in(field.unit, value).size() ? other : field;
+    const std::string text = exact_in(other.unit, value);
+    double read = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), read);
+    const bool is_shorter = text.size() < exact_in(field.unit, value).size();
+    return is_shorter && other.unit.to_si(read) == value ? other : field;
   }
 
   void number(const Field& field, double& value, std::span<const fields::Word> words) override {
@@ -192,8 +212,15 @@ class CaseWriter : public fields::Description {
 
   void block(const Field& field, const fields::Presence& presence,
              const std::function<void()>& inside) override {
-    if (describes() || presence.is_there())
-      add_entries(field, within(std::string(field.key), inside), false);
+    if (!describes() && !presence.is_there()) return;
+    std::vector<Entry> entries = within(std::string(field.key), inside);
+    if (!entries.empty()) {
+      add_entries(field, std::move(entries), false);
+    } else if (presence.may_be_absent && !describes()) {
+      Entry entry = named(field);
+      entry.value = "{}";
+      entries_.push_back(std::move(entry));
+    }
   }
   void list(const Field& field, const fields::Items& items) override {
     if (describes()) {
@@ -203,7 +230,9 @@ class CaseWriter : public fields::Description {
     std::vector<Entry> all;
     for (std::size_t i = 0; i < items.size(); ++i) {
       Entry item;
+      const bool was_item = std::exchange(is_item_, true);
       item.entries = within(std::string(field.key) + "[]", [&] { items.declare(i); });
+      is_item_ = was_item;
       all.push_back(std::move(item));
     }
     if (!all.empty()) add_entries(field, std::move(all), true);
@@ -260,7 +289,8 @@ class CaseWriter : public fields::Description {
   Entry named(const Field& field) const {
     Entry entry;
     entry.key = field.key;
-    if (std::string_view(field.unit.name) != "deg") entry.unit = field.unit.name;
+    const bool is_in_key = std::string_view(field.unit.name) == "deg";
+    if (!is_in_key && !is_item_) entry.unit = field.unit.name;
     const auto comment = comments_.keys.find(path_of(field));
     if (comment != comments_.keys.end()) entry.comment = comment->second;
     return entry;
@@ -278,6 +308,7 @@ class CaseWriter : public fields::Description {
   std::optional<std::map<std::string, std::string>> defaults_;  ///< while they are gathered
   std::map<std::string, std::string> known_;                    ///< defaults by path
   std::string where_;
+  bool is_item_ = false;  ///< of a list
   std::vector<Entry> entries_;
 };
 

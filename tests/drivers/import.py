@@ -97,7 +97,7 @@ class Irregular(ProgramTest):
         self.edit("Tower.dat", ("4   NTwInpSt", "1   NTwInpSt"))
         text, _ = self.case()
         tower = text[text.index("\ntower:") : text.index("\nnacelle:")]
-        self.assertEqual(tower.count("- at:"), 1)
+        self.assertEqual(tower.count("\n    - "), 1)
         self.succeed("modes", "case.yaml", "--parked")
 
     def test_names_of_keys_do_not_matter_between_their_neighbours(self):

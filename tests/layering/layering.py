@@ -24,7 +24,7 @@ ROOMS = {  # room: the rooms it may include, itself always
     "loads": ["base"],
     "io": ["base", "math", "petsc", "elements", "model", "fields", "system", "turbine", "analysis",
            "linear", "simulation", "loads"],
-    "decks": ["base", "math", "elements", "model", "io"],
+    "decks": ["base", "math", "elements", "model", "fields", "io"],
 }
 DRIVERS = "drivers"  # may include every room
 

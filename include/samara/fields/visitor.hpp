@@ -40,6 +40,7 @@ inline std::string join_words(std::string expected, std::span<const Word> words)
 struct Presence {
   std::function<bool()> is_there;
   std::function<void()> make;
+  bool may_be_absent = true;  ///< false: leaving it out is the same as none of its keys
 };
 
 /// A list of mappings.
@@ -173,7 +174,7 @@ class Visitor {
 
   /// A mapping that is always there.
   void block(const Field& field, const std::function<void()>& inside) {
-    block(field, Presence{[] { return true; }, [] {}}, inside);
+    block(field, Presence{[] { return true; }, [] {}, false}, inside);
   }
   void block(const Field& field, bool& is_there, const std::function<void()>& inside) {
     block(field, Presence{[&is_there] { return is_there; }, [&is_there] { is_there = true; }},
