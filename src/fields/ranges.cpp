@@ -28,6 +28,10 @@ class RangeCheck : public Visitor {
                        general(field.range.high, 10) + ", got " + std::to_string(value));
   }
 
+  void integers(const Field& field, std::span<int> values) override {
+    for (int& value : values) integer(field, value, {});
+  }
+
   void numbers(const Field& field, std::span<double> values, bool) override {
     for (std::size_t i = 0; i < values.size(); ++i)
       check(field, join_path(std::string(field.key), i), values[i]);
@@ -80,6 +84,11 @@ class RangeCheck : public Visitor {
       if (entries.is_there(k))
         within(join_path(join_path(where_, field.key), std::to_string(k)),
                [&] { entries.declare(k); });
+  }
+
+  void named(const Field& field, const Named& entries) override {
+    for (const std::string& name : entries.names())
+      within(join_path(join_path(where_, field.key), name), [&] { entries.declare(name); });
   }
 
   void two_ways(const Field&, const char*, const std::function<void()>& plain,

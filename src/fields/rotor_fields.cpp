@@ -157,13 +157,13 @@ void declare_difference(Visitor& fields, model::BladeDifference& difference) {
                      "0}}`")
                    .or_else("those of all"),
                [&] {
-                 for (const auto& [word, axis] : hinge_axes)
+                 for (const auto& hinge : hinge_axes)
                    fields.block(
-                       Field(word, "").or_else("those of all"),
-                       Presence{[&] { return difference.hinges.contains(axis); },
-                                [&] { difference.hinges[axis]; }},
+                       Field(hinge.first, "").or_else("those of all"),
+                       Presence{[&] { return difference.hinges.contains(hinge.second); },
+                                [&] { difference.hinges[hinge.second]; }},
                        [&] {
-                         model::HingeDifference& own = difference.hinges[axis];
+                         model::HingeDifference& own = difference.hinges[hinge.second];
                          fields.number(
                              Field("stiffness", "N m/rad", non_negative, "").or_else("that of all"),
                              own.stiffness);

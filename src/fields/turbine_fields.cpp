@@ -180,7 +180,8 @@ void declare_damper_axes(Visitor& fields, const AxisWords& words,
                           }},
                  [&] {
                    model::MassDamperAxis shown;
-                   declare_damper_axis(fields, find(i) == nullptr ? shown : *find(i));
+                   model::MassDamperAxis* axis = find(i);
+                   declare_damper_axis(fields, axis == nullptr ? shown : *axis);
                  });
 }
 

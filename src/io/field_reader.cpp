@@ -51,8 +51,28 @@ void FieldReader::number(const Field& field, double& value, std::span<const Word
 void FieldReader::integer(const Field& field, int& value, std::span<const Word> words) {
   const YamlNode* entry = find(field);
   if (entry == nullptr || read_words(*entry, words)) return;
-  map_->read(field.key, value, static_cast<int>(field.range.low),
-             static_cast<int>(field.range.high), fields::join_words("", words));
+  read_integer(*entry, map_->where(field.key), static_cast<int>(field.range.low),
+               static_cast<int>(field.range.high), fields::join_words("", words), value,
+               map_->errors());
+}
+
+void FieldReader::integers(const Field& field, std::span<int> values) {
+  const YamlNode* entry = find(field);
+  if (entry == nullptr) return;
+  const int low = static_cast<int>(field.range.low);
+  const int high = static_cast<int>(field.range.high);
+  const std::string where = map_->where(field.key);
+  const bool is_list = entry->kind == YamlNode::Kind::list;
+  if (is_list && entry->children.size() != values.size())
+    return expected(field.key,
+                    "an integer or a list of " + std::to_string(values.size()) + " integers");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const YamlNode& node = is_list ? entry->children[i] : *entry;
+    if (!read_integer(node, is_list ? fields::join_path(where, i) : where, low, high, "", values[i],
+                      map_->errors()) &&
+        !is_list)
+      return;
+  }
 }
 
 void FieldReader::numbers(const Field& field, std::span<double> values, bool spread) {
@@ -226,6 +246,15 @@ void FieldReader::numbered(const Field& field, const fields::Numbered& entries) 
                              std::to_string(entries.count) + ", got \"" + entry.key + "\"");
     }
   });
+}
+
+void FieldReader::named(const Field& field, const fields::Named& entries) {
+  const YamlNode* node = find(field);
+  if (node == nullptr) return;
+  if (node->kind != YamlNode::Kind::map) return expected(field.key, entries.words);
+  const std::string where = map_->where(field.key);
+  for (const YamlNode& entry : node->children)
+    read_entries(entry, fields::join_path(where, entry.key), [&] { entries.declare(entry.key); });
 }
 
 void FieldReader::two_ways(const Field& field, const char* words,

@@ -20,6 +20,7 @@ class FieldReader : public fields::Visitor {
               std::span<const fields::Word> words) override;
   void integer(const fields::Field& field, int& value,
                std::span<const fields::Word> words) override;
+  void integers(const fields::Field& field, std::span<int> values) override;
   void numbers(const fields::Field& field, std::span<double> values, bool spread) override;
   void number_list(const fields::Field& field, const char* items,
                    std::vector<double>& values) override;
@@ -37,6 +38,7 @@ class FieldReader : public fields::Visitor {
              const std::function<void()>& inside) override;
   void list(const fields::Field& field, const fields::Items& items) override;
   void numbered(const fields::Field& field, const fields::Numbered& entries) override;
+  void named(const fields::Field& field, const fields::Named& entries) override;
   void two_ways(const fields::Field& field, const char* words, const std::function<void()>& plain,
                 const std::function<void()>& mapping) override;
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "samara/fields/description.hpp"
+#include "samara/io/load_result.hpp"
 #include "samara/simulation/scenario_fields.hpp"
 
 #include "case_version.hpp"
@@ -27,6 +28,12 @@ Json number_schema(const Range& range) {
         is_above_zero ? 0.0 : range.low;
   if (std::isfinite(range.high)) schema[range.open ? "exclusiveMaximum" : "maximum"] = range.high;
   return schema;
+}
+
+Json integer_schema(const Range& range) {
+  return {{"type", "integer"},
+          {"minimum", static_cast<long>(range.low)},
+          {"maximum", static_cast<long>(range.high)}};
 }
 
 Json list_schema(Json items, std::size_t least, std::size_t most) {
@@ -80,12 +87,15 @@ class SchemaWriter : public fields::Description {
   }
 
   void integer(const Field& field, int& value, std::span<const fields::Word> words) override {
-    Json schema = number_schema(field.range);
-    for (const char* limit : {"minimum", "maximum"})
-      schema[limit] = static_cast<long>(schema[limit].get<double>());
-    schema["type"] = "integer";
-    schema = with_words(std::move(schema), words);
+    Json schema = with_words(integer_schema(field.range), words);
     schema["default"] = value;
+    add(field, std::move(schema));
+  }
+
+  void integers(const Field& field, std::span<int> values) override {
+    const Json one = integer_schema(field.range);
+    Json schema = either(one, list_schema(one, values.size(), values.size()));
+    schema["default"] = values[0];
     add(field, std::move(schema));
   }
 
@@ -100,8 +110,11 @@ class SchemaWriter : public fields::Description {
     add(field, std::move(schema));
   }
 
-  void number_list(const Field& field, const char*, std::vector<double>&) override {
-    add(field, list_schema(number_schema(field.range), 1, 0));
+  void number_list(const Field& field, const char*, std::vector<double>& values) override {
+    Json schema = list_schema(number_schema(field.range), 1, 0);
+    for (const double value : values)
+      schema["default"].push_back(value_of(field.unit.from_si(value)));
+    add(field, std::move(schema));
   }
 
   void name_list(const Field& field, std::vector<std::string>& names) override {
@@ -154,6 +167,11 @@ class SchemaWriter : public fields::Description {
     add(field, {{"type", "object"},
                 {"patternProperties", {{"^[1-9][0-9]*$", describe([&] { entries.declare(1); })}}},
                 {"additionalProperties", false}});
+  }
+
+  void named(const Field& field, const fields::Named& entries) override {
+    add(field,
+        {{"type", "object"}, {"additionalProperties", describe([&] { entries.declare(""); })}});
   }
 
   void two_ways(const Field& field, const char*, const std::function<void()>& plain,
@@ -218,6 +236,7 @@ class SchemaWriter : public fields::Description {
     if (!required_.empty()) mapping["required"] = required_;
     mapping["properties"] = std::move(properties_);
     if (!rules.empty()) mapping["allOf"] = std::move(rules);
+    *this = SchemaWriter();
     return mapping;
   }
 
@@ -260,6 +279,9 @@ std::string case_schema() {
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
               {"title", "A case file of Samara"}};
   schema.update(writer.take());
+  LoadOptions loads;
+  declare(visitor, loads);
+  schema["definitions"]["loads"] = writer.take();
   return schema.dump(2) + "\n";
 }
 

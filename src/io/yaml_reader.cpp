@@ -233,6 +233,24 @@ bool read_number(const YamlNode& node, const std::string& where, const Range& ra
   return true;
 }
 
+bool read_integer(const YamlNode& node, const std::string& where, int low, int high,
+                  const std::string& others, int& value, ErrorList& errors) {
+  int number = 0;
+  const char* begin = node.text.data();
+  const char* end = begin + node.text.size();
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  const bool is_integer = node.kind == YamlNode::Kind::scalar && !node.quoted && stop == end &&
+                          error == std::errc() && begin != end;
+  if (!is_integer || number < low || number > high) {
+    errors.add(node.place, where,
+               "expected an integer from " + std::to_string(low) + " to " + std::to_string(high) +
+                   others + ", " + describe(node));
+    return false;
+  }
+  value = number;
+  return true;
+}
+
 bool read_numbers(const YamlNode& node, const std::string& where, const Range& range,
                   std::span<double> values, ErrorList& errors) {
   if (node.kind != YamlNode::Kind::list || node.children.size() != values.size()) {
@@ -278,36 +296,6 @@ const YamlNode* MapReader::require(std::string_view key, std::string_view hint) 
     missing_.push_back({std::string(key), std::string(hint)});
   }
   return entry;
-}
-
-bool MapReader::read(std::string_view key, double& value, const Range& range) {
-  const YamlNode* entry = find(key);
-  return entry != nullptr && read_number(*entry, where(key), range, value, errors_);
-}
-
-bool MapReader::read(std::string_view key, int& value, int low, int high,
-                     const std::string& others) {
-  const YamlNode* entry = find(key);
-  if (entry == nullptr) return false;
-  int number = 0;
-  const char* begin = entry->text.data();
-  const char* end = begin + entry->text.size();
-  const auto [stop, error] = std::from_chars(begin, end, number);
-  const bool is_integer = entry->kind == YamlNode::Kind::scalar && !entry->quoted && stop == end &&
-                          error == std::errc() && begin != end;
-  if (!is_integer || number < low || number > high) {
-    refuse(*entry, key,
-           "expected an integer from " + std::to_string(low) + " to " + std::to_string(high) +
-               others + ", " + describe(*entry));
-    return false;
-  }
-  value = number;
-  return true;
-}
-
-bool MapReader::read(std::string_view key, std::span<double> values, const Range& range) {
-  const YamlNode* entry = find(key);
-  return entry != nullptr && read_numbers(*entry, where(key), range, values, errors_);
 }
 
 void MapReader::refuse(const YamlNode& entry, std::string_view key, const std::string& what) const {

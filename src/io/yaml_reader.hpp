@@ -67,6 +67,9 @@ Place find_blame(const YamlNode& node);
 /// These leave `value` alone and add an error where the node is not what the rule asks for.
 bool read_number(const YamlNode& node, const std::string& where, const Range& range, double& value,
                  ErrorList& errors);
+/// `others`: words that are accepted, too, as the message says: " or auto".
+bool read_integer(const YamlNode& node, const std::string& where, int low, int high,
+                  const std::string& others, int& value, ErrorList& errors);
 bool read_numbers(const YamlNode& node, const std::string& where, const Range& range,
                   std::span<double> values, ErrorList& errors);
 
@@ -88,12 +91,6 @@ class MapReader {
 
   /// Whether no compulsory key was missing so far; finish() reports those that are.
   bool is_complete() const { return missing_.empty(); }
-
-  /// Optional values: false, and `value` untouched, where the key is left out or wrong.
-  bool read(std::string_view key, double& value, const Range& range);
-  /// `others`: words that are accepted, too, as the message says: " or auto".
-  bool read(std::string_view key, int& value, int low, int high, const std::string& others = {});
-  bool read(std::string_view key, std::span<double> values, const Range& range);
 
   /// Adds an error about the value of an entry.
   void refuse(const YamlNode& entry, std::string_view key, const std::string& what) const;

@@ -309,7 +309,7 @@ class Refusals(ProgramTest):
             ("harmonics=1.5", "expected an integer"),
             ("harmonics=150", "harmonics apart"),
             ("bins=0", "expected an integer"),
-            ("bins=[1, 2, 3]", "[20, 5]"),
+            ("bins=[1, 2, 3]", "a list of 2 integers"),
             ("goodman.RootMxb1={fixed_mean: 1}", 'missing key "ultimate_load"'),
             ("goodman.RootMbx1={ultimate_load: 1}", 'did you mean "RootMxb1"'),
             ("goodman=1", "expected channels"),

@@ -13,6 +13,7 @@ class Description : public Visitor {
   using Visitor::number;
   void number(const Field&, double&, std::span<const Word>) override {}
   void integer(const Field&, int&, std::span<const Word>) override {}
+  void integers(const Field&, std::span<int>) override {}
   void numbers(const Field&, std::span<double>, bool) override {}
   void number_list(const Field&, const char*, std::vector<double>&) override {}
   void name_list(const Field&, std::vector<std::string>&) override {}
@@ -28,6 +29,7 @@ class Description : public Visitor {
   }
   void list(const Field&, const Items& items) override { items.declare(items.size()); }
   void numbered(const Field&, const Numbered& entries) override { entries.declare(1); }
+  void named(const Field&, const Named& entries) override { entries.declare(""); }
   void two_ways(const Field&, const char*, const std::function<void()>& plain,
                 const std::function<void()>& mapping) override {
     plain();

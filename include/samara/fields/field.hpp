@@ -13,7 +13,7 @@ struct Unit {
   double factor = 1.0;    ///< SI = value factor / divisor
   double divisor = 1.0;
 
-  constexpr Unit(const char* unit_name, double by = 1.0, double over = 1.0)
+  constexpr explicit Unit(const char* unit_name, double by = 1.0, double over = 1.0)
       : name(unit_name), factor(by), divisor(over) {}
 
   constexpr double to_si(double value) const { return value * factor / divisor; }
@@ -63,10 +63,16 @@ struct Field {
   bool zero_is_none = false;      ///< the value 0 stands for a key that is left out
   bool infinity_is_none = false;  ///< so does an infinite one
 
-  constexpr Field(std::string_view name, Unit in, Range accepted, std::string_view meaning)
+  constexpr Field(std::string_view name, const Unit& in, const Range& accepted,
+                  std::string_view meaning)
       : key(name), unit(in), range(accepted), text(meaning) {}
-  constexpr Field(std::string_view name, Unit in, std::string_view meaning)
+  constexpr Field(std::string_view name, const char* in, const Range& accepted,
+                  std::string_view meaning)
+      : Field(name, Unit(in), accepted, meaning) {}
+  constexpr Field(std::string_view name, const Unit& in, std::string_view meaning)
       : Field(name, in, any_number, meaning) {}
+  constexpr Field(std::string_view name, const char* in, std::string_view meaning)
+      : Field(name, Unit(in), any_number, meaning) {}
   constexpr Field(std::string_view name, std::string_view meaning) : Field(name, "", meaning) {}
 
   /// Compulsory, or not.

@@ -60,6 +60,13 @@ struct Numbered {
   std::function<void(int)> declare;  ///< the fields of one; makes it where it is not there
 };
 
+/// Mappings by names that the user chooses.
+struct Named {
+  const char* words;  ///< "channels, e.g. ..."
+  std::function<std::vector<std::string>()> names;
+  std::function<void(const std::string&)> declare;  ///< the fields of one; makes it
+};
+
 /// Numbers are passed in SI and radians; a visitor converts by the unit of the field.
 class Visitor {
  public:
@@ -83,6 +90,8 @@ class Visitor {
   /// A number, or one of the words. The flags of words are set, too.
   virtual void number(const Field& field, double& value, std::span<const Word> words) = 0;
   virtual void integer(const Field& field, int& value, std::span<const Word> words) = 0;
+  /// As many integers as there are values, or one that holds for all.
+  virtual void integers(const Field& field, std::span<int> values) = 0;
   /// As many numbers as there are values; with `spread` also one that holds for all.
   virtual void numbers(const Field& field, std::span<double> values, bool spread) = 0;
   /// One number or more; `items` says of what.
@@ -108,6 +117,7 @@ class Visitor {
                      const std::function<void()>& inside) = 0;
   virtual void list(const Field& field, const Items& items) = 0;
   virtual void numbered(const Field& field, const Numbered& entries) = 0;
+  virtual void named(const Field& field, const Named& entries) = 0;
   /// A key that is a mapping, called `words`, or something else. Both ways name it once more.
   virtual void two_ways(const Field& field, const char* words, const std::function<void()>& plain,
                         const std::function<void()>& mapping) = 0;
@@ -202,6 +212,19 @@ class Visitor {
                 std::map<int, Definition>& entries, const Declare& declare) {
     numbered(field, Numbered{words, count, [&entries](int k) { return entries.count(k) > 0; },
                              [&](int k) { declare(entries[k]); }});
+  }
+  template <class Definition, class Declare>
+  void named(const Field& field, const char* words, std::map<std::string, Definition>& entries,
+             const Declare& declare) {
+    Definition shown{};  // of a description
+    named(field,
+          Named{words,
+                [&entries] {
+                  std::vector<std::string> names;
+                  for (const auto& [name, entry] : entries) names.push_back(name);
+                  return names;
+                },
+                [&](const std::string& name) { declare(name.empty() ? shown : entries[name]); }});
   }
 };
 

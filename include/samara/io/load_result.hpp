@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "samara/fields/visitor.hpp"
 #include "samara/io/result_file.hpp"
 #include "samara/loads/load_evaluation.hpp"
 #include "samara/turbine/turbine_channels.hpp"
@@ -24,6 +25,9 @@ struct LoadOptions {
   std::map<std::string, loads::GoodmanCorrection> goodman;  ///< by channel
   loads::LoadEvaluationOptions evaluation;  ///< without `goodman`, which is by name here
 };
+
+/// The keys of --set of `samara loads`.
+void declare(fields::Visitor& fields, LoadOptions& options);
 
 /// Reads `key=value` pairs. @throws InputError with every error found, one a line
 LoadOptions read_load_options(const std::vector<std::string>& settings);
