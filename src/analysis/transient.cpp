@@ -9,6 +9,7 @@
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/system/angles.hpp"
 
@@ -108,6 +109,13 @@ class Integration {
   }
 
  private:
+  /// A coordinate that turns.
+  struct Angle {
+    PetscInt unknown = 0;
+    double value = 0.0;  ///< before the step
+    double rate = 0.0;   ///< of the step before [1/s]
+  };
+
   // ---- the system, scaled ----------------------------------------------------------------------
 
   void scale_system() {
@@ -120,13 +128,17 @@ class Integration {
   }
 
   void find_angles() {
-    for (std::size_t i = 0; i < system_.unknowns().size(); ++i) {
-      const system::Unknown& unknown = system_.unknowns()[i];
-      if (!system::is_angle(unknown)) continue;
-      angles_.push_back({static_cast<PetscInt>(i)});
-      if (start_.z_dot.size() > 0) angles_.back().rate = start_.z_dot(static_cast<Eigen::Index>(i));
-    }
-    has_rates_ = start_.z_dot.size() > 0;
+    for (std::size_t i = 0; i < system_.unknowns().size(); ++i)
+      if (system::is_angle(system_.unknowns()[i])) angles_.push_back({static_cast<PetscInt>(i)});
+    begin_angles(start_.z_dot);
+  }
+
+  /// Forgets the rates before: what follows depends on the state of a start, or of a checkpoint,
+  /// alone. Rates may be unknown.
+  void begin_angles(const Eigen::VectorXd& z_dot) {
+    has_rates_ = z_dot.size() > 0;
+    if (!has_rates_) return;
+    for (Angle& angle : angles_) angle.rate = z_dot(angle.unknown);
   }
 
   /// Where a step begins.
@@ -136,28 +148,30 @@ class Integration {
     for (Angle& angle : angles_) angle.value = view[angle.unknown] * factors[angle.unknown];
   }
 
-  /// Where it ends.
-  void note_rates() {
-    const petsc::ReadView view(z_dot_.get());
-    for (Angle& angle : angles_) angle.rate = view[angle.unknown];
+  /// Where a step has ended. Rates of BDF2 are those at its end; those of other methods are not
+  /// what the equations see (twice the rate in the trapezoidal rule): the mean over the step.
+  void note_rates(double taken) {
+    const petsc::ReadView rates(z_dot_.get());
+    const petsc::ReadView ends(x_.get());
+    const petsc::ReadView factors(scaling_.columns.get());
+    for (Angle& angle : angles_)
+      angle.rate = is_bdf() ? rates[angle.unknown]
+                            : (ends[angle.unknown] * factors[angle.unknown] - angle.value) / taken;
     has_rates_ = true;
   }
 
-  /// Whether the solution of a step, of which the last residual is, goes on from the step before.
+  /// Whether the solution of a step, of which the last residual is, goes on from the steps before.
   bool goes_on() {
     if (!has_rates_) return true;
     const petsc::ReadView view(z_.get());
     for (const Angle& angle : angles_) {
-      const double expected = angle.value + (t_ - time_before_) * angle.rate;
-      const double deviation =
-          (view[angle.unknown] - expected) /
-          system::angle_stretch(system_.unknowns()[static_cast<std::size_t>(angle.unknown)],
-                                view[angle.unknown]);
+      const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(angle.unknown)];
+      const double value = view[angle.unknown];
+      const double deviation = (value - angle.value - (t_ - time_before_) * angle.rate) /
+                               system::angle_stretch(unknown, value);
       if (std::abs(deviation) <= largest_deviation) continue;
-      std::ostringstream text;
-      text << system_.unknowns()[static_cast<std::size_t>(angle.unknown)].name() << " turns by "
-           << deviation << " rad more than its rate says within a step";
-      error_ = std::make_exception_ptr(DomainError(text.str()));
+      error_ = std::make_exception_ptr(DomainError(unknown.name() + " is " + general(deviation, 4) +
+                                                   " rad from where its rate leads it"));
       return false;
     }
     return true;
@@ -383,7 +397,7 @@ class Integration {
     }
     put(z, z_.get());
     put(z_dot, z_dot_.get());
-    note_rates();
+    begin_angles(z_dot);
     return observer_.sample({start_.time, z_.get(), z_dot_.get(), 0, true});
   }
 
@@ -547,10 +561,12 @@ class Integration {
   }
 
   /// The longest step after a start.
-  double start_limit() const {
-    PetscBool is_bdf = PETSC_FALSE;
-    petsc::check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ts_.get()), TSBDF, &is_bdf));
-    return options_.step * (is_bdf != PETSC_FALSE ? first_step : 1.0);
+  double start_limit() const { return options_.step * (is_bdf() ? first_step : 1.0); }
+
+  bool is_bdf() const {
+    PetscBool is_one = PETSC_FALSE;
+    petsc::check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ts_.get()), TSBDF, &is_one));
+    return is_one != PETSC_FALSE;
   }
 
   void renew_tangent() { petsc::check(SNESSetLagJacobian(snes_, -2)); }
@@ -583,7 +599,7 @@ class Integration {
       petsc::check(TSSetTime(ts, grid(step_)));
     }
     finish_midpoint(t, taken);
-    note_rates();
+    note_rates(taken);
     const bool goes_on = observer_.sample({t_, z_.get(), z_dot_.get(), step_, on_grid});
     if (on_grid && step_ < last_step_ && options_.checkpoint_steps > 0 &&
         step_ % options_.checkpoint_steps == 0)
@@ -603,7 +619,9 @@ class Integration {
     petsc::check(TSRestartStep(ts_.get()));
     steps_since_start_ = 0;
     limit_ = start_limit();
-    observer_.checkpoint(state());
+    const TransientStart point = state();
+    begin_angles(point.z_dot);
+    observer_.checkpoint(point);
     begin_midpoint();
   }
 
@@ -697,12 +715,6 @@ class Integration {
     text << "; hint: a smaller transient.step; -transient_snes_monitor shows the corrections";
     throw ConvergenceError(text.str());
   }
-
-  struct Angle {
-    PetscInt unknown = 0;
-    double value = 0.0;  ///< before the step [rad]
-    double rate = 0.0;   ///< at the end of the step before [rad/s]
-  };
 
   const system::PeriodicSystem& system_;
   const TransientOptions& options_;

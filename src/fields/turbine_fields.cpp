@@ -65,7 +65,10 @@ void declare_load(Visitor& fields, const model::TurbineDefinition& turbine,
   if (fields.reads() && fields.given("beam")) {
     load.on_tower = beam == "tower";
     load.blade = find_blade(beam, turbine.blades.count);
-    if (!load.on_tower && beam != "blades" && load.blade == 0)
+    const bool is_known = load.on_tower || beam == "blades" || load.blade != 0;
+    if (!is_known && turbine.blades.count == 0)
+      fields.refuse("beam", "there are no blades, only a tower");
+    else if (!is_known)
       fields.expected("beam", "tower, blades or a blade from 1 to " +
                                   std::to_string(turbine.blades.count) + " (blade 1)");
   }

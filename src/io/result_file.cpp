@@ -375,6 +375,12 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
       {"N, N m", no_frame, "largest entry of the force and moment balances", {"residual_place"}});
   write_value("/trim/load_level", trim.load_level,
               {"N, N m", no_frame, "largest internal load, to compare the residual with"});
+  write_value("/trim/harmonic_residual", trim.harmonic_residual,
+              {"N, N m", no_frame,
+               "largest harmonic of the force and moment balances that is to vanish; the residual "
+               "beyond it is of harmonics that were left out"});
+  write_value("/trim/state_residual", trim.state_residual,
+              {"1", no_frame, "largest residual of the first-order states, relative to its terms"});
   write_value("/trim/imbalance", trim.imbalance(),
               {"1", no_frame,
                "the larger residual relative to the largest internal load; a steady state is rough "

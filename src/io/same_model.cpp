@@ -54,4 +54,13 @@ void require_same_model(const std::string& path, const std::string& there, const
   }
 }
 
+bool states_alike(const std::string& there, const std::string& here, std::string_view start) {
+  const auto select = [start](const std::string& text) {
+    ModelKeys keys = model_keys(text);
+    std::erase_if(keys, [start](const auto& entry) { return !is_below(entry.first, start); });
+    return keys;
+  };
+  return select(there) == select(here);
+}
+
 }  // namespace samara::io

@@ -58,6 +58,9 @@ void start_from(const std::string& path, const Case& input,
                 simulation::TransientSimulation& simulation, analysis::Observer& observer) {
   const Case before = read_result_case(path);
   require_same_model(path, before.model_text, input.model_text, acting_keys);
+  // A torque that is stated, 0 too, is all that the generator gives.
+  const bool is_new_law =
+      !states_alike(before.model_text, input.model_text, "shaft.generator.torque");
   const ResultKind kind = find_result_kind(path);
   if (kind == ResultKind::other)
     throw InputError(
@@ -66,13 +69,13 @@ void start_from(const std::string& path, const Case& input,
     const HistoryReader history(path);
     const simulation::TransientState end =
         last_state(path, history, before, simulation.system(), observer);
-    at_place(path, [&] { simulation.start_after(before, end, observer); });
+    at_place(path, [&] { simulation.start_after(before, end, observer, is_new_law); });
     return;
   }
   analysis::Trim trim = read_result_trim(path);
   place_held(simulation.system(), trim.held);
   simulation::note_roughness(trim, observer, path);
-  at_place(path, [&] { simulation.start_on(before, trim); });
+  at_place(path, [&] { simulation.start_on(before, trim, is_new_law); });
 }
 
 }  // namespace samara::io

@@ -101,6 +101,7 @@ std::string to_setting_path(const std::string& where) {
 /// The last --set argument in a field, or its place; of one that is left out, that of the innermost
 /// field around it.
 Place find_place(const YamlNode& root, const std::string& field) {
+  if (field.empty()) return {};
   const YamlNode* node = &root;
   std::istringstream keys(to_setting_path(field));
   for (std::string key; std::getline(keys, key, '.');) {
@@ -320,7 +321,8 @@ std::string MapReader::report_unknown(const YamlNode& entry) const {
   } else {
     what += "; known keys: " + list_words(known_, ", ");
   }
-  errors_.add(entry.place, "", what, where_);
+  // One that is like no other key has been meant for none.
+  errors_.add(entry.place, "", what, similar.empty() ? where(entry.key) : where_);
   return similar;
 }
 

@@ -116,6 +116,14 @@ class Validation {
     if (shaft.gear_ratio == 0.0) add("shaft.gear_ratio", "expected a number other than 0");
     if (shaft.torsion.kind == JointKind::free && shaft.torsion.stiffness == 0.0)
       add("shaft.torsion.joint", "a shaft that may twist needs a stiffness > 0");
+    for (const auto& [field, kind] : {std::pair("shaft.torsion.joint", shaft.torsion.kind),
+                                      {"shaft.generator.joint", shaft.generator.kind}})
+      if (kind == JointKind::prescribed) add(field, "expected free or locked, got \"prescribed\"");
+    for (const auto& [field, law] :
+         {std::pair("shaft.generator", &shaft.generator.law), {"shaft.rotor", &shaft.rotor}})
+      if (!law->table.empty() && (law->torque != 0.0 || law->slope != 0.0))
+        add(std::string(field) + ".torque_table",
+            "given together with torque or torque_slope; leave one of them out");
     const bool is_free = shaft.generator.kind == JointKind::free;
     if (is_free && shaft.torsion.kind == JointKind::free && shaft.generator.inertia == 0.0)
       add("shaft.generator", "a free generator behind a shaft that may twist needs an inertia > 0");
@@ -297,8 +305,12 @@ class Validation {
           "there is no such blade, there are " + std::to_string(turbine_.blades.count));
     if (damper.axes.empty() || damper.axes.size() > 2)
       add(place, "a mass damper has one axis or two; leave one of them out");
+    for (std::size_t k = 0; k < damper.axes.size(); ++k)
+      if (damper.axes[k].axis < 0 || damper.axes[k].axis > 2 ||
+          (k > 0 && damper.axes[k].axis == damper.axes[0].axis))
+        add(place, "its axes are two of 0, 1 and 2, each another");
     if (is_on_blade && damper.at == 1.0 && !turbine_.blades.beam.end_support.is_none())
-      add(place + ".at", "blades.end_support holds the end; hint: at: 0.99");
+      add(place + ".at", "blades.end_support holds the end; hint: at: 0.99", {place + ".on"});
   }
 
   const TurbineDefinition& turbine_;

@@ -73,6 +73,12 @@ Session::Session(const std::vector<std::string>& options) {
     adopt(options);
     return;
   }
+  int has_ended = 0;
+  MPI_Finalized(&has_ended);
+  if (has_ended != 0)
+    throw InternalError(
+        "MPI has ended in this process, and cannot start again; hint: one Session "
+        "for the life of the program");
   int has_mpi = 0;
   MPI_Initialized(&has_mpi);
   if (has_mpi == 0) prepare_transport();

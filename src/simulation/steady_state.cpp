@@ -1,6 +1,7 @@
 #include "samara/simulation/steady_state.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "samara/base/format.hpp"
 
@@ -25,6 +26,9 @@ std::string roughness(const analysis::Trim& trim) {
   const std::string bound = " (more than " + general(rough_imbalance, 1) + ")";
   if (trim.method == analysis::TrimMethod::shooting)
     return "loads are out of balance by " + part + bound + "; hint: more trim.steps";
+  if (std::isnan(trim.harmonic_residual))
+    return "loads are out of balance by " + part + bound +
+           "; hint: more trim.harmonics, or a smaller trim.tolerance";
   const bool is_newton =
       trim.harmonic_residual > 0.5 * std::max(trim.residual, trim.residual_between);
   return "loads are out of balance by " + part + bound +

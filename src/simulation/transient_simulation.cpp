@@ -102,6 +102,9 @@ TransientSimulation::TransientSimulation(TransientSimulation&&) noexcept = defau
 TransientSimulation& TransientSimulation::operator=(TransientSimulation&&) noexcept = default;
 
 void TransientSimulation::start(analysis::Observer& observer) {
+  if (scenario_.transient.start == TransientOrigin::result)
+    throw InputError(
+        "transient.start: starts from a result, which start_after or start_on is given");
   TransientState state;
   state.events.assign(scenario_.transient.events.size(), never);
   state.azimuth = system_->turbine().azimuth;
@@ -121,6 +124,10 @@ void TransientSimulation::start(analysis::Observer& observer) {
 
 void TransientSimulation::restart(const Scenario& before, TransientState state) {
   require_size(state.point.z.size());
+  if (!is_same_turbine(before.turbine, scenario_.turbine))
+    throw InputError(
+        "was run with another turbine; hint: as transient.start this result begins a time "
+        "series of its own");
   const analysis::TransientOptions& options = scenario_.transient.options;
   const analysis::TransientOptions& ran = before.transient.options;
   const std::string hint = "; hint: as transient.start this result begins a time series of its own";
@@ -139,7 +146,7 @@ void TransientSimulation::restart(const Scenario& before, TransientState state) 
 }
 
 void TransientSimulation::start_after(const Scenario& before, const TransientState& end,
-                                      analysis::Observer& observer) {
+                                      analysis::Observer& observer, bool is_new_law) {
   require_size(end.point.z.size());
   if (end.events.size() != before.transient.events.size())
     throw InputError("has times of " + std::to_string(end.events.size()) +
@@ -164,11 +171,12 @@ void TransientSimulation::start_after(const Scenario& before, const TransientSta
   // state would show what a step leaves in the constraints.
   state.point.is_row =
       state.point.z_dot.size() > 0 && is_same_turbine(before.turbine, scenario_.turbine);
-  use_law(before, state);
+  use_law(before, is_new_law, state);
   begin(std::move(state));
 }
 
-void TransientSimulation::start_on(const Scenario& before, const analysis::Trim& trim) {
+void TransientSimulation::start_on(const Scenario& before, const analysis::Trim& trim,
+                                   bool is_new_law) {
   require_size(trim.solution.coefficients().rows());
   const model::Turbine steady = model::build_turbine(before.turbine);
   TransientState state;
@@ -179,12 +187,15 @@ void TransientSimulation::start_on(const Scenario& before, const analysis::Trim&
   require_same_motion(steady, 0.0, here);
   state.point = analysis::start_on(*system_, trim, 0.0);
   if (!is_same_turbine(before.turbine, scenario_.turbine)) state.point.z_dot.resize(0);
-  use_law(before, state);
+  use_law(before, is_new_law, state);
   begin(std::move(state));
 }
 
 TransientSummary TransientSimulation::run(TransientOutput& output) {
   if (!is_started_) throw InputError("a simulation runs after its start");
+  const analysis::TransientStart& point = state_.point;
+  if (point.time >= point.origin + scenario_.transient.options.duration * (1.0 - 1e-12))
+    throw InputError("the simulation has reached its end, t = " + general(point.time, 6) + " s");
   TransientLegs legs(scenario_.transient, turbine_, state_, system_->layout().generator(), output);
   TransientSummary summary = legs.run();
   state_ = summary.end;
@@ -198,8 +209,10 @@ void TransientSimulation::require_size(Eigen::Index unknowns) const {
 }
 
 /// A new law is all of the torque: what held the mean speed under the old one goes.
-void TransientSimulation::use_law(const Scenario& before, TransientState& state) const {
-  if (before.turbine.shaft.generator.law == scenario_.turbine.shaft.generator.law) return;
+void TransientSimulation::use_law(const Scenario& before, bool is_new_law,
+                                  TransientState& state) const {
+  if (!is_new_law && before.turbine.shaft.generator.law == scenario_.turbine.shaft.generator.law)
+    return;
   std::erase_if(state.point.held, [this](const analysis::HeldCoordinate& one) {
     return one.unknown == system_->layout().generator();
   });

@@ -50,9 +50,17 @@ class Validation {
             return is_within(range.field, fault.field) || is_within(fault.field, range.field);
           }))
         faults_.push_back(fault);
+    if (!faults_.empty()) return;
+    model::TurbineDefinition completed = turbine_;
+    faults_ = model::complete(completed);
   }
 
   std::vector<Fault> find(Analysis analysis) {
+    // What a case asks of a transient is right or wrong whatever is run.
+    if (analysis != Analysis::transient && scenario_.transient.options.duration > 0.0) {
+      check_curves();
+      for (std::size_t i = 0; i < scenario_.transient.events.size(); ++i) check_event(i);
+    }
     switch (analysis) {
       case Analysis::check:
         break;
@@ -172,6 +180,8 @@ class Validation {
       add("transient.step", "expected a number > 0, transient.duration at the most");
       return;
     }
+    if (transient.output_steps < 1)
+      add("transient.output.every", "expected a multiple of transient.step");
     if (transient.start == TransientOrigin::trim) check_steady();
     check_curves();
     for (std::size_t i = 0; i < transient.events.size(); ++i) check_event(i);
@@ -211,6 +221,11 @@ class Validation {
     const turbine::TurbineEvent& event = scenario_.transient.events[i];
     const std::string place = indexed("transient.events", i);
     if (!has_blades(place)) return;
+    if (!event.pitch && !event.generator_off && event.brake == 0.0)
+      add(place, "does nothing; expected pitch, generator_off or brake");
+    if (event.trigger.time && !(*event.trigger.time < scenario_.transient.options.duration))
+      add(place + ".at", "never comes: transient.duration is " +
+                             general(scenario_.transient.options.duration, 6) + " s");
     if (!is_free() && (event.brake > 0.0 || event.generator_off))
       add(place, "the generator is locked and takes any torque; hint: shaft.generator.joint: free");
     if (!event.pitch) return;

@@ -5,6 +5,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "samara/petsc/session.hpp"
+
 #include "small_systems.hpp"
 
 using namespace samara;
@@ -99,6 +101,14 @@ class Range final : public analysis::TransientObserver {
   double largest = 0.0;
 };
 
+/// Keeps the states at which a run may go on.
+class Keeper final : public analysis::TransientObserver {
+ public:
+  bool sample(const TransientSample&) override { return true; }
+  void checkpoint(const analysis::TransientStart& state) override { states.push_back(state); }
+  std::vector<analysis::TransientStart> states;
+};
+
 /// At rest with the rods at angles to the vertical [rad].
 analysis::TransientStart hung(double first, double second) {
   analysis::TransientStart start;
@@ -166,6 +176,45 @@ BOOST_AUTO_TEST_CASE(a_step_that_is_too_long_does_not_turn_over) {
                               << run.cuts << " cuts");
       BOOST_TEST(range.largest < angle + 0.05);
     }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_with_cut_steps_goes_on_from_a_checkpoint_bit_by_bit) {
+  const StiffPendulum system(5e3);
+  analysis::TransientStart start;
+  start.z = Eigen::Vector2d(2.0, 0.0);
+  for (const TransientMethod method : {TransientMethod::bdf2, TransientMethod::midpoint}) {
+    analysis::TransientOptions options;
+    options.method = method;
+    options.step = 0.05;
+    options.duration = 2.0;
+    options.checkpoint_steps = 7;
+    Keeper keeper;
+    const analysis::TransientRun whole = analysis::run_transient(system, start, options, keeper);
+    BOOST_TEST(whole.cuts > 0);
+    BOOST_TEST_REQUIRE(keeper.states.size() == 5U);
+    for (const analysis::TransientStart& state : keeper.states) {
+      Keeper none;
+      const analysis::TransientRun rest = analysis::run_transient(system, state, options, none);
+      BOOST_TEST((rest.end.z == whole.end.z));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_trapezoidal_rule_is_not_cut_in_smooth_motion) {
+  // Its equations see twice the rate at times; an angle at a constant rate of 4 rad/s is no leap.
+  const petsc::Session session({"-transient_ts_type", "cn"});
+  const StiffPendulum system(0.01);
+  analysis::TransientStart start;
+  start.z = Eigen::Vector2d(0.0, 4.0);
+  start.z_dot = Eigen::Vector2d(4.0, 0.0);
+  analysis::TransientOptions options;
+  options.step = 0.05;
+  options.duration = 2.0;
+  Keeper keeper;
+  const analysis::TransientRun run = analysis::run_transient(system, start, options, keeper);
+  petsc::check(PetscOptionsClearValue(nullptr, "-transient_ts_type"));
+  BOOST_TEST(run.cuts == 0);
+  BOOST_TEST(run.end.z(0) == 8.0, boost::test_tools::tolerance(0.01));
 }
 
 BOOST_AUTO_TEST_CASE(midpoint_rule_gives_reactions_of_second_order) {

@@ -158,6 +158,26 @@ BOOST_AUTO_TEST_CASE(events_before_stay_done) {
   check_speeds(rows, level, total_inertia(first), 1.0);
 }
 
+BOOST_AUTO_TEST_CASE(a_simulation_ends_once) {
+  TransientSimulation simulation(rigid_rotor());
+  Keeper rows;
+  simulation.start(rows);
+  simulation.run(rows);
+  BOOST_CHECK_THROW(simulation.run(rows), InputError);
+  Scenario other = rigid_rotor();
+  other.turbine.hub.mass += 1.0;
+  other.transient.options.duration = 2.0;
+  TransientSimulation after(other);
+  BOOST_CHECK_EXCEPTION(
+      after.restart(simulation.scenario(), simulation.state()), InputError,
+      [](const InputError& error) {
+        return std::string(error.what()).starts_with("was run with another turbine");
+      });
+  other.transient.start = TransientOrigin::result;
+  TransientSimulation none(other);
+  BOOST_CHECK_THROW(none.start(rows), InputError);
+}
+
 BOOST_AUTO_TEST_CASE(the_output_may_end_it) {
   TransientSimulation simulation(rigid_rotor());
   Keeper rows;

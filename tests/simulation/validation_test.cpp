@@ -2,6 +2,7 @@
 #include "samara/simulation/validation.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,41 @@ BOOST_AUTO_TEST_CASE(all_faults_are_found_at_once) {
                           return std::ranges::count(text, '\n') == 6 &&
                                  text.starts_with("rotor: shaft.gear_ratio: ");
                         });
+}
+
+BOOST_AUTO_TEST_CASE(numbers_out_of_their_range_are_faults) {
+  Scenario scenario = rigid_rotor();
+  model::TurbineDefinition& turbine = scenario.turbine;
+  turbine.hub.mass = -3.0;
+  turbine.shaft.tilt = 2.0;
+  turbine.blades.beam.order = 0;
+  turbine.blades.beam.sections[0].mass(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  turbine.shaft.generator.inertia = 1e31;
+  scenario.trim.harmonics = -1;
+  scenario.transient.options.step_tolerance = 1.0;
+  const std::vector<Fault> faults = validate(scenario, Analysis::check);
+  check(scenario, Analysis::check,
+        {"shaft.tilt_deg", "shaft.generator.own_inertia", "hub.mass", "blades.order",
+         "blades.sections[0].mass_matrix", "trim.harmonics", "transient.step_tolerance"});
+  BOOST_TEST(faults[0].text == "expected an angle between -90 and 90 degrees, got 114.592");
+  BOOST_TEST(faults[2].text == "expected a number >= 0, got -3");
+}
+
+BOOST_AUTO_TEST_CASE(what_only_a_program_can_state_is_checked) {
+  Scenario scenario = rigid_rotor();
+  model::TurbineDefinition& turbine = scenario.turbine;
+  turbine.shaft.generator.kind = model::JointKind::prescribed;
+  turbine.shaft.rotor.table = {{5.0, 1.0}, {7.0, 2.0}};
+  check(scenario, Analysis::check, {"shaft.generator.joint", "shaft.rotor.torque_table"});
+  scenario = rigid_rotor();
+  scenario.turbine.blades.beam.modal_damping[0] = 0.01;  // of a rigid blade
+  check(scenario, Analysis::check, {"blades.damping"});
+  scenario = rigid_rotor();
+  scenario.transient.output_steps = 0;
+  scenario.transient.events.resize(1);
+  scenario.transient.events[0].trigger.time = 2.0;
+  check(scenario, Analysis::transient,
+        {"transient.output.every", "transient.events[0]", "transient.events[0].at"});
 }
 
 BOOST_AUTO_TEST_CASE(a_trim_has_the_harmonics_of_what_drives_it) {

@@ -18,4 +18,7 @@ ModelKeys model_keys(const std::string& text);
 void require_same_model(const std::string& path, const std::string& there, const std::string& here,
                         std::span<const std::string_view> free = {});
 
+/// Whether two models state the keys that begin with `start` alike.
+bool states_alike(const std::string& there, const std::string& here, std::string_view start);
+
 }  // namespace samara::io

@@ -94,19 +94,22 @@ class TransientSimulation {
 
   /// Starts where the simulation of `before` ended: with it t = 0 comes. What events did to the
   /// drive train stays done.
+  /// A generator whose law is another one, or is to count as such (`is_new_law`), gives the torque
+  /// of the law alone: what held the mean speed before goes.
   /// @throws InputError where motions do not go on from there
-  void start_after(const Scenario& before, const TransientState& end, analysis::Observer& observer);
+  void start_after(const Scenario& before, const TransientState& end, analysis::Observer& observer,
+                   bool is_new_law = false);
 
   /// Starts on the steady state of `before`.
   /// @throws InputError as start_after
-  void start_on(const Scenario& before, const analysis::Trim& trim);
+  void start_on(const Scenario& before, const analysis::Trim& trim, bool is_new_law = false);
 
   /// @throws InputError before a start; ConvergenceError as analysis::run_transient
   TransientSummary run(TransientOutput& output);
 
  private:
   void require_size(Eigen::Index unknowns) const;
-  void use_law(const Scenario& before, TransientState& state) const;
+  void use_law(const Scenario& before, bool is_new_law, TransientState& state) const;
   void begin(TransientState state);
 
   Scenario scenario_;
