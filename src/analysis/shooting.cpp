@@ -12,6 +12,7 @@
 #include "samara/analysis/harmonic_balance.hpp"
 #include "samara/analysis/monodromy.hpp"
 #include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -19,6 +20,8 @@ namespace {
 constexpr int most_revolutions = 40;
 constexpr int most_step_iterations = 20;
 constexpr double step_tolerance = 1e-12;
+/// A solved correction leaves less than this part of the defect.
+constexpr double unsolved = 1e-6;
 /// Harmonics of the series, at the most; a step's error is far above what lies beyond.
 constexpr int most_harmonics = 24;
 
@@ -157,6 +160,15 @@ class Shooting {
         mean_columns;
     defect << last_state - eta_states[0], rate_state, last_xi - xi_start, means;
     const Eigen::VectorXd correction = jacobian.fullPivLu().solve(-defect);
+    // A singular Jacobian admits a correction only where the defect lies in its range.
+    const double left = (jacobian * correction + defect).norm();
+    const double scale = std::max({1.0, eta_.norm(), xi_.norm()});
+    if (!(left <= std::max(tolerance_ * scale, unsolved * defect.norm())))
+      throw ConvergenceError(
+          "trim: shooting: the correction's matrix is singular, no correction closes the "
+          "revolution (defect " +
+          general(defect.norm(), 3) + ", left by the best one found " + general(left, 3) +
+          "); hint: check the balance of the torques, the limits of the actuators");
     eta_ += correction.head(d);
     eta_rate_ += correction.segment(d, d);
     xi_ += correction.segment(2 * d, n_1);

@@ -1,9 +1,14 @@
 #include "samara/simulation/steady_state.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
+#include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
+#include "samara/turbine/turbine_channels.hpp"
 
 namespace samara::simulation {
 namespace {
@@ -11,11 +16,79 @@ namespace {
 /// Of the largest load: loads out of balance by more make a steady state rough.
 constexpr double rough_imbalance = 1e-4;
 
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// The mean pitch of a blade over a revolution [rad].
+double mean_pitch(const turbine::TurbineSystem& system, const analysis::Trim& trim, int blade) {
+  constexpr int instants = 36;
+  const turbine::TurbineChannels channels(system, {}, {"BldPitch" + std::to_string(blade)});
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  double sum = 0.0;
+  for (int i = 0; i < instants; ++i) {
+    const double t = system.period() * i / instants;
+    trim.solution.evaluate(t, z.get(), z_dot.get());
+    std::array<double, 1> value{};
+    channels.evaluate(t, z.get(), z_dot.get(), value);
+    sum += value[0] * degree;
+  }
+  return sum / instants;
+}
+
+/// Which limit of the actuators the controller's pitch is beyond, found by a trim without limits;
+/// empty: none, or that trim fails, too.
+std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& options) {
+  const model::TurbineDefinition& turbine = scenario.turbine;
+  const auto& actuator = turbine.blades.actuator;
+  if (!turbine.controller || !turbine.controller->pitch || !actuator) return "";
+  const double infinity = std::numeric_limits<double>::infinity();
+  model::TurbineDefinition free = turbine;
+  free.blades.actuator->lowest = -infinity;
+  free.blades.actuator->highest = infinity;
+  try {
+    const turbine::TurbineSystem system(model::build_turbine(free), PETSC_COMM_SELF);
+    analysis::Observer silent;
+    const analysis::Trim trim = analysis::find_trim(system, options, silent);
+    for (int k = 1; k <= turbine.blades.count; ++k) {
+      const double pitch = mean_pitch(system, trim, k);
+      const bool is_high = pitch > actuator->highest;
+      if (!is_high && !(pitch < actuator->lowest)) continue;
+      return "the controller needs a pitch of " + general(pitch / degree, 4) +
+             " deg, blades.pitch_actuator." + (is_high ? "highest_deg" : "lowest_deg") + " is " +
+             general((is_high ? actuator->highest : actuator->lowest) / degree, 4) +
+             ": there it holds no speed; hint: other limits, or torques that balance at "
+             "shaft.speed within them";
+    }
+  } catch (const ConvergenceError&) {
+    return "";
+  } catch (const DomainError&) {
+    return "";
+  }
+  return "";
+}
+
 }  // namespace
+
+analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
+                          const analysis::TrimOptions& options, analysis::Observer& observer) {
+  const auto name_limit = [&] {
+    const std::string words = find_limit(scenario, options);
+    if (!words.empty()) throw ConvergenceError("trim: " + words);
+  };
+  try {
+    return analysis::find_trim(system, options, observer);
+  } catch (const ConvergenceError&) {
+    name_limit();
+    throw;
+  } catch (const DomainError&) {
+    name_limit();
+    throw;
+  }
+}
 
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                          analysis::Observer& observer) {
-  analysis::Trim trim = analysis::find_trim(system, trim_options(scenario), observer);
+  analysis::Trim trim = solve_trim(scenario, system, trim_options(scenario), observer);
   note_roughness(trim, observer);
   return trim;
 }

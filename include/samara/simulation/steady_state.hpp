@@ -9,8 +9,13 @@
 
 namespace samara::simulation {
 
-/// As analysis::find_trim, with the scenario's options; `system`: of its turbine. Notes where the
-/// result is rough.
+/// As analysis::find_trim; `system`: of the scenario's turbine.
+/// @throws ConvergenceError as that; one that names the limit where a controller needs a pitch
+/// beyond the limits of its actuators
+analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
+                          const analysis::TrimOptions& options, analysis::Observer& observer);
+
+/// The same with the scenario's options. Notes where the result is rough.
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                          analysis::Observer& observer);
 
