@@ -19,11 +19,11 @@
 namespace samara::drivers {
 namespace {
 
-/// Of a centre of mass: smaller is rounding [m].
+/// Of a centre of mass: smaller is round-off [m].
 constexpr double small_length = 1e-9;
 /// Relative: a rotor whose unbalance is smaller has none.
 constexpr double balanced = 1e-9;
-/// A damping ratio below it is rounding.
+/// A damping ratio below it is round-off.
 constexpr double no_damping = 1e-12;
 /// More has no turbine [m/s], [m].
 constexpr double usual_tip_speed = 120.0;
@@ -65,7 +65,7 @@ std::string mass_table(const model::Turbine& turbine, const model::Masses& masse
 
 std::string degrees(double radians) { return general(radians * 180.0 / std::numbers::pi, 5); }
 
-std::string joint_words(const elements::Hinge& hinge, const model::JointHistory& motion = {}) {
+std::string joint_words(const elements::Hinge& hinge, const model::PrescribedMotion& motion = {}) {
   if (!hinge.free && motion.angle == 0.0 && motion.is_constant()) return "locked";
   if (!hinge.free && motion.is_constant()) return "held at " + degrees(motion.angle) + " deg";
   if (!hinge.free)
@@ -325,7 +325,7 @@ std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                                            {"flap", "lead-lag", "torsion"}));
   if (turbine.has_tower)
     damping("tower damping",
-            damping_lines(definition.tower, turbine.tower, {"fore-aft", "lateral", "torsion"}));
+            damping_lines(definition.tower, turbine.tower, {"fore-aft", "side-side", "torsion"}));
   line("unknowns", std::to_string(system.size()) + ", " +
                        count(turbine.degrees_of_freedom, "degree") + " of freedom");
   return text;

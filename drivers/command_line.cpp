@@ -301,7 +301,7 @@ class Parser {
     if (!line_.petsc_options.empty())
       throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
     if (line_.result_path.empty())
-      throw InputError("missing -o FILE; hint: -o history.h5, .csv, .out or .outb");
+      throw InputError("missing -o FILE; hint: -o time_series.h5, .csv, .out or .outb");
   }
 
   void require_deck(const std::string& name) const {
@@ -344,7 +344,7 @@ constexpr char import_lines[] =
 
 constexpr char export_lines[] =
     R"(options
-  -o FILE           the history, as its ending says; only a file that samara wrote is overwritten
+  -o FILE           the time series, as its ending says; only a file that samara wrote is overwritten
   --help            this text
 )";
 

@@ -1,8 +1,9 @@
 // SIGINT, SIGTERM and SIGHUP: they end the program in good order, from its first instruction on.
 //
 // A signal ends the process at once with exit code 128 + its number (130, 143, 129): files are
-// whole at any moment, so that nothing is left half written. While a history runs, the first signal
-// is noted instead, the history ends with its rows written, and the second one ends it at once.
+// whole at any moment, so that nothing is left half written. While a time series runs, the first
+// signal is noted instead, the time series ends with its rows written, and the second one ends it
+// at once.
 #pragma once
 
 #include <string>

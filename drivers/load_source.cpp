@@ -7,8 +7,8 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/words.hpp"
-#include "samara/io/history_file.hpp"
 #include "samara/io/result_reader.hpp"
+#include "samara/io/time_series_file.hpp"
 #include "samara/petsc/handle.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
@@ -27,7 +27,7 @@ constexpr std::array<const char*, 3> azimuth_names{"Azimuth", "LSSTipPxa", "LSST
 constexpr std::size_t slice_values = std::size_t{1} << 20;
 
 /// Of a time: how far `from` and `until` may be from that of a row.
-constexpr double rounding = 1e-9;
+constexpr double round_off = 1e-9;
 
 bool is_azimuth(const std::string& name) {
   return std::ranges::find(azimuth_names, name) != azimuth_names.end();
@@ -62,10 +62,10 @@ Columns choose_columns(const std::string& path, const std::vector<Channel>& all,
   if (!unknown.empty()) {
     std::vector<std::string> names;
     for (const Channel& channel : all) names.push_back(channel.name);
-    throw InputError("--set channels: " + path + " has no " +
-                     (unknown.size() == 1 ? "channel " : "channels ") +
-                     list_unknown(unknown, names,
-                                  "; hint: transient.output.channels chooses those of a history"));
+    throw InputError(
+        "--set channels: " + path + " has no " + (unknown.size() == 1 ? "channel " : "channels ") +
+        list_unknown(unknown, names,
+                     "; hint: transient.output.channels chooses those of a time series"));
   }
   if (columns.wanted.empty()) throw InputError(path + ": has no channel but the azimuth");
   return columns;
@@ -77,7 +77,7 @@ LoadSource make_source(const std::string& path, const std::vector<Channel>& all,
   source.report.source = path;
   for (const std::size_t i : columns.wanted) {
     source.report.channels.push_back(all[i]);
-    source.report.history.names.push_back(all[i].name);
+    source.report.series.names.push_back(all[i].name);
   }
   return source;
 }
@@ -99,8 +99,8 @@ class Rows {
     const auto rows = static_cast<Eigen::Index>(times_.size());
     const auto width = static_cast<Eigen::Index>(columns_.wanted.size());
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    source.report.history.times = Eigen::Map<const Eigen::VectorXd>(times_.data(), rows);
-    source.report.history.values = Eigen::Map<const RowMajor>(values_.data(), rows, width);
+    source.report.series.times = Eigen::Map<const Eigen::VectorXd>(times_.data(), rows);
+    source.report.series.values = Eigen::Map<const RowMajor>(values_.data(), rows, width);
     if (columns_.has_azimuth)
       source.azimuth = Eigen::Map<const Eigen::VectorXd>(azimuth_.data(), rows);
   }
@@ -112,32 +112,32 @@ class Rows {
   std::vector<double> azimuth_;
 };
 
-LoadSource read_history(const std::string& path, const io::LoadOptions& options) {
-  const io::HistoryReader history(path);
-  if (history.content().status != "complete")
-    std::cerr << "note: " << path << ": " << history.content().status << "\n";
-  if (!history.damage().empty()) std::cerr << "note: " << history.damage() << "\n";
-  const std::vector<Channel>& all = history.content().channels;
+LoadSource read_series(const std::string& path, const io::LoadOptions& options) {
+  const io::TimeSeriesReader series(path);
+  if (series.content().status != "complete")
+    std::cerr << "note: " << path << ": " << series.content().status << "\n";
+  if (!series.damage().empty()) std::cerr << "note: " << series.damage() << "\n";
+  const std::vector<Channel>& all = series.content().channels;
   const Columns columns = choose_columns(path, all, options);
   LoadSource source = make_source(path, all, columns);
   Rows rows(columns);
   const auto is_wanted = [&options](double t) {
-    const double margin = rounding * std::max(1.0, std::abs(t));
+    const double margin = round_off * std::max(1.0, std::abs(t));
     return (!options.from || t >= *options.from - margin) &&
            (!options.until || t <= *options.until + margin);
   };
   const std::size_t slice = std::max<std::size_t>(1, slice_values / all.size());
-  for (std::size_t first = 0; first < history.rows(); first += slice) {
-    const std::size_t count = std::min(slice, history.rows() - first);
-    const std::vector<double> times = history.read_time(first, count);
-    const std::vector<double> values = history.read_values(first, count);
+  for (std::size_t first = 0; first < series.rows(); first += slice) {
+    const std::size_t count = std::min(slice, series.rows() - first);
+    const std::vector<double> times = series.read_time(first, count);
+    const std::vector<double> values = series.read_values(first, count);
     for (std::size_t i = 0; i < count; ++i)
       if (is_wanted(times[i])) rows.add(times[i], values.data() + i * all.size());
   }
-  if (rows.is_empty() && history.rows() > 0)
-    throw InputError(path + ": no row from `from` to `until`; its history lasts from " +
-                     general(history.read_time(0, 1).at(0), 6) + " to " +
-                     general(history.read_time(history.rows() - 1, 1).at(0), 6) + " s");
+  if (rows.is_empty() && series.rows() > 0)
+    throw InputError(path + ": no row from `from` to `until`; its time series lasts from " +
+                     general(series.read_time(0, 1).at(0), 6) + " to " +
+                     general(series.read_time(series.rows() - 1, 1).at(0), 6) + " s");
   rows.take(source);
   return source;
 }
@@ -190,7 +190,7 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
     rows.add(t, values.data());
   }
   rows.take(source);
-  source.report.history.period = solution.period();
+  source.report.series.period = solution.period();
   return source;
 }
 
@@ -199,8 +199,8 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
 LoadSource read_load_source(const std::string& path, const io::LoadOptions& options,
                             analysis::Observer& observer) {
   switch (io::find_result_kind(path)) {
-    case io::ResultKind::history:
-      return read_history(path, options);
+    case io::ResultKind::time_series:
+      return read_series(path, options);
     case io::ResultKind::steady_state:
       return sample_steady_state(path, options, observer);
     case io::ResultKind::other:

@@ -1,4 +1,4 @@
-// Histories of loads out of results: rows of a transient, or one revolution of a steady state.
+// Time series of loads out of results: rows of a transient, or one revolution of a steady state.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace samara::drivers {
 
 struct LoadSource {
   io::LoadReport report;    ///< without its evaluation
-  Eigen::VectorXd azimuth;  ///< [deg] of each row; empty: the history has none
+  Eigen::VectorXd azimuth;  ///< [deg] of each row; empty: the time series has none
 };
 
 /// Of a steady state needs a PETSc session; a rough one is noted.

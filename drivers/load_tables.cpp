@@ -15,13 +15,13 @@ constexpr Eigen::Index most_range_columns = 20;
 
 constexpr int digits = 5;
 
-/// Of a channel's largest value: what is below it is rounding.
-constexpr double rounding = 1e-12;
+/// Of a channel's largest value: what is below it is round-off.
+constexpr double round_off = 1e-12;
 
 /// `value` of a channel with these extremes.
 std::string word_of(double value, const loads::ChannelStatistics& extremes) {
   const double largest = std::max(std::abs(extremes.minimum), std::abs(extremes.maximum));
-  return general(std::abs(value) < rounding * largest ? 0.0 : value, digits);
+  return general(std::abs(value) < round_off * largest ? 0.0 : value, digits);
 }
 
 Table channel_table() {
@@ -37,14 +37,14 @@ void add_exponents(Table& table, const io::LoadOptions& options) {
 }
 
 std::string headline(const io::LoadReport& report) {
-  const loads::LoadHistory& history = report.history;
-  const auto rows = static_cast<int>(history.times.size());
+  const loads::LoadSeries& series = report.series;
+  const auto rows = static_cast<int>(series.times.size());
   std::string text = "source       " + report.source + ": ";
-  if (history.is_periodic())
-    return text + "one revolution of the steady state, " + general(history.period, 6) + " s at " +
+  if (series.is_periodic())
+    return text + "one revolution of the steady state, " + general(series.period, 6) + " s at " +
            std::to_string(rows) + " azimuths\n";
-  return text + "history, " + count(rows, "row") + " from t = " + general(history.times(0), 6) +
-         " to " + general(history.times(rows - 1), 6) + " s\n";
+  return text + "time series, " + count(rows, "row") + " from t = " + general(series.times(0), 6) +
+         " to " + general(series.times(rows - 1), 6) + " s\n";
 }
 
 std::string statistics_table(const io::LoadReport& report, const io::LoadOptions& options) {
@@ -83,10 +83,10 @@ std::string event_table(const io::LoadReport& report) {
     table.add_column(channel.name, channel.unit);
   for (const loads::ExtremeEvent& event : report.evaluation.events) {
     std::vector<std::string> row{event.is_maximum ? "maximum" : "minimum",
-                                 report.history.names[static_cast<std::size_t>(event.channel)],
+                                 report.series.names[static_cast<std::size_t>(event.channel)],
                                  general(event.time, digits)};
-    for (Eigen::Index c = 0; c < report.history.values.cols(); ++c)
-      row.push_back(word_of(report.history.values(event.row, c),
+    for (Eigen::Index c = 0; c < report.series.values.cols(); ++c)
+      row.push_back(word_of(report.series.values(event.row, c),
                             report.evaluation.statistics[static_cast<std::size_t>(c)]));
     table.add_row(row);
   }

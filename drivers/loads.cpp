@@ -76,8 +76,8 @@ io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options,
   io::LoadReport& report = source.report;
   require_tables(report.channels.size(), options);
   try {
-    report.evaluation = loads::evaluate_loads(report.history, source.azimuth,
-                                              evaluation_options(options, report.history.names));
+    report.evaluation = loads::evaluate_loads(report.series, source.azimuth,
+                                              evaluation_options(options, report.series.names));
   } catch (const InputError& error) {
     const std::string words = error.what();
     throw InputError(words.starts_with("--set ") ? words : path + ": " + words);
@@ -88,15 +88,15 @@ io::LoadReport evaluate(const std::string& path, const io::LoadOptions& options,
 io::LifetimeReport evaluate_lifetime(const std::vector<io::LoadReport>& reports,
                                      const io::LoadOptions& options) {
   if (options.hours.empty()) return {};
-  const std::vector<std::string>& names = reports.front().history.names;
+  const std::vector<std::string>& names = reports.front().series.names;
   std::vector<loads::LoadEvaluation> evaluations;
   std::vector<double> durations;
   for (const io::LoadReport& report : reports) {
-    if (report.history.names != names)
+    if (report.series.names != names)
       throw InputError(report.source + ": has other channels than " + reports.front().source +
                        "; hint: --set channels=[...] names those that all have");
     evaluations.push_back(report.evaluation);
-    durations.push_back(loads::duration(report.history));
+    durations.push_back(loads::duration(report.series));
   }
   return {options.hours,
           loads::evaluate_lifetime(evaluations, durations, options.hours, names,

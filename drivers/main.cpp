@@ -113,12 +113,13 @@ constexpr std::array<Command, 11> commands{{
      .formats = "openfast|windio",
      .convert = run_import},
     {.name = "export",
-     .summary = "a time history in one file: .h5, .csv, or .out and .outb of OpenFAST",
+     .summary = "a time series in one file: .h5, .csv, or .out and .outb of OpenFAST",
      .description =
-         "Writes the history of a result of samara transient as one file, by its ending: .h5, the\n"
+         "Writes the time series of a result of samara transient as one file, by its ending: .h5, "
+         "the\n"
          "whole result without its folder of parts; .csv; .out or .outb, OpenFAST's text and\n"
          "binary output, for the programs that read those; .outb has 16 bits a value.\n",
-     .example = "RESULT.h5 -o history.csv",
+     .example = "RESULT.h5 -o series.csv",
      .writes_result = true,
      .convert = run_export,
      .most_results = 1},

@@ -43,7 +43,7 @@ std::string parts_of(const Mode& mode) {
 }
 
 /// The harmonics beside the identified one, the largest first: "k-2:31% k+1:7%". Shares that print
-/// alike are ordered by distance, so that rounding does not decide.
+/// alike are ordered by distance, so that round-off does not decide.
 std::string other_harmonics(const ModeSet& set, std::size_t m, std::size_t most) {
   struct Entry {
     int offset;

@@ -22,8 +22,8 @@ using analysis::StaticState;
 
 constexpr std::size_t most_rows = 12;
 
-/// Relative to the size of what it is part of: below it a value is rounding.
-constexpr double rounding = 1e-9;
+/// Relative to the size of what it is part of: below it a value is round-off.
+constexpr double round_off = 1e-9;
 
 constexpr double to_degrees = 180.0 / std::numbers::pi;
 
@@ -48,8 +48,8 @@ std::string beam_table(const StaticPath& path, const model::Beam& beam, int tip,
   table.add_column("turned", "deg");
   for (const char* name : {"F b1", "F b2", "F b3"}) table.add_column(name, "N");
   for (const char* name : {"M b1", "M b2", "M b3"}) table.add_column(name, "N m");
-  const double small_length = rounding * beam.tip.norm();
-  const double small_load = rounding * std::max(path.load_level, 1e-300);
+  const double small_length = round_off * beam.tip.norm();
+  const double small_load = round_off * std::max(path.load_level, 1e-300);
   for (const std::size_t i : shown_states(path)) {
     const StaticState& state = path.states[i];
     std::vector<std::string> words{fixed(state.factor, 4)};
@@ -92,7 +92,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   for (const double factor : path.limit_points)
     text += "limit point  near load factor " + general(factor, 6) + "\n";
   for (const analysis::HeldCoordinate& held : path.held) {
-    const bool is_zero = std::abs(held.load) <= rounding * std::max(path.load_level, 1.0);
+    const bool is_zero = std::abs(held.load) <= round_off * std::max(path.load_level, 1.0);
     text += "held         " + held.name + ", which nothing restores: at 0, by " +
             (is_zero ? "0" : general(held.load, 4)) + " " + held.unit +
             (is_zero ? "" : " (not 0: no equilibrium there)") + "\n";
@@ -118,7 +118,7 @@ std::string tables(const turbine::TurbineSystem& system, const StaticPath& path)
   if (turbine.has_tower)
     text += beam_table(path, turbine.tower, layout.tower_tip(), layout.tower_root());
   text += "b1 b2 b3: axes of the beam's root";
-  text += turbine.has_tower ? "; of the tower up, lateral (n1), downwind (n2)\n" : "\n";
+  text += turbine.has_tower ? "; of the tower up, side-side (n1), downwind (n2)\n" : "\n";
   if (shown_states(path).size() < path.states.size()) text += "all states are in the result\n";
   return text;
 }
@@ -127,7 +127,7 @@ std::string tables(const turbine::TurbineSystem& system, const StaticPath& path)
 
 void run_static(const Job& job) {
   model::Turbine turbine = model::build_turbine(job.input.turbine);
-  turbine.for_each_motion([](model::JointHistory& motion) {
+  turbine.for_each_motion([](model::PrescribedMotion& motion) {
     const double angle = motion.at(0.0, 0.0).angle;
     motion = {};
     motion.angle = angle;  // at rest

@@ -5,7 +5,7 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
-#include "samara/io/history_file.hpp"
+#include "samara/io/time_series_file.hpp"
 #include "samara/io/transient_start.hpp"
 #include "samara/io/whole_file.hpp"
 #include "samara/petsc/session.hpp"
@@ -13,11 +13,11 @@
 #include "samara/simulation/validation.hpp"
 
 #include "commands.hpp"
-#include "history_output.hpp"
 #include "interruption.hpp"
 #include "masses.hpp"
 #include "progress.hpp"
 #include "table.hpp"
+#include "time_series_output.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -99,20 +99,20 @@ void run_transient(const Job& job) {
   const model::Turbine& turbine = simulation.turbine();
   const turbine::TurbineSystem begun(turbine, PETSC_COMM_SELF);
   const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
-  io::HistoryContent content;
+  io::TimeSeriesContent content;
   content.channels = simulation.channels();
   content.azimuth = turbine.azimuth;
   content.brake_torque = turbine.chain.brake_torque;
   content.is_generator_lost = simulation.state().is_generator_lost;
-  io::HistoryFile file(job.result_path, job.input, record_of(job), content,
-                       [&](io::ResultFile& result) {
-                         result.write_model(begun);
-                         write_masses(result, masses);
-                       });
+  io::TimeSeriesFile file(job.result_path, job.input, record_of(job), content,
+                          [&](io::ResultFile& result) {
+                            result.write_model(begun);
+                            write_masses(result, masses);
+                          });
   if (!job.restart_path.empty() && io::is_same_file(job.restart_path, job.result_path))
     file.resume();
   file.note_events(simulation.state().events);
-  HistoryOutput output(file, progress);
+  TimeSeriesOutput output(file, progress);
   const Interruption interruption;
   const Clock::time_point began = Clock::now();
   try {

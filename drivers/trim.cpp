@@ -25,8 +25,8 @@ using analysis::Trim;
 constexpr int most_harmonics_shown = 5;
 constexpr int instants = 180;
 
-/// Relative to the size of what it is part of: below it a value is rounding.
-constexpr double rounding = 1e-9;
+/// Relative to the size of what it is part of: below it a value is round-off.
+constexpr double round_off = 1e-9;
 
 /// A line of the table: an unknown that people ask for.
 struct Output {
@@ -34,13 +34,13 @@ struct Output {
   std::string unit;
   int unknown = 0;
   double factor = 1.0;  ///< from SI to `unit`
-  double zero = 0.0;    ///< below it a value is rounding
+  double zero = 0.0;    ///< below it a value is round-off
 };
 
 std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load_level) {
   const model::Turbine& turbine = system.turbine();
   const turbine::TurbineLayout& layout = system.layout();
-  const double small_load = rounding * std::max(load_level, 1.0);
+  const double small_load = round_off * std::max(load_level, 1.0);
   std::vector<Output> outputs;
   const auto add_three = [&outputs](const std::string& place, int first, const std::string& unit,
                                     double zero, const std::vector<std::string>& directions) {
@@ -49,7 +49,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
           {place + " " + directions[static_cast<std::size_t>(i)], unit, first + i, 1.0, zero});
   };
   const auto add_angle = [&outputs](const std::string& name, int unknown) {
-    outputs.push_back({name, "deg", unknown, 180.0 / std::numbers::pi, rounding});
+    outputs.push_back({name, "deg", unknown, 180.0 / std::numbers::pi, round_off});
   };
   // Blades that repeat each other differ in azimuth only.
   const int shown = system.symmetry().sectors > 1 ? 1 : static_cast<int>(turbine.blades.size());
@@ -57,7 +57,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
     const std::string blade = turbine.blades[static_cast<std::size_t>(k)].name;
     const int root = layout.blade_root(k);
     const double length = turbine.blades[static_cast<std::size_t>(k)].tip.norm();
-    add_three(blade + " tip", layout.blade_tip(k), "m", rounding * length,
+    add_three(blade + " tip", layout.blade_tip(k), "m", round_off * length,
               {"along b1 (outward)", "along b2 (lead-lag)", "along b3 (flap)"});
     const std::vector<model::RootHinge>& hinges = turbine.roots[static_cast<std::size_t>(k)].hinges;
     for (std::size_t i = 0; i < hinges.size(); ++i)
@@ -67,7 +67,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
     add_three(blade + " root moment", root + 3, "N m", small_load,
               {"b1 (torsion)", "b2 (flap)", "b3 (lead-lag)"});
   }
-  const auto moves = [](const elements::Hinge& hinge, const model::JointHistory& motion) {
+  const auto moves = [](const elements::Hinge& hinge, const model::PrescribedMotion& motion) {
     return hinge.free || motion.angle != 0.0 || !motion.is_constant();
   };
   if (moves(turbine.chain.teeter, turbine.teeter_motion)) add_angle("teeter", layout.teeter());
@@ -78,15 +78,15 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
     if (damper->owner().instance > shown) continue;
     for (std::size_t i = 0; i < damper->definition().axes.size(); ++i)
       outputs.push_back({damper->owner().name() + " " + damper->direction(i), "m", damper->first(i),
-                         1.0, rounding});
+                         1.0, round_off});
   }
   if (!turbine.has_tower) return outputs;
-  add_three("tower top", layout.tower_tip(), "m", rounding * turbine.tower.tip.norm(),
-            {"along n3 (up)", "along n1 (lateral)", "along n2 (downwind)"});
+  add_three("tower top", layout.tower_tip(), "m", round_off * turbine.tower.tip.norm(),
+            {"along n3 (up)", "along n1 (side-side)", "along n2 (downwind)"});
   add_three("tower root force", layout.tower_root(), "N", small_load,
-            {"n3 (vertical)", "n1 (lateral)", "n2 (downwind)"});
+            {"n3 (vertical)", "n1 (side-side)", "n2 (downwind)"});
   add_three("tower root moment", layout.tower_root() + 3, "N m", small_load,
-            {"n3 (torsion)", "n1 (fore-aft)", "n2 (lateral)"});
+            {"n3 (torsion)", "n1 (fore-aft)", "n2 (side-side)"});
   return outputs;
 }
 
@@ -184,10 +184,10 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   text += trim.method == analysis::TrimMethod::shooting ? "shooting" : "harmonic balance";
   text += harmonics > 0 ? ", " + count(harmonics, "harmonic") + " of the rotor speed\n"
                         : ": a constant, nothing changes with the azimuth\n";
-  for (std::size_t i = 0; trim.history.size() > 1 && i < trim.history.size(); ++i)
+  for (std::size_t i = 0; trim.attempts.size() > 1 && i < trim.attempts.size(); ++i)
     text += std::string(i == 0 ? "tried        " : "             ") +
-            count(trim.history[i].first, "harmonic") + ": residual between the samples " +
-            scientific(trim.history[i].second, 1) + "\n";
+            count(trim.attempts[i].first, "harmonic") + ": residual between the samples " +
+            scientific(trim.attempts[i].second, 1) + "\n";
   text +=
       "Newton       " + count(trim.newton_steps, "step") + ", " + explain(trim.convergence) + "\n";
   text += "residual     " + scientific(trim.residual, 1) + " at the samples, " +
@@ -196,7 +196,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   if (const std::string words = simulation::roughness(trim); !words.empty())
     text += "rough        " + words + "\n";
   for (const analysis::HeldCoordinate& held : trim.held) {
-    const double zero = rounding * std::max(trim.load_level, 1.0);
+    const double zero = round_off * std::max(trim.load_level, 1.0);
     if (held.unknown == system.layout().generator()) {
       const std::optional<model::ControllerDefinition>& controller = system.turbine().controller;
       text += controller && controller->has_integral() ? controller_words(system, trim)

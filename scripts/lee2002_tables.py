@@ -25,8 +25,8 @@ FINE = {"steps": 2400, "order": 6, "elements": 2}  # frequencies to some 1e-5 of
 # Mode of the paper: label of Samara, and the print: Table II (2, 3, 4 elements), Table III (10, 100,
 # 1000, rigid). The modes yaw and teeter are no oscillations here; the text of the page treats them.
 PRINT = [
-    ("1st tower lateral", "tower lateral 1", (0.282, 0.291, 0.292), (0.219, 0.292, 0.760, None)),
-    ("2nd tower lateral", "tower lateral 2", (14.711, 8.711, 8.377), (3.164, 8.377, 22.225, None)),
+    ("1st tower side-side", "tower side-side 1", (0.282, 0.291, 0.292), (0.219, 0.292, 0.760, None)),
+    ("2nd tower side-side", "tower side-side 2", (14.711, 8.711, 8.377), (3.164, 8.377, 22.225, None)),
     ("1st tower fore-aft", "tower fore-aft 1", (0.930, 0.938, 0.938), (0.920, 0.938, 1.494, None)),
     ("2nd tower fore-aft", "tower fore-aft 2", (11.785, 8.052, 7.615), (4.584, 7.615, 23.985, None)),
     ("1st tower torsion", "tower torsion 1", (56.940, 56.824, 56.431), (21.460, 56.431, 148.091, None)),
@@ -46,24 +46,24 @@ PRINT = [
 ]
 
 # Modes whose label is not that of the paper's row, by run: chosen by shape, and marked in the tables.
-# 2 elements: tower lateral bending and antisymmetric lead-lag coincide modulo one per revolution.
+# 2 elements: tower side-side bending and antisymmetric lead-lag coincide modulo one per revolution.
 # Ratio 10: the tower is as soft as the blades, and most lead-lag modes strain it more than them.
 BY_SHAPE = {
     "2 elements": {
-        "tower lateral 1": "blade lead-lag antisymmetric 1",
-        "tower lateral 2": "tower lateral",
+        "tower side-side 1": "blade lead-lag antisymmetric 1",
+        "tower side-side 2": "tower side-side",
         "blade lead-lag antisymmetric 1": "blade lead-lag antisymmetric 2",
         "blade lead-lag antisymmetric 2": "blade lead-lag",
     },
     "ratio 10": {
-        "blade lead-lag symmetric 1": "tower lateral 2",
-        "tower lateral 2": "tower lateral 3",
-        "blade lead-lag symmetric 2": "tower lateral 4",
+        "blade lead-lag symmetric 1": "tower side-side 2",
+        "tower side-side 2": "tower side-side 3",
+        "blade lead-lag symmetric 2": "tower side-side 4",
     },
     "ratio 10, fine": {
-        "blade lead-lag symmetric 1": "tower lateral 2",
-        "tower lateral 2": "tower lateral 3",
-        "blade lead-lag symmetric 2": "tower lateral 4",
+        "blade lead-lag symmetric 1": "tower side-side 2",
+        "tower side-side 2": "tower side-side 3",
+        "blade lead-lag symmetric 2": "tower side-side 4",
         "blade lead-lag antisymmetric 2": "tower fore-aft 4",
     },
 }

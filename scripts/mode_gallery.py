@@ -31,7 +31,7 @@ PANELS = [
     ("tower fore-aft 1", "tower fore-aft", N2),
     ("blade flap symmetric 1", "flap, symmetric", N2),
     ("blade flap antisymmetric 1", "flap, antisymmetric", N2),
-    ("tower lateral 1", "tower side-side", N1),
+    ("tower side-side 1", "tower side-side", N1),
     ("blade lead-lag symmetric 1", "lead-lag, symmetric", N1),
     ("blade lead-lag antisymmetric 1", "lead-lag, antisymmetric", N1),
 ]

@@ -77,7 +77,7 @@ def exponents(A, speed):
     return values[np.argsort(middle)[:n]]
 
 
-def yaw_history(model, A, times):
+def yaw_series(model, A, times):
     """Yaw [deg] after a push of 20 kN across the tower top, half a second long."""
     force = model.B[:, :, model.inputs.index("top_force_n1")]
 
@@ -120,8 +120,8 @@ def main():
     left.axvline(0, color="k", lw=0.5)
     left.set(xlabel="real part of the exponents [1/s]", ylabel="imaginary part [rad/s]",
              xlim=(-8, 0.5))
-    right.plot(times, yaw_history(model, model.A, times), label="free")
-    right.plot(times, yaw_history(model, loop(STIFFNESS, CHOSEN), times), label="damped")
+    right.plot(times, yaw_series(model, model.A, times), label="free")
+    right.plot(times, yaw_series(model, loop(STIFFNESS, CHOSEN), times), label="damped")
     right.set(xlabel="time [s]", ylabel="yaw after a push [deg]")
     right.legend()
     plt.savefig(options.plot)

@@ -36,8 +36,8 @@ class Mathieu final : public system::PeriodicSystem {
   bool constraints_are_autonomous() const override { return true; }
   const system::RotorSymmetry& symmetry() const override { return symmetry_; }
   const std::vector<system::EnergyGroup>& energy_groups() const override { return energies_; }
-  const std::vector<system::NeutralCoordinate>& neutral_coordinates() const override {
-    return neutral_;
+  const std::vector<system::UnconstrainedCoordinate>& unconstrained_coordinates() const override {
+    return unconstrained_;
   }
   void reference_state(double, Vec z) const override { petsc::check(VecSet(z, 0.0)); }
   petsc::Handle<Vec> make_state() const override {
@@ -85,7 +85,7 @@ class Mathieu final : public system::PeriodicSystem {
   std::vector<bool> differential_{true, true};
   system::RotorSymmetry symmetry_;
   std::vector<system::EnergyGroup> energies_;
-  std::vector<system::NeutralCoordinate> neutral_;
+  std::vector<system::UnconstrainedCoordinate> unconstrained_;
 };
 
 }  // namespace

@@ -34,8 +34,8 @@ constexpr std::size_t slow_modes = 12;
 
 /// Below this, relative to the shift, an exponent is zero: a double zero in double precision.
 constexpr double zero_to_shift = 1e-7;
-/// An exponent this small that another shift has otherwise is half of a double zero, which rounding
-/// splits by its square root.
+/// An exponent this small that another shift has otherwise is half of a double zero, which
+/// round-off splits by its square root.
 constexpr double split_to_shift = 1e-5;
 
 struct Spectrum {
@@ -108,7 +108,7 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
       spectrum.shapes.col(spectrum.shapes.cols() - 1) = shapes * combination;
     };
     if (exponent.imag() > 0.0 && std::abs(exponent) < zero_to_shift * sigma) {
-      // A double zero that rounding has split into a pair: two real rows, as on another day.
+      // A double zero that round-off has split into a pair: two real rows, as on another day.
       keep(exponent.real(), real_part(vector));
       keep(exponent.real(), real_part(vector));
     } else {
@@ -251,7 +251,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     }
     mode.resolved = mode.residual <= largest_difference;
     mode.step_exponent = mode.exponent;
-    mode.rounding_error = mode.residual;
+    mode.round_off_error = mode.residual;
     set_growth_error(mode, {}, mode.exponent);
     if (mode.resolved && mode.exponent != 0.0)
       add_mesh_error(

@@ -10,7 +10,7 @@ namespace samara::analysis {
 
 /// (eta, eta_dot, xi), the first two in coordinates whose sum of squares is twice the energy; a
 /// motion with `rate` counts where nothing is restored. A map that keeps energy is orthogonal in
-/// them, so that each of its eigenvalues is as accurate as rounding allows, however stiff some
+/// them, so that each of its eigenvalues is as accurate as round-off allows, however stiff some
 /// strains are. First-order states have no energy: xi stays as it is.
 class EnergyCoordinates {
  public:

@@ -20,7 +20,7 @@
 
 #include "energy_coordinates.hpp"
 #include "ranks.hpp"
-#include "signal_history.hpp"
+#include "signal_series.hpp"
 #include "state_parts.hpp"
 
 namespace samara::analysis {
@@ -32,22 +32,22 @@ using namespace std::complex_literals;
 /// |lambda| dt / 2 beyond which a mode counts as unresolved.
 constexpr double largest_half_phase = 0.7;
 constexpr double largest_residual = 1e-6;
-/// Of the largest multiplier: a smaller one is rounding.
+/// Of the largest multiplier: a smaller one is round-off.
 constexpr double least_multiplier = 1e-12;
-/// A multiplier below the first that leaves more than the second of its exponent open is rounding.
+/// A multiplier below the first that leaves more than the second of its exponent open is round-off.
 constexpr double small_multiplier = 1e-6;
-constexpr double largest_rounding = 1e-2;
+constexpr double largest_round_off = 1e-2;
 /// Share of the kinetic energy of a resolved mode in harmonics beyond that phase, at the most: more
 /// is a mixture of modes so fast that they all look alike, with multipliers near -1 or 1.
 constexpr double largest_fast_share = 0.01;
-/// Of an exponent and the harmonic's frequency: a smaller imaginary part is rounding.
+/// Of an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
 constexpr double least_imaginary = 1e-6;
 /// Of an exponent that is none of a free motion.
 constexpr double far_from_zero = std::numeric_limits<double>::infinity();
-/// Of the energy of a state of length 1 in energy coordinates: less is rounding. A motion that
+/// Of the energy of a state of length 1 in energy coordinates: less is round-off. A motion that
 /// rests comes with the square root of round-off as its exponent, and moves with that speed.
 constexpr double rest_energy = 1e-10;
-/// Numbers in the histories of the modes that are identified at a time, about.
+/// Numbers in the time series of the modes that are identified at a time, about.
 constexpr Eigen::Index batch_values = 1 << 24;
 /// Instants of the mode shapes a revolution, at the most.
 constexpr int shape_samples = 24;
@@ -76,7 +76,7 @@ class Analysis {
         dt_(system.period() / steps),
         speed_(2.0 * std::numbers::pi / system.period()),
         states_(subspace_.size()),
-        history_(system, sectors, span_, states_, ranks),
+        series_(system, sectors, span_, states_, ranks),
         stride_(std::max(1, (steps + shape_samples - 1) / shape_samples)) {}
 
   Floquet run() {
@@ -126,7 +126,7 @@ class Analysis {
           at < first.size() ? first[at]->repeat(z) : others->advance(k, z);
       if (k == span_) end_ = middle;
       if (k < span_) {
-        history_.append(middle);
+        series_.append(middle);
         if (k % stride_ == 0) shapes_.middleRows(k / stride_ * z.rows(), z.rows()) = middle;
       }
       observer_.progress("floquet", k + 1, span_ + 1);
@@ -244,7 +244,7 @@ class Analysis {
       const double condition = conditions(static_cast<Eigen::Index>(i));
       const Complex exponent = principal_exponent(pairs.values[i]);
       if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
-        // A double zero that rounding has split into a pair: two real rows, as on another day.
+        // A double zero that round-off has split into a pair: two real rows, as on another day.
         keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
         keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
       } else {
@@ -294,12 +294,12 @@ class Analysis {
 
   void identify() {
     const auto count = static_cast<Eigen::Index>(set_.modes.size());
-    const Eigen::MatrixXd& signals = history_.values();
-    HarmonicEnergy& energy = history_.energy();
+    const Eigen::MatrixXd& signals = series_.values();
+    HarmonicEnergy& energy = series_.energy();
     const Eigen::Index parts = energy.columns();
     set_.participation.setZero(count, steps_);
     const Eigen::Index batch = std::max<Eigen::Index>(
-        1, batch_values / std::max<Eigen::Index>(1, 2 * history_.most_rows()));
+        1, batch_values / std::max<Eigen::Index>(1, 2 * series_.most_rows()));
     Eigen::VectorXcd factors(span_);
     Eigen::MatrixXd values;
     for (Eigen::Index first = 0; first < count; first += batch) {
@@ -328,7 +328,7 @@ class Analysis {
     find_displacements();
   }
 
-  /// Displacements that nothing restores and that rest: their kinetic energy is rounding, and the
+  /// Displacements that nothing restores and that rest: their kinetic energy is round-off, and the
   /// middle of the first step has them whole. (A decay or vibration too fast for the step has not.)
   void find_displacements() {
     std::vector<Eigen::Index> modes;
@@ -526,8 +526,8 @@ class Analysis {
     mode.damping_ratio = is_zero(mode.exponent) ? 0.0 : -mode.exponent.real() / size;
     if (!is_zero(mode.exponent)) {
       mode.step_error = spread.modulus / size;
-      mode.rounding_error = conditions_[m] * relative_residual(m) /
-                            (size * system_.period() / static_cast<double>(sectors_));
+      mode.round_off_error = conditions_[m] * relative_residual(m) /
+                             (size * system_.period() / static_cast<double>(sectors_));
     }
     const double noise = least_imaginary * (size + std::abs(mode.harmonic) * speed_);
     if (std::abs(mode.exponent.imag()) < noise) {  // real, as the parts that k belongs to see it
@@ -561,7 +561,7 @@ class Analysis {
   /// Whether a mode is among the multipliers next to one of the motions that nothing restores, two
   /// of each.
   bool may_be_free(std::size_t m) const {
-    const std::size_t most = 2 * system_.neutral_coordinates().size();
+    const std::size_t most = 2 * system_.unconstrained_coordinates().size();
     const auto nearer = std::count_if(exponents_.begin(), exponents_.end(), [&](Complex other) {
       return std::abs(other) < std::abs(exponents_[m]);
     });
@@ -572,17 +572,17 @@ class Analysis {
     return set_.modes[m].residual / std::abs(multipliers_[m]);
   }
 
-  /// Whether a multiplier is so small that rounding has made it.
-  bool is_rounding(std::size_t m) const {
+  /// Whether a multiplier is so small that round-off has made it.
+  bool is_round_off(std::size_t m) const {
     return std::abs(multipliers_[m]) < small_multiplier &&
-           set_.modes[m].rounding_error > largest_rounding;
+           set_.modes[m].round_off_error > largest_round_off;
   }
 
-  /// Modes that rounding has made become deflated ones.
-  void drop_rounding() {
+  /// Modes that round-off has made become deflated ones.
+  void drop_round_off() {
     std::vector<Eigen::Index> kept;
     for (std::size_t m = 0; m < set_.modes.size(); ++m) {
-      if (is_rounding(m)) {
+      if (is_round_off(m)) {
         set_.deflated += multipliers_[m].imag() == 0.0 ? 1 : 2;
         set_.deflated_rate = std::min(set_.deflated_rate, decay_of(std::abs(multipliers_[m])));
         continue;
@@ -605,7 +605,7 @@ class Analysis {
 
   Floquet finish() {
     for (std::size_t m = 0; m < set_.modes.size(); ++m) settle(m);
-    drop_rounding();
+    drop_round_off();
     set_.degrees_of_freedom = subspace_.degrees_of_freedom();
     set_.rotor_speed = speed_;
     set_.step = dt_;
@@ -698,7 +698,7 @@ class Analysis {
   double dt_;
   double speed_;
   Eigen::Index states_;
-  SignalHistory history_;
+  SignalSeries series_;
   long stride_;
   std::vector<Eigen::Index> own_;     ///< initial states of this rank
   Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th step x own states
@@ -707,8 +707,8 @@ class Analysis {
   Eigen::MatrixXd map_;               ///< of these, over a sector
   std::vector<Complex> multipliers_;  ///< of the sector
   std::vector<double> conditions_;    ///< of these
-  std::vector<int> leading_states_;   ///< see the function of this name; before rounding is dropped
-  std::vector<Complex> exponents_;    ///< principal
+  std::vector<int> leading_states_;  ///< see the function of this name; before round-off is dropped
+  std::vector<Complex> exponents_;   ///< principal
   Eigen::MatrixXcd vectors_;
   ModeSet set_;  ///< the result as it comes to be; the first rank has the shapes
 };

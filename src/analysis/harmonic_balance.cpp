@@ -18,7 +18,7 @@ namespace {
 /// Of Unknown::scale: a state counts with it at the least where its residual is measured.
 constexpr double least_state = 1e-3;
 
-/// A scaled residual that is rounding.
+/// A scaled residual that is round-off.
 constexpr double vanished = 1e-13;
 /// Relative: what scaling there and back does to a vector.
 constexpr double same = 1e-14;
@@ -33,7 +33,7 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
   return weights;
 }
 
-using Coordinates = std::vector<system::NeutralCoordinate>;
+using Coordinates = std::vector<system::UnconstrainedCoordinate>;
 
 /// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i and has number
 /// i (2 H + 1) + c; the mean of a held coordinate gives its place to the load that holds it.
@@ -55,14 +55,14 @@ class Balance {
 
   Eigen::MatrixXd unpack(const PetscScalar* h) const {
     Eigen::MatrixXd coefficients = Eigen::Map<const Eigen::MatrixXd>(h, width_, size_).transpose();
-    for (const system::NeutralCoordinate& coordinate : held_)
+    for (const system::UnconstrainedCoordinate& coordinate : held_)
       coefficients(coordinate.unknown, 0) = 0.0;
     return coefficients;
   }
 
   std::vector<double> loads(const PetscScalar* h) const {
     std::vector<double> loads;
-    for (const system::NeutralCoordinate& coordinate : held_)
+    for (const system::UnconstrainedCoordinate& coordinate : held_)
       loads.push_back(h[coordinate.unknown * width_]);
     return loads;
   }
@@ -123,7 +123,7 @@ class Balance {
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (const PetscInt j : rows[i]) places.emplace_back(static_cast<PetscInt>(i), j, 1.0);
     // The load that holds a coordinate stands in the place of its mean.
-    for (const system::NeutralCoordinate& coordinate : held_)
+    for (const system::UnconstrainedCoordinate& coordinate : held_)
       places.emplace_back(coordinate.row, coordinate.unknown, 1.0);
     pattern_.resize(size_, size_);
     pattern_.setFromTriplets(places.begin(), places.end());
@@ -137,9 +137,9 @@ class Balance {
   Eigen::VectorXd projection(double t) const { return fourier_weights(harmonics_, period(), t); }
 
   bool is_held(PetscInt unknown) const {
-    return std::any_of(held_.begin(), held_.end(), [unknown](const system::NeutralCoordinate& n) {
-      return n.unknown == unknown;
-    });
+    return std::any_of(
+        held_.begin(), held_.end(),
+        [unknown](const system::UnconstrainedCoordinate& n) { return n.unknown == unknown; });
   }
 
   petsc::Handle<Mat> make_block_matrix() const {
@@ -163,7 +163,7 @@ class Balance {
   /// Whether the load that holds `unknown` acts in `row`.
   bool holds(Eigen::Index row, PetscInt unknown) const {
     return std::any_of(held_.begin(), held_.end(),
-                       [row, unknown](const system::NeutralCoordinate& n) {
+                       [row, unknown](const system::UnconstrainedCoordinate& n) {
                          return n.unknown == unknown && n.row == row;
                        });
   }
@@ -487,7 +487,7 @@ std::optional<Trim> hold_free(const system::PeriodicSystem& system, int harmonic
                               double tolerance) {
   const Coordinates free = system.free_coordinates();
   if (free.empty()) return std::nullopt;
-  Coordinates held = system.neutral_coordinates();
+  Coordinates held = system.unconstrained_coordinates();
   held.insert(held.end(), free.begin(), free.end());
   try {
     return solve(system, held, harmonics, tolerance, nullptr);
@@ -605,13 +605,13 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
                             const PeriodicSolution* start) {
   if (harmonics > 0 && system.period() == 0.0)
     throw InternalError("harmonics of a system without a period");
-  const Coordinates& neutral = system.neutral_coordinates();
+  const Coordinates& unconstrained = system.unconstrained_coordinates();
   const std::optional<Trim> held =
       start == nullptr ? hold_free(system, harmonics, tolerance) : std::nullopt;
-  Trim trim = solve(system, neutral, harmonics, tolerance, held ? &held->solution : start);
+  Trim trim = solve(system, unconstrained, harmonics, tolerance, held ? &held->solution : start);
   finish_trim(system, trim);
   trim.harmonic_residual = harmonic_residual(system, trim);
-  trim.history = {{harmonics, trim.residual_between}};
+  trim.attempts = {{harmonics, trim.residual_between}};
   return trim;
 }
 

@@ -14,7 +14,7 @@ using system::EnergyGroup;
 
 /// Energies closer than this, relative, are a tie.
 constexpr double tie = 1e-6;
-/// Of a group's largest pivot: what is smaller is rounding of a semi-definite weight.
+/// Of a group's largest pivot: what is smaller is round-off of a semi-definite weight.
 constexpr double no_energy = 1e-13;
 
 struct Image {
@@ -149,14 +149,14 @@ const Eigen::MatrixXd& HarmonicEnergy::energies(const double* real, const double
   if (!transform_ || transform_->input().cols() != samples)
     transform_ =
         std::make_unique<math::FourierTransform>(static_cast<int>(rows), static_cast<int>(samples));
-  Eigen::MatrixXcd& history = transform_->input();
+  Eigen::MatrixXcd& series = transform_->input();
   for (Eigen::Index k = 0; k < instants; ++k)
     for (int q = 0; q < sectors_; ++q) {
       const Eigen::Index first = (k * sectors_ + q) * rows;
       const Eigen::Map<const Eigen::ArrayXd> re(real + first, rows);
       const Eigen::Map<const Eigen::ArrayXd> im(imaginary + first, rows);
       const std::complex<double> factor = factors(k);
-      auto column = history.col(q * instants + k);
+      auto column = series.col(q * instants + k);
       column.real() = factor.real() * re - factor.imag() * im;
       column.imag() = factor.imag() * re + factor.real() * im;
     }

@@ -25,7 +25,8 @@ constexpr double elastic_share = 0.15;
 
 /// Moduli, and real parts relative to the modulus, closer than this sort as the same.
 constexpr double same_size = 1e-6;
-/// Exponents closer than this, relative, or than so many of their errors by rounding, are the same.
+/// Exponents closer than this, relative, or than so many of their errors by round-off, are the
+/// same.
 constexpr double degenerate = 1e-7;
 constexpr double many_errors = 4.0;
 
@@ -121,7 +122,7 @@ void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vect
   std::vector<int> harmonics;
   for (const Mode& mode : set.modes) {
     exponents.push_back(mode.exponent);
-    apart.push_back(std::clamp(many_errors * mode.rounding_error, degenerate, same_size));
+    apart.push_back(std::clamp(many_errors * mode.round_off_error, degenerate, same_size));
     harmonics.push_back(sectors > 1 ? mode.harmonic : 0);
   }
   for (const std::vector<std::size_t>& equal : groups_of(exponents, apart, harmonics)) {

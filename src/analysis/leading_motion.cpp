@@ -26,7 +26,7 @@ constexpr double dominant_part = 0.5;
 /// Share of the kinetic energy at a harmonic, from which on it may be that of the mode.
 constexpr double clear_part = 0.2;
 
-/// Whether an exponent is none but for rounding and the step.
+/// Whether an exponent is none but for round-off and the step.
 bool is_at_rest(const Mode& mode, const ModeSet& set) {
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   const double unsure = mode.growth_error - mode.mesh_growth_error;

@@ -15,7 +15,7 @@ constexpr double growing_part = 0.01;
 constexpr double growing_part_of_tables = 0.05;
 /// An exponent that is not this many times its error is not told from zero.
 constexpr double several = 10.0;
-constexpr double least_rounding = 1e-10;
+constexpr double least_round_off = 1e-10;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ Eigen::Vector2d find_mesh_error(const std::vector<system::MeshError>& elements,
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal) {
   const double size = std::abs(mode.exponent);
   mode.growth_error = spread.growth + growing_part * spread.modulus +
-                      size * std::max(mode.rounding_error, least_rounding);
+                      size * std::max(mode.round_off_error, least_round_off);
   // A multiplier of one, of a motion that nothing restores or of the same a moment later: the step
   // may split it in any direction.
   if (std::abs(principal) < several * spread.modulus)

@@ -52,9 +52,8 @@ class Shooting {
         z_dot_end_(system.make_state()),
         r_(system.make_state()),
         r_end_(system.make_state()),
-        loads_(
-            Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.neutral_coordinates().size()))) {
-  }
+        loads_(Eigen::VectorXd::Zero(
+            static_cast<Eigen::Index>(system.unconstrained_coordinates().size()))) {}
 
   Trim run() {
     system_.reference_state(0.0, z_.get());
@@ -96,8 +95,8 @@ class Shooting {
     const Eigen::Index d = space.degrees_of_freedom();
     const Eigen::Index n_1 = space.first_order();
     const Eigen::Index reduced = space.size();
-    const auto& neutral = system_.neutral_coordinates();
-    const auto held = static_cast<Eigen::Index>(neutral.size());
+    const auto& unconstrained = system_.unconstrained_coordinates();
+    const auto held = static_cast<Eigen::Index>(unconstrained.size());
     const Eigen::Index n = system_.size();
     LinearizedStep linearized(system_, space.carried(), dt_, false, "shooting_");
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, reduced + held);
@@ -105,7 +104,7 @@ class Shooting {
     columns.middleCols(d, d) *= speed_;
     Eigen::MatrixXd forcing = Eigen::MatrixXd::Zero(n, reduced + held);
     for (Eigen::Index h = 0; h < held; ++h)
-      forcing(neutral[static_cast<std::size_t>(h)].row, reduced + h) = -1.0;
+      forcing(unconstrained[static_cast<std::size_t>(h)].row, reduced + h) = -1.0;
 
     Eigen::VectorXd z = start_;
     Eigen::VectorXd middle = start_;
@@ -130,7 +129,7 @@ class Shooting {
       if (k < steps_) {
         middles_.col(k) = middle;
         for (Eigen::Index h = 0; h < held; ++h) {
-          const PetscInt unknown = neutral[static_cast<std::size_t>(h)].unknown;
+          const PetscInt unknown = unconstrained[static_cast<std::size_t>(h)].unknown;
           means(h) += middle(unknown) / steps_;
           mean_columns.row(h) += middle_columns.row(unknown) / steps_;
         }
@@ -147,7 +146,7 @@ class Shooting {
       }
       observer_.progress("shooting", k + 1, steps_ + 1);
     }
-    // Two consecutive instants of eta and one of xi repeat, and the means of the neutral
+    // Two consecutive instants of eta and one of xi repeat, and the means of the unconstrained
     // coordinates vanish.
     const Eigen::MatrixXd rate_columns =
         (space.coordinates_of(columns) - last_columns - eta_columns[1] + eta_columns[0]) /
@@ -204,9 +203,9 @@ class Shooting {
       for (Eigen::Index i = 0; i < z.size(); ++i)
         if (system_.rows()[static_cast<std::size_t>(i)] == system::RowRole::constraint)
           change(i, 0) = -0.5 * at_end(i);
-      const auto& neutral = system_.neutral_coordinates();
-      for (std::size_t h = 0; h < neutral.size(); ++h)
-        change(neutral[h].row, 0) -= loads_(static_cast<Eigen::Index>(h));
+      const auto& unconstrained = system_.unconstrained_coordinates();
+      for (std::size_t h = 0; h < unconstrained.size(); ++h)
+        change(unconstrained[h].row, 0) -= loads_(static_cast<Eigen::Index>(h));
       linearized.solve(change);
       middle += change.col(0);
       double largest = 0.0;
@@ -253,8 +252,9 @@ class Shooting {
               {},
               {}};
     for (Eigen::Index h = 0; h < loads_.size(); ++h) {
-      const auto& neutral = system_.neutral_coordinates()[static_cast<std::size_t>(h)];
-      trim.held.push_back({neutral.name, neutral.unit, loads_(h), neutral.unknown});
+      const auto& unconstrained = system_.unconstrained_coordinates()[static_cast<std::size_t>(h)];
+      trim.held.push_back(
+          {unconstrained.name, unconstrained.unit, loads_(h), unconstrained.unknown});
     }
     finish_trim(system_, trim);
     return trim;
@@ -267,7 +267,7 @@ class Shooting {
   double speed_;
   Observer& observer_;
   petsc::Handle<Vec> z_, z_dot_, z_end_, z_dot_end_, r_, r_end_;
-  Eigen::VectorXd loads_;           ///< that hold the neutral coordinates
+  Eigen::VectorXd loads_;           ///< that hold the unconstrained coordinates
   Eigen::VectorXd start_;           ///< z at t = 0
   Eigen::VectorXd eta_, eta_rate_;  ///< rate per radian of rotor azimuth
   Eigen::VectorXd xi_;

@@ -25,8 +25,8 @@ constexpr int patient_newton_steps = 3;
 /// How often a step is halved before the path is given up.
 constexpr int most_halvings = 20;
 
-/// A remainder of the load factor, or a motion [m, rad], that is rounding.
-constexpr double rounding = 1e-12;
+/// A remainder of the load factor, or a motion [m, rad], that is round-off.
+constexpr double round_off = 1e-12;
 
 /// Cosine between the tangents at both ends of an arc; below it the step may have changed branches.
 constexpr double least_cosine = 0.3;
@@ -46,8 +46,8 @@ constexpr double first_part = 0.125;
 constexpr double least_part = 1e-6;
 constexpr double longest_stride = 0.5;
 
-/// A point of the path: the state, in which a neutral coordinate gives its place to the load that
-/// holds it, and the load factor.
+/// A point of the path: the state, in which a unconstrained coordinate gives its place to the load
+/// that holds it, and the load factor.
 struct Point {
   Eigen::VectorXd x;
   double factor = 0.0;
@@ -64,11 +64,11 @@ struct Easing {
 };
 
 /// r(x, f) = (1 - f) r_unloaded + f r_loaded, and what belongs to it. `held` coordinates, the
-/// neutral ones and others, stay at zero.
+/// unconstrained ones and others, stay at zero.
 class Equilibrium {
  public:
   Equilibrium(const system::PeriodicSystem& system,
-              std::vector<system::NeutralCoordinate> coordinates, const Easing& easing)
+              std::vector<system::UnconstrainedCoordinate> coordinates, const Easing& easing)
       : loaded_(system),
         held_(std::move(coordinates)),
         easing_(easing),
@@ -88,7 +88,7 @@ class Equilibrium {
       if (role == system::UnknownRole::internal) loads_.push_back(i);
       if (role == system::UnknownRole::state) states_.push_back(i);
     }
-    for (const system::NeutralCoordinate& held : held_) {
+    for (const system::UnconstrainedCoordinate& held : held_) {
       std::erase(positions_, static_cast<Eigen::Index>(held.unknown));
       loads_.push_back(held.unknown);
     }
@@ -99,7 +99,7 @@ class Equilibrium {
     const petsc::ReadView view(z_.get());
     Point point;
     point.x = Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
-    for (const system::NeutralCoordinate& held : held_) point.x(held.unknown) = 0.0;
+    for (const system::UnconstrainedCoordinate& held : held_) point.x(held.unknown) = 0.0;
     return point;
   }
 
@@ -110,7 +110,7 @@ class Equilibrium {
     const Eigen::VectorXd with = residual_of(loaded_);
     by_factor = with - without;
     r = (1.0 - point.factor) * without + point.factor * with;
-    for (const system::NeutralCoordinate& held : held_) r(held.row) += point.x(held.unknown);
+    for (const system::UnconstrainedCoordinate& held : held_) r(held.row) += point.x(held.unknown);
     for (std::size_t n = 0; n < easing_.unknowns.size(); ++n) {
       const PetscInt at = easing_.unknowns[n];
       r(easing_.rows[n]) += easing_.remaining * (easing_.loads(static_cast<Eigen::Index>(n)) -
@@ -155,23 +155,25 @@ class Equilibrium {
     std::unique_ptr<system::PeriodicSystem> system = loaded_.counted_from(z_.get());
     if (!system) return system;
     std::vector<double> loads;
-    for (const system::NeutralCoordinate& held : held_) loads.push_back(point.x(held.unknown));
+    for (const system::UnconstrainedCoordinate& held : held_)
+      loads.push_back(point.x(held.unknown));
     const petsc::ReadView view(z_.get());
     point.x = Eigen::Map<const Eigen::VectorXd>(view.data(), size_);
     for (std::size_t n = 0; n < loads.size(); ++n) point.x(held_[n].unknown) = loads[n];
     return system;
   }
 
-  /// What a neutral row lacks is what the holding load gives.
+  /// What a unconstrained row lacks is what the holding load gives.
   std::vector<HeldCoordinate> held_loads(const Point& point) const {
     std::vector<HeldCoordinate> held;
-    for (const system::NeutralCoordinate& neutral : held_)
-      held.push_back({neutral.name, neutral.unit, point.x(neutral.unknown), neutral.unknown});
+    for (const system::UnconstrainedCoordinate& unconstrained : held_)
+      held.push_back({unconstrained.name, unconstrained.unit, point.x(unconstrained.unknown),
+                      unconstrained.unknown});
     return held;
   }
 
   Eigen::VectorXd state_of(Eigen::VectorXd x) const {
-    for (const system::NeutralCoordinate& held : held_) x(held.unknown) = 0.0;
+    for (const system::UnconstrainedCoordinate& held : held_) x(held.unknown) = 0.0;
     return x;
   }
 
@@ -193,7 +195,7 @@ class Equilibrium {
   }
 
   /// Largest change relative to the largest value, of positions and of internal loads, and of
-  /// first-order states relative to their own value or scale. What is rigid moves by rounding
+  /// first-order states relative to their own value or scale. What is rigid moves by round-off
   /// alone.
   double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x) const {
     double worst = 0.0;
@@ -205,7 +207,7 @@ class Equilibrium {
         size = std::max(size, std::abs(x(i)));
       }
       if (!(moved <= std::numeric_limits<double>::max())) return moved;
-      if (moved > (unknowns == &positions_ ? rounding : 0.0))
+      if (moved > (unknowns == &positions_ ? round_off : 0.0))
         worst = std::max(worst, moved / std::max(size, moved));
     }
     for (const Eigen::Index i : states_) {
@@ -281,21 +283,21 @@ class Equilibrium {
       PetscInt count = 0;
       const PetscInt* columns = nullptr;
       petsc::check(MatGetRow(jacobian_.get(), i, &count, &columns, nullptr));
-      for (const system::NeutralCoordinate& held : held_)
+      for (const system::UnconstrainedCoordinate& held : held_)
         if (std::find(columns, columns + count, held.unknown) != columns + count)
           entries.emplace_back(i, held.unknown);
       petsc::check(MatRestoreRow(jacobian_.get(), i, &count, &columns, nullptr));
     }
     for (const auto& [row, column] : entries)
       petsc::check(MatSetValue(jacobian_.get(), row, column, 0.0, INSERT_VALUES));
-    for (const system::NeutralCoordinate& held : held_)
+    for (const system::UnconstrainedCoordinate& held : held_)
       petsc::check(MatSetValue(jacobian_.get(), held.row, held.unknown, 1.0, INSERT_VALUES));
     petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
     petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
   }
 
   const system::PeriodicSystem& loaded_;
-  std::vector<system::NeutralCoordinate> held_;
+  std::vector<system::UnconstrainedCoordinate> held_;
   const Easing& easing_;
   std::unique_ptr<system::PeriodicSystem> unloaded_;
   Eigen::Index size_;
@@ -432,7 +434,7 @@ class PathFollower {
 
   std::string unheld_words() const {
     std::string names;
-    for (const system::NeutralCoordinate& free : free_)
+    for (const system::UnconstrainedCoordinate& free : free_)
       names += (names.empty() ? " (" : ", ") + free.name;
     return "something may move that nothing holds" + (names.empty() ? "" : names + ")") +
            ", or is held twice";
@@ -473,12 +475,12 @@ class PathFollower {
   // ---- free coordinates -----------------------------------------------------------------------
 
   std::unique_ptr<Equilibrium> make_equilibrium(const system::PeriodicSystem& system) const {
-    return std::make_unique<Equilibrium>(system, system.neutral_coordinates(), easing_);
+    return std::make_unique<Equilibrium>(system, system.unconstrained_coordinates(), easing_);
   }
 
   std::vector<PetscInt> free_unknowns() const {
     std::vector<PetscInt> unknowns;
-    for (const system::NeutralCoordinate& free : free_) unknowns.push_back(free.unknown);
+    for (const system::UnconstrainedCoordinate& free : free_) unknowns.push_back(free.unknown);
     return unknowns;
   }
 
@@ -493,7 +495,7 @@ class PathFollower {
 
   /// None where it cannot be done, because the beam would be held twice.
   std::optional<Held> hold_free() {
-    std::vector<system::NeutralCoordinate> coordinates = system_.neutral_coordinates();
+    std::vector<system::UnconstrainedCoordinate> coordinates = system_.unconstrained_coordinates();
     coordinates.insert(coordinates.end(), free_.begin(), free_.end());
     Equilibrium& equilibrium =
         *(equilibrium_ = std::make_unique<Equilibrium>(system_, coordinates, easing_));
@@ -501,7 +503,7 @@ class PathFollower {
     held.rest = equilibrium.start();
     if (!attempt([&] { held.bare = equilibrium.stiffness_of(held.rest, free_unknowns()); }))
       return {};
-    for (double factor = first_step_; factor > rounding; factor *= 0.5) {
+    for (double factor = first_step_; factor > round_off; factor *= 0.5) {
       held.loaded = held.rest;
       held.loaded.factor = factor;
       const bool found = attempt([&] {
@@ -533,7 +535,7 @@ class PathFollower {
     accept(held->rest, 1);
     easing_.unknowns = free_unknowns();
     easing_.rows.clear();
-    for (const system::NeutralCoordinate& free : free_) easing_.rows.push_back(free.row);
+    for (const system::UnconstrainedCoordinate& free : free_) easing_.rows.push_back(free.row);
     easing_.remaining = 1.0;
     point = held->loaded;
     point.x(easing_.unknowns).setZero();
@@ -547,12 +549,12 @@ class PathFollower {
   /// steps.
   int set_free(Point& point) {
     int newton_steps = 0;
-    const bool at_once = easing_.loads.cwiseAbs().maxCoeff() <= rounding * easing_.stiffness;
+    const bool at_once = easing_.loads.cwiseAbs().maxCoeff() <= round_off * easing_.stiffness;
     const double most = at_once ? 1.0 : first_part;
     double part = most;
     while (easing_.remaining > 0.0) {
       const double before = easing_.remaining;
-      easing_.remaining = before - part > rounding ? before - part : 0.0;
+      easing_.remaining = before - part > round_off ? before - part : 0.0;
       Point next = point;
       if (attempt([&] {
             newton_steps += correct(next, nullptr);
@@ -608,7 +610,7 @@ class PathFollower {
   void refuse_jump(const Point& point, const Direction& slope, const Point& next,
                    const Direction& next_slope) const {
     const Eigen::VectorXd motion = next.x - point.x;
-    if (std::sqrt(equilibrium_->product(motion, motion)) < rounding) return;
+    if (std::sqrt(equilibrium_->product(motion, motion)) < round_off) return;
     if (equilibrium_->product(motion, slope.x) < 0.0 ||
         equilibrium_->product(motion, next_slope.x) < 0.0)
       throw ConvergenceError("the state jumps, or turns back: there may be another branch");
@@ -620,10 +622,10 @@ class PathFollower {
     while (point.factor < 1.0) {
       // Cut steps end on the next multiple of the first step, too.
       const double multiple =
-          (std::floor(point.factor / first_step_ + rounding) + 1.0) * first_step_;
+          (std::floor(point.factor / first_step_ + round_off) + 1.0) * first_step_;
       Point next = point;
       next.factor = std::min(point.factor + step, multiple);
-      if (next.factor > 1.0 - rounding) next.factor = 1.0;
+      if (next.factor > 1.0 - round_off) next.factor = 1.0;
       Direction next_slope;
       const bool found = attempt([&] {
         const int newton_steps = correct(next, nullptr);
@@ -673,7 +675,7 @@ class PathFollower {
   void follow_arc(Point& point) {
     Direction tangent = slope_at(point);
     length_ = first_step_ * std::sqrt(equilibrium_->product(tangent.x, tangent.x));
-    if (length_ < rounding) return follow_loads(point);  // nothing moves
+    if (length_ < round_off) return follow_loads(point);  // nothing moves
     tangent = tangent_at(point, tangent);
     const double largest = first_step_ / tangent.factor;
     double step = largest;
@@ -727,7 +729,7 @@ class PathFollower {
   const system::PeriodicSystem& system_;
   const StaticOptions& options_;
   Observer& observer_;
-  std::vector<system::NeutralCoordinate> free_;        ///< coordinates without springs
+  std::vector<system::UnconstrainedCoordinate> free_;  ///< coordinates without springs
   Easing easing_;                                      ///< while they are set free
   std::unique_ptr<system::PeriodicSystem> recounted_;  ///< rotations counted anew, if they grew
   std::unique_ptr<Equilibrium> equilibrium_;           ///< of that, or of the system itself

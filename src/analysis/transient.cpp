@@ -32,9 +32,9 @@ constexpr double largest_growth = 2.0;
 constexpr double least_growth = 0.1;
 /// A tolerance that no error reaches.
 constexpr double left_out = 1e30;
-/// Of the state: corrections this small that no longer shrink are rounding.
+/// Of the state: corrections this small that no longer shrink are round-off.
 constexpr double stagnation = 1e-8;
-constexpr double rounding = 1e-9;
+constexpr double round_off = 1e-9;
 /// Of the step: the first one of BDF2, which begins with a step of first order. The next ones may
 /// be twice as long each. So the error of the start is a thousandth of what it would be.
 constexpr double first_step = 1.0 / 32.0;
@@ -58,7 +58,7 @@ class Integration {
         origin_(start.origin),
         step_(start.step),
         last_step_(
-            static_cast<long>(std::ceil(options.duration / options.step * (1.0 - rounding)))),
+            static_cast<long>(std::ceil(options.duration / options.step * (1.0 - round_off)))),
         z_(system.make_state()),
         z_dot_(system.make_state()),
         r_(system.make_state()),
@@ -196,7 +196,7 @@ class Integration {
     TransientStart point = point_of(x_.get());
     petsc::check(TSGetTime(ts_.get(), &point.time));
     point.step = step_;
-    if (steps_ > 0 && std::abs(t_ - point.time) <= rounding * options_.step) {
+    if (steps_ > 0 && std::abs(t_ - point.time) <= round_off * options_.step) {
       const petsc::ReadView view(z_dot_.get());
       point.z_dot = Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
     }
@@ -365,9 +365,9 @@ class Integration {
     Eigen::Map<Eigen::VectorXd>(view.data(), values.size()) = values;
   }
 
-  /// The first row of the history; false where the observer ends it there. Where the rates are not
-  /// known yet, rates and internal loads are those of a backward Euler step that is too short to
-  /// move anything.
+  /// The first row of the time series; false where the observer ends it there. Where the rates are
+  /// not known yet, rates and internal loads are those of a backward Euler step that is too short
+  /// to move anything.
   bool sample_start() {
     const double dt = start_fraction * options_.step;
     Eigen::VectorXd z = start_.z;
@@ -540,7 +540,7 @@ class Integration {
       self.note_angles();
       self.step_before_ = self.step_;
       const double rest = self.target() - t;
-      const double parts = std::ceil(rest / self.limit_ * (1.0 - rounding));
+      const double parts = std::ceil(rest / self.limit_ * (1.0 - round_off));
       self.asked_ = rest / std::max(parts, 1.0);
       self.kick(self.asked_);
       petsc::check(TSSetTimeStep(ts, self.asked_));
@@ -585,13 +585,13 @@ class Integration {
     petsc::check(TSGetPrevTime(ts, &before));
     petsc::check(TSGetTimeStep(ts, &next));
     const double taken = t - before;
-    const bool was_cut = taken < asked_ * (1.0 - rounding);
+    const bool was_cut = taken < asked_ * (1.0 - round_off);
     if (was_cut) ++cuts_;
     limit_ = was_cut ? taken : std::min(largest_growth * limit_, options_.step);
     if (options_.step_tolerance > 0.0) limit_ = std::min(limit_, next);
     ++steps_;
     ++steps_since_start_;
-    const double close = rounding * options_.step;
+    const double close = round_off * options_.step;
     const bool on_grid = std::abs(t - grid(step_ + 1)) <= close;
     const bool is_stop = options_.stop_at && std::abs(t - *options_.stop_at) <= close;
     if (on_grid) {
@@ -676,7 +676,7 @@ class Integration {
     const double contraction = residual / before;
     const bool is_solved = contraction < 1.0 && contraction / (1.0 - contraction) * change <=
                                                     self.options_.tolerance * size;
-    // The tangent is as good as it can be: what is left is rounding.
+    // The tangent is as good as it can be: what is left is round-off.
     const bool is_stagnant =
         self.is_new_tangent_ && contraction > slow_contraction && change <= stagnation * size;
     if (is_solved || is_stagnant) {

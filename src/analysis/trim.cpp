@@ -15,8 +15,8 @@ namespace samara::analysis {
 namespace {
 
 /// Relative to the largest internal load: below it a constant is the solution.
-constexpr double rounding = 1e-11;
-/// Of the largest residual of the undeformed system: what changes by more is no rounding.
+constexpr double round_off = 1e-11;
+/// Of the largest residual of the undeformed system: what changes by more is no round-off.
 constexpr double changing = 1e-6;
 
 double allowed_residual(const Trim& trim, double relative) {
@@ -24,7 +24,7 @@ double allowed_residual(const Trim& trim, double relative) {
 }
 
 /// Of evolution and definition rows, relative to their terms: below it a constant is the solution.
-constexpr double state_rounding = 1e-9;
+constexpr double state_round_off = 1e-9;
 
 /// With Q identical blades the tower sees multiples of Q. Leaving out the multiple next above H
 /// while the blades keep H leaves its load unbalanced: H + 1 must not be a multiple of Q.
@@ -117,13 +117,13 @@ Trim solve_from(const system::PeriodicSystem& system, int harmonics, double tole
 
 Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& options,
                      const std::optional<Trim>& constant, Observer& observer) {
-  std::vector<std::pair<int, double>> history;
-  if (constant) history = constant->history;
+  std::vector<std::pair<int, double>> attempts;
+  if (constant) attempts = constant->attempts;
   std::optional<Trim> last;
   for (const int harmonics : harmonics_to_try(options.least_harmonics, system.symmetry().sectors)) {
     Trim trim = solve_from(system, harmonics, options.tolerance, last);
-    history.emplace_back(harmonics, trim.residual_between);
-    trim.history = history;
+    attempts.emplace_back(harmonics, trim.residual_between);
+    trim.attempts = attempts;
     std::ostringstream text;
     text << "trim: " << harmonics << " harmonics, residual between the samples "
          << trim.residual_between;
@@ -145,8 +145,8 @@ void add_held_loads(const system::PeriodicSystem& system, const std::vector<Held
   if (held.empty()) return;
   const petsc::WriteView view(r);
   for (const HeldCoordinate& coordinate : held)
-    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates())
-      if (neutral.unknown == coordinate.unknown) view[neutral.row] += coordinate.load;
+    for (const system::UnconstrainedCoordinate& unconstrained : system.unconstrained_coordinates())
+      if (unconstrained.unknown == coordinate.unknown) view[unconstrained.row] += coordinate.load;
 }
 
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
@@ -159,9 +159,9 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
   const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)
                                            ? try_constant(system, options)
                                            : std::nullopt;
-  if (constant && constant->residual_between <= allowed_residual(*constant, rounding) &&
-      constant->residual <= allowed_residual(*constant, rounding) &&
-      constant->state_residual <= state_rounding)
+  if (constant && constant->residual_between <= allowed_residual(*constant, round_off) &&
+      constant->residual <= allowed_residual(*constant, round_off) &&
+      constant->state_residual <= state_round_off)
     return *constant;
   if (options.method == TrimMethod::shooting)
     return solve_shooting(system, options.steps, options.tolerance, observer);

@@ -552,8 +552,8 @@ template <class System>
 void Beam::state_loads(System& system) const {
   for (const LoadPart& part : loads_) {
     const model::BeamLoad& load = *part.load;
-    const double now = load.history.factor(system.time(), setting_.speed);
-    const double factor = load.history.is_constant() ? now : system.varying(now);
+    const double now = load.variation.factor(system.time(), setting_.speed);
+    const double factor = load.variation.is_constant() ? now : system.varying(now);
     Vector6 value;
     for (int i = 0; i < 6; ++i) value(i) = load.load(i) == 0.0 ? 0.0 : factor * load.load(i);
     const auto turned = [&]<class T>(const Vec3<T>& theta) {

@@ -78,7 +78,7 @@ void BladeRoot::describe(Registry& registry, int reactions, int hub_port, int lo
                                        {hinge.stiffness},
                                        hinge.damping / hinge.stiffness});
     else if (is_unloaded())
-      registry.add(system::NeutralCoordinate{owner.name() + " " + name, at, at + 1, "N m"});
+      registry.add(system::UnconstrainedCoordinate{owner.name() + " " + name, at, at + 1, "N m"});
     else
       registry.add_free({owner.name() + " " + name, at, at + 1, "N m"});
   }

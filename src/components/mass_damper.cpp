@@ -80,7 +80,7 @@ void MassDamper::describe_axis(Registry& registry, std::size_t i) const {
 /// Named as OpenFAST names those of its structural control, along its x y z.
 void MassDamper::describe_channels(Registry& registry, std::size_t i) const {
   const model::MassDamper& damper = *setting_.damper;
-  // Axes b1 b2 b3 and y1 y2 y3 in those: downwind, then lateral against the second axis, then up.
+  // Axes b1 b2 b3 and y1 y2 y3 in those: downwind, then side-side against the second axis, then up.
   struct Along {
     char letter;
     double sign;

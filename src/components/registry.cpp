@@ -67,14 +67,16 @@ void Registry::set_free(int unknown) {
   add_free({what.name(), unknown, unknown, what.load_unit()});
 }
 
-void Registry::add_free(const system::NeutralCoordinate& free) { declared_.free.push_back(free); }
+void Registry::add_free(const system::UnconstrainedCoordinate& free) {
+  declared_.free.push_back(free);
+}
 
 void Registry::set_row(int unknown, system::RowRole row) { declared_.rows[at(unknown)] = row; }
 
 void Registry::add(const system::EnergyGroup& group) { declared_.energies.push_back(group); }
 
-void Registry::add(const system::NeutralCoordinate& neutral) {
-  declared_.neutral.push_back(neutral);
+void Registry::add(const system::UnconstrainedCoordinate& unconstrained) {
+  declared_.unconstrained.push_back(unconstrained);
 }
 
 void Registry::add(const system::MeshError& error) { declared_.mesh_errors.push_back(error); }

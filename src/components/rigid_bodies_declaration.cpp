@@ -46,16 +46,17 @@ void RigidBodies::describe(Registry& registry) {
   describe_joint(registry, teeter, "teeter", Frame::rotating, chain.teeter.free);
   describe_joint(registry, torsion, "shaft torsion", Frame::rotating, chain.torsion.free);
   describe_joint(registry, generator, "generator", Frame::rotating, chain.generator.free);
-  const auto add_neutral = [&](const char* name, int number) {
-    registry.add(system::NeutralCoordinate{name, joint(number), joint(number) + 1, "N m"});
+  const auto add_unconstrained = [&](const char* name, int number) {
+    registry.add(system::UnconstrainedCoordinate{name, joint(number), joint(number) + 1, "N m"});
   };
-  if (chain.yaw.free && chain.yaw.stiffness == 0.0) add_neutral("yaw", yaw);
+  if (chain.yaw.free && chain.yaw.stiffness == 0.0) add_unconstrained("yaw", yaw);
   if (chain.teeter.free && chain.teeter.stiffness == 0.0 && turbine_.speed == 0.0)
-    add_neutral("teeter", teeter);
+    add_unconstrained("teeter", teeter);
   if (integral_ >= 0)
-    registry.add(system::NeutralCoordinate{"generator", joint(generator), integral_, "rad/s"});
+    registry.add(
+        system::UnconstrainedCoordinate{"generator", joint(generator), integral_, "rad/s"});
   else if (chain.generator.free)
-    add_neutral("generator", generator);
+    add_unconstrained("generator", generator);
   if (setting_.blades.size() == 2)  // the hinge axis turns with the shaft: half a turn reverses it
     for (int i = 0; i < joint_unknowns; ++i) registry.reverse(joint(teeter) + i);
   describe_energies(registry);

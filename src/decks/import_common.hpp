@@ -45,7 +45,7 @@ struct Station {
 };
 
 /// All places of the grids, from 0 to 1; a jump of any of them gives two stations. Where places of
-/// several grids are the same to rounding, that of the first grid counts.
+/// several grids are the same to round-off, that of the first grid counts.
 std::vector<Station> merge_grids(const std::vector<const std::vector<double>*>& grids);
 
 /// Linear between the points, constant outside.

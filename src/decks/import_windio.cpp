@@ -713,7 +713,7 @@ class Importer {
       return;
     }
     Vector6 coefficients = Eigen::Map<const Vector6>(mu.data());
-    // HAWC2's x is chordwise on a blade and lateral on a tower: windIO's y.
+    // HAWC2's x is chordwise on a blade and side-side on a tower: windIO's y.
     const bool may_be_hawc2 =
         !coefficients.head<3>().isZero(0.0) && coefficients.tail<3>().isZero(0.0);
     const bool has_pattern =

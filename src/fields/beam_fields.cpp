@@ -103,7 +103,7 @@ void declare_springs(Visitor& fields, bool at_root, model::SupportDefinition& su
   const Matrix6 uncoupled = support.stiffness.diagonal().asDiagonal();
   const Presence one_by_one{[&] { return support.stiffness == uncoupled; }, [] {}};
   fields.block({"stiffness", "N/m, N m/rad",
-                at_root ? "along and about b1 b2 b3 of the root (of a tower up, lateral, "
+                at_root ? "along and about b1 b2 b3 of the root (of a tower up, side-side, "
                           "downwind); a direction that is left out is rigid. Rotations are "
                           "Rodrigues parameters"
                         : "along and about b1 b2 b3 of the root; a direction that is left out is "
@@ -191,7 +191,7 @@ void declare_support(Visitor& fields, bool at_root, model::SupportDefinition& su
 void declare_damping(Visitor& fields, BeamPlace place, model::BeamDefinition& beam) {
   using Ratios = std::array<const char*, 3>;
   constexpr Ratios of_blade{"flap", "lead_lag", "torsion"};
-  constexpr Ratios of_tower{"fore_aft", "lateral", "torsion"};
+  constexpr Ratios of_tower{"fore_aft", "side_side", "torsion"};
   constexpr Ratios texts{"damping ratio of the first mode that bends about b2",
                          "of the first mode that bends about b3", "of the first mode that twists"};
   const Ratios& words = place == BeamPlace::blade ? of_blade : of_tower;
@@ -216,6 +216,8 @@ void declare_damping(Visitor& fields, BeamPlace place, model::BeamDefinition& be
           for (std::size_t i = 0; i < words.size(); ++i)
             fields.number(Field(words[i], "", fraction_of_one, texts[i]).or_else("0"),
                           beam.modal_damping[i]);
+          if (place == BeamPlace::tower)
+            fields.retired("lateral", "is named side_side; hint: side_side, with the same number");
         });
       });
   fields.numbers({"mass_damping", "1/s", non_negative,

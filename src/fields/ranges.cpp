@@ -112,7 +112,7 @@ class RangeCheck : public Visitor {
     check(field, key, value, field.range.words);
   }
 
-  /// Limits are converted as the value was, so that rounding moves both alike.
+  /// Limits are converted as the value was, so that round-off moves both alike.
   void check(const Field& field, std::string_view key, double value, const std::string& words) {
     if ((field.zero_is_none && value == 0.0) || (field.infinity_is_none && std::isinf(value)))
       return;

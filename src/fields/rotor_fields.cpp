@@ -25,7 +25,7 @@ void declare_motion(Visitor& fields, model::JointDefinition& joint) {
   } else if (!is_prescribed && !fields.describes()) {
     return;
   }
-  model::JointHistory& motion = joint.motion;
+  model::PrescribedMotion& motion = joint.motion;
   fields.number({"angle_deg", deg, half_turn,
                  "mean of a prescribed angle; this key, `harmonic` or both must be given"},
                 motion.angle);
@@ -218,7 +218,8 @@ void declare_shaft(Visitor& fields, model::ShaftDefinition& shaft) {
   fields.number({"center_of_mass", "m", "along s2 from the yaw axis"}, shaft.center_of_mass);
   fields.block({"inertia", "about its own centre of mass"}, [&] {
     fields.number({"axial", "kg m^2", non_negative, "about s2"}, shaft.inertia_axial);
-    fields.number({"lateral", "kg m^2", non_negative, "across it"}, shaft.inertia_lateral);
+    fields.number({"transverse", "kg m^2", non_negative, "across it"}, shaft.inertia_transverse);
+    fields.retired("lateral", "is named transverse; hint: transverse, with the same number");
   });
   fields.block(Field("torsion",
                      "a [joint](#joints) between generator and rotor, free or locked; "

@@ -77,30 +77,30 @@ void declare_load(Visitor& fields, const model::TurbineDefinition& turbine,
   fields.vector({"moment", "N m or N m/m", "the same"}, load.moment);
   fields.at_least_one({"force", "moment"}, "or \"moment\", or both");
   fields.flag({"follower", "whose b1 b2 b3, below"}, load.follower);
-  model::LoadHistory& history = load.history;
+  model::LoadVariation& variation = load.variation;
   fields.exclusive({{"harmonic"}, {"table"}});
   fields.block(Field("harmonic", "a factor that oscillates, below").or_else("absent"),
-               Presence{[&] { return history.amplitude != 0.0; },
+               Presence{[&] { return variation.amplitude != 0.0; },
                         [&] {
-                          history.mean = 0.0;
-                          history.amplitude = 1.0;
+                          variation.mean = 0.0;
+                          variation.amplitude = 1.0;
                         }},
                [&] {
                  if (fields.describes()) {
-                   history.mean = 0.0;
-                   history.amplitude = 1.0;
+                   variation.mean = 0.0;
+                   variation.amplitude = 1.0;
                  }
-                 declare_frequency(fields, history.per_rev, history.frequency);
-                 fields.number({"amplitude", "of the factor"}, history.amplitude);
-                 fields.number({"mean", "of the factor"}, history.mean);
-                 fields.number({"phase_deg", deg, ""}, history.phase);
+                 declare_frequency(fields, variation.per_rev, variation.frequency);
+                 fields.number({"amplitude", "of the factor"}, variation.amplitude);
+                 fields.number({"mean", "of the factor"}, variation.mean);
+                 fields.number({"phase_deg", deg, ""}, variation.phase);
                });
   fields.pairs(Field("table", "s, 1",
                      "instead of `harmonic`: `[[t, factor], ...]` with rising t, linear between "
                      "the entries; a transient needs it over all of its `duration`, `static` "
                      "takes it at t = 0")
                    .or_else("absent"),
-               {"t", "factor"}, history.table);
+               {"t", "factor"}, variation.table);
 }
 
 void declare_loop(Visitor& fields, const Field& field, const Units& units, double* schedule,

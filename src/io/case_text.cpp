@@ -33,7 +33,7 @@ std::string quote(const std::string& text) {
   return quoted + "\"";
 }
 
-/// The shortest decimal in `unit` that reads back as the value in SI; where rounding leaves none,
+/// The shortest decimal in `unit` that reads back as the value in SI; where round-off leaves none,
 /// the nearest one.
 std::string exact_in(const Unit& unit, double value) {
   const double converted = unit.from_si(value);

@@ -44,7 +44,8 @@ void write_statistics(ResultFile& file, const std::string& group, const LoadRepo
                       {unit_of_channel, frame_of_channel, description, {channel_axis}});
   };
   write("mean", &ChannelStatistics::mean, "over time");
-  write("standard_deviation", &ChannelStatistics::standard_deviation, "over time, of the history");
+  write("standard_deviation", &ChannelStatistics::standard_deviation,
+        "over time, of the time series");
   write("minimum", &ChannelStatistics::minimum, "smallest value");
   write("maximum", &ChannelStatistics::maximum, "largest value");
   write("range", &ChannelStatistics::range, "maximum - minimum");
@@ -61,10 +62,10 @@ void write_events(ResultFile& file, const std::string& group, const LoadReport& 
   std::vector<std::string> kinds;
   std::vector<double> times;
   RowMajor values(static_cast<Eigen::Index>(report.evaluation.events.size()),
-                  report.history.values.cols());
+                  report.series.values.cols());
   for (const loads::ExtremeEvent& event : report.evaluation.events) {
-    values.row(static_cast<Eigen::Index>(names.size())) = report.history.values.row(event.row);
-    names.push_back(report.history.names[static_cast<std::size_t>(event.channel)]);
+    values.row(static_cast<Eigen::Index>(names.size())) = report.series.values.row(event.row);
+    names.push_back(report.series.names[static_cast<std::size_t>(event.channel)]);
     kinds.emplace_back(event.is_maximum ? "maximum" : "minimum");
     times.push_back(event.time);
   }
@@ -147,12 +148,12 @@ void write_report(ResultFile& file, const std::string& group, const LoadReport& 
   write_damage(file, group + "/damage", report.evaluation.damage, report.channels.size(), options,
                "range of equal cycles, equivalent_frequency [Hz] times the duration of them, that "
                "do the same damage");
-  const loads::LoadHistory& history = report.history;
+  const loads::LoadSeries& series = report.series;
   file.set_attribute(group, "source", report.source);
-  file.set_attribute(group, "rows", static_cast<double>(history.times.size()));
-  file.set_attribute(group, "from", history.times(0));
-  file.set_attribute(group, "duration", loads::duration(history));
-  file.set_attribute(group, "period", history.period);
+  file.set_attribute(group, "rows", static_cast<double>(series.times.size()));
+  file.set_attribute(group, "from", series.times(0));
+  file.set_attribute(group, "duration", loads::duration(series));
+  file.set_attribute(group, "period", series.period);
 }
 
 std::string csv_word(const std::string& text) {

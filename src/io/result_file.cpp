@@ -16,17 +16,17 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
-#include "samara/io/history_export.hpp"
-#include "samara/io/history_file.hpp"
 #include "samara/io/load_result.hpp"
+#include "samara/io/time_series_export.hpp"
+#include "samara/io/time_series_file.hpp"
 #include "samara/io/whole_file.hpp"
 
 #include "axes.hpp"
 #include "hdf5_file.hpp"
 #include "hdf5_trial.hpp"
 #include "held_loads.hpp"
-#include "history_datasets.hpp"
 #include "linear_groups.hpp"
+#include "time_series_datasets.hpp"
 
 namespace samara::io {
 namespace {
@@ -40,7 +40,7 @@ constexpr std::string_view mode_table_start = "number,label,";
 constexpr std::string_view trim_table_start = "name,unit,mean";
 constexpr std::string_view static_table_start = "factor,newton_steps,";
 constexpr std::array<std::string_view, 5> table_starts{
-    mode_table_start, trim_table_start, static_table_start, history_table_start, load_table_start};
+    mode_table_start, trim_table_start, static_table_start, series_table_start, load_table_start};
 
 /// Harmonics of the participation are kept as far as one mode has this share there.
 constexpr double smallest_share = 1e-9;
@@ -118,9 +118,9 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
   file.write(group + "/error_mesh", collect(set, [](const Mode& m) { return m.mesh_error; }),
              {count},
              {"1", mode_frame, "of the elements; 0 where the mode is not resolved", {mode_axis}});
-  file.write(group + "/error_rounding",
-             collect(set, [](const Mode& m) { return m.rounding_error; }), {count},
-             {"1", mode_frame, "of rounding", {mode_axis}});
+  file.write(group + "/error_round_off",
+             collect(set, [](const Mode& m) { return m.round_off_error; }), {count},
+             {"1", mode_frame, "of round-off", {mode_axis}});
   file.write(group + "/error_growth", collect(set, [](const Mode& m) { return m.growth_error; }),
              {count},
              {"1/s", mode_frame, "estimated error of the real part of the exponent", {mode_axis}});
@@ -447,43 +447,43 @@ void ResultFile::write_channels(const std::string& group,
   write("description", &turbine::Channel::description, "each channel in words");
 }
 
-void ResultFile::write_history(const HistoryContent& history) {
+void ResultFile::write_series(const TimeSeriesContent& series) {
   Hdf5File& file = storage_->file;
-  write_channels("/transient", history.channels);
+  write_channels("/transient", series.channels);
   std::vector<std::string> files;
   std::vector<std::size_t> rows;
   std::vector<int> counts;
-  hsize_t all = history.time.size();
-  for (const HistorySegment& segment : history.segments) {
+  hsize_t all = series.time.size();
+  for (const TimeSeriesSegment& segment : series.segments) {
     files.push_back(segment.file);
     rows.push_back(segment.rows);
     counts.push_back(static_cast<int>(segment.rows));
     all += segment.rows;
   }
-  const hsize_t width = history.channels.size();
+  const hsize_t width = series.channels.size();
   if (files.empty()) {
-    write_values(history_time, history.time, meaning_of_history_time());
-    file.write(history_values, history.values, {all, width}, meaning_of_history_values());
+    write_values(series_time, series.time, meaning_of_series_time());
+    file.write(series_values, series.values, {all, width}, meaning_of_series_values());
   } else {
-    file.write_joined(history_time, files, rows, {all}, meaning_of_history_time());
-    file.write_joined(history_values, files, rows, {all, width}, meaning_of_history_values());
+    file.write_joined(series_time, files, rows, {all}, meaning_of_series_time());
+    file.write_joined(series_values, files, rows, {all, width}, meaning_of_series_values());
   }
-  file.write(history_segment_file, files, meaning_of_segment_file());
-  file.write(history_segment_rows, counts, meaning_of_segment_rows());
-  file.write("/transient/model", history.model,
+  file.write(series_segment_file, files, meaning_of_segment_file());
+  file.write(series_segment_rows, counts, meaning_of_segment_rows());
+  file.write("/transient/model", series.model,
              {"", no_frame, "the keys of the case that make the model"});
-  file.set_attribute("/transient", "status", history.status);
-  if (history.azimuth) file.set_attribute("/transient", "azimuth", *history.azimuth);
-  file.set_attribute("/transient", "brake_torque", history.brake_torque);
-  file.set_attribute("/transient", "generator_lost", history.is_generator_lost ? 1 : 0);
-  write_checkpoints(file, history.checkpoints);
+  file.set_attribute("/transient", "status", series.status);
+  if (series.azimuth) file.set_attribute("/transient", "azimuth", *series.azimuth);
+  file.set_attribute("/transient", "brake_torque", series.brake_torque);
+  file.set_attribute("/transient", "generator_lost", series.is_generator_lost ? 1 : 0);
+  write_checkpoints(file, series.checkpoints);
 }
 
-void write_checkpoints(Hdf5File& file, const std::vector<HistoryCheckpoint>& checkpoints) {
-  const std::size_t count = std::min(checkpoints.size(), history_checkpoints.size());
+void write_checkpoints(Hdf5File& file, const std::vector<TimeSeriesCheckpoint>& checkpoints) {
+  const std::size_t count = std::min(checkpoints.size(), series_checkpoints.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const std::string group = history_checkpoints.at(i);
-    const HistoryCheckpoint& checkpoint = checkpoints[checkpoints.size() - 1 - i];
+    const std::string group = series_checkpoints.at(i);
+    const TimeSeriesCheckpoint& checkpoint = checkpoints[checkpoints.size() - 1 - i];
     const analysis::TransientStart& point = checkpoint.point;
     const std::span<const double> state(point.z.data(), static_cast<std::size_t>(point.z.size()));
     file.write(

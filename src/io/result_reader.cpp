@@ -31,7 +31,7 @@ std::vector<std::string> take_settings(std::string& text, long count) {
 
 ResultKind find_result_kind(const std::string& path) {
   const Hdf5Reader file = Hdf5Reader(require_result(path));
-  if (file.has("/transient/time")) return ResultKind::history;
+  if (file.has("/transient/time")) return ResultKind::time_series;
   return file.has("/trim/harmonics") ? ResultKind::steady_state : ResultKind::other;
 }
 
@@ -82,8 +82,8 @@ analysis::Trim read_result_trim(const std::string& path) {
 
 void place_held(const system::PeriodicSystem& system, std::vector<analysis::HeldCoordinate>& held) {
   for (analysis::HeldCoordinate& one : held)
-    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates())
-      if (neutral.name == one.name) one.unknown = neutral.unknown;
+    for (const system::UnconstrainedCoordinate& unconstrained : system.unconstrained_coordinates())
+      if (unconstrained.name == one.name) one.unknown = unconstrained.unknown;
 }
 
 }  // namespace samara::io

@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "samara/base/error.hpp"
-#include "samara/io/history_file.hpp"
 #include "samara/io/result_reader.hpp"
 #include "samara/io/same_model.hpp"
+#include "samara/io/time_series_file.hpp"
 #include "samara/simulation/steady_state.hpp"
 
 namespace samara::io {
@@ -18,16 +18,16 @@ constexpr std::array<std::string_view, 8> acting_keys{
     "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator.torque",
     "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each.*.pitch_deg"};
 
-simulation::TransientState last_state(const std::string& path, const HistoryReader& history,
+simulation::TransientState last_state(const std::string& path, const TimeSeriesReader& series,
                                       const Case& before, const turbine::TurbineSystem& system,
                                       analysis::Observer& observer) {
-  const HistoryContent& content = history.content();
+  const TimeSeriesContent& content = series.content();
   if (content.checkpoints.empty())
-    throw InputError(history.damage().empty()
+    throw InputError(series.damage().empty()
                          ? path +
                                ": has no checkpoint; hint: transient.checkpoint sets their distance"
-                         : history.damage() + ", and no checkpoint");
-  if (!history.damage().empty()) observer.note(history.damage());
+                         : series.damage() + ", and no checkpoint");
+  if (!series.damage().empty()) observer.note(series.damage());
   simulation::TransientState state;
   state.point = content.checkpoints.back().point;
   place_held(system, state.point.held);
@@ -46,11 +46,11 @@ simulation::TransientState last_state(const std::string& path, const HistoryRead
 
 void restart_from(const std::string& path, const Case& input,
                   simulation::TransientSimulation& simulation, analysis::Observer& observer) {
-  const HistoryReader history(path);
-  require_same_model(path, history.content().model, input.model_text);
+  const TimeSeriesReader series(path);
+  require_same_model(path, series.content().model, input.model_text);
   const Case before = read_result_case(path);
   const simulation::TransientState state =
-      last_state(path, history, before, simulation.system(), observer);
+      last_state(path, series, before, simulation.system(), observer);
   at_place(path, [&] { simulation.restart(before, state); });
 }
 
@@ -65,10 +65,10 @@ void start_from(const std::string& path, const Case& input,
   if (kind == ResultKind::other)
     throw InputError(
         path + ": has no state to start from; hint: results of transient, trim and floquet have");
-  if (kind == ResultKind::history) {
-    const HistoryReader history(path);
+  if (kind == ResultKind::time_series) {
+    const TimeSeriesReader series(path);
     const simulation::TransientState end =
-        last_state(path, history, before, simulation.system(), observer);
+        last_state(path, series, before, simulation.system(), observer);
     at_place(path, [&] { simulation.start_after(before, end, observer, is_new_law); });
     return;
   }

@@ -21,10 +21,10 @@ void add(StateSpace& sum, double factor, const StateSpace& form) {
   }
 }
 
-/// Of the largest entry of a column: a row that is smaller everywhere is rounding.
+/// Of the largest entry of a column: a row that is smaller everywhere is round-off.
 constexpr double least_row = 1e-6;
-/// Of the largest entry of a matrix: what is smaller everywhere in row and column is rounding.
-constexpr double rounding = 1e-12;
+/// Of the largest entry of a matrix: what is smaller everywhere in row and column is round-off.
+constexpr double round_off = 1e-12;
 
 /// The largest size of every entry at any azimuth.
 StateSpace largest_of(const std::vector<StateSpace>& samples) {
@@ -39,7 +39,7 @@ StateSpace largest_of(const std::vector<StateSpace>& samples) {
 
 /// The difference of two forms: each entry relative to the geometric mean of the largest ones of
 /// its row and of its column at any azimuth, whatever the units are. What inputs do at once (D) is
-/// counted from the rounding of what they do by way of the states.
+/// counted from the round-off of what they do by way of the states.
 double compare(const StateSpace& found, const StateSpace& wanted, const StateSpace& largest) {
   double worst = 0.0;
   const double rate = std::sqrt(std::max(1.0, largest.A.size() > 0 ? largest.A.maxCoeff() : 0.0));
@@ -52,10 +52,10 @@ double compare(const StateSpace& found, const StateSpace& wanted, const StateSpa
     for (Eigen::Index i = 0; i < reference.rows(); ++i)
       for (Eigen::Index j = 0; j < reference.cols(); ++j) {
         const double size = std::max(std::sqrt(rows(i) * columns(j)), least_row * columns(j));
-        double least = rounding * rows.maxCoeff();
+        double least = round_off * rows.maxCoeff();
         if (is_direct)
           least = std::max(
-              least, rounding * largest.C.row(i).maxCoeff() * largest.B.col(j).maxCoeff() / rate);
+              least, round_off * largest.C.row(i).maxCoeff() * largest.B.col(j).maxCoeff() / rate);
         const double difference = std::abs((found.*matrix)(i, j) - reference(i, j));
         if (size > least) worst = std::max(worst, difference / size);
       }

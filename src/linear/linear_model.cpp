@@ -28,7 +28,7 @@ constexpr std::array<double, 4> first_weights{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0
 constexpr double second_middle = -205.0 / 72.0;
 constexpr std::array<double, 4> second_weights{8.0 / 5.0, -1.0 / 5.0, 8.0 / 315.0, -1.0 / 560.0};
 /// Steps of these differences a revolution, and for each harmonic of the steady state: what is
-/// lost is (k Omega h)^8/630 of a harmonic k, and rounding over (Omega h)^2.
+/// lost is (k Omega h)^8/630 of a harmonic k, and round-off over (Omega h)^2.
 constexpr int least_steps = 256;
 constexpr int steps_a_harmonic = 32;
 

@@ -13,7 +13,7 @@
 namespace samara::linear {
 namespace {
 
-/// Changes with the azimuth below it, relative, are rounding.
+/// Changes with the azimuth below it, relative, are round-off.
 constexpr double constant_tolerance = 1e-9;
 
 std::vector<std::string> function_names(int harmonics) {
@@ -71,7 +71,7 @@ NamedForm reduced_of(const NamedForm& form, const LinearizeOptions& options,
                       (options.reduction == ReductionMethod::modal ? ", the slowest modes"
                                                                    : ", balanced and truncated") +
                       "; the first " + std::to_string(reduced.kept) +
-                      " states are neutral or unstable";
+                      " states are unconstrained or unstable";
   small.states.clear();
   for (Eigen::Index i = 0; i < reduced.form.A.rows(); ++i)
     small.states.push_back({"reduced " + std::to_string(i + 1), "1", 1.0});

@@ -32,15 +32,15 @@ constexpr Complex imaginary{0.0, 1.0};
 
 /// What decays by more in a revolution is beyond the digits of the monodromy matrix.
 constexpr double least_multiplier = 1e-4;
-/// Below it differences are rounding.
-constexpr double rounding = 1e-9;
+/// Below it differences are round-off.
+constexpr double round_off = 1e-9;
 /// Multipliers that are this close, relative, are parted no further.
 constexpr double same_multiplier = 1e-6;
 /// Nor are those that are this close and whose modes are the same but for a part of the third: a
-/// double multiplier that rounding has parted.
+/// double multiplier that round-off has parted.
 constexpr double close_multiplier = 1e-3;
 constexpr double different_mode = 0.03;
-/// Multipliers this close to one are of motions that nothing restores, several of which rounding
+/// Multipliers this close to one are of motions that nothing restores, several of which round-off
 /// parts by more than that: they stay together.
 constexpr double neutral_multiplier = 1e-3;
 /// Of an exponent, relative to it or to the rotor speed: the difference that half the steps make.
@@ -71,7 +71,7 @@ bool are_one(const Schur& whole, Complex a, Complex b) {
   if (!are_close(a, b, close_multiplier)) return false;
   Schur schur = whole;
   bring_forward(schur, [a, b](Complex value) {
-    return are_close(value, a, rounding) || are_close(value, b, rounding);
+    return are_close(value, a, round_off) || are_close(value, b, round_off);
   });
   // The second eigenvector of (t11 t12; 0 t22) is (t12/(t22 - t11), 1).
   return std::abs(schur.T(1, 1) - schur.T(0, 0)) < different_mode * std::abs(schur.T(0, 1));
@@ -170,7 +170,7 @@ void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coa
     Schur schur = whole;
     const Index count = bring_forward(schur, [&values](Complex value) {
       return std::ranges::any_of(values,
-                                 [value](Complex one) { return are_close(one, value, rounding); });
+                                 [value](Complex one) { return are_close(one, value, round_off); });
     });
     Block block;
     MatrixXcd V = schur.U.leftCols(count);
@@ -201,7 +201,7 @@ void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coa
   std::ranges::stable_sort(blocks_, {}, &Block::modulus);
 }
 
-/// Carries V forward and W backward over the revolution: neither grows but by rounding.
+/// Carries V forward and W backward over the revolution: neither grows but by round-off.
 void LyapunovFloquet::follow(Block& block) const {
   const MatrixXcd back = small_exponential(-turn / speed_ / intervals_ * block.exponent);
   for (const MatrixXd& phi : propagators_) block.V.push_back(phi * block.V.back() * back);
@@ -325,7 +325,7 @@ LyapunovFloquet::Frame LyapunovFloquet::frame_at(double psi) const {
   const double width = turn / intervals_;
   psi -= turn * std::floor(psi / turn);
   const double place = psi / width;
-  const bool is_end = std::abs(place - std::round(place)) < rounding;
+  const bool is_end = std::abs(place - std::round(place)) < round_off;
   const auto at = static_cast<std::size_t>(is_end ? std::fmod(std::round(place), intervals_)
                                                   : std::floor(place));
   const double from = is_end ? psi : width * static_cast<double>(at);

@@ -47,7 +47,7 @@ MatrixXd gramian(const MatrixXd& A, const MatrixXd& F) {
   return 0.5 * (found + found.transpose());
 }
 
-/// L with L L^T = the matrix, what rounding made negative left out.
+/// L with L L^T = the matrix, what round-off made negative left out.
 MatrixXd root_of(const MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();

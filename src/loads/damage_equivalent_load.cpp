@@ -87,7 +87,7 @@ std::vector<Cycle> correct_means(const std::vector<Cycle>& cycles,
 std::vector<double> compute_damage_equivalent_loads(const std::vector<Cycle>& cycles,
                                                     double duration, const DamageOptions& options) {
   check_options(options);
-  require_positive(duration, "the duration of a history");
+  require_positive(duration, "the duration of a time series");
   return equivalent_loads({{corrected(cycles, options), 1.0}}, options,
                           options.frequency * duration);
 }
@@ -99,15 +99,15 @@ std::vector<double> compute_lifetime_loads(const std::vector<LoadCase>& cases,
   std::vector<WeightedCycles> all;
   double lifetime = 0.0;
   for (const LoadCase& one : cases) {
-    require_positive(one.duration, "the duration of a history");
+    require_positive(one.duration, "the duration of a time series");
     if (!(std::isfinite(one.hours) && one.hours >= 0.0))
-      throw InputError("the hours of a history must be >= 0, not " + std::to_string(one.hours));
+      throw InputError("the hours of a time series must be >= 0, not " + std::to_string(one.hours));
     const double seconds = seconds_per_hour * one.hours;
     if (seconds == 0.0) continue;
     lifetime += seconds;
     all.push_back({corrected(one.cycles, options), seconds / one.duration});
   }
-  require_positive(lifetime, "the time of all histories");
+  require_positive(lifetime, "the time of all time series");
   const double number = equivalent_cycles.value_or(options.frequency * lifetime);
   require_positive(number, "the number of equivalent cycles");
   return equivalent_loads(all, options, number);

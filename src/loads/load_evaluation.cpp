@@ -5,14 +5,14 @@
 namespace samara::loads {
 namespace {
 
-void add_harmonics(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
+void add_harmonics(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg,
                    const LoadEvaluationOptions& options, LoadEvaluation& result) {
   try {
     if (azimuth_deg.size() == 0)
       throw InputError(
-          "harmonics: the history has no channel Azimuth; hint: name it in "
+          "harmonics: the time series has no channel Azimuth; hint: name it in "
           "transient.output.channels");
-    result.harmonics = compute_harmonics(history, azimuth_deg, options.harmonics);
+    result.harmonics = compute_harmonics(series, azimuth_deg, options.harmonics);
   } catch (const InputError& error) {
     if (options.harmonics_are_asked_for) throw;
     result.why_no_harmonics = error.what();
@@ -27,19 +27,19 @@ DamageOptions LoadEvaluationOptions::damage_of(Eigen::Index channel) const {
   return options;
 }
 
-LoadEvaluation evaluate_loads(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
+LoadEvaluation evaluate_loads(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg,
                               const LoadEvaluationOptions& options) {
   LoadEvaluation result;
-  result.statistics = compute_statistics(history);
-  result.events = find_extreme_events(history);
-  add_harmonics(history, azimuth_deg, options, result);
-  for (Eigen::Index c = 0; c < history.values.cols(); ++c)
-    at_place(history.names[static_cast<std::size_t>(c)], [&] {
-      result.cycles.push_back(count_cycles(history, c));
+  result.statistics = compute_statistics(series);
+  result.events = find_extreme_events(series);
+  add_harmonics(series, azimuth_deg, options, result);
+  for (Eigen::Index c = 0; c < series.values.cols(); ++c)
+    at_place(series.names[static_cast<std::size_t>(c)], [&] {
+      result.cycles.push_back(count_cycles(series, c));
       result.tables.push_back(
           tabulate_cycles(result.cycles.back(), options.range_bins, options.mean_bins));
       result.damage.push_back(compute_damage_equivalent_loads(
-          result.cycles.back(), duration(history), options.damage_of(c)));
+          result.cycles.back(), duration(series), options.damage_of(c)));
     });
   return result;
 }

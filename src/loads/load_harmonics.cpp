@@ -19,9 +19,9 @@ constexpr double same_azimuth = 1e-9;
 /// Of the largest pivot: below it the rows do not tell the harmonics apart.
 constexpr double least_pivot = 1e-8;
 
-void check_azimuth(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg) {
-  if (azimuth_deg.size() != history.times.size())
-    throw InternalError("the azimuth differs from its history in size");
+void check_azimuth(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg) {
+  if (azimuth_deg.size() != series.times.size())
+    throw InternalError("the azimuth differs from its time series in size");
   for (Eigen::Index i = 0; i < azimuth_deg.size(); ++i)
     if (!std::isfinite(azimuth_deg(i)))
       throw InputError("azimuth: row " + std::to_string(i + 1) + " is not a finite number");
@@ -63,7 +63,7 @@ Window find_window(const Eigen::VectorXd& azimuth) {
   if (window.revolutions < 1) {
     std::ostringstream text;
     text << "azimuth: it grows by " << turns * revolution
-         << " deg until the end of the history, harmonics need a whole revolution; hint: "
+         << " deg until the end of the time series, harmonics need a whole revolution; hint: "
             "where the rotor stops, `until` a time before";
     throw InputError(text.str());
   }
@@ -72,7 +72,7 @@ Window find_window(const Eigen::VectorXd& azimuth) {
   return window;
 }
 
-/// Of a periodic history, whose first row does not come again.
+/// Of a periodic time series, whose first row does not come again.
 void check_one_revolution(const Eigen::VectorXd& azimuth) {
   const double span = azimuth(azimuth.size() - 1) - azimuth(0);
   if (first_growing_row(azimuth) > 0 || !(span < revolution))
@@ -122,15 +122,15 @@ void take_coefficients(const Eigen::MatrixXd& coefficients, LoadHarmonics& resul
 
 }  // namespace
 
-LoadHarmonics compute_harmonics(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
+LoadHarmonics compute_harmonics(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg,
                                 int harmonics) {
-  check(history);
-  check_azimuth(history, azimuth_deg);
+  check(series);
+  check_azimuth(series, azimuth_deg);
   if (harmonics < 0)
     throw InputError("the number of harmonics must be >= 0, not " + std::to_string(harmonics));
   const Eigen::VectorXd azimuth = unwrap(azimuth_deg);
   Window window;
-  if (!history.is_periodic())
+  if (!series.is_periodic())
     window = find_window(azimuth);
   else
     check_one_revolution(azimuth);
@@ -140,8 +140,7 @@ LoadHarmonics compute_harmonics(const LoadHistory& history, const Eigen::VectorX
   LoadHarmonics result;
   result.revolutions = window.revolutions;
   result.first_row = window.first_row;
-  take_coefficients(fit(used * degree, weights, history.values.bottomRows(rows), harmonics),
-                    result);
+  take_coefficients(fit(used * degree, weights, series.values.bottomRows(rows), harmonics), result);
   return result;
 }
 

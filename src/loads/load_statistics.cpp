@@ -4,19 +4,19 @@
 
 namespace samara::loads {
 
-std::vector<ChannelStatistics> compute_statistics(const LoadHistory& history) {
-  check(history);
+std::vector<ChannelStatistics> compute_statistics(const LoadSeries& series) {
+  check(series);
   const Eigen::VectorXd weights =
-      trapezoidal_weights(history.times, history.period) / duration(history);
+      trapezoidal_weights(series.times, series.period) / duration(series);
   std::vector<ChannelStatistics> all;
-  for (Eigen::Index c = 0; c < history.values.cols(); ++c) {
-    const Eigen::VectorXd values = history.values.col(c);
+  for (Eigen::Index c = 0; c < series.values.cols(); ++c) {
+    const Eigen::VectorXd values = series.values.col(c);
     ChannelStatistics one;
     one.minimum = values.minCoeff(&one.row_of_minimum);
     one.maximum = values.maxCoeff(&one.row_of_maximum);
     one.range = one.maximum - one.minimum;
-    one.time_of_minimum = history.times(one.row_of_minimum);
-    one.time_of_maximum = history.times(one.row_of_maximum);
+    one.time_of_minimum = series.times(one.row_of_minimum);
+    one.time_of_maximum = series.times(one.row_of_maximum);
     // About the first value: a large mean must not take the digits of small swings.
     const Eigen::ArrayXd swings = values.array() - values(0);
     const double mean_swing = weights.dot(swings.matrix());
@@ -27,10 +27,10 @@ std::vector<ChannelStatistics> compute_statistics(const LoadHistory& history) {
   return all;
 }
 
-std::vector<ExtremeEvent> find_extreme_events(const LoadHistory& history) {
+std::vector<ExtremeEvent> find_extreme_events(const LoadSeries& series) {
   std::vector<ExtremeEvent> events;
   Eigen::Index channel = 0;
-  for (const ChannelStatistics& one : compute_statistics(history)) {
+  for (const ChannelStatistics& one : compute_statistics(series)) {
     events.push_back({channel, false, one.row_of_minimum, one.time_of_minimum});
     events.push_back({channel, true, one.row_of_maximum, one.time_of_maximum});
     ++channel;

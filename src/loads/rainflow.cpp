@@ -110,12 +110,12 @@ std::vector<Cycle> count_periodic_cycles(const Eigen::Ref<const Eigen::VectorXd>
   return cycles;
 }
 
-std::vector<Cycle> count_cycles(const LoadHistory& history, Eigen::Index channel, double gate) {
-  check(history);
-  if (channel < 0 || channel >= history.values.cols())
-    throw InternalError("a history has no channel " + std::to_string(channel));
-  return history.is_periodic() ? count_periodic_cycles(history.values.col(channel), gate)
-                               : count_cycles(history.values.col(channel), gate);
+std::vector<Cycle> count_cycles(const LoadSeries& series, Eigen::Index channel, double gate) {
+  check(series);
+  if (channel < 0 || channel >= series.values.cols())
+    throw InternalError("a time series has no channel " + std::to_string(channel));
+  return series.is_periodic() ? count_periodic_cycles(series.values.col(channel), gate)
+                              : count_cycles(series.values.col(channel), gate);
 }
 
 RainflowTable tabulate_cycles(const std::vector<Cycle>& cycles, int range_bins, int mean_bins) {

@@ -20,8 +20,8 @@ constexpr double kept_kink = 0.5;
 /// Of the largest change, or rate: smaller ones are not looked at.
 constexpr double least_change = 1e-3;
 constexpr double least_kink = 1e-2;
-/// Of the size of the values: what is smaller is rounding.
-constexpr double rounding = 1e-12;
+/// Of the size of the values: what is smaller is round-off.
+constexpr double round_off = 1e-12;
 /// Of the change: what the neighbours do not explain.
 constexpr double least_surprise = 0.1;
 /// Of the range: so far off the line a motion is not followed by the steps.
@@ -39,7 +39,9 @@ struct Samples {
   double change(std::size_t i) const { return y[i + 1] - y[i]; }
   double slope(std::size_t i) const { return change(i) / (t[i + 1] - t[i]); }
   double range() const { return largest - least; }
-  double rounding_error() const { return rounding * std::max(std::abs(least), std::abs(largest)); }
+  double round_off_error() const {
+    return round_off * std::max(std::abs(least), std::abs(largest));
+  }
 };
 
 Samples sample(const TimeCurve& curve, double until, double step) {
@@ -103,7 +105,7 @@ CurveFault narrow_kink(const TimeCurve& curve, double a, double b) {
 std::optional<CurveFault> find_jump(const TimeCurve& curve, double until, double step) {
   const Samples samples = sample(curve, until, step);
   if (!std::isfinite(samples.range())) return std::nullopt;
-  double largest = samples.rounding_error() / least_change;
+  double largest = samples.round_off_error() / least_change;
   for (std::size_t i = 0; i < samples.intervals(); ++i)
     largest = std::max(largest, std::abs(samples.change(i)));
   for (std::size_t i = 0; i < samples.intervals(); ++i) {
@@ -122,7 +124,7 @@ std::optional<CurveFault> find_jump(const TimeCurve& curve, double until, double
     const double rise = samples.y[i + places.size()] - samples.y[i];
     for (std::size_t k = 1; k < places.size(); ++k) {
       const double off = samples.y[i + k] - samples.y[i] - places[k] * rise;
-      if (std::abs(off) > largest_deviation * samples.range() + samples.rounding_error())
+      if (std::abs(off) > largest_deviation * samples.range() + samples.round_off_error())
         return CurveFault{CurveFault::Kind::fast, samples.t[i], std::abs(off)};
     }
   }
@@ -135,7 +137,7 @@ std::optional<CurveFault> find_kink(const TimeCurve& curve, double until, double
   for (std::size_t i = 0; i < samples.intervals(); ++i)
     largest = std::max(largest, std::abs(samples.slope(i)));
   const double part = samples.t.back() / static_cast<double>(samples.intervals());
-  const double least = std::max(least_kink * largest, samples.rounding_error() / part * 1e6);
+  const double least = std::max(least_kink * largest, samples.round_off_error() / part * 1e6);
   std::optional<CurveFault> worst;
   const auto bend = [&](std::size_t i) {
     return std::abs(samples.slope(i + 1) - samples.slope(i));

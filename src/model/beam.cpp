@@ -19,7 +19,7 @@ constexpr double least_element = 0.25;
 /// Gauss points between two stations: sections are linear there, their compliance is not.
 constexpr int fine_points = 6;
 
-/// Of a semi-definite matrix's pivots: rounding.
+/// Of a semi-definite matrix's pivots: round-off.
 constexpr double semi_definite = 1e-12;
 
 TestFunctions test_functions(const math::QuadratureRule& rule) {

@@ -21,8 +21,8 @@ constexpr std::array<const char*, 3> words{"bending about b2", "bending about b3
 /// Frequencies that differ by less, relative, are one.
 constexpr double same_frequency = 1e-6;
 
-/// A mu below this part of the largest is rounding where it is negative.
-constexpr double mu_rounding = 1e-9;
+/// A mu below this part of the largest is round-off where it is negative.
+constexpr double mu_round_off = 1e-9;
 
 /// Rigid motions of the points (and of the masses behind them) by the elastic strains.
 class Kinematics {
@@ -235,7 +235,7 @@ Vector6 fit_damping(const Beam& beam, const ModalDamping& ratios) {
   const Eigen::VectorXd found = by_mu.partialPivLu().solve(wanted);
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t d = given[static_cast<std::size_t>(i)];
-    if (found(i) < -mu_rounding * found.cwiseAbs().maxCoeff() || !std::isfinite(found(i)))
+    if (found(i) < -mu_round_off * found.cwiseAbs().maxCoeff() || !std::isfinite(found(i)))
       throw InputError(std::string("these ratios ask for a negative damping of ") + words[d] +
                        ": its first mode shares the others' strains and has more damping "
                        "already; hint: leave this ratio out, or give mu per strain");

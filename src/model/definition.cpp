@@ -156,7 +156,7 @@ elements::TorqueLine TorqueLaw::at(double speed) const {
   return line;
 }
 
-elements::JointMotion JointHistory::at(double t, double rotor_speed) const {
+elements::JointMotion PrescribedMotion::at(double t, double rotor_speed) const {
   const double rate = per_rev > 0 ? per_rev * rotor_speed : frequency;
   const double turned = rate * t + phase;
   return {angle + amplitude * std::cos(turned), -amplitude * rate * std::sin(turned),

@@ -35,7 +35,7 @@ class Interpolation {
 
 }  // namespace
 
-double LoadHistory::factor(double t, double rotor_speed) const {
+double LoadVariation::factor(double t, double rotor_speed) const {
   if (table.empty()) {
     if (amplitude == 0.0) return mean;
     const double rate = per_rev > 0 ? per_rev * rotor_speed : frequency;
@@ -55,7 +55,7 @@ BeamLoad build_load(const LoadDefinition& load, const BeamDefinition& definition
   BeamLoad result;
   result.load << load.force, load.moment;
   result.follower = load.follower;
-  result.history = load.history;
+  result.variation = load.variation;
   result.at_tip = load.from == load.to && load.to == 1.0;
   if (result.at_tip) {
     const double twist = interpolate_section(definition, 1.0).twist;

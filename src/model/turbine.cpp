@@ -52,7 +52,7 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   chain.shaft.mass = shaft.mass;
   chain.shaft.center = Vector3(0.0, shaft.center_of_mass, 0.0);
   chain.shaft.inertia =
-      Vector3(shaft.inertia_lateral, shaft.inertia_axial, shaft.inertia_lateral).asDiagonal();
+      Vector3(shaft.inertia_transverse, shaft.inertia_axial, shaft.inertia_transverse).asDiagonal();
   chain.hub = hub_of(hub);
   chain.teeter = hinge_of(hub.teeter);
   chain.teeter.stop_angle = hub.teeter_stops.angle;
@@ -260,7 +260,7 @@ Turbine build_turbine(const TurbineDefinition& given) {
   turbine.chain = chain_of(definition);
   if (definition.has_tower) turbine.chain.tower_top = tower_top_of(turbine.tower.tip_mass);
   const auto motion_of = [](const JointDefinition& joint) {
-    return joint.kind == JointKind::prescribed ? joint.motion : JointHistory{};
+    return joint.kind == JointKind::prescribed ? joint.motion : PrescribedMotion{};
   };
   if (definition.has_nacelle) turbine.yaw_motion = motion_of(definition.nacelle.yaw);
   turbine.teeter_motion = motion_of(definition.hub.teeter);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 /// Of a set point that is meant to be the mean speed.
-constexpr double speed_rounding = 1e-6;
+constexpr double speed_round_off = 1e-6;
 /// `length` beside `reference_line` must agree to this, relative.
 constexpr double length_tolerance = 1e-3;
 
@@ -149,7 +149,7 @@ class Validation {
     const ShaftDefinition& shaft = turbine_.shaft;
     const double speed = shaft.generator_speed();
     if (controller.has_integral() && speed != 0.0 &&
-        std::abs(controller.set_point.value_or(speed) - speed) > speed_rounding * speed)
+        std::abs(controller.set_point.value_or(speed) - speed) > speed_round_off * speed)
       add("controller.set_point",
           "the integral holds the generator at " + general(*controller.set_point, 6) +
               " rad/s, shaft.speed times gear_ratio is " + general(speed, 6) +

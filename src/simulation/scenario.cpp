@@ -8,7 +8,7 @@ int highest_harmonic(const model::TurbineDefinition& turbine) {
   if (turbine.shaft.speed == 0.0) return 0;
   int highest = std::max(turbine.nacelle.yaw.motion.per_rev, turbine.hub.teeter.motion.per_rev);
   for (const model::LoadDefinition& load : turbine.loads)
-    highest = std::max(highest, load.history.per_rev);
+    highest = std::max(highest, load.variation.per_rev);
   for (const model::HingeDefinition& hinge : turbine.blades.hinges)
     highest = std::max(highest, hinge.joint.motion.per_rev);
   return highest;

@@ -28,7 +28,7 @@ constexpr int least_growth_steps = 16;
 constexpr int most_growth_steps = 100000;
 constexpr double most_time_steps = 1e9;
 /// How far from a whole number of steps a time may be, of a step.
-constexpr double step_rounding = 1e-6;
+constexpr double step_round_off = 1e-6;
 /// Of positions [m, rad].
 constexpr Range step_error{"a number from 1e-12 to 0.1", 1e-12, 0.1};
 
@@ -114,7 +114,7 @@ void declare_step_count(Visitor& fields, const Field& field, double step, double
   fields.number(field, given, words);
   if (given == 0.0 || !(step > 0.0)) return;
   const double count = std::round(given / step);
-  if (count < 1.0 || std::abs(given / step - count) > step_rounding) {
+  if (count < 1.0 || std::abs(given / step - count) > step_round_off) {
     fields.expected(field.key, "a multiple of transient.step (" + general(step, 6) + " s)");
     return;
   }
@@ -398,22 +398,22 @@ void declare_linearize(Visitor& fields, const model::TurbineDefinition& turbine,
                            "series: `[0, 22.5, 90]`")
                          .or_else("those"),
                      "numbers", options.at);
-  fields.block(
-      Field("reduce",
-            "constant forms with fewer states, as `FORM_reduced`; neutral and unstable modes are "
-            "kept. A turbine whose matrices do not change with the azimuth has one of "
-            "`state_space`; else of `average` and `hill`")
-          .or_else("absent"),
-      Presence{[&] { return options.order > 0; }, [] {}}, [&] {
-        fields.integer(Field("order", "", integers(1, most_order), "number of states")
-                           .required("the number of states")
-                           .none_at_zero(""),
-                       options.order);
-        fields.choice(Field("method", "balanced truncation, or the slowest modes"),
-                      options.reduction,
-                      {{"balanced", linear::ReductionMethod::balanced},
-                       {"modal", linear::ReductionMethod::modal}});
-      });
+  fields.block(Field("reduce",
+                     "constant forms with fewer states, as `FORM_reduced`; unconstrained and "
+                     "unstable modes are "
+                     "kept. A turbine whose matrices do not change with the azimuth has one of "
+                     "`state_space`; else of `average` and `hill`")
+                   .or_else("absent"),
+               Presence{[&] { return options.order > 0; }, [] {}}, [&] {
+                 fields.integer(Field("order", "", integers(1, most_order), "number of states")
+                                    .required("the number of states")
+                                    .none_at_zero(""),
+                                options.order);
+                 fields.choice(Field("method", "balanced truncation, or the slowest modes"),
+                               options.reduction,
+                               {{"balanced", linear::ReductionMethod::balanced},
+                                {"modal", linear::ReductionMethod::modal}});
+               });
   const bool has_name =
       fields.text(Field("mat",
                         "name of a MAT-file (level 5: MATLAB, Octave, `scipy.io.loadmat`) with "

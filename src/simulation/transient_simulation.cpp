@@ -24,11 +24,11 @@ constexpr double grid_tolerance = 1e-9;
 void set_azimuth(model::Turbine& turbine, double azimuth) {
   const double gained = azimuth - turbine.azimuth;
   turbine.azimuth = azimuth;
-  const auto turn = [gained](auto& history) { history.phase += history.per_rev * gained; };
+  const auto turn = [gained](auto& variation) { variation.phase += variation.per_rev * gained; };
   turbine.for_each_motion(turn);
-  for (model::BeamLoad& load : turbine.tower.loads) turn(load.history);
+  for (model::BeamLoad& load : turbine.tower.loads) turn(load.variation);
   for (model::Beam& blade : turbine.blades)
-    for (model::BeamLoad& load : blade.loads) turn(load.history);
+    for (model::BeamLoad& load : blade.loads) turn(load.variation);
 }
 
 /// The turbine at t = 0 of a simulation with this state.

@@ -105,14 +105,14 @@ class Validation {
   /// root of a beam may move.
   void check_steady() {
     for (std::size_t i = 0; i < turbine_.loads.size(); ++i) {
-      const model::LoadHistory& history = turbine_.loads[i].history;
+      const model::LoadVariation& variation = turbine_.loads[i].variation;
       const std::string place = indexed("loads", i);
-      if (!history.is_constant() && (!history.table.empty() || history.per_rev == 0))
+      if (!variation.is_constant() && (!variation.table.empty() || variation.per_rev == 0))
         add(place,
             "does not repeat with the rotor; hint: harmonic: {per_rev: ...}; samara static takes "
             "the loads at t = 0, samara transient any with transient.start: undeformed or "
             "RESULT.h5");
-      check_harmonics(place, history.per_rev);
+      check_harmonics(place, variation.per_rev);
     }
     check_motion("nacelle.yaw", turbine_.nacelle.yaw.motion);
     check_motion("hub.teeter", turbine_.hub.teeter.motion);
@@ -122,7 +122,7 @@ class Validation {
     check_mass("blades.support", turbine_.blades.beam.support);
   }
 
-  void check_motion(const std::string& joint, const model::JointHistory& motion) {
+  void check_motion(const std::string& joint, const model::PrescribedMotion& motion) {
     if (!motion.is_constant() && motion.per_rev == 0)
       add(joint,
           "does not repeat with the rotor; hint: harmonic: {per_rev: ...}, or samara static, which "
@@ -186,7 +186,7 @@ class Validation {
     check_curves();
     for (std::size_t i = 0; i < transient.events.size(); ++i) check_event(i);
     for (std::size_t i = 0; i < turbine_.loads.size(); ++i) {
-      const auto& table = turbine_.loads[i].history.table;
+      const auto& table = turbine_.loads[i].variation.table;
       if (!table.empty() &&
           (table.front().first > 0.0 || table.back().first < transient.options.duration))
         add(indexed("loads", i) + ".table", "does not reach over the run, from 0 to " +

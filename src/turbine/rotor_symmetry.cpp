@@ -11,7 +11,7 @@ namespace {
 /// Relative to the larger of the terms that should cancel, lengths and inertias of the hub's
 /// masses: what places typed with ten digits leave (three masses 120 degrees apart). Frequencies
 /// change by no more than that, which no analysis resolves.
-constexpr double symmetry_rounding = 1e-9;
+constexpr double symmetry_round_off = 1e-9;
 
 /// Of the hub: its axis must be a principal one through its centre, and all axes across
 /// it alike where it is turned by less than half a turn.
@@ -19,9 +19,9 @@ std::string hub_fault(const model::Turbine& turbine, bool round) {
   const elements::RigidBody& hub = turbine.chain.hub;
   const Matrix3& I = hub.inertia;
   const double largest = I.cwiseAbs().maxCoeff();
-  const double inertia = symmetry_rounding * largest;
+  const double inertia = symmetry_round_off * largest;
   const double length = hub.mass > 0.0 ? hub.center.norm() + std::sqrt(largest / hub.mass) : 0.0;
-  if (std::hypot(hub.center(0), hub.center(2)) > symmetry_rounding * length)
+  if (std::hypot(hub.center(0), hub.center(2)) > symmetry_round_off * length)
     return "the hub's centre of mass is off the shaft";
   if (std::hypot(I(0, 1), I(1, 2)) > inertia)
     return "the shaft is no principal axis of the hub's inertia";
@@ -34,8 +34,8 @@ std::string hub_fault(const model::Turbine& turbine, bool round) {
 /// must reverse the teeter angle of two blades.
 std::string motion_fault(const model::Turbine& turbine) {
   const int blades = static_cast<int>(turbine.blades.size());
-  const model::JointHistory& yaw = turbine.yaw_motion;
-  const model::JointHistory& teeter = turbine.teeter_motion;
+  const model::PrescribedMotion& yaw = turbine.yaw_motion;
+  const model::PrescribedMotion& teeter = turbine.teeter_motion;
   if (!yaw.is_constant() && (yaw.per_rev == 0 || yaw.per_rev % blades != 0))
     return "the yaw does not repeat from blade to blade";
   const bool reverses = teeter.angle == 0.0 && (teeter.is_constant() || teeter.per_rev % 2 == 1);
@@ -52,8 +52,9 @@ std::string motion_fault(const model::Turbine& turbine) {
 std::string load_fault(const model::Turbine& turbine) {
   const int blades = static_cast<int>(turbine.blades.size());
   const auto repeats = [&](const model::BeamLoad& load) {
-    return load.history.is_constant() || (load.history.table.empty() && load.history.per_rev > 0 &&
-                                          load.history.per_rev % blades == 0);
+    return load.variation.is_constant() ||
+           (load.variation.table.empty() && load.variation.per_rev > 0 &&
+            load.variation.per_rev % blades == 0);
   };
   const auto alike = [](const model::BeamLoad& a, const model::BeamLoad& b) {
     return a.source == b.source;

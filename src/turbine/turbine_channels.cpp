@@ -20,14 +20,14 @@ namespace {
 
 using PointSum = std::vector<std::pair<int, double>>;
 
-/// Beam axes 1 2 3 (outward, leading edge, downwind) to x y z; those of the tower (up, lateral,
+/// Beam axes 1 2 3 (outward, leading edge, downwind) to x y z; those of the tower (up, side-side,
 /// downwind) the same way.
 template <class T>
 Vec3<T> along_beam(const Vec3<T>& v) {
   return Vec3<T>(v(2), -v(1), v(0));
 }
 
-/// Axes 1 2 3 of the bodies (lateral, downwind, up) to x y z.
+/// Axes 1 2 3 of the bodies (side-side, downwind, up) to x y z.
 template <class T>
 Vec3<T> of_body(const Vec3<T>& v) {
   return Vec3<T>(v(1), -v(0), v(2));

@@ -40,14 +40,14 @@ BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
   return blade;
 }
 
-/// The tower's b2 is lateral (n1), its b3 downwind (n2): bending about b2 moves it along b3.
+/// The tower's b2 is side-side (n1), its b3 downwind (n2): bending about b2 moves it along b3.
 BeamSetting tower_setting(const model::Turbine& turbine) {
   BeamSetting tower;
   tower.mesh = &turbine.tower;
   tower.owner = {PartKind::beam, "tower"};
   tower.end = components::BeamEnd::carries;
   tower.end_name = "top";
-  tower.directions = {"axial", "lateral", "fore-aft", "torsion", "fore-aft", "lateral"};
+  tower.directions = {"axial", "side-side", "fore-aft", "torsion", "fore-aft", "side-side"};
   tower.support_part = "foundation";
   tower.support_directions.fill("");
   tower.rank = tower_rank;

@@ -20,7 +20,7 @@ constexpr char base_stem[] = "base_n";
 constexpr char turn_stem[] = "base_rot_n";
 
 const std::vector<std::string>& ground_ways() {
-  static const std::vector<std::string> ways{"lateral", "downwind", "up"};
+  static const std::vector<std::string> ways{"side-side", "downwind", "up"};
   return ways;
 }
 

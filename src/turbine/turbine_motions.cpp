@@ -23,8 +23,8 @@ struct Directions {
 /// About b2 a beam bends along b3, and about b3 along b2.
 constexpr std::array<int, 6> bending{0, 1, 2, 3, 2, 1};
 constexpr Directions blade_directions{{"axial", "lead-lag", "flap", "torsion"}, bending};
-/// The tower's b2 is lateral (n1), its b3 downwind (n2).
-constexpr Directions tower_directions{{"axial", "lateral", "fore-aft", "torsion"}, bending};
+/// The tower's b2 is side-side (n1), its b3 downwind (n2).
+constexpr Directions tower_directions{{"axial", "side-side", "fore-aft", "torsion"}, bending};
 constexpr Directions root_directions{{"support", "pitch hinge", "flap hinge", "lag hinge"},
                                      {0, 0, 0, 1, 2, 3}};
 constexpr Directions foundation_directions{{"", "", "", ""}, {0, 0, 0, 0, 0, 0}};

@@ -179,10 +179,11 @@ const system::RotorSymmetry& TurbineSystem::symmetry() const {
 const std::vector<system::EnergyGroup>& TurbineSystem::energy_groups() const {
   return assembly_->equations.declarations().energies;
 }
-const std::vector<system::NeutralCoordinate>& TurbineSystem::neutral_coordinates() const {
-  return assembly_->equations.declarations().neutral;
+const std::vector<system::UnconstrainedCoordinate>& TurbineSystem::unconstrained_coordinates()
+    const {
+  return assembly_->equations.declarations().unconstrained;
 }
-std::vector<system::NeutralCoordinate> TurbineSystem::free_coordinates() const {
+std::vector<system::UnconstrainedCoordinate> TurbineSystem::free_coordinates() const {
   return assembly_->equations.declarations().free;
 }
 

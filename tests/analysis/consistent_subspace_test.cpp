@@ -42,8 +42,8 @@ double defect(const system::PeriodicSystem& system, RowRole role, const Eigen::M
   return worst;
 }
 
-/// Rounding of a solve with the constraint rows; the shortest element makes them largest.
-constexpr double rounding = 1e-9;
+/// Round-off of a solve with the constraint rows; the shortest element makes them largest.
+constexpr double round_off = 1e-9;
 
 }  // namespace
 
@@ -114,8 +114,8 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_constant_soluti
       const Eigen::MatrixXd sum = tangents.K * z + tangents.M * z_dot;
       const Eigen::MatrixXd terms =
           tangents.K.cwiseAbs() * z.cwiseAbs() + tangents.M.cwiseAbs() * z_dot.cwiseAbs();
-      BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < rounding);
-      BOOST_TEST(defect(system, RowRole::kinematic, sum, terms) < rounding);
+      BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < round_off);
+      BOOST_TEST(defect(system, RowRole::kinematic, sum, terms) < round_off);
       // Something moves in every column.
       for (Eigen::Index j = 0; j < z.cols(); ++j) BOOST_TEST(z.col(j).norm() > 0.0);
     }
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(basis_obeys_constraints_and_kinematics_of_a_periodic_soluti
   const Eigen::MatrixXd sum = tangents.K * z + tangents.M * z_dot;
   const Eigen::MatrixXd terms =
       tangents.K.cwiseAbs() * z.cwiseAbs() + tangents.M.cwiseAbs() * z_dot.cwiseAbs();
-  BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < rounding);
+  BOOST_TEST(defect(system, RowRole::constraint, sum, terms) < round_off);
   BOOST_TEST(defect(system, RowRole::kinematic, sum, terms) < 1e-7);
 }
 
@@ -207,7 +207,7 @@ BOOST_AUTO_TEST_CASE(nonlinear_state_obeys_constraints_and_kinematics) {
   for (std::size_t i = 0; i < system.rows().size(); ++i) {
     const double value = std::abs(view[static_cast<PetscInt>(i)]);
     if (system.rows()[i] == RowRole::constraint) BOOST_TEST(value < 1e-10);
-    if (system.rows()[i] == RowRole::kinematic)  // differences: step^2 and rounding / step
+    if (system.rows()[i] == RowRole::kinematic)  // differences: step^2 and round-off / step
       BOOST_TEST(value < 1e-7, system.unknowns()[i].name() << " " << value);
   }
 }

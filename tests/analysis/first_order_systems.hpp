@@ -193,7 +193,7 @@ class SpeedControl final : public FirstOrderSystem {
     add_kinetic("rotor", 1, J);
     // The integral takes the torque: what the mean of the angle would need is an offset of its
     // rate.
-    neutral_.push_back({"rotor", 0, 3, "rad/s"});
+    unconstrained_.push_back({"rotor", 0, 3, "rad/s"});
   }
   void tangents_at(double, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
                    Eigen::MatrixXd& M) const override {

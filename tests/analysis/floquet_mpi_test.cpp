@@ -27,13 +27,13 @@ Runs run(const model::TurbineDefinition& definition, const analysis::FloquetOpti
           find_floquet_modes(system, trim.solution, options, PETSC_COMM_WORLD, observer)};
 }
 
-/// An exponent of the free yaw, where mu = 1 is defective: rounding moves it by its root.
+/// An exponent of the free yaw, where mu = 1 is defective: round-off moves it by its root.
 bool is_defective(const analysis::Mode& mode, double speed) {
   return std::abs(mode.exponent) < 1e-4 * speed;
 }
 
-constexpr double regular = 1e-9;    // relative; rounding of other sums
-constexpr double defective = 1e-4;  // in the multiplier: the root of rounding and much to spare
+constexpr double regular = 1e-9;    // relative; round-off of other sums
+constexpr double defective = 1e-4;  // in the multiplier: the root of round-off and much to spare
 
 void require_same(const Runs& runs) {
   const analysis::ModeSet& a = runs.alone.set;

@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(mathieu_changes_stability_at_its_characteristic_values) {
 }
 
 BOOST_AUTO_TEST_CASE(multipliers_of_a_hamiltonian_system_have_product_one) {
-  // (19) is symplectic for x'' + k(t) x = 0: the product is 1 to rounding at any step.
+  // (19) is symplectic for x'' + k(t) x = 0: the product is 1 to round-off at any step.
   for (const int steps : {7, 20, 101}) {
     const analysis::Floquet floquet = floquet_at_rest(Mathieu(1.0, 1.0), steps);
     BOOST_REQUIRE(floquet.set.modes.size() == 2U);

@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(start_from_fewer_harmonics_leads_to_the_same_solution) {
   BOOST_TEST(warm.newton_steps < cold.newton_steps);
 }
 
-BOOST_AUTO_TEST_CASE(neutral_coordinate_is_held_by_the_constant_load) {
+BOOST_AUTO_TEST_CASE(unconstrained_coordinate_is_held_by_the_constant_load) {
   // m x'' + c x' = f0 + f1 cos wt: the mean of x is zero, the load that holds it is f0 as the row
   // is written, and x = A cos wt + B sin wt with -m w^2 A + c w B = f1, -m w^2 B - c w A = 0.
   const analysis::Trim trim = solve_harmonic_balance(FreeSlide(), 2, 1e-12, nullptr);
@@ -133,11 +133,11 @@ BOOST_AUTO_TEST_CASE(automatic_harmonics_reach_the_tolerance_and_tell_the_way) {
   analysis::Observer observer;
   const analysis::Trim trim = find_trim(system, options, observer);
   BOOST_TEST(trim.residual_between <= 1e-6);  // this system has no internal loads: level 1
-  BOOST_REQUIRE(trim.history.size() > 2U);
-  BOOST_TEST(trim.history.back().first == trim.solution.harmonics());
-  BOOST_TEST(trim.history.back().second == trim.residual_between);
-  for (std::size_t i = 0; i + 1 < trim.history.size(); ++i)
-    BOOST_TEST(trim.history[i].second > 1e-6);
+  BOOST_REQUIRE(trim.attempts.size() > 2U);
+  BOOST_TEST(trim.attempts.back().first == trim.solution.harmonics());
+  BOOST_TEST(trim.attempts.back().second == trim.residual_between);
+  for (std::size_t i = 0; i + 1 < trim.attempts.size(); ++i)
+    BOOST_TEST(trim.attempts[i].second > 1e-6);
 }
 
 BOOST_AUTO_TEST_CASE(automatic_harmonics_rise_by_a_third_and_lose_nothing_on_the_way) {
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(automatic_harmonics_rise_by_a_third_and_lose_nothing_on_the
   analysis::Observer observer;
   const analysis::Trim trim = find_trim(system, options, observer);
   int before = 0;
-  for (const auto& [harmonics, residual] : trim.history) {
+  for (const auto& [harmonics, residual] : trim.attempts) {
     if (before > 0) BOOST_TEST(harmonics == before + (before + 2) / 3);
     before = harmonics;
   }

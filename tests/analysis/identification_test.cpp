@@ -1,4 +1,4 @@
-// Identification of modes whose history is written down here.
+// Identification of modes whose time series is written down here.
 #include "samara/analysis/identification.hpp"
 
 #include <algorithm>
@@ -53,27 +53,27 @@ class Described final : public SmallSystem {
                    Eigen::MatrixXd&) const override {}
 };
 
-/// Rows of the histories: V of blade 1, of blade 2, tower V, Omega.
+/// Rows of the time series: V of blade 1, of blade 2, tower V, Omega.
 struct Identified {
   analysis::Mode mode;
   Eigen::VectorXd participation;
 };
 
-Identified identify(const Described& system, const Eigen::MatrixXcd& history) {
+Identified identify(const Described& system, const Eigen::MatrixXcd& series) {
   const std::vector<PetscInt> rows{1, 5, 9, 10};
-  Eigen::MatrixXcd states = Eigen::MatrixXcd::Zero(system.size(), history.cols());
+  Eigen::MatrixXcd states = Eigen::MatrixXcd::Zero(system.size(), series.cols());
   for (std::size_t i = 0; i < rows.size(); ++i)
-    states.row(rows[i]) = history.row(static_cast<Eigen::Index>(i));
+    states.row(rows[i]) = series.row(static_cast<Eigen::Index>(i));
   Identified result;
   Eigen::MatrixXd energies;
   for (int share = 0; share < 2; ++share) {  // together the whole
     analysis::HarmonicEnergy energy(system, 1, share, 2);
-    Eigen::MatrixXd real(energy.signals(), history.cols());
-    Eigen::MatrixXd imaginary(energy.signals(), history.cols());
+    Eigen::MatrixXd real(energy.signals(), series.cols());
+    Eigen::MatrixXd imaginary(energy.signals(), series.cols());
     energy.take(states.real(), real);
     energy.take(states.imag(), imaginary);
     const Eigen::MatrixXd part =
-        energy.energies(real.data(), imaginary.data(), Eigen::VectorXcd::Ones(history.cols()));
+        energy.energies(real.data(), imaginary.data(), Eigen::VectorXcd::Ones(series.cols()));
     energies = share == 0 ? part : energies + part;
     describe_energy(energies, energy.part_names(), -1, result.mode, result.participation);
   }
@@ -96,10 +96,10 @@ BOOST_AUTO_TEST_CASE(one_harmonic_is_found_at_its_place_with_odd_and_even_sample
   const Described system;
   for (const Eigen::Index samples : {12, 13, 250, 501}) {
     for (const int k : {0, 1, -1, 3, -5, 5, -6}) {
-      Eigen::MatrixXcd history = Eigen::MatrixXcd::Zero(4, samples);
+      Eigen::MatrixXcd series = Eigen::MatrixXcd::Zero(4, samples);
       for (Eigen::Index s = 0; s < samples; ++s)
-        history(0, s) = Complex(0.3, 2.0) * wave(k, s, samples);
-      const Identified found = identify(system, history);
+        series(0, s) = Complex(0.3, 2.0) * wave(k, s, samples);
+      const Identified found = identify(system, series);
       BOOST_TEST(found.mode.harmonic == k, samples << " samples");
       BOOST_TEST(found.participation.sum() == 1.0, boost::test_tools::tolerance(1e-12));
       // participation is listed from k = -floor(samples / 2)
@@ -114,14 +114,14 @@ BOOST_AUTO_TEST_CASE(dominant_harmonic_is_that_of_the_part_with_most_energy) {
   // The tower has the largest single harmonic (k = 1), the blades most energy, at 4 and 5.
   const Described system;
   constexpr Eigen::Index samples = 32;
-  Eigen::MatrixXcd history(4, samples);
+  Eigen::MatrixXcd series(4, samples);
   for (Eigen::Index s = 0; s < samples; ++s) {
-    history(0, s) = 1.0 * wave(4, s, samples) + 0.9 * wave(5, s, samples);
-    history(1, s) = 1.0 * wave(4, s, samples) - 0.9 * wave(5, s, samples);
-    history(2, s) = 1.2 * wave(1, s, samples);
-    history(3, s) = 0.0;
+    series(0, s) = 1.0 * wave(4, s, samples) + 0.9 * wave(5, s, samples);
+    series(1, s) = 1.0 * wave(4, s, samples) - 0.9 * wave(5, s, samples);
+    series(2, s) = 1.2 * wave(1, s, samples);
+    series(3, s) = 0.0;
   }
-  const Identified found = identify(system, history);
+  const Identified found = identify(system, series);
   const double blades = 2.0 * (1.0 + 0.81);  // 2 blades, weight 2, half
   const double tower = 0.5 * 3.0 * 1.44;
   BOOST_TEST(tower > 2.0);  // more than either harmonic of the blades
@@ -140,10 +140,10 @@ BOOST_AUTO_TEST_CASE(dominant_harmonic_is_that_of_the_part_with_most_energy) {
 BOOST_AUTO_TEST_CASE(coupled_weights_count_both_ways) {
   // e = (3 V^2 + 2 * 0.5 V W + W^2) / 2 with V = 2 i, W = i - 1: V W* has real part 2.
   const Described system;
-  Eigen::MatrixXcd history = Eigen::MatrixXcd::Zero(4, 1);
-  history(2, 0) = Complex(0.0, 2.0);
-  history(3, 0) = Complex(-1.0, 1.0);
-  const Identified found = identify(system, history);
+  Eigen::MatrixXcd series = Eigen::MatrixXcd::Zero(4, 1);
+  series(2, 0) = Complex(0.0, 2.0);
+  series(3, 0) = Complex(-1.0, 1.0);
+  const Identified found = identify(system, series);
   BOOST_TEST(found.mode.kinetic_energy == 0.5 * (3.0 * 4.0 + 2.0 * 0.5 * 2.0 + 2.0),
              boost::test_tools::tolerance(1e-13));
 }
@@ -203,17 +203,17 @@ BOOST_AUTO_TEST_CASE(ties_go_to_the_smallest_harmonic_that_is_not_negative) {
   };
   for (const Case& c : {Case{{-1, 1}, 1}, Case{{-3, 2}, 2}, Case{{-4, -2}, -2}, Case{{0, -1}, 0},
                         Case{{5, 3, -1}, 3}}) {
-    Eigen::MatrixXcd history = Eigen::MatrixXcd::Zero(4, samples);
+    Eigen::MatrixXcd series = Eigen::MatrixXcd::Zero(4, samples);
     for (Eigen::Index s = 0; s < samples; ++s)
-      for (const int k : c.equal) history(1, s) += wave(k, s, samples);
-    BOOST_TEST(identify(system, history).mode.harmonic == c.wanted);
-    // Rounding breaks no tie; a part in a thousand does.
+      for (const int k : c.equal) series(1, s) += wave(k, s, samples);
+    BOOST_TEST(identify(system, series).mode.harmonic == c.wanted);
+    // Round-off breaks no tie; a part in a thousand does.
     for (Eigen::Index s = 0; s < samples; ++s)
-      history(1, s) += 1e-9 * wave(c.equal.front(), s, samples);
-    BOOST_TEST(identify(system, history).mode.harmonic == c.wanted);
+      series(1, s) += 1e-9 * wave(c.equal.front(), s, samples);
+    BOOST_TEST(identify(system, series).mode.harmonic == c.wanted);
     for (Eigen::Index s = 0; s < samples; ++s)
-      history(1, s) += 1e-3 * wave(c.equal.front(), s, samples);
-    BOOST_TEST(identify(system, history).mode.harmonic == c.equal.front());
+      series(1, s) += 1e-3 * wave(c.equal.front(), s, samples);
+    BOOST_TEST(identify(system, series).mode.harmonic == c.equal.front());
   }
 }
 
@@ -280,25 +280,32 @@ analysis::Mode mode_of(const std::string& name, Complex exponent, bool resolved 
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(the_order_of_modes_is_that_of_their_exponents_whatever_the_eigensolver_found) {
-  // A real pair of one modulus, a double zero that rounding has split, a slow real exponent beside
+  // A real pair of one modulus, a double zero that round-off has split, a slow real exponent beside
   // frequencies, two modes of one exponent, one that the step does not resolve.
   const std::vector<analysis::Mode> wanted{mode_of("yaw", Complex(1e-9, 0.0)),
                                            mode_of("yaw", Complex(0.0, 0.0)),
                                            mode_of("rotor rotation", Complex(-0.0557, 0.0)),
                                            mode_of("teeter", Complex(0.2127, 0.0)),
                                            mode_of("teeter", Complex(-0.2127, 0.0)),
-                                           mode_of("tower lateral", Complex(0.0, 0.7)),
+                                           mode_of("tower side-side", Complex(0.0, 0.7)),
                                            mode_of("blade flap", Complex(-0.01, 3.0)),
                                            mode_of("tower fore-aft", Complex(-0.01, 3.0)),
                                            mode_of("blade lead-lag", Complex(0.0, 5.0)),
                                            mode_of("blade lead-lag", Complex(-3.0, 4.0)),
-                                           mode_of("tower lateral", Complex(0.0, 0.1), false)};
-  const std::vector<std::string> names{
-      "yaw 1",          "yaw 2",      "rotor rotation", "teeter 1",         "teeter 2",
-      "tower lateral",  "blade flap", "tower fore-aft", "blade lead-lag 1", "blade lead-lag 2",
-      "tower lateral 2"};
+                                           mode_of("tower side-side", Complex(0.0, 0.1), false)};
+  const std::vector<std::string> names{"yaw 1",
+                                       "yaw 2",
+                                       "rotor rotation",
+                                       "teeter 1",
+                                       "teeter 2",
+                                       "tower side-side",
+                                       "blade flap",
+                                       "tower fore-aft",
+                                       "blade lead-lag 1",
+                                       "blade lead-lag 2",
+                                       "tower side-side 2"};
   std::minstd_rand random(1);
-  std::uniform_real_distribution<double> rounding(-1e-10, 1e-10);
+  std::uniform_real_distribution<double> round_off(-1e-10, 1e-10);
   for (int trial = 0; trial < 50; ++trial) {
     analysis::ModeSet set;
     set.rotor_speed = 1.0;
@@ -307,8 +314,8 @@ BOOST_AUTO_TEST_CASE(the_order_of_modes_is_that_of_their_exponents_whatever_the_
     for (analysis::Mode& mode : set.modes) {
       const double size = std::abs(mode.exponent);
       if (size < 1e-6) continue;
-      mode.exponent += Complex(size * rounding(random), 0.0);
-      if (mode.exponent.imag() != 0.0) mode.exponent += Complex(0.0, size * rounding(random));
+      mode.exponent += Complex(size * round_off(random), 0.0);
+      if (mode.exponent.imag() != 0.0) mode.exponent += Complex(0.0, size * round_off(random));
     }
     arrange_modes(set);
     for (std::size_t i = 0; i < names.size(); ++i) {

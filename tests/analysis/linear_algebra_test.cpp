@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(equal_complex_pairs_of_identical_blades_have_independent_ve
     const analysis::Eigenpairs pairs = analysis::dense_eigenpairs(matrix, "test_");
     BOOST_TEST(distance_of_sets(pairs.values, eigen_values(matrix)) < 1e-12);
     for (const double residual : pairs.residuals) BOOST_TEST(residual < 1e-12);
-    // The smallest singular value tells independence; rounding chooses the basis inside the equal
+    // The smallest singular value tells independence; round-off chooses the basis inside the equal
     // eigenvalues, which makes it small but not 1e-8.
     const Eigen::VectorXd singular = pairs.vectors.jacobiSvd().singularValues();
     BOOST_TEST(singular(singular.size() - 1) > 1e-6);

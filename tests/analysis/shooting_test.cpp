@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(duffing_differs_from_harmonic_balance_by_the_square_of_the_
   BOOST_TEST(difference(limit, exact) < 1e-6 * exact.cwiseAbs().maxCoeff());
 }
 
-BOOST_AUTO_TEST_CASE(neutral_coordinate_is_held_by_shooting_too) {
+BOOST_AUTO_TEST_CASE(unconstrained_coordinate_is_held_by_shooting_too) {
   // The load is exact: the mean of the rule is that of the equation.
   analysis::Observer observer;
   const analysis::Trim trim = solve_shooting(FreeSlide(), 200, 1e-12, observer);

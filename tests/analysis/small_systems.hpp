@@ -39,8 +39,8 @@ class SmallSystem : public system::PeriodicSystem {
   bool constraints_are_autonomous() const override { return autonomous_; }
   const system::RotorSymmetry& symmetry() const override { return symmetry_; }
   const std::vector<EnergyGroup>& energy_groups() const override { return groups_; }
-  const std::vector<system::NeutralCoordinate>& neutral_coordinates() const override {
-    return neutral_;
+  const std::vector<system::UnconstrainedCoordinate>& unconstrained_coordinates() const override {
+    return unconstrained_;
   }
 
   void reference_state(double, Vec z) const override { petsc::check(VecSet(z, 0.0)); }
@@ -148,7 +148,7 @@ class SmallSystem : public system::PeriodicSystem {
   std::vector<bool> differential_;
   system::RotorSymmetry symmetry_;
   std::vector<EnergyGroup> groups_;
-  std::vector<system::NeutralCoordinate> neutral_;
+  std::vector<system::UnconstrainedCoordinate> unconstrained_;
 
  private:
   petsc::Handle<Mat> make_matrix() const {
@@ -417,7 +417,7 @@ class FreeSlide final : public SmallSystem {
     add_position("x");
     add_velocity("v");
     add_kinetic("mass", 1, m);
-    neutral_.push_back({"slide", 0, 1, "N"});
+    unconstrained_.push_back({"slide", 0, 1, "N"});
   }
   Eigen::VectorXd residual_at(double t, const Eigen::VectorXd& z,
                               const Eigen::VectorXd& z_dot) const override {

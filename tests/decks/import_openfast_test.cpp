@@ -19,14 +19,14 @@ using decks::import_openfast;
 using decks::ImportLine;
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr double rounding = 1e-13;
+constexpr double round_off = 1e-13;
 
 Import import_main(const DeckFolder& folder, const std::string& main = "Main.fst") {
   return import_openfast(folder / main, {});
 }
 
 bool is_near(double a, double b) {
-  return std::abs(a - b) <= rounding * std::max(1.0, std::abs(b));
+  return std::abs(a - b) <= round_off * std::max(1.0, std::abs(b));
 }
 
 const ImportLine* find_line(const Import& import, const std::string& key) {
@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(a_free_yaw_has_the_spring_and_damper_of_servodyn) {
   folder.replace("Main.fst", "\"unused\"      ServoFile", "\"Servo.dat\"   ServoFile");
   folder.write("Servo.dat",
                "---- SERVODYN ----\nText\n  2.5e6 YawSpr - spring (N-m/rad)\n"
-               "  3e4 YawDamp - damper\n  4 YawNeut - neutral angle (degrees)\n");
+               "  3e4 YawDamp - damper\n  4 YawNeut - unconstrained angle (degrees)\n");
   const model::JointDefinition driven = parse(import_main(folder)).turbine.nacelle.yaw;
   BOOST_TEST((driven.kind == model::JointKind::free));
   BOOST_TEST(driven.stiffness == 2.5e6);
@@ -345,7 +345,7 @@ BOOST_AUTO_TEST_CASE(beamdyn_matrices_are_turned) {
          {std::pair{blade.sections[0].stiffness, stiffness}, {blade.sections[0].mass, mass}}) {
       const double a = ours.dot(ours_matrix * ours);
       const double b = theirs.dot(theirs_matrix * theirs);
-      BOOST_TEST(std::abs(a - b) <= rounding * std::abs(b));
+      BOOST_TEST(std::abs(a - b) <= round_off * std::abs(b));
     }
   }
   // The centre of mass, x toward the suction side and y toward the trailing edge.

@@ -12,11 +12,11 @@ using decks::Import;
 using decks::import_windio;
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr double rounding = 1e-13;
+constexpr double round_off = 1e-13;
 const decks::ImportOptions tower_only{true};
 
 bool is_near(double a, double b) {
-  return std::abs(a - b) <= rounding * std::max(1.0, std::abs(b));
+  return std::abs(a - b) <= round_off * std::max(1.0, std::abs(b));
 }
 
 model::TurbineDefinition read_second() {
@@ -147,8 +147,8 @@ BOOST_AUTO_TEST_CASE(both_versions_give_the_same_turbine) {
   for (std::size_t i = 0; i < a.blades.beam.sections.size(); ++i) {
     const model::SectionDefinition& p = a.blades.beam.sections[i];
     const model::SectionDefinition& q = b.blades.beam.sections[i];
-    BOOST_TEST((p.mass - q.mass).norm() <= rounding * q.mass.norm());
-    BOOST_TEST((p.stiffness - q.stiffness).norm() <= rounding * q.stiffness.norm());
+    BOOST_TEST((p.mass - q.mass).norm() <= round_off * q.mass.norm());
+    BOOST_TEST((p.stiffness - q.stiffness).norm() <= round_off * q.stiffness.norm());
     BOOST_TEST(is_near(p.twist, q.twist));
   }
 }

@@ -357,8 +357,8 @@ class Static(ProgramTest):
 
     def test_other_commands_want_loads_that_repeat(self):
         load = "loads: [{beam: blades, at: 1, force: [0, 0, 1], %s}]\n"
-        for history in ("table: [[0, 0], [1, 1]]", "harmonic: {frequency: 3}"):
-            self.write("case.yaml", MINIMAL + load % history)
+        for series in ("table: [[0, 0], [1, 1]]", "harmonic: {frequency: 3}"):
+            self.write("case.yaml", MINIMAL + load % series)
             for command in ("trim", "floquet", "modes"):
                 self.refuse(command, "case.yaml", words=["loads[0]: does not repeat", "per_rev"],
                             place=r"case\.yaml:9:\d+: ")

@@ -150,7 +150,7 @@ blades:
       stiffness: {EA: 1e10, GA2: 4e9, GA3: 4e9, GJ: 1e8, EI2: 1e8, EI3: 1e8}
 """
 
-# Blades whose tangents have entries that vanish at most states but for rounding.
+# Blades whose tangents have entries that vanish at most states but for round-off.
 WHIRLING = """samara: 1
 gravity: 9.81
 shaft: {speed: 18.949601294659434}
@@ -191,13 +191,13 @@ class Solvers(ProgramTest):
                             words=["all eigenvalues are computed", "hint: "])
 
     def test_an_unstable_order_is_refused(self):
-        history = ["--set", "transient={duration: 0.1, step: 0.01}"]
+        series = ["--set", "transient={duration: 0.1, step: 0.01}"]
         self.write("case.yaml", MINIMAL)
         for order in (3, 6):
-            self.refuse("transient", "case.yaml", *history, "-transient_ts_bdf_order", order,
+            self.refuse("transient", "case.yaml", *series, "-transient_ts_bdf_order", order,
                         place=f"samara: -transient_ts_bdf_order {order}: ",
                         words=["unstable", "hint: "])
-        self.succeed("transient", "case.yaml", *history, "-transient_ts_bdf_order", 2)
+        self.succeed("transient", "case.yaml", *series, "-transient_ts_bdf_order", 2)
 
 
 class Results(ProgramTest):

@@ -1,4 +1,4 @@
-"""samara export: histories in one file and in other formats, and what it refuses."""
+"""samara export: time series in one file and in other formats, and what it refuses."""
 
 import pathlib
 import shutil
@@ -9,7 +9,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from histories import read_csv, read_out, read_outb, read_rows  # noqa: E402
+from time_series import read_csv, read_out, read_outb, read_rows  # noqa: E402
 from program import BASELINE, ProgramTest  # noqa: E402
 
 COARSE = ["--set", "blades.elements=2", "--set", "tower.elements=2", "--set", "gravity=9.81"]
@@ -183,9 +183,9 @@ class Refusals(ExportTest):
             file["x"] = 1
         self.refuse("export", "a.h5", "-o", "other.h5", words="another program")
 
-    def test_inputs_that_have_no_history(self):
+    def test_inputs_that_have_no_series(self):
         self.succeed("trim", BASELINE, *COARSE, "-o", "t.h5")
-        self.refuse("export", "t.h5", "-o", "b.csv", words=["no time history", "hint"])
+        self.refuse("export", "t.h5", "-o", "b.csv", words=["no time series", "hint"])
         self.refuse("export", "no.h5", "-o", "b.csv", words="no such file")
         self.refuse("export", self.folder, "-o", "b.csv", words="a directory")
         self.write("x.h5", "text")

@@ -27,7 +27,7 @@ def block(duration, checkpoint=0.5, channels="RotSpeed, RootMxb1"):
                      f"{checkpoint}, output: {{channels: [{channels}]}}}}"]
 
 
-def history(path):
+def series(path):
     with h5py.File(path) as file:
         group = file["transient"]
         return group["time"][:], group["values"][:], group.attrs["status"]
@@ -76,11 +76,11 @@ class Locks(FaultTest):
         self.assertIn(".r.h5.lock", self.names())
         half_written = [name for name in self.names() if name.endswith(".tmp")]
         self.assertLessEqual(len(half_written), 1)
-        self.assertEqual(history(self.folder / "r.h5")[2], "running")
+        self.assertEqual(series(self.folder / "r.h5")[2], "running")
         self.succeed("transient", "case.yaml", "-o", "r.h5", *block(1))
         self.assertEqual(self.names(), half_written + ["case.yaml", "other.h5", "r.h5",
                                                        "r.h5.parts", *self.parts("r.h5")])
-        self.assertEqual(history(self.folder / "r.h5")[2], "complete")
+        self.assertEqual(series(self.folder / "r.h5")[2], "complete")
 
     def parts(self, name):
         return [f"{name}.parts/{path.name}"
@@ -99,19 +99,19 @@ class Locks(FaultTest):
         first.communicate()
         self.succeed("transient", "case.yaml", "-o", "link.h5", *block(1))
         self.assertTrue((self.folder / "link.h5").is_symlink())
-        self.assertEqual(len(history(self.folder / "deep/r.h5")[0]), 101)
+        self.assertEqual(len(series(self.folder / "deep/r.h5")[0]), 101)
         self.succeed("transient", "case.yaml", "-o", "link.h5", "--restart", "deep/r.h5", *block(2))
-        self.assertEqual(len(history(self.folder / "deep/r.h5")[0]), 201)
+        self.assertEqual(len(series(self.folder / "deep/r.h5")[0]), 201)
         self.succeed("export", "link.h5", "-o", "x.csv")
 
 
 class Folders(FaultTest):
     def test_results_of_one_stem_have_folders_of_their_own(self):
         self.succeed("transient", "case.yaml", "-o", "wind12.5", *block(2))
-        before = history(self.folder / "wind12.5")
+        before = series(self.folder / "wind12.5")
         self.assertGreater(len(list((self.folder / "wind12.5.parts").iterdir())), 1)
         self.succeed("transient", "case.yaml", "-o", "wind12.7", *block(1))
-        for a, b in zip(history(self.folder / "wind12.5"), before):
+        for a, b in zip(series(self.folder / "wind12.5"), before):
             numpy.testing.assert_array_equal(a, b)
 
     def test_foreign_files_in_the_folder_stay(self):
@@ -154,7 +154,7 @@ class Kills(FaultTest):
         begin = time.monotonic()
         self.succeed(*keys, "-o", "whole.h5")
         length = time.monotonic() - begin
-        whole = history(self.folder / "whole.h5")
+        whole = series(self.folder / "whole.h5")
         moments = random.Random(4)
         unfinished = 0
         for i in range(50):
@@ -165,7 +165,7 @@ class Kills(FaultTest):
             run.wait()
             if not (self.folder / name).exists():
                 continue
-            times, values, status = history(self.folder / name)
+            times, values, status = series(self.folder / name)
             unfinished += status == "running"
             count = len(times)
             with self.subTest(kill=i, rows=count, status=status):
@@ -175,7 +175,7 @@ class Kills(FaultTest):
                 if count == len(whole[0]):
                     continue
                 self.succeed(*keys, "-o", name, "--restart", name)
-                for a, b in zip(history(self.folder / name), whole):
+                for a, b in zip(series(self.folder / name), whole):
                     numpy.testing.assert_array_equal(a, b)
         self.assertGreater(unfinished, 20)
 
@@ -193,12 +193,12 @@ class Kills(FaultTest):
         error = run.communicate(timeout=LONGEST_RUN)[1]
         self.assertNotEqual(run.returncode, 0)
         self.assertIn("signal 9", error)
-        times, values, status = history(self.folder / "r.h5")
+        times, values, status = series(self.folder / "r.h5")
         self.assertNotEqual(status, "complete")
         self.assertTrue(numpy.isfinite(values).all())
         end = int(times[-1]) + 1
         self.succeed("transient", "case.yaml", "-o", "r.h5", "--restart", "r.h5", *block(end))
-        self.assertEqual(len(history(self.folder / "r.h5")[0]), 100 * end + 1)
+        self.assertEqual(len(series(self.folder / "r.h5")[0]), 100 * end + 1)
 
 
 class Surroundings(FaultTest):
@@ -210,7 +210,7 @@ class Surroundings(FaultTest):
     def test_closed_and_full_outputs_cost_no_result(self):
         # A closed stream's number must not become that of the result.
         self.succeed("transient", "case.yaml", "-o", "good.h5", *block(1))
-        good = history(self.folder / "good.h5")
+        good = series(self.folder / "good.h5")
         for i, streams in enumerate((">&-", ">&- 2>&-", "<&- >&- 2>&-", ">/dev/full")):
             with self.subTest(streams=streams):
                 words = " ".join(f"'{word}'" for word in block(1))
@@ -218,7 +218,7 @@ class Surroundings(FaultTest):
                 self.assertEqual(run.returncode, 1)
                 if "2>" not in streams:
                     self.assertIn("standard output cannot be written", run.stderr)
-                for a, b in zip(history(self.folder / f"{i}.h5"), good):
+                for a, b in zip(series(self.folder / f"{i}.h5"), good):
                     numpy.testing.assert_array_equal(a, b)
 
     def test_a_locale_with_commas_changes_no_number(self):
@@ -273,7 +273,7 @@ class Damage(FaultTest):
 
     def test_a_damaged_end_costs_no_more_than_its_rows(self):
         self.succeed("transient", "case.yaml", "-o", "whole.h5", *block(4))
-        whole = history(self.folder / "whole.h5")
+        whole = series(self.folder / "whole.h5")
         for lost in (1, 2):
             for damage in ("truncated", "gone"):
                 with self.subTest(lost=lost, damage=damage):
@@ -300,7 +300,7 @@ class Damage(FaultTest):
                 self.refuse(*again, words=["no checkpoint"])
                 continue
             self.succeed(*again)
-            for a, b in zip(history(self.folder / name), whole):
+            for a, b in zip(series(self.folder / name), whole):
                 numpy.testing.assert_array_equal(a, b)
 
     def test_a_gap_is_refused(self):
@@ -554,7 +554,7 @@ class Signals(FaultTest):
                     elif i == 0:
                         self.fail("ended before the first signal")
                     if (self.folder / "r.h5").exists():
-                        times, values, _ = history(self.folder / "r.h5")
+                        times, values, _ = series(self.folder / "r.h5")
                         self.assertEqual(len(times), len(values))
                         self.assertTrue(numpy.isfinite(values).all())
                     self.assertFalse([name for name in self.names()
@@ -656,7 +656,7 @@ class FullDisk(FaultTest):
                              timeout=LONGEST_RUN, check=False)
         self.assertEqual(run.returncode, 1, run.stderr)
         self.assertIn("No space left on device", run.stderr)
-        times, values, status = history(self.folder / "kept/r.h5")
+        times, values, status = series(self.folder / "kept/r.h5")
         self.assertRegex(status, "^failed: .*No space left on device")
         self.assertGreater(len(times), 1000)
         self.assertTrue(numpy.isfinite(values).all())
@@ -666,7 +666,7 @@ class FullDisk(FaultTest):
         end = int(times[-1]) + 20
         self.succeed("transient", "case.yaml", "-o", "kept/r.h5", "--restart", "kept/r.h5",
                      "--set", keys[1].replace("2000", str(end)))
-        times, values, status = history(self.folder / "kept/r.h5")
+        times, values, status = series(self.folder / "kept/r.h5")
         self.assertEqual(status, "complete")
         self.assertEqual(len(times), 100 * end + 1)
         self.assertTrue(numpy.isfinite(values).all())

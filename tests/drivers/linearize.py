@@ -38,7 +38,7 @@ def nearest(exponents, wanted, speed):
 
 
 def amplitude(time, values, omega):
-    """The complex amplitude of a history at omega, beside its mean."""
+    """The complex amplitude of a time series at omega, beside its mean."""
     basis = numpy.column_stack([numpy.ones_like(time), numpy.cos(omega * time),
                                 numpy.sin(omega * time)])
     _, cosine, sine = numpy.linalg.lstsq(basis, values, rcond=None)[0]
@@ -71,7 +71,7 @@ class Linearize(ProgramTest):
         compared = 0
         for exponent in fine:
             if not 1e-4 < abs(exponent) < FASTEST:
-                continue  # rounding splits the double zero of the free yaw by its root
+                continue  # round-off splits the double zero of the free yaw by its root
             half = nearest(middle, exponent, speed)
             quarter = nearest(coarse, half, speed)
             once = (4 * numpy.array([exponent, half]) - [half, quarter]) / 3
@@ -183,7 +183,7 @@ class Linearize(ProgramTest):
             self.assertLess(abs(nearest(found, limit, speed) - limit), 1e-6 * max(1, abs(limit)))
 
     def test_the_lyapunov_floquet_form_answers_as_the_periodic_one(self):
-        """A teetering turbine, which is damped: histories of both under the same force, from the
+        """A teetering turbine, which is damped: time series of both under the same force, from the
         same state of the slowest modes."""
         settings = ["--set", "gravity=9.81", "--set", "blades.damping=1e-3", "--set",
                     "tower.damping=1e-3", "--set",
@@ -204,7 +204,7 @@ class Linearize(ProgramTest):
             functions = numpy.ravel([numpy.cos(harmonics * psi), numpy.sin(harmonics * psi)], "F")
             return numpy.tensordot(numpy.concatenate([[1], functions]), series, 1)
 
-        def history(form, x, steps=4000, revolutions=2):
+        def series(form, x, steps=4000, revolutions=2):
             # What the small form leaves out must not be excited: no input, only a state.
             dt = revolutions * 2 * numpy.pi / speed / steps
             rows = []
@@ -217,8 +217,8 @@ class Linearize(ProgramTest):
             return numpy.array(rows)
 
         start = numpy.array([1, 0.3, -0.5, 0.2, 0.1, 0.4, -0.2, 0.1, 0.3, -0.1])
-        found = history(small, start)
-        wanted = history(whole, at(between[2], 0.0) @ start)
+        found = series(small, start)
+        wanted = series(whole, at(between[2], 0.0) @ start)
         size = abs(wanted).max(axis=0)
         self.assertLess((abs(found - wanted) / size).max(), 1e-4)
         # And inputs reach the coordinates through the map: B there = Q B.

@@ -1,4 +1,4 @@
-"""samara loads: evaluated loads of histories and steady states, and what it refuses."""
+"""samara loads: evaluated loads of time series and steady states, and what it refuses."""
 
 import csv
 import pathlib
@@ -9,7 +9,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from histories import read_rows  # noqa: E402
+from time_series import read_rows  # noqa: E402
 from program import BASELINE, MINIMAL, SOURCE, ProgramTest  # noqa: E402
 
 LAND = SOURCE / "inputs/nrel5mw/land.yaml"
@@ -65,15 +65,15 @@ def equivalent_load(ranges, exponent, cycles):
     return (sum(n * r**exponent for r, n in ranges) / cycles) ** (1 / exponent)
 
 
-class Histories(ProgramTest):
+class TimeSeries(ProgramTest):
     """Against sums in Python over the same rows."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.maker = cls("make_history")
+        cls.maker = cls("make_series")
         cls.maker.setUp()
-        cls.maker.make_history()
+        cls.maker.make_series()
         cls.result = cls.maker.folder / "a.h5"
 
     @classmethod
@@ -81,7 +81,7 @@ class Histories(ProgramTest):
         cls.maker.doCleanups()
         super().tearDownClass()
 
-    def make_history(self):
+    def make_series(self):
         """From rest under gravity: cycles of all sizes."""
         self.succeed("transient", BASELINE, "--set", "gravity=9.81", "-o", "a.h5", "--set",
                      f"transient={{duration: {DURATION}, step: 0.01, start: undeformed, "
@@ -136,7 +136,7 @@ class Histories(ProgramTest):
                               f"goodman.RootMxb1.ultimate_load={limit}")[0]
         self.assertTrue((found["damage/equivalent_load"] > plain).all())
 
-    def test_a_part_of_the_history(self):
+    def test_a_part_of_the_series(self):
         found, attributes = self.evaluate("--set", "from=1", "--set", "until=3")
         times, values = read_rows(self.result)
         kept = (times > 0.999) & (times < 3.001)
@@ -178,7 +178,7 @@ class Histories(ProgramTest):
                                  found["damage/equivalent_load"][c, i])
         self.succeed("loads", self.result, "--csv", "l.csv")  # a table of ours
 
-    def test_a_lifetime_adds_the_damage_of_its_histories(self):
+    def test_a_lifetime_adds_the_damage_of_its_series(self):
         self.succeed("loads", self.result, self.result, "-o", "l.h5", "--set", "hours=[1, 3]",
                      "--set", "equivalent_cycles=1e5")
         found, _ = read_loads(self.folder / "l.h5")
@@ -212,9 +212,9 @@ class SteadyStates(ProgramTest):
                      "transient={duration: 30, step: 0.005, output: {channels: "
                      f"[{', '.join([*CHANNELS, 'Azimuth'])}]}}}}")
         self.succeed("loads", "t.h5", "-o", "steady.h5", *option(CHANNELS))
-        self.succeed("loads", "h.h5", "-o", "history.h5", "--set", "from=25")
+        self.succeed("loads", "h.h5", "-o", "time_series.h5", "--set", "from=25")
         steady, attributes = read_loads(self.folder / "steady.h5")
-        history, _ = read_loads(self.folder / "history.h5")
+        series, _ = read_loads(self.folder / "time_series.h5")
         self.assertAlmostEqual(attributes["period"], PERIOD, places=9)
         self.assertEqual(attributes["rows"], 720)
         self.assertEqual(list(steady["channel_name"]), CHANNELS)
@@ -222,14 +222,14 @@ class SteadyStates(ProgramTest):
         small = 2e-3 * steady["range"]
         for name in ("mean", "minimum", "maximum", "standard_deviation"):
             with self.subTest(name=name):
-                self.assertTrue((abs(history[name] - steady[name]) < small).all(),
-                                (history[name] - steady[name]) / steady["range"])
+                self.assertTrue((abs(series[name] - steady[name]) < small).all(),
+                                (series[name] - steady[name]) / steady["range"])
 
         def first_harmonic(found):
             amplitude, phase = found["harmonics/amplitude"][1], found["harmonics/phase"][1]
             return amplitude * numpy.exp(1j * phase)
 
-        error = abs(first_harmonic(history) - first_harmonic(steady))
+        error = abs(first_harmonic(series) - first_harmonic(steady))
         self.assertTrue((error < small).all(), error / steady["range"])
         # Five revolutions have the damage of the steady state, but for cycles that begin before
         # them or end after them: less than one of the five.
@@ -340,7 +340,7 @@ class Refusals(ProgramTest):
         self.write("l.csv", "mine")
         self.refuse("loads", "t.h5", "--csv", "l.csv", words="it would be lost")
 
-    def test_too_short_a_history(self):
+    def test_too_short_a_series(self):
         self.refuse("loads", "h.h5", "--set", "from=1.999", words="too few rows")
         text = self.succeed("loads", "h.h5", "--set", "from=1.9").stdout
         self.assertIn("no harmonics: azimuth: it grows by", text)

@@ -10,9 +10,9 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
 from program import BASELINE, QUICK, ProgramTest  # noqa: E402
 
-# Sums over ranks round in another order; well-conditioned eigenvalues move with rounding.
+# Sums over ranks round in another order; well-conditioned eigenvalues move with round-off.
 EXPONENTS = 1e-9
-# The double zero of free yaw is defective: rounding of 1e-16 moves it by its square root and more.
+# The double zero of free yaw is defective: round-off of 1e-16 moves it by its square root and more.
 ZEROS = 1e-4
 
 

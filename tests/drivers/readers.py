@@ -16,7 +16,7 @@ from program import BASELINE, LONGEST_RUN, ProgramTest  # noqa: E402
 ENGINES = ["netcdf4", "h5netcdf"]
 COARSE = ["--set", "blades.elements=2", "--set", "tower.elements=2", "--set", "gravity=9.81"]
 CHANNELS = ["RootMxb1", "TwrBsMyt", "Azimuth"]
-HISTORY = (f"transient={{duration: 1, step: 0.01, checkpoint: 0.5, "
+TRANSIENT = (f"transient={{duration: 1, step: 0.01, checkpoint: 0.5, "
            f"output: {{channels: [{', '.join(CHANNELS)}]}}}}")
 LINEARIZE = ("linearize={inputs: [yaw_torque], outputs: [NacYaw, RootMxb1], mat: model.mat, "
              "forms: [state_space, descriptor, average, hill, lyapunov_floquet]}")
@@ -56,12 +56,12 @@ class Readers(ProgramTest):
                       "hub.teeter.joint=locked", "--set", "nacelle.yaw.joint=locked", "-o",
                       "static.h5")
         maker.succeed("trim", BASELINE, *COARSE, "-o", "trim.h5")
-        maker.succeed("transient", BASELINE, *COARSE, "--set", HISTORY, "-o", "history.h5")
-        maker.succeed("export", "history.h5", "-o", "joined.h5")
+        maker.succeed("transient", BASELINE, *COARSE, "--set", TRANSIENT, "-o", "time_series.h5")
+        maker.succeed("export", "time_series.h5", "-o", "joined.h5")
         maker.succeed("linearize", BASELINE, *COARSE, "--set", LINEARIZE, "-o", "linear.h5")
-        maker.succeed("loads", "history.h5", "-o", "loads.h5")
+        maker.succeed("loads", "time_series.h5", "-o", "loads.h5")
         maker.succeed("loads", "trim.h5", "--set", "channels=[RootMxb1]", "-o", "steady.h5")
-        maker.succeed("loads", "history.h5", "joined.h5", "--set", "hours=[1, 2]", "-o",
+        maker.succeed("loads", "time_series.h5", "joined.h5", "--set", "hours=[1, 2]", "-o",
                       "lifetime.h5")
         cls.paths = sorted(cls.results.glob("*.h5"))
 
@@ -112,16 +112,16 @@ class Readers(ProgramTest):
         self.assertGreater(count, 600)
 
     def test_axes_choose_by_name(self):
-        with h5py.File(self.results / "history.h5", "r") as file:
+        with h5py.File(self.results / "time_series.h5", "r") as file:
             rows = file["transient/values"][:]
         with h5py.File(self.results / "floquet.h5", "r") as file:
             exponents = file["floquet/exponents"][:]
         for engine in ENGINES:
             with self.subTest(engine=engine):
-                with xarray.open_dataset(self.results / "history.h5", group="transient",
-                                         engine=engine) as history:
-                    self.assertEqual(history["values"].dims, ("time", "channel_name"))
-                    tower = history["values"].sel(channel_name="TwrBsMyt")
+                with xarray.open_dataset(self.results / "time_series.h5", group="transient",
+                                         engine=engine) as series:
+                    self.assertEqual(series["values"].dims, ("time", "channel_name"))
+                    tower = series["values"].sel(channel_name="TwrBsMyt")
                     numpy.testing.assert_array_equal(tower, rows[:, 1])
                     self.assertEqual(float(tower.sel(time=0.5, method="nearest")), rows[50, 1])
                 with xarray.open_dataset(self.results / "floquet.h5", group="floquet",
@@ -142,7 +142,7 @@ class Readers(ProgramTest):
 
     def test_octave_reads_the_numbers(self):
         show = 'printf("%.17g\\n", ncread("{}", "{}")(:))'  # the first axis runs fastest
-        for name, dataset in [("history.h5", "/transient/values"), ("joined.h5", "/transient/time"),
+        for name, dataset in [("time_series.h5", "/transient/values"), ("joined.h5", "/transient/time"),
                               ("floquet.h5", "/floquet/exponents"), ("trim.h5", "/trim/harmonics"),
                               ("linear.h5", "/linearize/state_space/A")]:
             with self.subTest(dataset=dataset), h5py.File(self.results / name, "r") as file:
@@ -158,10 +158,10 @@ class Readers(ProgramTest):
         numpy.testing.assert_array_equal(found, numpy.moveaxis(series, 0, 2).ravel(order="F"))
 
     def test_octave_reads_the_tables(self):
-        self.succeed("export", "history.h5", "-o", "history.csv")
-        with h5py.File(self.results / "history.h5", "r") as file:
+        self.succeed("export", "time_series.h5", "-o", "series.csv")
+        with h5py.File(self.results / "time_series.h5", "r") as file:
             rows = file["transient/values"][:]
-        found = self.octave('m = dlmread("history.csv", ",", 1, 1)', 'printf("%.17g\\n", m\'(:))')
+        found = self.octave('m = dlmread("series.csv", ",", 1, 1)', 'printf("%.17g\\n", m\'(:))')
         numpy.testing.assert_array_equal(found, rows.ravel())
 
 

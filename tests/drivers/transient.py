@@ -1,4 +1,4 @@
-"""samara transient: histories, restarts, runs that are killed, and what it refuses."""
+"""samara transient: time series, restarts, runs that are killed, and what it refuses."""
 
 import os
 import pathlib
@@ -26,19 +26,19 @@ def block(**keys):
     return ["--set", f"transient={{{words}, {CHANNELS}}}"]
 
 
-def history(path):
+def series(path):
     with h5py.File(path, "r") as file:
         group = file["transient"]
         names = list(group["channel_name"].asstr()[:])
         return (group["time"][:], group["values"][:], names, group.attrs["status"])
 
 
-class Histories(ProgramTest):
+class TimeSeries(ProgramTest):
     def test_rows_channels_and_their_attributes(self):
         run = self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
                            *block(duration=1, step=0.01, start="undeformed"))
         self.assertIn("result: a.h5", run.stdout)
-        times, values, names, status = history(self.folder / "a.h5")
+        times, values, names, status = series(self.folder / "a.h5")
         self.assertEqual(status, "complete")
         numpy.testing.assert_allclose(times, numpy.arange(101) * 0.01, atol=1e-12)
         self.assertEqual(names, ["RootMxb1", "RootMyb1", "TwrBsMyt", "TTDspSS", "Azimuth"])
@@ -53,7 +53,7 @@ class Histories(ProgramTest):
     def test_midpoint_rule_gives_its_rows_in_the_middle_of_the_steps(self):
         self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
                      *block(duration=0.1, step=0.01, method="midpoint"))
-        times = history(self.folder / "a.h5")[0]
+        times = series(self.folder / "a.h5")[0]
         numpy.testing.assert_allclose(times[1:], (numpy.arange(10) + 0.5) * 0.01, atol=1e-12)
 
     def test_petsc_options_reach_the_integrator(self):
@@ -66,17 +66,17 @@ class Histories(ProgramTest):
         for name, output in (("all", 1), ("some", 10)):
             keys = f"transient={{duration: 1, step: 0.01, output: {{every: {output * 0.01}}}}}"
             self.succeed("transient", BASELINE, *COARSE, "-o", f"{name}.h5", "--set", keys)
-        every = history(self.folder / "all.h5")
-        tenth = history(self.folder / "some.h5")
+        every = series(self.folder / "all.h5")
+        tenth = series(self.folder / "some.h5")
         numpy.testing.assert_array_equal(every[1][::10], tenth[1])
 
-    def test_ranks_give_the_same_history(self):
+    def test_ranks_give_the_same_series(self):
         for ranks in (1, 2, 3):
             self.succeed("transient", BASELINE, *COARSE, "-o", f"{ranks}.h5",
                          *block(duration=0.5, step=0.01), ranks=ranks)
         for ranks in (2, 3):
-            numpy.testing.assert_array_equal(history(self.folder / "1.h5")[1],
-                                             history(self.folder / f"{ranks}.h5")[1])
+            numpy.testing.assert_array_equal(series(self.folder / "1.h5")[1],
+                                             series(self.folder / f"{ranks}.h5")[1])
 
 
 class Restarts(ProgramTest):
@@ -89,8 +89,8 @@ class Restarts(ProgramTest):
                      *block(duration=2, step=0.01, checkpoint=0.5))
         self.succeed("transient", BASELINE, *COARSE, "-o", "parts.h5", "--restart", "parts.h5",
                      *block(duration=3, step=0.01, checkpoint=0.5))
-        whole = history(self.folder / "whole.h5")
-        parts = history(self.folder / "parts.h5")
+        whole = series(self.folder / "whole.h5")
+        parts = series(self.folder / "parts.h5")
         for a, b in zip(whole, parts):
             numpy.testing.assert_array_equal(a, b)
 
@@ -99,7 +99,7 @@ class Restarts(ProgramTest):
                      *block(duration=1, step=0.01, checkpoint=0.5))
         self.succeed("transient", BASELINE, *COARSE, "-o", "./a.h5", "--restart", "a.h5",
                      *block(duration=1.5, step=0.01, checkpoint=0.5))
-        times = history(self.folder / "a.h5")[0]
+        times = series(self.folder / "a.h5")[0]
         numpy.testing.assert_allclose(times, 0.01 * numpy.arange(151), atol=1e-12)
 
     def test_restart_into_another_file_holds_the_rest(self):
@@ -107,7 +107,7 @@ class Restarts(ProgramTest):
                      *block(duration=1, step=0.01, checkpoint=0.5))
         self.succeed("transient", BASELINE, *COARSE, "-o", "b.h5", "--restart", "a.h5",
                      *block(duration=1.5, step=0.01, checkpoint=0.5))
-        times = history(self.folder / "b.h5")[0]
+        times = series(self.folder / "b.h5")[0]
         numpy.testing.assert_allclose(times, 1.0 + 0.01 * numpy.arange(1, 51), atol=1e-12)
 
     def test_interrupted_run_ends_in_good_order(self):
@@ -123,7 +123,7 @@ class Restarts(ProgramTest):
         out, err = run.communicate(timeout=LONGEST_RUN)
         self.assertEqual(run.returncode, 130, err)
         self.assertIn("interrupted", out)
-        times, values, _, status = history(self.folder / "a.h5")
+        times, values, _, status = series(self.folder / "a.h5")
         self.assertEqual(status, "interrupted")
         self.assertGreater(len(times), 100)
         self.assertTrue(numpy.isfinite(values).all())
@@ -136,7 +136,7 @@ class Restarts(ProgramTest):
         here = os.getcwd()
         os.chdir("/")
         try:
-            self.assertTrue(numpy.isfinite(history(self.folder / "a.h5")[1]).all())
+            self.assertTrue(numpy.isfinite(series(self.folder / "a.h5")[1]).all())
         finally:
             os.chdir(here)
         segments[1].unlink()
@@ -152,7 +152,7 @@ class Starts(ProgramTest):
 
     GRAVITY = ["--set", "gravity=9.81", "--set", "trim.harmonics=4"]
 
-    def test_a_history_goes_on_from_the_end_of_another_on_a_new_clock(self):
+    def test_a_series_goes_on_from_the_end_of_another_on_a_new_clock(self):
         # 2.03 s are no whole number of turns: gravity would pull from elsewhere at another azimuth.
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "whole.h5",
                      *block(duration=4.06, step=0.01, checkpoint=2.03, start="undeformed"))
@@ -160,15 +160,15 @@ class Starts(ProgramTest):
                      *block(duration=2.03, step=0.01, start="undeformed"))
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "then.h5",
                      *block(duration=2.03, step=0.01, start="first.h5"))
-        whole = history(self.folder / "whole.h5")
-        then = history(self.folder / "then.h5")
+        whole = series(self.folder / "whole.h5")
+        then = series(self.folder / "then.h5")
         numpy.testing.assert_allclose(then[0], whole[0][203:] - 2.03, atol=1e-12)
         size = numpy.abs(whole[1]).max(axis=0)
         numpy.testing.assert_allclose(then[1] / size, whole[1][203:] / size, atol=1e-8)
         # A third one and a restart keep the azimuth, too.
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "then.h5", "--restart",
                      "then.h5", *block(duration=2.5, step=0.01, start="first.h5"))
-        last = history(self.folder / "then.h5")
+        last = series(self.folder / "then.h5")
         speed = 6.02 * 180 / numpy.pi
         numpy.testing.assert_allclose(last[1][:, 4], (speed * (last[0] + 2.03)) % 360, atol=1e-6)
 
@@ -180,8 +180,8 @@ class Starts(ProgramTest):
                      *block(duration=2.1, step=0.01, start="undeformed"))
         self.succeed("transient", BASELINE, *COARSE, *loads, "-o", "then.h5",
                      *block(duration=0.9, step=0.01, start="first.h5"))
-        whole = history(self.folder / "whole.h5")[1]
-        then = history(self.folder / "then.h5")[1]
+        whole = series(self.folder / "whole.h5")[1]
+        then = series(self.folder / "then.h5")[1]
         size = numpy.abs(whole).max(axis=0)
         numpy.testing.assert_allclose(then / size, whole[210:] / size, atol=1e-7)
 
@@ -192,9 +192,9 @@ class Starts(ProgramTest):
                      *block(duration=2, **keys))
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "then.h5",
                      *block(duration=1, start="first.h5", **keys))
-        times, values, _, _ = history(self.folder / "then.h5")
+        times, values, _, _ = series(self.folder / "then.h5")
         numpy.testing.assert_allclose(times, 0.005 + 0.01 * numpy.arange(100), atol=1e-12)
-        first = history(self.folder / "first.h5")[1]
+        first = series(self.folder / "first.h5")[1]
         for column in range(4):
             self.assertLess(numpy.ptp(values[:, column]), 1.2 * numpy.ptp(first[:, column]) + 1e-9)
 
@@ -205,14 +205,14 @@ class Starts(ProgramTest):
         self.succeed("transient", BASELINE, *COARSE, "--set", "blades.each.1.pitch_deg=6", "-o",
                      "then.h5", *block(duration=0.2, step=0.01, start="first.h5"))
 
-    def test_a_history_starts_on_the_steady_state_of_a_result(self):
+    def test_a_series_starts_on_the_steady_state_of_a_result(self):
         self.succeed("trim", BASELINE, *COARSE, *self.GRAVITY, "-o", "trim.h5")
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "own.h5",
                      *block(duration=0.5, step=0.01))
         self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "read.h5",
                      *block(duration=0.5, step=0.01, start="trim.h5"))
-        numpy.testing.assert_allclose(history(self.folder / "read.h5")[1],
-                                      history(self.folder / "own.h5")[1], rtol=1e-9, atol=1e-9)
+        numpy.testing.assert_allclose(series(self.folder / "read.h5")[1],
+                                      series(self.folder / "own.h5")[1], rtol=1e-9, atol=1e-9)
 
     def test_loads_may_change_and_what_moves_may_not(self):
         self.succeed("trim", BASELINE, *COARSE, "-o", "trim.h5")
@@ -245,7 +245,7 @@ class Midpoint(ProgramTest):
             self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "a.h5", "--set",
                          f"transient={{duration: 5, step: {step}, method: {method}, "
                          "output: {channels: [RootFzb1]}}")
-            values = history(self.folder / "a.h5")[1][1:]
+            values = series(self.folder / "a.h5")[1][1:]
             extents[method, step] = numpy.array([values.min(), values.max()])
             if method == "midpoint":  # what alternates is the second difference
                 rough = numpy.abs(numpy.diff(values[:, 0], 2)).max()
@@ -261,7 +261,7 @@ class Midpoint(ProgramTest):
         for duration, more in ((1, []), (1.5, ["--restart", "parts.h5"])):
             self.succeed("transient", BASELINE, *COARSE, *self.GRAVITY, "-o", "parts.h5", *more,
                          *block(duration=duration, **keys))
-        for a, b in zip(history(self.folder / "whole.h5"), history(self.folder / "parts.h5")):
+        for a, b in zip(series(self.folder / "whole.h5"), series(self.folder / "parts.h5")):
             numpy.testing.assert_array_equal(a, b)
 
     def test_a_hinged_rotor_turns_on(self):
@@ -270,7 +270,7 @@ class Midpoint(ProgramTest):
         self.succeed("transient", path, "-o", "a.h5", "--set",
                      "transient={duration: 80, step: 0.01, start: undeformed, method: midpoint, "
                      "output: {channels: [RootFzb1, LagHinge1]}}")
-        _, values, _, status = history(self.folder / "a.h5")
+        _, values, _, status = series(self.folder / "a.h5")
         self.assertEqual(status, "complete")
         self.assertLess(abs(values[:, 1]).max(), 25)
 
@@ -299,7 +299,7 @@ class RoughInput(ProgramTest):
     ROUGH = ["--set", "gravity=5", "--set", "trim.method=shooting", "--set", "trim.steps=4"]
 
     @staticmethod
-    def history(words, duration=0.1, step=0.01):
+    def series(words, duration=0.1, step=0.01):
         return ["--set", f"transient={{duration: {duration}, step: {step}, {words}, "
                 "output: {channels: [RootMxb1]}}"]
 
@@ -311,8 +311,8 @@ class RoughInput(ProgramTest):
         with h5py.File(self.folder / "trim.h5") as file:
             self.assertGreater(file["trim/imbalance"][()], 1e-2)
         for command, more in (("floquet", []), ("linearize", []),
-                              ("transient", self.history("start: trim")),
-                              ("transient", self.history("start: trim.h5"))):
+                              ("transient", self.series("start: trim")),
+                              ("transient", self.series("start: trim.h5"))):
             run = self.succeed(command, beam, *self.ROUGH, "-o", "a.h5", *more)
             self.assertIn(words, run.stderr, command)
         run = self.succeed("loads", "trim.h5", "--set", "channels=[RootMxb1]", "-o", "l.h5")
@@ -336,7 +336,7 @@ class RoughInput(ProgramTest):
     def test_motions_that_jump_are_refused_and_kinks_are_noted(self):
         def run(motion, step=0.01):
             return self.samara("transient", self.write("m.yaml", MINIMAL), "-o", "a.h5",
-                               *self.history(f"start: undeformed, {motion}", 1, step))
+                               *self.series(f"start: undeformed, {motion}", 1, step))
         for motion, words in (
                 ('pitch_deg: {formula: "t<0.5 ? 0 : 20"}', "jumps, by 20 deg within less than a step, "
                                                          "at t = 0.5 s"),
@@ -356,11 +356,11 @@ class RoughInput(ProgramTest):
 
     def test_few_steps_a_revolution_are_said(self):
         path = self.write("m.yaml", MINIMAL)
-        run = self.succeed("transient", path, "-o", "a.h5", *self.history("start: trim", 1, 0.05))
+        run = self.succeed("transient", path, "-o", "a.h5", *self.series("start: trim", 1, 0.05))
         self.assertIn("fewer than 40; motions faster than 1 Hz have fewer than 20 steps a cycle",
                       run.stderr)
         self.assertIn("resolved     motions up to 1 Hz, with 20 steps a cycle", run.stdout)
-        run = self.succeed("transient", path, "-o", "a.h5", *self.history("start: trim", 1, 0.01))
+        run = self.succeed("transient", path, "-o", "a.h5", *self.series("start: trim", 1, 0.01))
         self.assertNotIn("steps a revolution", run.stderr)
 
 
@@ -409,13 +409,13 @@ class Operation(ProgramTest):
         self.succeed("transient", land, *COARSE, "-o", "a.h5", "--set",
                      "transient={duration: 2, step: 0.02, pitch_deg: {table: [[0, 0], [1, 0], [2, 3]]}, "
                      "output: {channels: [RotSpeed, TTDspSS, RootMyb1]}}")
-        times, values, _, _ = history(self.folder / "a.h5")
+        times, values, _, _ = series(self.folder / "a.h5")
         numpy.testing.assert_allclose(values[:, 0], 12.1, rtol=1e-3)
         before = values[times <= 1]
         self.succeed("transient", land, *COARSE, "-o", "b.h5", "--set",
                      "transient={duration: 1, step: 0.02, "
                      "output: {channels: [RotSpeed, TTDspSS, RootMyb1]}}")
-        numpy.testing.assert_allclose(before, history(self.folder / "b.h5")[1],
+        numpy.testing.assert_allclose(before, series(self.folder / "b.h5")[1],
                                       rtol=1e-6, atol=1e-6)
         run = self.samara("transient", land, *COARSE, "-o", "c.h5", "--set",
                           "transient={duration: 1, step: 0.02, pitch_deg: {formula: 2 + t}}")
@@ -432,7 +432,7 @@ class Operation(ProgramTest):
             self.succeed("transient", path, *law, "-o", "a.h5", "--set",
                          "transient={duration: 1, step: 0.01, start: trim.h5, "
                          "output: {channels: [RotSpeed]}}")
-            last = history(self.folder / "a.h5")[1][-1, 0] * 2 * numpy.pi / 60
+            last = series(self.folder / "a.h5")[1][-1, 0] * 2 * numpy.pi / 60
             self.assertAlmostEqual(last, speed, delta=1e-6)
 
     def test_what_events_did_to_the_drive_train_stays_done(self):
@@ -446,8 +446,8 @@ class Operation(ProgramTest):
                                f"transient={{duration: 1, {keys}, start: {start}}}")
             self.assertIn("the generator stays lost", run.stderr)
             self.assertIn("the brake stays set", run.stderr)
-        speed = history(self.folder / "third.h5")[1][:, 0] * 2 * numpy.pi / 60
-        time = history(self.folder / "third.h5")[0] + 2
+        speed = series(self.folder / "third.h5")[1][:, 0] * 2 * numpy.pi / 60
+        time = series(self.folder / "third.h5")[0] + 2
         numpy.testing.assert_allclose(speed, 6 - 200 / INERTIA * (time - 0.5), rtol=1e-5)
         run = self.samara("transient", path, "-o", "first.h5", "--set",
                           f"transient={{duration: 1, {keys}, start: first.h5}}")
@@ -457,7 +457,7 @@ class Operation(ProgramTest):
     def run_rotor(self, keys, case=ROTOR):
         path = self.write("rotor.yaml", case)
         run = self.succeed("transient", path, "-o", "a.h5", "--set", f"transient={{{keys}}}")
-        times, values, names, _ = history(self.folder / "a.h5")
+        times, values, names, _ = series(self.folder / "a.h5")
         return run, times, dict(zip(names, values.T))
 
     def test_lost_generator_and_brake(self):
@@ -507,8 +507,8 @@ class Operation(ProgramTest):
                 restart = ["--restart", f"{name}.h5"] if i > 0 else []
                 self.samara("transient", path, "-o", f"{name}.h5", *restart, "--set",
                             f"transient={{duration: {duration}, {keys}}}")
-        whole = history(self.folder / "whole.h5")
-        parts = history(self.folder / "parts.h5")
+        whole = series(self.folder / "whole.h5")
+        parts = series(self.folder / "parts.h5")
         self.assertEqual(whole[1][-1][1], 20.0)
         numpy.testing.assert_array_equal(whole[1], parts[1])
 
@@ -557,8 +557,8 @@ class Operation(ProgramTest):
                 restart = ["--restart", f"{name}.h5"] if i > 0 else []
                 self.succeed("transient", path, "-o", f"{name}.h5", *restart, "--set",
                              f"transient={{duration: {duration}, {keys}}}")
-        whole = history(self.folder / "whole.h5")
-        parts = history(self.folder / "parts.h5")
+        whole = series(self.folder / "whole.h5")
+        parts = series(self.folder / "parts.h5")
         numpy.testing.assert_array_equal(whole[1], parts[1])
         numpy.testing.assert_allclose(whole[1][:, 0], 60 * 3 / numpy.pi, rtol=1e-6)
         numpy.testing.assert_allclose(whole[1][:, 1], 0.1, rtol=1e-5)
@@ -610,7 +610,7 @@ hub:
                           "[{when: {channel: RotSpeed, above: 99}, brake: 300}]}")
         self.assertEqual(run.returncode, 2)
         self.assertIn("transient.events[0] never came: RotSpeed was never above 99", run.stderr)
-        self.assertEqual(history(self.folder / "a.h5")[3], "complete")
+        self.assertEqual(series(self.folder / "a.h5")[3], "complete")
 
         def refuse(word, keys):
             with self.subTest(keys=keys):
@@ -672,7 +672,7 @@ loads:
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn("170 degrees", run.stderr)
         self.assertIn("what changes most: blade 1", run.stderr)
-        times, values, _, status = history(self.folder / "a.h5")
+        times, values, _, status = series(self.folder / "a.h5")
         self.assertIn("failed", status)
         self.assertGreater(len(times), 10)
         self.assertTrue(numpy.isfinite(values).all())

@@ -61,7 +61,7 @@ class Dump {
     const petsc::Handle<Vec> z = system_.make_state();
     system_.reference_state(0.3, z.get());
     put_vector("reference", z);
-    for (const system::NeutralCoordinate& one : system_.neutral_coordinates())
+    for (const system::UnconstrainedCoordinate& one : system_.unconstrained_coordinates())
       put("neutral", one.name + "\t" + name(one.unknown) + "\t" + name(one.row), 1.0);
     put("sectors", system_.symmetry().broken_by, system_.symmetry().sectors);
     for (std::size_t i = 0; i < names_.size(); ++i)

@@ -28,7 +28,7 @@ template <class T>
 using State = Eigen::Matrix<T, point_size, 1>;
 
 /// Entries of order 1 to 100 after some hundred operations.
-constexpr double rounding = 1e-12;
+constexpr double round_off = 1e-12;
 
 /// Tangents by automatic differentiation against the complex step, relative to the row's norm.
 constexpr double tangent_tolerance = 1e-11;
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(rigid_placement_produces_no_strain) {
     const PointTerms<double> terms = beam_point_terms<double>(point, z, State<double>::Zero(), {});
     // u' of the turned line, and theta' = 0.
     const Vector3 slope = (turn - Matrix3::Identity()) * point.C_ab.col(0);
-    BOOST_TEST((terms.stretch - slope).norm() < rounding);
+    BOOST_TEST((terms.stretch - slope).norm() < round_off);
     BOOST_TEST(terms.turn.norm() == 0.0);
     BOOST_TEST(terms.force_flux.norm() == 0.0);
     BOOST_TEST(terms.moment_flux.norm() == 0.0);
@@ -282,8 +282,8 @@ BOOST_AUTO_TEST_CASE(rigid_motion_with_the_attachment_satisfies_the_kinematic_ro
   z.segment<3>(6) = point.C_ab.transpose() * v;
   z.segment<3>(9) = point.C_ab.transpose() * a.omega;
   const PointTerms<double> terms = beam_point_terms<double>(point, z, State<double>::Zero(), a);
-  BOOST_TEST(terms.velocity.norm() < rounding);
-  BOOST_TEST(terms.spin.norm() < rounding);
+  BOOST_TEST(terms.velocity.norm() < round_off);
+  BOOST_TEST(terms.spin.norm() < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(kinematic_rows_vanish_on_any_trajectory_in_any_moving_frame) {
@@ -292,13 +292,13 @@ BOOST_AUTO_TEST_CASE(kinematic_rows_vanish_on_any_trajectory_in_any_moving_frame
     const Trajectory path = random_trajectory(random);
     const Moment now = moment_of(path);
     const PointTerms<double> terms = beam_point_terms<double>(path.point, now.z, now.z_dot, now.a);
-    BOOST_TEST(terms.velocity.norm() < rounding);
-    BOOST_TEST(terms.spin.norm() < rounding);
+    BOOST_TEST(terms.velocity.norm() < round_off);
+    BOOST_TEST(terms.spin.norm() < round_off);
     State<double> other = now.z;
     other.segment<6>(6).array() += 0.5;
     const PointTerms<double> off = beam_point_terms<double>(path.point, other, now.z_dot, now.a);
-    BOOST_TEST((off.velocity - Vector3::Constant(0.5)).norm() < rounding);
-    BOOST_TEST((off.spin - Vector3::Constant(0.5)).norm() < rounding);
+    BOOST_TEST((off.velocity - Vector3::Constant(0.5)).norm() < round_off);
+    BOOST_TEST((off.spin - Vector3::Constant(0.5)).norm() < round_off);
   }
 }
 
@@ -319,8 +319,8 @@ BOOST_AUTO_TEST_CASE(loads_are_newtons_law_of_the_particles_of_the_section) {
       force += asked;
       moment += (R * p.c).cross(asked);
     }
-    BOOST_TEST((terms.force_load - force).norm() < rounding * (1.0 + force.norm()));
-    BOOST_TEST((terms.moment_load - moment).norm() < rounding * (1.0 + moment.norm()));
+    BOOST_TEST((terms.force_load - force).norm() < round_off * (1.0 + force.norm()));
+    BOOST_TEST((terms.moment_load - moment).norm() < round_off * (1.0 + moment.norm()));
   }
 }
 
@@ -356,14 +356,14 @@ BOOST_AUTO_TEST_CASE(a_superposed_rotation_turns_every_term_with_it) {
     const PointTerms<double> terms = beam_point_terms<double>(point, z, z_dot, a);
     const PointTerms<double> turned =
         beam_point_terms<double>(point, z_turned, z_turned_dot, a_turned);
-    BOOST_TEST((turned.force_flux - turn * terms.force_flux).norm() < rounding);
-    BOOST_TEST((turned.moment_flux - turn * terms.moment_flux).norm() < rounding);
-    BOOST_TEST((turned.force_load - turn * terms.force_load).norm() < 10.0 * rounding);
-    BOOST_TEST((turned.moment_load - turn * terms.moment_load).norm() < 10.0 * rounding);
+    BOOST_TEST((turned.force_flux - turn * terms.force_flux).norm() < round_off);
+    BOOST_TEST((turned.moment_flux - turn * terms.moment_flux).norm() < round_off);
+    BOOST_TEST((turned.force_load - turn * terms.force_load).norm() < 10.0 * round_off);
+    BOOST_TEST((turned.moment_load - turn * terms.moment_load).norm() < 10.0 * round_off);
     const Vector3 e1 = point.C_ab.col(0);
-    BOOST_TEST((turned.stretch + e1 - turn * (terms.stretch + e1)).norm() < rounding);
-    BOOST_TEST((turned.velocity - terms.velocity).norm() < rounding);
-    // The difference of theta's composed rate leaves about 1e-12 of rounding over the step.
+    BOOST_TEST((turned.stretch + e1 - turn * (terms.stretch + e1)).norm() < round_off);
+    BOOST_TEST((turned.velocity - terms.velocity).norm() < round_off);
+    // The difference of theta's composed rate leaves about 1e-12 of round-off over the step.
     BOOST_TEST((turned.spin - terms.spin).norm() < 1e-10);
   }
 }
@@ -378,7 +378,7 @@ BOOST_AUTO_TEST_CASE(stretch_is_the_slope_of_the_deformed_line) {
   const Vector3 gamma = (point.compliance * load).head<3>();
   const Matrix3 R = turned_by<double>(Vector3(z.segment<3>(3))) * point.C_ab;
   const Vector3 slope = R * (Vector3::UnitX() + gamma) - point.C_ab.col(0);
-  BOOST_TEST((terms.stretch - slope).norm() < rounding);
+  BOOST_TEST((terms.stretch - slope).norm() < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(turn_is_the_slope_of_theta_that_curves_the_line_by_kappa) {
@@ -396,7 +396,7 @@ BOOST_AUTO_TEST_CASE(turn_is_the_slope_of_theta_that_curves_the_line_by_kappa) {
     const Mat3<Jet<double>> turn = turned_by<Jet<double>>(theta);
     const Matrix3 curved = value_of<double, 3, 3>(turn).transpose() * rate_of<double, 3, 3>(turn);
     const Vector3 found = point.C_ab.transpose() * axial<double>(curved);
-    BOOST_TEST((found - kappa).norm() < rounding);
+    BOOST_TEST((found - kappa).norm() < round_off);
   }
 }
 
@@ -408,7 +408,7 @@ BOOST_AUTO_TEST_CASE(moment_of_the_section_force_acts_on_the_deformed_line) {
   State<double> z = random_array<point_size>(random, 1.0);
   const PointTerms<double> terms = beam_point_terms<double>(point, z, State<double>::Zero(), {});
   const Vector3 slope = terms.stretch + point.C_ab.col(0);
-  BOOST_TEST((terms.moment_load + slope.cross(terms.force_flux)).norm() < rounding);
+  BOOST_TEST((terms.moment_load + slope.cross(terms.force_flux)).norm() < round_off);
   BOOST_TEST(terms.force_load.norm() == 0.0);
 }
 
@@ -421,8 +421,8 @@ BOOST_AUTO_TEST_CASE(weight_pulls_along_gravity_at_the_mass_centre) {
   const PointTerms<double> terms =
       beam_point_terms<double>(point, State<double>::Zero(), State<double>::Zero(), a);
   // The load is what the section asks for: minus the weight and minus its moment about the line.
-  BOOST_TEST((terms.force_load - Vector3(27.0, 0.0, 0.0)).norm() < rounding);
-  BOOST_TEST((terms.moment_load - c.cross(Vector3(27.0, 0.0, 0.0))).norm() < rounding);
+  BOOST_TEST((terms.force_load - Vector3(27.0, 0.0, 0.0)).norm() < round_off);
+  BOOST_TEST((terms.moment_load - c.cross(Vector3(27.0, 0.0, 0.0))).norm() < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(damping_adds_mu_times_the_rate_of_the_load_and_leaves_the_strains) {
@@ -435,13 +435,13 @@ BOOST_AUTO_TEST_CASE(damping_adds_mu_times_the_rate_of_the_load_and_leaves_the_s
   point.damping.setZero();
   const PointTerms<double> plain = beam_point_terms<double>(point, z, z_dot, {});
   const Matrix3 R = turned_by<double>(Vector3(z.segment<3>(3))) * point.C_ab;
-  BOOST_TEST((damped.force_flux - plain.force_flux - R * extra.head<3>()).norm() < rounding);
-  BOOST_TEST((damped.moment_flux - plain.moment_flux - R * extra.tail<3>()).norm() < rounding);
+  BOOST_TEST((damped.force_flux - plain.force_flux - R * extra.head<3>()).norm() < round_off);
+  BOOST_TEST((damped.moment_flux - plain.moment_flux - R * extra.tail<3>()).norm() < round_off);
   BOOST_TEST((damped.stretch - plain.stretch).norm() == 0.0);
   BOOST_TEST((damped.turn - plain.turn).norm() == 0.0);
   const Vector3 slope = plain.stretch + point.C_ab.col(0);
   const Vector3 force = R * extra.head<3>();
-  BOOST_TEST((damped.moment_load - plain.moment_load + slope.cross(force)).norm() < rounding);
+  BOOST_TEST((damped.moment_load - plain.moment_load + slope.cross(force)).norm() < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(tangents_are_those_of_the_complex_step) {
@@ -473,8 +473,8 @@ BOOST_AUTO_TEST_CASE(the_load_behind_a_rigid_mass_is_newtons_and_eulers_law_in_a
     for (int i = 0; i < 4; ++i) particles.push_back({1.0 + 0.5 * i, random_array<3>(random, 0.7)});
     const TipTerms<double> terms = beam_tip_terms<double>(
         path.point.x, Matrix3::Identity(), mass_of(particles), now.z, now.z_dot, now.a);
-    BOOST_TEST(terms.velocity.norm() < rounding);
-    BOOST_TEST(terms.spin.norm() < rounding);
+    BOOST_TEST(terms.velocity.norm() < round_off);
+    BOOST_TEST(terms.spin.norm() < round_off);
     const Matrix3 C_an = path.from_a<double>(0.0).transpose();
     const Matrix3 R = turned_by<double>(Vector3(now.z.segment<3>(3)));
     Vector3 force = now.z.segment<3>(12);
@@ -484,8 +484,8 @@ BOOST_AUTO_TEST_CASE(the_load_behind_a_rigid_mass_is_newtons_and_eulers_law_in_a
       force += asked;
       moment += Vector3(R * p.c).cross(asked);
     }
-    BOOST_TEST((terms.force - force).norm() < rounding * (1.0 + force.norm()));
-    BOOST_TEST((terms.moment - moment).norm() < rounding * (1.0 + moment.norm()));
+    BOOST_TEST((terms.force - force).norm() < round_off * (1.0 + force.norm()));
+    BOOST_TEST((terms.moment - moment).norm() < round_off * (1.0 + moment.norm()));
   }
 }
 

@@ -26,7 +26,7 @@ using namespace samara::test;
 using Complex = std::complex<double>;
 
 /// Generalized forces of 1e2 to 1e4 N, some thousand operations; relative to their largest part.
-constexpr double rounding = 1e-12;
+constexpr double round_off = 1e-12;
 
 /// Tangents by automatic differentiation against the complex step, relative to the row's norm.
 constexpr double tangent_tolerance = 1e-11;
@@ -462,7 +462,7 @@ void compare_with_lagrange(const Joints& joints, bool prescribed = false) {
     for (int i = 0; i < coordinates; ++i) {
       if (!moves(chain, i)) continue;
       const Balance balance = lagrange(chain, now, i);
-      BOOST_TEST(std::abs(kane(chain, now, rows, i) + balance.value) < rounding * balance.scale,
+      BOOST_TEST(std::abs(kane(chain, now, rows, i) + balance.value) < round_off * balance.scale,
                  "coordinate " << i << ": Kane " << kane(chain, now, rows, i) << ", Lagrange "
                                << -balance.value);
     }
@@ -537,8 +537,8 @@ BOOST_AUTO_TEST_CASE(a_joint_that_is_not_free_stands_where_it_is_prescribed) {
   state.yaw.prescribed = {0.2, 0.3, 0.4};
   HubMotion<double> hub;
   const ChainRows<double> rows = rigid_chain<double>(chain, state, hub);
-  BOOST_TEST(std::abs(rows.yaw.position - 0.5) < rounding);
-  BOOST_TEST(std::abs(rows.yaw.kinematic + 0.3) < rounding);  // U1 = 0
+  BOOST_TEST(std::abs(rows.yaw.position - 0.5) < round_off);
+  BOOST_TEST(std::abs(rows.yaw.kinematic + 0.3) < round_off);  // U1 = 0
 }
 
 BOOST_AUTO_TEST_CASE(kinematic_rows_vanish_in_every_motion) {
@@ -549,17 +549,17 @@ BOOST_AUTO_TEST_CASE(kinematic_rows_vanish_in_every_motion) {
     HubMotion<double> hub;
     const ChainState<double> still = state_of(chain, now, random);
     const ChainRows<double> rows = rigid_chain<double>(chain, still, hub);
-    BOOST_TEST(std::abs(rows.yaw.kinematic) < rounding);
-    BOOST_TEST(std::abs(rows.teeter.kinematic) < rounding);
-    BOOST_TEST(std::abs(rows.torsion.kinematic) < rounding);
-    BOOST_TEST(std::abs(rows.generator.kinematic) < rounding);
+    BOOST_TEST(std::abs(rows.yaw.kinematic) < round_off);
+    BOOST_TEST(std::abs(rows.teeter.kinematic) < round_off);
+    BOOST_TEST(std::abs(rows.torsion.kinematic) < round_off);
+    BOOST_TEST(std::abs(rows.generator.kinematic) < round_off);
     // Free: q_dot - (U - ...); locked: U - ....
     const auto check = [&](JointState<double> ChainState<double>::*joint,
                            JointRows<double> ChainRows<double>::*row, bool free) {
       ChainState<double> state = still;
       (state.*joint).speed += 0.25;
       const ChainRows<double> changed = rigid_chain<double>(chain, state, hub);
-      BOOST_TEST(std::abs((changed.*row).kinematic - (free ? -0.25 : 0.25)) < rounding);
+      BOOST_TEST(std::abs((changed.*row).kinematic - (free ? -0.25 : 0.25)) < round_off);
     };
     check(&ChainState<double>::yaw, &ChainRows<double>::yaw, joints.yaw);
     check(&ChainState<double>::teeter, &ChainRows<double>::teeter, joints.teeter);
@@ -578,10 +578,10 @@ BOOST_AUTO_TEST_CASE(the_hub_moves_as_its_differentiated_position) {
     const Eigen::Matrix<double, 12, 1> speeds =
         load_speeds<double>(chain, now.prescribed, now.q, now.q_dot, now.t);
     const Configuration<double> c = configuration_of<double>(chain, now.prescribed, now.q, now.t);
-    BOOST_TEST((hub.velocity - speeds.segment<3>(6)).norm() < rounding * hub.velocity.norm());
-    BOOST_TEST((hub.omega - speeds.segment<3>(9)).norm() < rounding * hub.omega.norm());
+    BOOST_TEST((hub.velocity - speeds.segment<3>(6)).norm() < round_off * hub.velocity.norm());
+    BOOST_TEST((hub.omega - speeds.segment<3>(9)).norm() < round_off * hub.omega.norm());
     const Vector3 gravity = c.R_H.transpose() * Vector3(0.0, 0.0, -chain.gravity);
-    BOOST_TEST((hub.gravity - gravity).norm() < rounding * chain.gravity);
+    BOOST_TEST((hub.gravity - gravity).norm() < round_off * chain.gravity);
   }
 }
 
@@ -594,9 +594,9 @@ BOOST_AUTO_TEST_CASE(tilt_raises_the_downwind_end_of_the_shaft) {
   state.azimuth = 0.0;
   state.speed = 0.0;
   rigid_chain<double>(chain, state, hub);
-  BOOST_TEST(std::abs(hub.gravity(0)) < rounding);
-  BOOST_TEST(std::abs(hub.gravity(1) + 10.0 * std::sin(0.1)) < rounding);
-  BOOST_TEST(std::abs(hub.gravity(2) + 10.0 * std::cos(0.1)) < rounding);
+  BOOST_TEST(std::abs(hub.gravity(0)) < round_off);
+  BOOST_TEST(std::abs(hub.gravity(1) + 10.0 * std::sin(0.1)) < round_off);
+  BOOST_TEST(std::abs(hub.gravity(2) + 10.0 * std::cos(0.1)) < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(positive_azimuth_turns_h3_from_up_toward_n1) {
@@ -608,9 +608,9 @@ BOOST_AUTO_TEST_CASE(positive_azimuth_turns_h3_from_up_toward_n1) {
   state.speed = 2.0;
   rigid_chain<double>(chain, state, hub);
   // h3 = n3 cos + n1 sin, h1 = n1 cos - n3 sin.
-  BOOST_TEST(std::abs(hub.gravity(2) + 10.0 * std::cos(0.3)) < rounding);
-  BOOST_TEST(std::abs(hub.gravity(0) - 10.0 * std::sin(0.3)) < rounding);
-  BOOST_TEST((hub.omega - Vector3(0.0, 2.0, 0.0)).norm() < rounding);
+  BOOST_TEST(std::abs(hub.gravity(2) + 10.0 * std::cos(0.3)) < round_off);
+  BOOST_TEST(std::abs(hub.gravity(0) - 10.0 * std::sin(0.3)) < round_off);
+  BOOST_TEST((hub.omega - Vector3(0.0, 2.0, 0.0)).norm() < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(the_tower_top_carries_the_weight_of_all_bodies_at_rest) {
@@ -623,7 +623,7 @@ BOOST_AUTO_TEST_CASE(the_tower_top_carries_the_weight_of_all_bodies_at_rest) {
                                          chain.shaft.mass + chain.hub.mass);
   state.top_load.head<3>() = Vector3(-weight, 0.0, 0.0);  // along n3
   const ChainRows<double> rows = rigid_chain<double>(chain, state, hub);
-  BOOST_TEST(rows.top.head<3>().norm() < rounding * weight);
+  BOOST_TEST(rows.top.head<3>().norm() < round_off * weight);
 }
 
 BOOST_AUTO_TEST_CASE(the_teeter_balance_of_a_centred_hub_is_that_of_the_papers_appendix) {
@@ -652,7 +652,7 @@ BOOST_AUTO_TEST_CASE(the_teeter_balance_of_a_centred_hub_is_that_of_the_papers_a
     Eigen::Matrix<Complex, chain_inputs, 1> x = Eigen::Matrix<Complex, chain_inputs, 1>::Zero();
     x(i) = Complex(0.0, complex_step);
     const double slope = chain_results_of<Complex>(chain, x)(9).imag() / complex_step;
-    BOOST_TEST(std::abs(slope - gradient(i)) < rounding * I1 * Omega * Omega,
+    BOOST_TEST(std::abs(slope - gradient(i)) < round_off * I1 * Omega * Omega,
                "input " << i << ": " << slope << " instead of " << gradient(i));
   }
 }
@@ -667,8 +667,8 @@ BOOST_AUTO_TEST_CASE(a_yaw_spring_pulls_back_on_the_nacelle_and_forward_on_the_t
   state.yaw.speed = 0.3;
   HubMotion<double> hub;
   const ChainRows<double> rows = rigid_chain<double>(chain, state, hub);
-  BOOST_TEST(std::abs(rows.yaw.balance + 23.0) < rounding * 23.0);
-  BOOST_TEST(std::abs(rows.top(3) - 23.0) < rounding * 23.0);  // row of U5, about t3
+  BOOST_TEST(std::abs(rows.yaw.balance + 23.0) < round_off * 23.0);
+  BOOST_TEST(std::abs(rows.top(3) - 23.0) < round_off * 23.0);  // row of U5, about t3
 }
 
 BOOST_AUTO_TEST_CASE(tangents_are_those_of_the_complex_step) {

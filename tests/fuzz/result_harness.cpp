@@ -1,6 +1,6 @@
 // HDF5 results: what restart, loads, export and start from a result read of them.
 //
-// Seeds are trim.h5, history.h5, and segments.h5 with its folder of parts.
+// Seeds are trim.h5, time_series.h5, and segments.h5 with its folder of parts.
 //
 // Changes are of bytes, and of items: a dataset or attribute of a seed gets another type, shape,
 // content or goes, as another program or an attacker may leave it.
@@ -13,9 +13,9 @@
 #include <hdf5.h>
 
 #include "samara/base/error.hpp"
-#include "samara/io/history_file.hpp"
 #include "samara/io/result_file.hpp"
 #include "samara/io/result_reader.hpp"
+#include "samara/io/time_series_file.hpp"
 #include "samara/io/whole_file.hpp"
 
 #include "harness.hpp"
@@ -37,11 +37,11 @@ void attempt(const Work& work) {
   }
 }
 
-void read_history(const std::string& path) {
-  const io::HistoryReader history(path);
-  const std::size_t rows = std::min(history.rows(), most_rows);
-  history.read_time(0, rows);
-  history.read_values(0, rows);
+void read_series(const std::string& path) {
+  const io::TimeSeriesReader series(path);
+  const std::size_t rows = std::min(series.rows(), most_rows);
+  series.read_time(0, rows);
+  series.read_values(0, rows);
 }
 
 // ---- changes of items
@@ -225,7 +225,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   attempt([&] { io::find_result_kind(path); });
   attempt([&] { io::read_result_case(path); });
   attempt([&] { io::read_result_trim(path); });
-  attempt([&] { read_history(path); });
+  attempt([&] { read_series(path); });
   attempt([&] { io::require_result_path(path); });
   return 0;
 }

@@ -28,7 +28,7 @@ using Strings = std::vector<std::string>;
 
 const std::string lee2002 = std::string(SAMARA_SOURCE_DIR) + "/inputs/lee2002/";
 
-constexpr double rounding = 1e-14;
+constexpr double round_off = 1e-14;
 constexpr double degree = std::numbers::pi / 180.0;
 
 /// A folder of this process that goes with the test.
@@ -215,7 +215,7 @@ BOOST_AUTO_TEST_CASE(degrees_and_rpm_become_radians) {
                 "  precone_deg: -2.5\n  pitch_deg: 30\nshaft: {speed_rpm: 30, tilt_deg: 5, "
                 "azimuth_deg: 90}\n")
           .turbine;
-  const auto near = boost::test_tools::tolerance(rounding);
+  const auto near = boost::test_tools::tolerance(round_off);
   BOOST_TEST(turbine.shaft.speed == std::numbers::pi, near);
   BOOST_TEST(turbine.shaft.tilt == 5 * degree, near);
   BOOST_TEST(turbine.shaft.azimuth == 90 * degree, near);
@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(a_teeter_map_without_a_joint_is_a_free_hinge) {
   BOOST_TEST((hub.teeter.kind == JointKind::free));
   BOOST_TEST(hub.teeter.stiffness == 4.0);
   BOOST_TEST(hub.undersling == 0.3);
-  BOOST_TEST(hub.delta3 == 30 * degree, boost::test_tools::tolerance(rounding));
+  BOOST_TEST(hub.delta3 == 30 * degree, boost::test_tools::tolerance(round_off));
 }
 
 BOOST_AUTO_TEST_CASE(a_drivetrain_has_a_shaft_and_a_generator) {
@@ -481,7 +481,7 @@ BOOST_AUTO_TEST_CASE(a_mass_center_couples_forces_and_rotations) {
   expected(2, 3) = expected(3, 2) = m * c2;
   expected(0, 4) = expected(4, 0) = m * c3;
   expected(0, 5) = expected(5, 0) = -m * c2;
-  BOOST_TEST((mass - expected).norm() <= rounding * expected.norm());
+  BOOST_TEST((mass - expected).norm() <= round_off * expected.norm());
 }
 
 BOOST_AUTO_TEST_CASE(matrices_may_be_rigid_on_the_diagonal) {
@@ -505,7 +505,7 @@ blades:
   BOOST_TEST(section.stiffness(3, 4) == 1.0);
   BOOST_TEST(section.stiffness(0, 0) == 0.0);
   BOOST_TEST(section.mass(4, 5) == 0.1);
-  BOOST_TEST(section.twist == 10 * degree, boost::test_tools::tolerance(rounding));
+  BOOST_TEST(section.twist == 10 * degree, boost::test_tools::tolerance(round_off));
 }
 
 BOOST_AUTO_TEST_CASE(sections_damping_and_single_blades_are_read) {
@@ -540,7 +540,7 @@ tower:
   BOOST_TEST(turbine.blades.each.at(2).mass_factor == 1.01);
   BOOST_TEST(turbine.blades.each.at(2).stiffness_factor == 1.0);
   BOOST_TEST(turbine.blades.each.at(2).pitch == 0.5 * degree,
-             boost::test_tools::tolerance(rounding));
+             boost::test_tools::tolerance(round_off));
 }
 
 BOOST_AUTO_TEST_CASE(options_of_the_analyses_are_read) {
@@ -585,23 +585,23 @@ BOOST_AUTO_TEST_CASE(loads_are_read) {
   BOOST_TEST((loads[0].force == Vector3(1, 2, 3)));
   BOOST_TEST(loads[0].moment.isZero(0.0));
   BOOST_TEST(!loads[0].follower);
-  BOOST_TEST(loads[0].history.is_constant());
+  BOOST_TEST(loads[0].variation.is_constant());
   BOOST_TEST(loads[1].blade == 2);
   BOOST_TEST(loads[1].from == 0.25);
   BOOST_TEST(loads[1].to == 0.5);
   BOOST_TEST((loads[1].moment == Vector3(4, 5, 6)));
   BOOST_TEST(loads[1].follower);
-  BOOST_TEST(loads[1].history.per_rev == 3);
-  BOOST_TEST(loads[1].history.amplitude == 0.5);
-  BOOST_TEST(loads[1].history.mean == 1.5);
-  BOOST_TEST(std::abs(loads[1].history.phase - 90.0 * degree) < rounding);
+  BOOST_TEST(loads[1].variation.per_rev == 3);
+  BOOST_TEST(loads[1].variation.amplitude == 0.5);
+  BOOST_TEST(loads[1].variation.mean == 1.5);
+  BOOST_TEST(std::abs(loads[1].variation.phase - 90.0 * degree) < round_off);
   BOOST_TEST(loads[2].on_tower);
-  BOOST_TEST(loads[2].history.frequency == 4.0);
-  BOOST_TEST(loads[2].history.amplitude == 1.0);
-  BOOST_TEST(loads[2].history.mean == 0.0);
+  BOOST_TEST(loads[2].variation.frequency == 4.0);
+  BOOST_TEST(loads[2].variation.amplitude == 1.0);
+  BOOST_TEST(loads[2].variation.mean == 0.0);
   BOOST_TEST(loads[3].from == 0.0);
-  BOOST_TEST(
-      (loads[3].history.table == std::vector<std::pair<double, double>>{{0.0, 1.0}, {2.5, -1.0}}));
+  BOOST_TEST((loads[3].variation.table ==
+              std::vector<std::pair<double, double>>{{0.0, 1.0}, {2.5, -1.0}}));
   BOOST_TEST(simulation::highest_harmonic(result.turbine) == 3);
 }
 
@@ -612,7 +612,7 @@ BOOST_AUTO_TEST_CASE(a_tower_line_is_stated_in_n1_n2_n3_and_kept_in_the_beams_ax
           .turbine.tower;
   BOOST_REQUIRE(beam.reference_line.size() == 3u);
   BOOST_TEST((beam.reference_line[1] == Vector3(10, 1, 2)));  // a = (n3, n1, n2)
-  BOOST_TEST(beam.length == std::sqrt(420.0), boost::test_tools::tolerance(rounding));
+  BOOST_TEST(beam.length == std::sqrt(420.0), boost::test_tools::tolerance(round_off));
 }
 
 BOOST_AUTO_TEST_CASE(a_blade_line_is_stated_in_blade_axes) {
@@ -621,7 +621,7 @@ BOOST_AUTO_TEST_CASE(a_blade_line_is_stated_in_blade_axes) {
                         "length: 10\n  reference_line: [[0, 0, 0], [5, 0, 0], [10, 0, 0]]"))
           .turbine.blades.beam;
   BOOST_TEST((beam.reference_line.at(1) == Vector3(5, 0, 0)));
-  BOOST_TEST(beam.length == 10.0, boost::test_tools::tolerance(rounding));
+  BOOST_TEST(beam.length == 10.0, boost::test_tools::tolerance(round_off));
 }
 
 BOOST_AUTO_TEST_CASE(byte_order_mark_and_windows_line_ends_are_accepted) {
@@ -924,13 +924,13 @@ BOOST_AUTO_TEST_CASE(prescribed_angles_are_constant_or_harmonic) {
   BOOST_TEST((turbine.nacelle.yaw.kind == JointKind::prescribed));
   BOOST_TEST((turbine.hub.teeter.kind == JointKind::prescribed));
   const elements::JointMotion yaw = turbine.nacelle.yaw.motion.at(0.3, 2.0);
-  BOOST_TEST(std::abs(yaw.angle - 8.0 * degree) < rounding);
+  BOOST_TEST(std::abs(yaw.angle - 8.0 * degree) < round_off);
   BOOST_TEST(yaw.rate == 0.0);
   const elements::JointMotion teeter = turbine.hub.teeter.motion.at(0.3, 2.0);
   const double turned = 3.0 * 2.0 * 0.3 + 30.0 * degree;
-  BOOST_TEST(std::abs(teeter.angle - 2.0 * degree * std::cos(turned)) < rounding);
-  BOOST_TEST(std::abs(teeter.rate + 6.0 * 2.0 * degree * std::sin(turned)) < rounding);
-  BOOST_TEST(std::abs(teeter.acceleration + 36.0 * teeter.angle) < rounding);
+  BOOST_TEST(std::abs(teeter.angle - 2.0 * degree * std::cos(turned)) < round_off);
+  BOOST_TEST(std::abs(teeter.rate + 6.0 * 2.0 * degree * std::sin(turned)) < round_off);
+  BOOST_TEST(std::abs(teeter.acceleration + 36.0 * teeter.angle) < round_off);
   const Case many = read_text(minimal +
                               "nacelle: {yaw: {joint: prescribed, harmonic: {per_rev: 7, "
                               "amplitude_deg: 2}}}\nshaft: {speed: 2}\n");
@@ -1162,7 +1162,7 @@ BOOST_AUTO_TEST_CASE(settings_replace_and_add_keys) {
   BOOST_TEST(result.turbine.blades.beam.elements == 9);
   BOOST_TEST(result.turbine.blades.beam.sections.at(0).mass(0, 0) == 10.0);
   BOOST_TEST(result.turbine.blades.each.at(2).pitch == 90 * degree,
-             boost::test_tools::tolerance(rounding));
+             boost::test_tools::tolerance(round_off));
   BOOST_TEST(result.turbine.shaft.speed == 3.0);
   BOOST_TEST((result.turbine.hub.inertia == Vector3(1, 7, 3)));
   BOOST_TEST((result.turbine.hub.teeter.kind == JointKind::locked));
@@ -1172,7 +1172,7 @@ BOOST_AUTO_TEST_CASE(settings_replace_and_add_keys) {
 BOOST_AUTO_TEST_CASE(a_setting_replaces_the_other_spelling) {
   const std::string text = minimal + "shaft: {speed: 6}\n";
   BOOST_TEST(read_text(text, {"shaft.speed_rpm=30"}).turbine.shaft.speed == std::numbers::pi,
-             boost::test_tools::tolerance(rounding));
+             boost::test_tools::tolerance(round_off));
   const std::string matrix =
       "[[rigid,0,0,0,0,0],[0,rigid,0,0,0,0],[0,0,rigid,0,0,0],[0,0,0,1,0,0],[0,0,0,0,2,0],"
       "[0,0,0,0,0,3]]";

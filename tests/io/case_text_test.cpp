@@ -30,7 +30,7 @@ tower:
       mass: 80
       inertia: [12, 6, 6]
       stiffness: {EA: 1e9, GA2: rigid, GA3: 3e8, GJ: 1e8, EI2: 2e8, EI3: 2.1e8}
-  damping: {fore_aft: 0.01, lateral: 0.012}
+  damping: {fore_aft: 0.01, side_side: 0.012}
   tip_mass: 30
   point_masses: [{at: 0.5, mass: 40, center: [0, 0.1, 0]}]
   support:
@@ -51,7 +51,7 @@ shaft:
   height: 0.9
   azimuth_deg: 33
   mass: 20
-  inertia: {axial: 3, lateral: 4}
+  inertia: {axial: 3, transverse: 4}
   torsion: {joint: free, stiffness: 4e6, damping: 300}
   gear_ratio: -31.7
   generator: {joint: free, own_inertia: 2, torque_table: [[100, 3], [300, 12]]}

@@ -86,7 +86,7 @@ BOOST_AUTO_TEST_CASE(a_floating_chain_keeps_its_rigid_motion) {
     const double error = largest_error(whole, reduced.form);
     BOOST_TEST(error < 0.2);
     if (method == ReductionMethod::balanced)
-      // Rounding of 1/omega^2 beside it.
+      // Round-off of 1/omega^2 beside it.
       BOOST_TEST(error <= reduced.error_bound + 1e-6);
   }
   BOOST_CHECK_THROW(linear::reduce(whole, 1, ReductionMethod::modal), InputError);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "load_histories.hpp"
+#include "load_series_examples.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -15,9 +15,9 @@ using loads::LoadCase;
 namespace {
 
 /// Relative, of powers and roots.
-constexpr double rounding = 1e-12;
+constexpr double round_off = 1e-12;
 
-bool is_close(double a, double b) { return std::abs(a - b) <= rounding * std::abs(b); }
+bool is_close(double a, double b) { return std::abs(a - b) <= round_off * std::abs(b); }
 
 /// mean + amplitude cos, from a peak to a peak `periods` later, 40 rows a period.
 Eigen::VectorXd cosine(int periods, double mean, double amplitude) {
@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(the_example_of_the_standard_has_the_sums_of_its_table) {
   BOOST_TEST(is_close(loads[1], std::sqrt(151.0 / 2.0)));
 }
 
-BOOST_AUTO_TEST_CASE(loads_scale_with_the_history) {
+BOOST_AUTO_TEST_CASE(loads_scale_with_the_series) {
   std::vector<Cycle> cycles = standard_example();
   const DamageOptions options = options_with({7.0});
   const double load = one_load(cycles, 8.0, options);
@@ -131,8 +131,8 @@ BOOST_AUTO_TEST_CASE(goodmans_correction_vanishes_for_a_large_ultimate_load) {
   BOOST_TEST(is_close(one_load(standard_example(), 3.0, options), without));
 }
 
-/// A lifetime of one history has the load of this history, however many hours it takes.
-BOOST_AUTO_TEST_CASE(a_lifetime_of_one_history_has_its_load) {
+/// A lifetime of one time series has the load of this time series, however many hours it takes.
+BOOST_AUTO_TEST_CASE(a_lifetime_of_one_series_has_its_load) {
   const DamageOptions options = options_with({4.0, 10.0}, 2.0);
   const std::vector<double> once =
       loads::compute_damage_equivalent_loads(standard_example(), 8.0, options);
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(a_lifetime_of_one_history_has_its_load) {
 
 /// sum_j f_j sum_i n_ji R_ji^m / N with f_j = 3600 hours_j / T_j, by hand: 1 cycle of 2 in 10 s for
 /// 3 h, 5 cycles of 3 in 20 s for 1 h, m = 3.
-BOOST_AUTO_TEST_CASE(a_lifetime_weighs_histories_by_their_hours) {
+BOOST_AUTO_TEST_CASE(a_lifetime_weighs_series_by_their_hours) {
   const std::vector<LoadCase> cases = {{{{2.0, 0.0, 1.0}}, 10.0, 3.0},
                                        {{{3.0, 0.0, 5.0}}, 20.0, 1.0},
                                        {{{1e3, 0.0, 1.0}}, 1.0, 0.0}};
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(a_lifetime_weighs_histories_by_their_hours) {
 }
 
 /// Short-term loads by their m-th powers, weighted by time, with the same frequency.
-BOOST_AUTO_TEST_CASE(lifetime_loads_follow_from_those_of_the_histories) {
+BOOST_AUTO_TEST_CASE(lifetime_loads_follow_from_those_of_the_series) {
   DamageOptions options = options_with({9.0}, 1.3);
   options.goodman = loads::GoodmanCorrection{40.0, 1.0};
   const std::vector<Cycle> other = loads::count_cycles(cosine(7, 2.0, 6.0));
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(what_has_no_equivalent_load_is_refused) {
   const auto refuse = [](double duration, const DamageOptions& options, const std::string& part) {
     check_refused([&] { one_load(standard_example(), duration, options); }, part);
   };
-  refuse(0.0, options_with({4.0}), "the duration of a history must be > 0, not 0");
+  refuse(0.0, options_with({4.0}), "the duration of a time series must be > 0, not 0");
   refuse(not_a_number, options_with({4.0}), "duration");
   refuse(1.0, options_with({}), "no Woehler exponent");
   refuse(1.0, options_with({4.0, 0.0}), "a Woehler exponent must be >= 1, not 0");
@@ -197,8 +197,8 @@ BOOST_AUTO_TEST_CASE(a_lifetime_without_time_is_refused) {
                          const std::string& part) {
     check_refused([&] { loads::compute_lifetime_loads(cases, DamageOptions(), number); }, part);
   };
-  refuse({}, {}, "the time of all histories must be > 0");
-  refuse({{standard_example(), 8.0, 0.0}}, {}, "the time of all histories must be > 0");
+  refuse({}, {}, "the time of all time series must be > 0");
+  refuse({{standard_example(), 8.0, 0.0}}, {}, "the time of all time series must be > 0");
   refuse({{standard_example(), 8.0, -1.0}}, {}, "hours");
   refuse({{standard_example(), 0.0, 1.0}}, {}, "duration");
   refuse({{standard_example(), 8.0, 1.0}}, 0.0, "the number of equivalent cycles");

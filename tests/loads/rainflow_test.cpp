@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-#include "load_histories.hpp"
+#include "load_series_examples.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -280,18 +280,18 @@ BOOST_AUTO_TEST_CASE(a_gate_keeps_the_extremes_and_nothing_below_it) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_channel_of_a_history_is_counted_by_its_kind) {
-  loads::LoadHistory history;
-  history.names = {"constant", "load"};
-  history.times = Eigen::VectorXd::LinSpaced(9, 0.0, 8.0);
-  history.values = Eigen::MatrixXd::Zero(9, 2);
-  history.values.col(1) = astm;
-  BOOST_TEST(loads::count_cycles(history, 0).empty());
-  BOOST_TEST((counts_of(loads::count_cycles(history, 1)) == counts_of(loads::count_cycles(astm))));
-  history.period = 9.0;
-  BOOST_TEST((counts_of(loads::count_cycles(history, 1)) ==
-              counts_of(loads::count_periodic_cycles(astm))));
-  BOOST_CHECK_THROW(loads::count_cycles(history, 2), InternalError);
+BOOST_AUTO_TEST_CASE(a_channel_of_a_series_is_counted_by_its_kind) {
+  loads::LoadSeries series;
+  series.names = {"constant", "load"};
+  series.times = Eigen::VectorXd::LinSpaced(9, 0.0, 8.0);
+  series.values = Eigen::MatrixXd::Zero(9, 2);
+  series.values.col(1) = astm;
+  BOOST_TEST(loads::count_cycles(series, 0).empty());
+  BOOST_TEST((counts_of(loads::count_cycles(series, 1)) == counts_of(loads::count_cycles(astm))));
+  series.period = 9.0;
+  BOOST_TEST(
+      (counts_of(loads::count_cycles(series, 1)) == counts_of(loads::count_periodic_cycles(astm))));
+  BOOST_CHECK_THROW(loads::count_cycles(series, 2), InternalError);
 }
 
 /// Ranges to 9 and means from -1 to 1, in three and two bins.

@@ -9,7 +9,7 @@ namespace {
 using namespace samara;
 
 /// Few operations on numbers of order one.
-constexpr double rounding = 1e-15;
+constexpr double round_off = 1e-15;
 
 }  // namespace
 
@@ -37,17 +37,17 @@ BOOST_AUTO_TEST_CASE(derivatives_follow_the_rules_of_calculus) {
   const math::Dual<2> x = math::independent<2>(a, 0);
   const math::Dual<2> y = math::independent<2>(b, 1);
   const math::Dual<2> product = x * y * 2.0;
-  BOOST_TEST(std::abs(product.derivatives()(0) - 2.0 * b) < rounding);
-  BOOST_TEST(std::abs(product.derivatives()(1) - 2.0 * a) < rounding);
+  BOOST_TEST(std::abs(product.derivatives()(0) - 2.0 * b) < round_off);
+  BOOST_TEST(std::abs(product.derivatives()(1) - 2.0 * a) < round_off);
   const math::Dual<2> quotient = x / y;
-  BOOST_TEST(std::abs(quotient.derivatives()(0) - 1.0 / b) < rounding);
-  BOOST_TEST(std::abs(quotient.derivatives()(1) + a / (b * b)) < rounding);
+  BOOST_TEST(std::abs(quotient.derivatives()(0) - 1.0 / b) < round_off);
+  BOOST_TEST(std::abs(quotient.derivatives()(1) + a / (b * b)) < round_off);
   using std::cos;
   using std::sin;
   const math::Dual<2> wave = sin(x) * cos(y);
-  BOOST_TEST(std::abs(wave.value() - std::sin(a) * std::cos(b)) < rounding);
-  BOOST_TEST(std::abs(wave.derivatives()(0) - std::cos(a) * std::cos(b)) < rounding);
-  BOOST_TEST(std::abs(wave.derivatives()(1) + std::sin(a) * std::sin(b)) < rounding);
+  BOOST_TEST(std::abs(wave.value() - std::sin(a) * std::cos(b)) < round_off);
+  BOOST_TEST(std::abs(wave.derivatives()(0) - std::cos(a) * std::cos(b)) < round_off);
+  BOOST_TEST(std::abs(wave.derivatives()(1) + std::sin(a) * std::sin(b)) < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_added_in_place_keeps_its_derivatives) {

@@ -20,11 +20,11 @@ BOOST_AUTO_TEST_CASE(coefficients_of_known_harmonics_are_found_at_any_length) {
     const int k = n > 4 ? 3 : 0;
     const int minus = n > 4 ? n - 2 : 0;
     math::FourierTransform transform(2, n);
-    Eigen::MatrixXcd& history = transform.input();
+    Eigen::MatrixXcd& series = transform.input();
     for (int m = 0; m < n; ++m) {
       const double phase = 2.0 * std::numbers::pi * m / n;
-      history(0, m) = a * std::polar(1.0, k * phase);
-      history(1, m) = b * std::polar(1.0, -2.0 * phase);
+      series(0, m) = a * std::polar(1.0, k * phase);
+      series(1, m) = b * std::polar(1.0, -2.0 * phase);
     }
     const Eigen::MatrixXcd& spectrum = transform.run();
     BOOST_TEST(spectrum.rows() == n);

@@ -15,10 +15,10 @@ using namespace samara::math;
 constexpr int largest_order = 6;
 
 /// Sums of up to ten products of order one.
-constexpr double rounding = 2e-15;
+constexpr double round_off = 2e-15;
 
-/// Derivatives grow with the square of the order, and their rounding with them.
-constexpr double derivative_rounding = 1e-12;
+/// Derivatives grow with the square of the order, and their round-off with them.
+constexpr double derivative_round_off = 1e-12;
 
 double integrate_power(const QuadratureRule& rule, int power) {
   double sum = 0.0;
@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(gauss_weights_are_positive_and_sum_to_one) {
     BOOST_TEST(rule.weights.size() == static_cast<std::size_t>(n));
     for (const double w : rule.weights) BOOST_TEST(w > 0.0);
     const double sum = std::accumulate(rule.weights.begin(), rule.weights.end(), 0.0);
-    BOOST_TEST(std::abs(sum - 1.0) < rounding);
+    BOOST_TEST(std::abs(sum - 1.0) < round_off);
   }
 }
 
@@ -67,8 +67,8 @@ BOOST_AUTO_TEST_CASE(gauss_points_ascend_inside_the_interval_and_mirror_about_it
       BOOST_TEST(rule.points[j] > before);
       BOOST_TEST(rule.points[j] < 1.0);
       before = rule.points[j];
-      BOOST_TEST(std::abs(rule.points[j] + rule.points[count - 1 - j] - 1.0) < rounding);
-      BOOST_TEST(std::abs(rule.weights[j] - rule.weights[count - 1 - j]) < rounding);
+      BOOST_TEST(std::abs(rule.points[j] + rule.points[count - 1 - j] - 1.0) < round_off);
+      BOOST_TEST(std::abs(rule.weights[j] - rule.weights[count - 1 - j]) < round_off);
     }
   }
 }
@@ -77,14 +77,14 @@ BOOST_AUTO_TEST_CASE(gauss_rule_of_n_points_is_exact_to_degree_2n_minus_1) {
   for (int n = 1; n <= 2 * largest_order; ++n) {
     const QuadratureRule rule = gauss_rule(n);
     for (int power = 0; power <= 2 * n - 1; ++power)
-      BOOST_TEST(std::abs(integrate_power(rule, power) - 1.0 / (power + 1)) < rounding);
+      BOOST_TEST(std::abs(integrate_power(rule, power) - 1.0 / (power + 1)) < round_off);
   }
 }
 
 BOOST_AUTO_TEST_CASE(gauss_rule_errs_by_its_closed_form_at_degree_2n) {
   for (int n = 1; n <= largest_order; ++n) {
     const double error = 1.0 / (2 * n + 1) - integrate_power(gauss_rule(n), 2 * n);
-    BOOST_TEST(std::abs(error - gauss_error_of_first_inexact_power(n)) < rounding);
+    BOOST_TEST(std::abs(error - gauss_error_of_first_inexact_power(n)) < round_off);
   }
 }
 
@@ -96,8 +96,8 @@ BOOST_AUTO_TEST_CASE(lobatto_nodes_ascend_from_end_to_end) {
     BOOST_TEST(nodes.back() == 1.0);
     for (std::size_t a = 1; a < nodes.size(); ++a) BOOST_TEST(nodes[a] > nodes[a - 1]);
   }
-  BOOST_TEST(std::abs(lobatto_nodes(2)[1] - 0.5) < rounding);
-  BOOST_TEST(std::abs(lobatto_nodes(3)[1] - 0.25) < rounding);
+  BOOST_TEST(std::abs(lobatto_nodes(2)[1] - 0.5) < round_off);
+  BOOST_TEST(std::abs(lobatto_nodes(3)[1] - 0.25) < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(lagrange_polynomials_are_one_at_their_node_and_zero_at_the_others) {
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(lagrange_polynomials_are_one_at_their_node_and_zero_at_the_
     for (int a = 0; a <= n; ++a)
       for (int b = 0; b <= n; ++b)
         BOOST_TEST(std::abs(lagrange(nodes, a, nodes[static_cast<std::size_t>(b)]) -
-                            (a == b ? 1.0 : 0.0)) < rounding);
+                            (a == b ? 1.0 : 0.0)) < round_off);
   }
 }
 
@@ -115,8 +115,8 @@ BOOST_AUTO_TEST_CASE(lagrange_polynomials_sum_to_one_and_their_slopes_to_zero) {
   for (int n = 1; n <= largest_order; ++n) {
     const std::vector<double> nodes = lobatto_nodes(n);
     for (const double x : gauss_rule(7).points) {
-      BOOST_TEST(std::abs(interpolate(nodes, x, one, lagrange) - 1.0) < rounding);
-      BOOST_TEST(std::abs(interpolate(nodes, x, one, lagrange_derivative)) < derivative_rounding);
+      BOOST_TEST(std::abs(interpolate(nodes, x, one, lagrange) - 1.0) < round_off);
+      BOOST_TEST(std::abs(interpolate(nodes, x, one, lagrange_derivative)) < derivative_round_off);
     }
   }
 }
@@ -126,9 +126,9 @@ BOOST_AUTO_TEST_CASE(lagrange_interpolation_reproduces_polynomials_of_its_degree
   const auto quartic = [](double x) { return 2.0 + x - 3.0 * x * x + x * x * x * x; };
   const auto slope = [](double x) { return 1.0 - 6.0 * x + 4.0 * x * x * x; };
   for (const double x : {0.0, 0.13, 0.25, 0.5, 0.77, 1.0}) {
-    BOOST_TEST(std::abs(interpolate(nodes, x, quartic, lagrange) - quartic(x)) < rounding);
+    BOOST_TEST(std::abs(interpolate(nodes, x, quartic, lagrange) - quartic(x)) < round_off);
     BOOST_TEST(std::abs(interpolate(nodes, x, quartic, lagrange_derivative) - slope(x)) <
-               derivative_rounding);
+               derivative_round_off);
   }
 }
 

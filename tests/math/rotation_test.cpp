@@ -17,7 +17,7 @@ using namespace samara;
 using Complex = std::complex<double>;
 
 /// Entries of order one after some ten operations.
-constexpr double rounding = 1e-14;
+constexpr double round_off = 1e-14;
 
 /// Complex step: h^2 vanishes beside one, so the derivative has no truncation error.
 constexpr double complex_step = 1e-30;
@@ -75,9 +75,9 @@ BOOST_AUTO_TEST_CASE(skew_is_the_cross_product) {
   for (int i = 0; i < 10; ++i) {
     const Vector3 a = random_vector(random, 2.0);
     const Vector3 b = random_vector(random, 2.0);
-    BOOST_TEST(largest(Vector3(math::skew<double>(a) * b - a.cross(b))) < rounding);
-    BOOST_TEST(largest(Vector3(math::cross<double>(a, b) - a.cross(b))) < rounding);
-    BOOST_TEST(std::abs(math::dot<double>(a, b) - a.dot(b)) < rounding);
+    BOOST_TEST(largest(Vector3(math::skew<double>(a) * b - a.cross(b))) < round_off);
+    BOOST_TEST(largest(Vector3(math::cross<double>(a, b) - a.cross(b))) < round_off);
+    BOOST_TEST(std::abs(math::dot<double>(a, b) - a.dot(b)) < round_off);
   }
 }
 
@@ -92,8 +92,8 @@ BOOST_AUTO_TEST_CASE(direction_cosines_are_orthogonal_with_determinant_one) {
   std::minstd_rand random(2);
   for (const Vector3& theta : all_sizes(random)) {
     const Matrix3 C = math::direction_cosines(theta);
-    BOOST_TEST(largest(Matrix3(C * C.transpose() - Matrix3::Identity())) < rounding);
-    BOOST_TEST(std::abs(C.determinant() - 1.0) < rounding);
+    BOOST_TEST(largest(Matrix3(C * C.transpose() - Matrix3::Identity())) < round_off);
+    BOOST_TEST(std::abs(C.determinant() - 1.0) < round_off);
   }
 }
 
@@ -101,11 +101,11 @@ BOOST_AUTO_TEST_CASE(direction_cosines_map_unturned_components_to_turned_ones) {
   std::minstd_rand random(3);
   for (const Vector3& theta : all_sizes(random)) {
     const Matrix3 C = math::direction_cosines(theta);
-    BOOST_TEST(largest(Matrix3(C.transpose() - turning_matrix(theta))) < 10.0 * rounding);
+    BOOST_TEST(largest(Matrix3(C.transpose() - turning_matrix(theta))) < 10.0 * round_off);
   }
   // A quarter turn about 3 takes axis 1 to axis 2, which then reads (0, 1, 0) in the old basis.
   const Matrix3 C = math::direction_cosines(Vector3(0.0, 0.0, 2.0));
-  BOOST_TEST(largest(Vector3(C.transpose() * Vector3::UnitX() - Vector3::UnitY())) < rounding);
+  BOOST_TEST(largest(Vector3(C.transpose() * Vector3::UnitX() - Vector3::UnitY())) < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(direction_cosines_are_those_of_equation_2) {
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(direction_cosines_are_those_of_equation_2) {
     const Matrix3 printed = ((1.0 - quarter) * Matrix3::Identity() - math::skew<double>(theta) +
                              0.5 * theta * theta.transpose()) /
                             (1.0 + quarter);
-    BOOST_TEST(largest(Matrix3(math::direction_cosines(theta) - printed)) < rounding);
+    BOOST_TEST(largest(Matrix3(math::direction_cosines(theta) - printed)) < round_off);
   }
 }
 
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(two_turns_about_one_axis_add_their_angles) {
   const auto parameters = [&n](double phi) { return Vector3(2.0 * std::tan(0.5 * phi) * n); };
   const Matrix3 both =
       math::direction_cosines(parameters(0.9)) * math::direction_cosines(parameters(1.3));
-  BOOST_TEST(largest(Matrix3(both - math::direction_cosines(parameters(2.2)))) < rounding);
+  BOOST_TEST(largest(Matrix3(both - math::direction_cosines(parameters(2.2)))) < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(turns_compose_outer_after_inner) {
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(turns_compose_outer_after_inner) {
     const Vector3 both = (a + b + 0.5 * a.cross(b)) / (1.0 - 0.25 * a.dot(b));
     const Matrix3 turned =
         math::direction_cosines(a).transpose() * math::direction_cosines(b).transpose();
-    BOOST_TEST(largest(Matrix3(math::direction_cosines(both).transpose() - turned)) < rounding);
+    BOOST_TEST(largest(Matrix3(math::direction_cosines(both).transpose() - turned)) < round_off);
   }
 }
 
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(the_opposite_parameters_turn_back) {
   for (const Vector3& theta : all_sizes(random)) {
     const Vector3 back = -theta;
     BOOST_TEST(largest(Matrix3(math::direction_cosines(back) -
-                               math::direction_cosines(theta).transpose())) < rounding);
+                               math::direction_cosines(theta).transpose())) < round_off);
   }
 }
 
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(tangent_gives_the_angular_velocity_up_to_170_degrees_by_com
     const Matrix3 C_dot = rate_of(math::direction_cosines(stepped(theta, theta_dot)));
     const Matrix3 spin = -C_dot * math::direction_cosines(theta).transpose();
     const Vector3 omega = math::tangent_times(theta, theta_dot);
-    BOOST_TEST(largest(Matrix3(spin - math::skew<double>(omega))) < rounding);
+    BOOST_TEST(largest(Matrix3(spin - math::skew<double>(omega))) < round_off);
   }
 }
 
@@ -188,15 +188,15 @@ BOOST_AUTO_TEST_CASE(tangent_is_the_matrix_of_the_theory_and_its_inverse_undoes_
     const Vector3 r = random_vector(random, 1.0);
     const double quarter = 0.25 * theta.squaredNorm();
     const Vector3 printed = (r - 0.5 * theta.cross(r)) / (1.0 + quarter);
-    BOOST_TEST(largest(Vector3(math::tangent_times(theta, r) - printed)) < rounding);
+    BOOST_TEST(largest(Vector3(math::tangent_times(theta, r) - printed)) < round_off);
     // Q^-1 grows with the square of theta; its product with Q loses that many digits.
     const double lost = 1.0 + quarter;
     const Vector3 there_and_back =
         math::inverse_tangent_times(theta, math::tangent_times(theta, r));
-    BOOST_TEST(largest(Vector3(there_and_back - r)) < rounding * lost);
+    BOOST_TEST(largest(Vector3(there_and_back - r)) < round_off * lost);
     const Vector3 back_and_there =
         math::tangent_times(theta, math::inverse_tangent_times(theta, r));
-    BOOST_TEST(largest(Vector3(back_and_there - r)) < rounding * lost);
+    BOOST_TEST(largest(Vector3(back_and_there - r)) < round_off * lost);
   }
 }
 
@@ -207,7 +207,7 @@ BOOST_AUTO_TEST_CASE(small_turns_are_the_cross_product) {
     const Vector3 theta = size * random_direction(random);
     const Vector3 r = random_direction(random);
     const Matrix3 linear = Matrix3::Identity() - math::skew<double>(theta);
-    BOOST_TEST(largest(Matrix3(math::direction_cosines(theta) - linear)) < size * size + rounding);
+    BOOST_TEST(largest(Matrix3(math::direction_cosines(theta) - linear)) < size * size + round_off);
     BOOST_TEST(largest(Vector3(math::tangent_times(theta, r) - r)) < size);
     BOOST_TEST(largest(Vector3(math::inverse_tangent_times(theta, r) - r)) < size);
   }
@@ -221,7 +221,7 @@ BOOST_AUTO_TEST_CASE(turn_about_is_the_turn_of_vectors_by_eigen) {
     const Vector3 axis = random_direction(random);
     const double angle = 0.4 * (i - 10);
     const Matrix3 expected = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-    BOOST_TEST(largest(Matrix3(math::turn_about<double>(axis, angle) - expected)) < rounding);
+    BOOST_TEST(largest(Matrix3(math::turn_about<double>(axis, angle) - expected)) < round_off);
   }
 }
 
@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(turn_about_and_direction_cosines_agree_on_the_sense) {
   const double angle = 1.1;
   const Vector3 theta = 2.0 * std::tan(0.5 * angle) * axis;
   BOOST_TEST(largest(Matrix3(math::turn_about<double>(axis, angle) -
-                             math::direction_cosines(theta).transpose())) < rounding);
+                             math::direction_cosines(theta).transpose())) < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(complex_step_goes_through_every_function) {
@@ -266,7 +266,7 @@ BOOST_AUTO_TEST_CASE(complex_step_goes_through_every_function) {
     const Vector3 axis = r.normalized();
     const Matrix3 by_angle = rate_of(math::turn_about<Complex>(axis, Complex(0.8, complex_step)));
     const Matrix3 expected = math::skew<double>(axis) * math::turn_about<double>(axis, 0.8);
-    BOOST_TEST(largest(Matrix3(by_angle - expected)) < rounding);
+    BOOST_TEST(largest(Matrix3(by_angle - expected)) < round_off);
   }
 }
 
@@ -285,8 +285,8 @@ BOOST_AUTO_TEST_CASE(automatic_differentiation_agrees_with_complex_step) {
       const Vector3 tangent_rate = math::tangent_times(z, z).imag() / complex_step;
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column)
-          BOOST_TEST(std::abs(C(row, column).derivatives()(j) - rate(row, column)) < rounding);
-        BOOST_TEST(std::abs(Q(row).derivatives()(j) - tangent_rate(row)) < rounding);
+          BOOST_TEST(std::abs(C(row, column).derivatives()(j) - rate(row, column)) < round_off);
+        BOOST_TEST(std::abs(Q(row).derivatives()(j) - tangent_rate(row)) < round_off);
       }
     }
   }
@@ -301,9 +301,9 @@ BOOST_AUTO_TEST_CASE(composed_parameters_are_those_of_one_turn_after_the_other) 
     const Matrix3 then = math::direction_cosines<double>(a).transpose();
     const Vector3 both = math::compose<double>(a, b);
     const Matrix3 found = math::direction_cosines<double>(both).transpose();
-    BOOST_TEST(largest(Matrix3(found - then * first)) < rounding);
+    BOOST_TEST(largest(Matrix3(found - then * first)) < round_off);
     BOOST_TEST(largest(Vector3(math::parameters_of(then * first) - both)) <
-               rounding * (1.0 + both.squaredNorm()));
+               round_off * (1.0 + both.squaredNorm()));
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 using namespace samara;
 using math::NaturalSpline;
 
-constexpr double rounding = 1e-13;
+constexpr double round_off = 1e-13;
 
 std::vector<Vector3> arc(int intervals, double radius, double angle) {
   std::vector<Vector3> points;
@@ -30,10 +30,10 @@ BOOST_AUTO_TEST_SUITE(natural_spline)
 BOOST_AUTO_TEST_CASE(a_straight_line_is_met_exactly_and_goes_on_beyond_its_ends) {
   const Vector3 along = Vector3(1.0, -2.0, 2.0) / 3.0;
   const NaturalSpline spline({Vector3::Zero(), 0.5 * along, 4.0 * along, 6.0 * along});
-  BOOST_TEST(std::abs(spline.length() - 6.0) < rounding);
+  BOOST_TEST(std::abs(spline.length() - 6.0) < round_off);
   for (const double s : {-1.0, 0.0, 0.3, 0.5, 3.0, 6.0, 7.0}) {
-    BOOST_TEST((spline.at(s).position - s * along).norm() < rounding * 10.0);
-    BOOST_TEST((spline.at(s).tangent - along).norm() < rounding);
+    BOOST_TEST((spline.at(s).position - s * along).norm() < round_off * 10.0);
+    BOOST_TEST((spline.at(s).tangent - along).norm() < round_off);
   }
 }
 
@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(the_parameter_is_the_arc_length_and_the_tangent_its_derivat
   for (const double s : {0.3, 1.1, 1.9, 2.7}) {
     const Vector3 slope = (spline.at(s + h).position - spline.at(s - h).position) / (2.0 * h);
     BOOST_TEST((slope - spline.at(s).tangent).norm() < 1e-6);  // h^2 times the third derivative
-    BOOST_TEST(std::abs(spline.at(s).tangent.norm() - 1.0) < rounding);
+    BOOST_TEST(std::abs(spline.at(s).tangent.norm() - 1.0) < round_off);
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 using namespace samara;
 using namespace samara::model;
 
-constexpr double rounding = 1e-14;
+constexpr double round_off = 1e-14;
 
 SectionDefinition make_section() {
   SectionDefinition section;
@@ -204,10 +204,10 @@ BOOST_AUTO_TEST_CASE(it_is_linear_between_stations_and_constant_outside) {
   const auto factor_at = [&](double fraction) {
     const SectionDefinition section = interpolate_section(beam, fraction);
     const double factor = section.stiffness(3, 3) / unit(3, 3);
-    BOOST_TEST((section.stiffness - factor * unit).norm() <= rounding * section.stiffness.norm());
+    BOOST_TEST((section.stiffness - factor * unit).norm() <= round_off * section.stiffness.norm());
     return factor;
   };
-  const auto near = boost::test_tools::tolerance(rounding);
+  const auto near = boost::test_tools::tolerance(round_off);
   BOOST_TEST(factor_at(0.0) == 1.0);
   BOOST_TEST(factor_at(0.1) == 1.0);
   BOOST_TEST(factor_at(0.2) == 1.5, near);
@@ -241,10 +241,10 @@ BOOST_AUTO_TEST_SUITE(arc_length)
 BOOST_AUTO_TEST_CASE(points_on_a_straight_line_give_their_distance) {
   const Vector3 direction(1, 2, -2);  // of length 3
   BOOST_TEST(compute_arc_length({Vector3::Zero(), direction}) == 3.0,
-             boost::test_tools::tolerance(rounding));
+             boost::test_tools::tolerance(round_off));
   BOOST_TEST(
       compute_arc_length({Vector3::Zero(), 0.1 * direction, 0.7 * direction, direction}) == 3.0,
-      boost::test_tools::tolerance(rounding));
+      boost::test_tools::tolerance(round_off));
 }
 
 BOOST_AUTO_TEST_CASE(points_on_an_arc_converge_to_its_length) {

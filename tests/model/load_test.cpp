@@ -14,7 +14,7 @@ namespace {
 using namespace samara;
 
 /// Sums of some dozen products of about one.
-constexpr double rounding = 1e-13;
+constexpr double round_off = 1e-13;
 
 constexpr double length = 4.0;
 constexpr double pi = 3.14159265358979324;
@@ -72,8 +72,8 @@ BOOST_AUTO_TEST_CASE(distributed_loads_are_integrated_exactly_over_any_part) {
       const int q = order - 1;
       const auto power = [&](double fraction) { return std::pow(fraction * length, p + q + 1); };
       const double expected = (power(to) - power(from)) / (p + q + 1);
-      BOOST_TEST(std::abs(sum_of(beam, load, p, q) - expected) < rounding * power(1.0));
-      BOOST_TEST(std::abs(sum_of(beam, load, 0, 0) - (to - from) * length) < rounding);
+      BOOST_TEST(std::abs(sum_of(beam, load, p, q) - expected) < round_off * power(1.0));
+      BOOST_TEST(std::abs(sum_of(beam, load, 0, 0) - (to - from) * length) < round_off);
     }
   }
 }
@@ -86,8 +86,8 @@ BOOST_AUTO_TEST_CASE(point_loads_act_at_their_place) {
       BOOST_TEST(load.weights.size() == 1u);
       const double expected = std::pow(at * length, 2 * order - 1);
       BOOST_TEST(std::abs(sum_of(beam, load, order, order - 1) - expected) <
-                 rounding * std::pow(length, 2 * order - 1));
-      BOOST_TEST(std::abs(sum_of(beam, load, 0, 0) - 1.0) < rounding);
+                 round_off * std::pow(length, 2 * order - 1));
+      BOOST_TEST(std::abs(sum_of(beam, load, 0, 0) - 1.0) < round_off);
     }
   }
 }
@@ -98,27 +98,27 @@ BOOST_AUTO_TEST_CASE(a_load_at_the_end_is_the_tips_and_knows_its_twist) {
   BOOST_TEST(load.weights.empty());
   // Twist turns b2 toward -b3.
   BOOST_TEST((load.tip_axes.col(1) - Vector3(0.0, std::cos(0.4), -std::sin(0.4))).norm() <
-             rounding);
+             round_off);
 }
 
 BOOST_AUTO_TEST_CASE(factors_are_constant_harmonic_or_tabulated) {
-  model::LoadHistory history;
-  BOOST_TEST(history.is_constant());
-  BOOST_TEST(history.factor(7.0, 3.0) == 1.0);
-  history.mean = 2.0;
-  history.amplitude = 0.5;
-  history.phase = pi / 3.0;
-  history.frequency = 5.0;
-  BOOST_TEST(!history.is_constant());
-  BOOST_TEST(std::abs(history.factor(0.3, 9.0) - (2.0 + 0.5 * std::cos(1.5 + pi / 3.0))) <
-             rounding);
-  history.per_rev = 2;  // of 9 rad/s
-  BOOST_TEST(std::abs(history.factor(0.3, 9.0) - (2.0 + 0.5 * std::cos(5.4 + pi / 3.0))) <
-             rounding);
-  history.table = {{1.0, 4.0}, {2.0, 6.0}, {4.0, 0.0}};
+  model::LoadVariation series;
+  BOOST_TEST(series.is_constant());
+  BOOST_TEST(series.factor(7.0, 3.0) == 1.0);
+  series.mean = 2.0;
+  series.amplitude = 0.5;
+  series.phase = pi / 3.0;
+  series.frequency = 5.0;
+  BOOST_TEST(!series.is_constant());
+  BOOST_TEST(std::abs(series.factor(0.3, 9.0) - (2.0 + 0.5 * std::cos(1.5 + pi / 3.0))) <
+             round_off);
+  series.per_rev = 2;  // of 9 rad/s
+  BOOST_TEST(std::abs(series.factor(0.3, 9.0) - (2.0 + 0.5 * std::cos(5.4 + pi / 3.0))) <
+             round_off);
+  series.table = {{1.0, 4.0}, {2.0, 6.0}, {4.0, 0.0}};
   for (const auto& [t, factor] : {std::pair(-1.0, 4.0), std::pair(1.0, 4.0), std::pair(1.5, 5.0),
                                   std::pair(2.0, 6.0), std::pair(3.0, 3.0), std::pair(9.0, 0.0)})
-    BOOST_TEST(std::abs(history.factor(t, 9.0) - factor) < rounding);
+    BOOST_TEST(std::abs(series.factor(t, 9.0) - factor) < round_off);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -62,8 +62,8 @@ BOOST_AUTO_TEST_CASE(all_faults_are_found_at_once) {
   turbine.blades.each[4].pitch = 0.1;
   model::LoadDefinition load;
   load.on_tower = true;
-  load.history.amplitude = 1.0;
-  load.history.frequency = 2.0;
+  load.variation.amplitude = 1.0;
+  load.variation.frequency = 2.0;
   turbine.loads = {load};
   check(scenario, Analysis::check,
         {"shaft.gear_ratio", "hub.teeter.joint", "blades.hinges[0].delta3_deg",
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(what_only_a_program_can_state_is_checked) {
 
 BOOST_AUTO_TEST_CASE(a_trim_has_the_harmonics_of_what_drives_it) {
   Scenario scenario = rigid_rotor();
-  model::JointHistory& motion = scenario.turbine.nacelle.yaw.motion;
+  model::PrescribedMotion& motion = scenario.turbine.nacelle.yaw.motion;
   scenario.turbine.nacelle.yaw.kind = model::JointKind::prescribed;
   motion.amplitude = 0.1;
   motion.per_rev = 6;

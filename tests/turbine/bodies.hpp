@@ -193,8 +193,8 @@ class BodyBuilder {
       bodies_.joint_energy += 0.5 * shaft.torsion.stiffness * twist * twist;
     const Matrix3 R_S = bearing * turned(Vector3::UnitY(), azimuth);
     add_body(shaft.mass, Vector3(0.0, shaft.center_of_mass, 0.0),
-             Vector3(shaft.inertia_lateral, shaft.inertia_axial, shaft.inertia_lateral), place,
-             velocity, R_S, spin);
+             Vector3(shaft.inertia_transverse, shaft.inertia_axial, shaft.inertia_transverse),
+             place, velocity, R_S, spin);
     const Vector3 pin = place + R_S.col(1) * shaft.overhang;
     const Vector3 pin_velocity = velocity + spin.cross(pin - place);
     bodies_.R_H = R_S;

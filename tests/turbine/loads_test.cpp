@@ -18,7 +18,7 @@ using namespace samara;
 using Complex = std::complex<double>;
 
 /// Sums of some hundred products, relative to the largest entry.
-constexpr double rounding = 1e-12;
+constexpr double round_off = 1e-12;
 
 /// Tangents against the complex step, relative to the largest entry of the row.
 constexpr double tangent_tolerance = 1e-11;
@@ -36,13 +36,13 @@ model::LoadDefinition load_of(bool on_tower, int blade, double from, double to, 
   return load;
 }
 
-model::LoadHistory wave(int per_rev) {
-  model::LoadHistory history;
-  history.mean = 0.3;
-  history.amplitude = 0.8;
-  history.per_rev = per_rev;
-  history.phase = 0.5;
-  return history;
+model::LoadVariation wave(int per_rev) {
+  model::LoadVariation series;
+  series.mean = 0.3;
+  series.amplitude = 0.8;
+  series.per_rev = per_rev;
+  series.phase = 0.5;
+  return series;
 }
 
 /// All kinds on every beam, at places that are no nodes, and at the ends.
@@ -54,10 +54,10 @@ std::vector<model::LoadDefinition> all_kinds(bool tower) {
       loads.push_back(load_of(on_tower, 0, 1.0, 1.0, follower));
       loads.push_back(load_of(on_tower, 0, 0.37, 0.37, follower));
       loads.push_back(load_of(on_tower, 0, 0.21, 0.83, follower));
-      loads.back().history = wave(2);
+      loads.back().variation = wave(2);
     }
     loads.push_back(load_of(false, 1, 0.6, 0.9, follower));
-    loads.back().history.table = {{0.0, 0.0}, {2.0, 1.0}};
+    loads.back().variation.table = {{0.0, 0.0}, {2.0, 1.0}};
   }
   return loads;
 }
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(loads_follow_their_time) {
   const sample::RandomState state = sample::random_state(system, 3);
   model::LoadDefinition load = load_of(false, 0, 0.2, 0.7, true);
   const Eigen::VectorXd constant = load_rows(choice, {load}, 0.0, state);
-  load.history = wave(2);
+  load.variation = wave(2);
   const double factor = 0.3 + 0.8 * std::cos(2.0 * 3.0 * 0.9 + 0.5);  // 3 rad/s
   const Eigen::VectorXd later = load_rows(choice, {load}, 0.9, state);
   BOOST_TEST((later - factor * constant).norm() < 1e-10 * constant.norm());
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(K_is_the_complex_step_with_loads_of_all_kinds) {
 BOOST_AUTO_TEST_CASE(the_rotor_repeats_where_its_loads_do) {
   const sample::Choice choice{3, 2, true, true, false, true, false};
   const auto sectors = [&](model::LoadDefinition load, int per_rev) {
-    if (per_rev > 0) load.history = wave(per_rev);
+    if (per_rev > 0) load.variation = wave(per_rev);
     return build(choice, {load}).symmetry().sectors;
   };
   const model::LoadDefinition blades = load_of(false, 0, 0.2, 0.7, true);
@@ -216,8 +216,8 @@ BOOST_AUTO_TEST_CASE(the_rotor_repeats_where_its_loads_do) {
 
   // r(t, P z, P z_dot) = P r(t + T/Q, z, z_dot)
   std::vector<model::LoadDefinition> loads{blades, tower, blades, tower};
-  loads[2].history = wave(3);
-  loads[3].history = wave(6);
+  loads[2].variation = wave(3);
+  loads[3].variation = wave(6);
   const turbine::TurbineSystem system = build(choice, loads);
   const system::RotorSymmetry& symmetry = system.symmetry();
   BOOST_TEST_REQUIRE(symmetry.sectors == 3);
@@ -237,7 +237,7 @@ BOOST_AUTO_TEST_CASE(the_rotor_repeats_where_its_loads_do) {
       sample::residual_of(system, t, renamed(state.z), renamed(state.z_dot));
   Eigen::VectorXd difference = now - renamed(later);
   difference(system.layout().teeter() + 1) = 0.0;  // the speed of a locked hinge
-  BOOST_TEST(difference.cwiseAbs().maxCoeff() < rounding * now.cwiseAbs().maxCoeff());
+  BOOST_TEST(difference.cwiseAbs().maxCoeff() < round_off * now.cwiseAbs().maxCoeff());
 }
 
 BOOST_AUTO_TEST_CASE(only_loads_with_a_potential_are_conservative) {

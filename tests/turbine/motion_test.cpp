@@ -17,7 +17,7 @@ using namespace samara;
 constexpr double balance_tolerance = 1e-9;
 
 /// Sums of some ten products.
-constexpr double rounding = 1e-12;
+constexpr double round_off = 1e-12;
 
 turbine::TurbineSystem build(const model::TurbineDefinition& definition) {
   return turbine::TurbineSystem(model::build_turbine(definition), PETSC_COMM_SELF);
@@ -208,7 +208,7 @@ BOOST_AUTO_TEST_CASE(reference_state_is_undeformed_and_satisfies_constraints_and
         if (unknown.role != system::UnknownRole::velocity && !prescribed)
           BOOST_TEST(z(i) == 0.0, unknown.name());
         if (system.rows()[at] != system::RowRole::balance)
-          BOOST_TEST(std::abs(r(i)) < rounding, unknown.name());
+          BOOST_TEST(std::abs(r(i)) < round_off, unknown.name());
       }
     }
   }
@@ -229,7 +229,7 @@ BOOST_AUTO_TEST_CASE(a_straight_blade_in_the_rotor_plane_moves_with_its_radius) 
       const double radius = definition.hub.radius + fraction * definition.blades.beam.length;
       Vector6 expected;
       expected << 0.0, definition.shaft.speed * radius, 0.0, 0.0, 0.0, definition.shaft.speed;
-      BOOST_TEST((z.segment<6>(first + 6) - expected).norm() < rounding);
+      BOOST_TEST((z.segment<6>(first + 6) - expected).norm() < round_off);
     }
   }
 }
@@ -258,10 +258,10 @@ BOOST_AUTO_TEST_CASE(a_straight_blade_pulls_at_its_root_with_its_centrifugal_for
     const double moment = (0.3 - 0.2) * Omega * Omega * std::sin(0.2) * std::cos(0.2) * 3.0;
     for (int k = 0; k < 2; ++k) {
       const Vector6 root = z.segment<6>(system.layout().blade_root(k));
-      BOOST_TEST(std::abs(root(0) - force) < rounding * force);
-      BOOST_TEST(root.segment<2>(1).norm() < rounding * force);
-      BOOST_TEST(std::abs(root(3) - moment) < rounding * force);
-      BOOST_TEST(root.tail<2>().norm() < rounding * force * R);
+      BOOST_TEST(std::abs(root(0) - force) < round_off * force);
+      BOOST_TEST(root.segment<2>(1).norm() < round_off * force);
+      BOOST_TEST(std::abs(root(3) - moment) < round_off * force);
+      BOOST_TEST(root.tail<2>().norm() < round_off * force * R);
     }
     // Half-way along the span the axial force is that of the outer half.
     const int inner = system.layout().blade_point(0, 0);
@@ -299,8 +299,8 @@ BOOST_AUTO_TEST_CASE(root_loads_of_a_coned_twisted_rotor_are_the_centrifugal_int
       const Vector3 found_moment = bodies.axes[at] * z.segment<3>(root + 3);
       const double scale = force.norm();
       BOOST_TEST(found_force.dot(bodies.axes[at].col(0)) > 0.0);
-      BOOST_TEST((found_force - force).norm() < rounding * scale);
-      BOOST_TEST((found_moment - moment).norm() < rounding * scale);
+      BOOST_TEST((found_force - force).norm() < round_off * scale);
+      BOOST_TEST((found_moment - moment).norm() < round_off * scale);
     }
   }
 }

@@ -113,7 +113,7 @@ inline model::TurbineDefinition turbine_definition(const Choice& choice) {
   d.shaft.mass = 2.0;
   d.shaft.center_of_mass = 0.6;
   d.shaft.inertia_axial = 0.4;
-  d.shaft.inertia_lateral = 0.9;
+  d.shaft.inertia_transverse = 0.9;
   d.hub.mass = 3.0;
   d.hub.center_of_mass = 0.2;
   d.hub.inertia = Vector3(0.8, 0.5, 0.8);

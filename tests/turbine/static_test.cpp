@@ -19,7 +19,7 @@ using namespace samara;
 
 constexpr double pi = std::numbers::pi;
 
-/// Newton stops here, relative to the largest load; its next step would be at rounding.
+/// Newton stops here, relative to the largest load; its next step would be at round-off.
 constexpr double newton_tolerance = 1e-12;
 
 /// Sums over a whole turbine after a solve with a condition of some 1e6.

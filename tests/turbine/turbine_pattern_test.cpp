@@ -178,8 +178,8 @@ model::TurbineDefinition random_turbine(unsigned seed) {
     load.force = Vector3(draw.some(1.0), draw.some(2.0), draw.some(3.0));
     load.moment = Vector3(draw.some(1.0), 0.0, draw.some(3.0));
     load.follower = !draw.one_in(3);
-    load.history.amplitude = draw.some(1.0);
-    load.history.per_rev = 1;
+    load.variation.amplitude = draw.some(1.0);
+    load.variation.per_rev = 1;
     d.loads = {load};
   }
   return d;

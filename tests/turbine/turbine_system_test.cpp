@@ -29,13 +29,13 @@ using Complex = std::complex<double>;
 constexpr int block = turbine::TurbineLayout::block;
 
 /// Sums of some hundred products, relative to the largest entry of their row or part.
-constexpr double rounding = 1e-12;
+constexpr double round_off = 1e-12;
 
 /// Tangents against the complex step, relative to the norm of their row.
 constexpr double tangent_tolerance = 1e-11;
 constexpr double complex_step = 1e-30;
 
-/// Differences of eighth order of the assembled residual itself: what rounding over the step
+/// Differences of eighth order of the assembled residual itself: what round-off over the step
 /// leaves.
 constexpr double difference_step = 2e-3;
 constexpr double difference_tolerance = 1e-9;
@@ -201,12 +201,12 @@ Array<T> summed_residual(const turbine::TurbineSystem& system, double t, const A
   chain.teeter = joint(layout.teeter());
   chain.torsion = joint(layout.shaft_torsion());
   chain.generator = joint(layout.generator());
-  const auto motion = [&](const model::JointHistory& history) {
-    const double rate = history.per_rev * turbine.speed;
-    const double turned = rate * t + history.phase;
-    return elements::JointMotion{history.angle + history.amplitude * std::cos(turned),
-                                 -rate * history.amplitude * std::sin(turned),
-                                 -rate * rate * history.amplitude * std::cos(turned)};
+  const auto motion = [&](const model::PrescribedMotion& series) {
+    const double rate = series.per_rev * turbine.speed;
+    const double turned = rate * t + series.phase;
+    return elements::JointMotion{series.angle + series.amplitude * std::cos(turned),
+                                 -rate * series.amplitude * std::sin(turned),
+                                 -rate * rate * series.amplitude * std::cos(turned)};
   };
   chain.yaw.prescribed = motion(turbine.yaw_motion);
   chain.teeter.prescribed = motion(turbine.teeter_motion);
@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(residual_is_the_sum_over_points_nodes_and_bodies) {
       const Eigen::VectorXd found = sample::residual_of(system, t, state.z, state.z_dot);
       const Eigen::VectorXd expected = summed_residual<double>(system, t, state.z, state.z_dot);
       BOOST_TEST((found - expected).cwiseAbs().maxCoeff() <
-                 rounding * expected.cwiseAbs().maxCoeff());
+                 round_off * expected.cwiseAbs().maxCoeff());
     }
   }
 }
@@ -346,9 +346,9 @@ BOOST_AUTO_TEST_CASE(residual_of_a_complex_state_is_the_sum_too) {
     const Array<Complex> expected = summed_residual<Complex>(system, 0.6, z, z_dot);
     const Eigen::VectorXd slope = expected.imag() / complex_step;
     BOOST_TEST((found.real() - expected.real()).cwiseAbs().maxCoeff() <
-               rounding * expected.real().cwiseAbs().maxCoeff());
+               round_off * expected.real().cwiseAbs().maxCoeff());
     BOOST_TEST((found.imag() / complex_step - slope).cwiseAbs().maxCoeff() <
-               rounding * slope.cwiseAbs().maxCoeff());
+               round_off * slope.cwiseAbs().maxCoeff());
   }
 }
 
@@ -384,8 +384,8 @@ BOOST_AUTO_TEST_CASE(residual_depends_on_time_by_the_azimuth_alone) {
   const Eigen::VectorXd between =
       sample::residual_of(system, 0.4 + 0.3 * system.period(), state.z, state.z_dot);
   const double scale = now.cwiseAbs().maxCoeff();
-  BOOST_TEST(std::abs(system.period() - 2.0 * std::numbers::pi / 3.0) < rounding);
-  BOOST_TEST((later - now).cwiseAbs().maxCoeff() < rounding * scale);
+  BOOST_TEST(std::abs(system.period() - 2.0 * std::numbers::pi / 3.0) < round_off);
+  BOOST_TEST((later - now).cwiseAbs().maxCoeff() < round_off * scale);
   BOOST_TEST((between - now).cwiseAbs().maxCoeff() > 1e-3 * scale);
 }
 
@@ -516,7 +516,7 @@ BOOST_AUTO_TEST_CASE(two_teetering_blades_repeat_after_half_a_turn_with_the_teet
   for (const bool tower : {true, false}) {
     const turbine::TurbineSystem system = build({2, 2, tower, true, true, true, false});
     BOOST_TEST(system.symmetry().sectors == 2);
-    BOOST_TEST(symmetry_error(system, system.symmetry(), -1) < rounding);
+    BOOST_TEST(symmetry_error(system, system.symmetry(), -1) < round_off);
     system::RotorSymmetry unsigned_symmetry = system.symmetry();
     for (double& sign : unsigned_symmetry.sign) sign = 1.0;
     BOOST_TEST(symmetry_error(system, unsigned_symmetry, -1) > 1e-4);
@@ -526,7 +526,7 @@ BOOST_AUTO_TEST_CASE(two_teetering_blades_repeat_after_half_a_turn_with_the_teet
 BOOST_AUTO_TEST_CASE(two_blades_on_a_rigid_hub_repeat_after_half_a_turn) {
   const turbine::TurbineSystem system = build({2, 1, true, true, false, true, false});
   BOOST_TEST(system.symmetry().sectors == 2);
-  BOOST_TEST(symmetry_error(system, system.symmetry(), -1) < rounding);
+  BOOST_TEST(symmetry_error(system, system.symmetry(), -1) < round_off);
 }
 
 BOOST_AUTO_TEST_CASE(three_blades_repeat_after_a_third_of_a_turn) {
@@ -535,7 +535,7 @@ BOOST_AUTO_TEST_CASE(three_blades_repeat_after_a_third_of_a_turn) {
   BOOST_TEST(system.symmetry().sectors == 3);
   // The speed U2 of a locked hinge is one component of the shaft's angular velocity, which has no
   // like in the next sector. Nothing depends on it, so that its row may differ.
-  BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < rounding);
+  BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < round_off);
   const sample::RandomState state = sample::random_state(system, 1);
   sample::Tangents tangents = sample::tangents_of(system, 0.0, state.z, state.z_dot);
   tangents.K(speed, speed) = 0.0;
@@ -574,7 +574,7 @@ BOOST_AUTO_TEST_CASE(masses_on_the_hub_keep_the_symmetry_where_they_balance) {
     const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     BOOST_TEST((system.symmetry().sectors == blades) == repeats);
     const int speed = system.layout().teeter() + 1;
-    if (repeats) BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < rounding);
+    if (repeats) BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < round_off);
   };
   const auto ring = [](int count, double downwind) {
     std::vector<Vector3> places;
@@ -614,10 +614,10 @@ BOOST_AUTO_TEST_CASE(prescribed_angles_keep_the_symmetry_where_they_repeat) {
     BOOST_TEST(system.symmetry().sectors == sectors);
     BOOST_TEST(system.symmetry().broken_by.empty() == (sectors == 2));
     const int speed = system.layout().teeter() + 1;
-    if (sectors == 2) BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < rounding);
+    if (sectors == 2) BOOST_TEST(symmetry_error(system, system.symmetry(), speed) < round_off);
   };
-  model::JointHistory& yaw = definition.nacelle.yaw.motion;
-  model::JointHistory& teeter = definition.hub.teeter.motion;
+  model::PrescribedMotion& yaw = definition.nacelle.yaw.motion;
+  model::PrescribedMotion& teeter = definition.hub.teeter.motion;
   check(2);
   yaw = {0.5, 0.2, 2, 0.0, 0.7};
   teeter = {0.0, 0.1, 3, 0.0, -0.4};
@@ -817,33 +817,34 @@ BOOST_AUTO_TEST_CASE(kinetic_energy_of_a_beam_is_that_of_its_groups) {
     }
     for (const sample::Piece& piece : sample::bodies_at(definition, system, 0.0, state.z).pieces)
       if (piece.blade >= 0) by_blade[static_cast<std::size_t>(piece.blade)] -= piece.kinetic;
-    for (const double left : by_blade) BOOST_TEST(std::abs(left) < 1e3 * rounding);
+    for (const double left : by_blade) BOOST_TEST(std::abs(left) < 1e3 * round_off);
   }
 }
 
 BOOST_AUTO_TEST_CASE(only_joints_that_nothing_restores_are_neutral) {
   model::TurbineDefinition definition = sample::turbine_definition({});
-  const auto neutral_of = [&definition]() {
+  const auto unconstrained_of = [&definition]() {
     const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
     std::vector<std::string> names;
-    for (const system::NeutralCoordinate& neutral : system.neutral_coordinates()) {
-      names.push_back(neutral.name);
-      BOOST_TEST(system.unknowns()[static_cast<std::size_t>(neutral.unknown)].name() ==
-                 neutral.name + " angle");
+    for (const system::UnconstrainedCoordinate& unconstrained :
+         system.unconstrained_coordinates()) {
+      names.push_back(unconstrained.name);
+      BOOST_TEST(system.unknowns()[static_cast<std::size_t>(unconstrained.unknown)].name() ==
+                 unconstrained.name + " angle");
       BOOST_TEST(
-          (system.rows()[static_cast<std::size_t>(neutral.row)] == system::RowRole::balance));
+          (system.rows()[static_cast<std::size_t>(unconstrained.row)] == system::RowRole::balance));
     }
     return names;
   };
-  BOOST_TEST(neutral_of().empty());
+  BOOST_TEST(unconstrained_of().empty());
   definition.nacelle.yaw.stiffness = 0.0;
   definition.hub.teeter.stiffness = 0.0;
-  BOOST_TEST((neutral_of() == std::vector<std::string>{"yaw"}));
+  BOOST_TEST((unconstrained_of() == std::vector<std::string>{"yaw"}));
   definition.shaft.speed = 0.0;
-  BOOST_TEST((neutral_of() == std::vector<std::string>{"yaw", "teeter"}));
+  BOOST_TEST((unconstrained_of() == std::vector<std::string>{"yaw", "teeter"}));
   definition.nacelle.yaw.kind = model::JointKind::locked;
   definition.hub.teeter.kind = model::JointKind::locked;
-  BOOST_TEST(neutral_of().empty());
+  BOOST_TEST(unconstrained_of().empty());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -69,7 +69,7 @@ struct Sample {
   Recounted counted;
 };
 
-constexpr double rounding = 1e-11;
+constexpr double round_off = 1e-11;
 
 }  // namespace
 
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(counting_back_gives_the_state) {
     BOOST_TEST((first.z - z).cwiseAbs().maxCoeff() > 0.5);
     const petsc::Handle<Vec> state = sample::to_petsc(system, first.z);
     first.system->count_from_undeformed(state.get());
-    BOOST_TEST((sample::to_dense(state.get()) - z).cwiseAbs().maxCoeff() < rounding);
+    BOOST_TEST((sample::to_dense(state.get()) - z).cwiseAbs().maxCoeff() < round_off);
   }
 }
 
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(forces_momenta_and_strains_do_not_know_how_rotations_are_co
         difference.segment<3>(first + 3).setZero();
       }
     }
-    BOOST_TEST(difference.maxCoeff() < rounding * plain.cwiseAbs().maxCoeff());
+    BOOST_TEST(difference.maxCoeff() < round_off * plain.cwiseAbs().maxCoeff());
     BOOST_TEST(changed > 1e-3);
   }
 }
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(tangents_are_the_complex_step_with_any_references) {
     const Sample sample(choice);
     const auto& system = dynamic_cast<const turbine::TurbineSystem&>(*sample.counted.system);
     const sample::RandomState state = sample::random_state(system, 7);
-    BOOST_TEST(sample::tangent_error(system, 0.9, state) < rounding);
+    BOOST_TEST(sample::tangent_error(system, 0.9, state) < round_off);
   }
 }
 
@@ -140,7 +140,7 @@ BOOST_AUTO_TEST_CASE(the_undeformed_state_is_one_in_any_count) {
   BOOST_TEST(z.cwiseAbs().maxCoeff() > 0.5);
   const Eigen::VectorXd r =
       sample::residual_of(*counted.system, 0.0, z, Eigen::VectorXd::Zero(z.size()));
-  BOOST_TEST(r.cwiseAbs().maxCoeff() < rounding);
+  BOOST_TEST(r.cwiseAbs().maxCoeff() < round_off);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

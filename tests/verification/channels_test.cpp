@@ -9,7 +9,7 @@
 #include "samara/turbine/turbine_channels.hpp"
 
 #include "../turbine/bodies.hpp"
-#include "history.hpp"
+#include "time_series.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -19,7 +19,7 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
-/// The last sample of a short history from the undeformed state, and its channels.
+/// The last sample of a short time series from the undeformed state, and its channels.
 struct Instant {
   double t = 0.0;
   Eigen::VectorXd z;

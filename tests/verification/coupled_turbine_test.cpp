@@ -12,7 +12,7 @@ using boost::test_tools::tolerance;
 
 namespace {
 
-/// The free yaw: mu = 1 twice with one vector, which rounding splits by its root.
+/// The free yaw: mu = 1 twice with one vector, which round-off splits by its root.
 bool is_defective(const analysis::Mode& mode, double speed) {
   return std::abs(mode.exponent) < 1e-5 * speed;
 }
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(order_is_two_s_on_the_coupled_turbine) {
       if (per_rev < 0.5 || per_rev > 12.0) continue;
       const double large = distance(mode.exponent, coarse);
       const double small = distance(mode.exponent, halved);
-      if (small < 1e-8) continue;  // rounding
+      if (small < 1e-8) continue;  // round-off
       ++seen;
       // The slope itself converges with the mesh: within 15 % here, as for the cantilever.
       BOOST_TEST(std::log2(large / small) == 2.0 * order, tolerance(0.15));

@@ -92,7 +92,7 @@ std::vector<double> rolling_frequencies(double ratio, double inertia, bool free_
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> pairs(
       Eigen::MatrixXd(K.topLeftCorner(n, n)), Eigen::MatrixXd(M.topLeftCorner(n, n)));
   std::vector<double> found;
-  for (Eigen::Index i = free_generator ? 1 : 0; i < n; ++i)  // g and q together are neutral
+  for (Eigen::Index i = free_generator ? 1 : 0; i < n; ++i)  // g and q together are unconstrained
     found.push_back(std::sqrt(pairs.eigenvalues()(i)));
   return found;
 }
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(a_free_generator_swings_against_the_rotor) {
 
 BOOST_AUTO_TEST_CASE(the_slope_of_the_torque_brings_the_speed_back) {
   // d/dt of the deviation: - slope / (rotor + generator), a real exponent; the angle itself is
-  // neutral.
+  // unconstrained.
   model::TurbineDefinition definition = rotor(5.0, false, true);
   definition.shaft.generator.law.slope = 2.5;
   const analysis::ModeSet set = constant_modes_of(definition);

@@ -44,8 +44,8 @@ constexpr std::array<int, 3> steps{120, 240, 480};
 constexpr std::array<int, 2> reference_steps{1200, 1500};
 /// Estimates beyond it count for no verdict.
 constexpr double largest_estimate = 0.1;
-/// True errors below it are rounding.
-constexpr double rounding = 1e-8;
+/// True errors below it are round-off.
+constexpr double round_off = 1e-8;
 /// Modes of a run that are compared: those of the first verdicts, and half as many again.
 constexpr std::size_t compared = 15;
 
@@ -95,13 +95,13 @@ void compare(const analysis::ModeSet& set, const std::array<analysis::ModeSet, 2
     const double before = distance(mode, references[0]);
     if (estimate > largest_estimate || std::abs(error - before) > 0.1 * estimate) continue;
     ++figures.counted;
-    const bool is_honest = error < 3.0 * estimate + rounding;
+    const bool is_honest = error < 3.0 * estimate + round_off;
     if (is_honest) ++figures.honest;
     BOOST_TEST_MESSAGE((is_honest ? "" : "DISHONEST ")
                        << mode.label << " " << mode.exponent << " estimate " << estimate << " ("
-                       << mode.step_error << " " << mode.mesh_error << " " << mode.rounding_error
+                       << mode.step_error << " " << mode.mesh_error << " " << mode.round_off_error
                        << ") error " << error);
-    if (error > rounding) figures.generous.push_back(estimate / error);
+    if (error > round_off) figures.generous.push_back(estimate / error);
   }
 }
 

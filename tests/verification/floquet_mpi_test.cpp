@@ -8,7 +8,7 @@ using namespace samara::test;
 
 BOOST_AUTO_TEST_CASE(ranks_do_not_change_the_exponents_of_the_baseline) {
   // Every rank also does the whole work alone. 1e-9 relative; the defective multiplier of the free
-  // yaw, which rounding moves by its root, 1e-4.
+  // yaw, which round-off moves by its root, 1e-4.
   for (const char* gravity : {"gravity=0", "gravity=9.80665"}) {
     const model::TurbineDefinition definition = lee("baseline", {gravity}).turbine;
     const analysis::ModeSet alone = floquet_of(definition, 500).set;

@@ -17,7 +17,7 @@
 #include "samara/model/masses.hpp"
 #include "samara/turbine/turbine_input_output.hpp"
 
-#include "history.hpp"
+#include "time_series.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -83,7 +83,7 @@ Complex nearest_exponent(const analysis::ModeSet& set, Complex exponent) {
 /// Exponents up to here [rad/s] are compared where the reference has a step of its own.
 constexpr double fastest = 60.0;
 
-struct History {
+struct TimeSeries {
   std::vector<double> times;
   std::vector<VectorXd> values;
 };
@@ -123,8 +123,8 @@ class Driven final : public system::PeriodicSystem {
   const std::vector<system::EnergyGroup>& energy_groups() const override {
     return turbine_.energy_groups();
   }
-  const std::vector<system::NeutralCoordinate>& neutral_coordinates() const override {
-    return turbine_.neutral_coordinates();
+  const std::vector<system::UnconstrainedCoordinate>& unconstrained_coordinates() const override {
+    return turbine_.unconstrained_coordinates();
   }
   void reference_state(double t, Vec z) const override { turbine_.reference_state(t, z); }
   petsc::Handle<Vec> make_state() const override { return turbine_.make_state(); }
@@ -192,7 +192,7 @@ BOOST_AUTO_TEST_CASE(exponents_of_periodic_state_spaces_are_those_of_floquet) {
     for (const int steps : {500, 1000, 2000}) sets.push_back(floquet_of(definition, steps).set);
     std::vector<Complex> wanted;
     for (const analysis::Mode& mode : sets[2].modes) {
-      // Rounding splits a double zero by its root.
+      // Round-off splits a double zero by its root.
       if (std::abs(mode.exponent) < 1e-4 || std::abs(mode.exponent) > fastest) continue;
       const Complex middle = nearest_exponent(sets[1], mode.exponent);
       const Complex coarse = nearest_exponent(sets[0], middle);
@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
   std::vector<linear::StateSpace> forms;
   for (int k = 0; k <= steps; ++k) forms.push_back(linear.model.state_space(step * k));
   const turbine::TurbineChannels measured(linear.system, {}, channels);
-  const auto history_of = [&](const Driven& system) {
+  const auto series_of = [&](const Driven& system) {
     Keeper<VectorXd> keeper([&](const TransientSample& sample) {
       VectorXd y(outputs);
       const VectorXd z = values_of(sample.z);
@@ -254,15 +254,15 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
     });
     analysis::run_transient(system, analysis::start_on(linear.system, linear.trim, 0.0),
                             steps_of(step, step * steps, analysis::TransientMethod::bdf2), keeper);
-    return History{keeper.times, keeper.values};
+    return TimeSeries{keeper.times, keeper.values};
   };
   for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
     const bool is_motion = linear.ports.inputs()[static_cast<std::size_t>(i)].is_motion;
     const double size = is_motion ? 1e-3 : 300.0;
     const Driven up(linear.system, linear.ports, i, size, omega);
     const Driven down(linear.system, linear.ports, i, -size, omega);
-    const History above = history_of(up);
-    const History below = history_of(down);
+    const TimeSeries above = series_of(up);
+    const TimeSeries below = series_of(down);
     const auto input_at = [&](int k) {
       VectorXd u = VectorXd::Zero(forms[0].B.cols());
       for (std::size_t c = 0; c < linear.model.input_columns().size(); ++c) {

@@ -152,9 +152,9 @@ Runs run(const model::TurbineDefinition& definition) {
   return runs;
 }
 
-/// Error of an exponent by step and rounding [rad/s].
+/// Error of an exponent by step and round-off [rad/s].
 double error_of(const analysis::Mode& mode) {
-  return std::max((mode.step_error + mode.rounding_error) * std::abs(mode.exponent),
+  return std::max((mode.step_error + mode.round_off_error) * std::abs(mode.exponent),
                   mode.growth_error - mode.mesh_growth_error);
 }
 

@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(every_resolved_mode_is_identified_and_every_multiplier_is_t
                                                  return std::abs(a - value) < std::abs(b - value);
                                                });
             const bool resolved = 0.5 * mode.exponent.imag() * dt < largest_half_phase;
-            // 1e-9 where resolved: rounding, 1e-12 in an exponent of 1e3 rad/s. Elsewhere it grows
+            // 1e-9 where resolved: round-off, 1e-12 in an exponent of 1e3 rad/s. Elsewhere it grows
             // with omega dt.
             BOOST_TEST(std::abs(*best - value) < (resolved ? 1e-9 : 1e-5),
                        mode.label << " " << std::abs(*best - value));
@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(blade_period_rounds_odd_steps_up) {
 
 BOOST_AUTO_TEST_CASE(degenerate_lead_lag_is_labelled_only_where_it_splits) {
   // With the yaw locked the two blades' lead-lag do not know of each other: any mixture of the two
-  // is a mode, and which one comes out is rounding. Only the blade period tells them apart, for
+  // is a mode, and which one comes out is round-off. Only the blade period tells them apart, for
   // half a revolution later they differ in sign.
   const model::TurbineDefinition definition = locked_rotor(6, 2).turbine;
   const analysis::ModeSet constant = constant_modes_of(definition);
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(free_yaw_has_a_real_pair_a_double_zero_and_splits_the_lead_
     }
     BOOST_REQUIRE(real.size() == 2U);
     BOOST_TEST(real[0] == -real[1], tolerance(1e-7));
-    // mu = 1 is defective: rounding splits it into a real pair, or a complex one in one row.
+    // mu = 1 is defective: round-off splits it into a real pair, or a complex one in one row.
     BOOST_TEST((zeros == 1 || zeros == 2));
     growth.push_back(std::max(real[0], real[1]));
     const std::vector<double> antisymmetric =

@@ -215,7 +215,7 @@ BOOST_AUTO_TEST_CASE(lead_lag_is_flap_less_the_speed) {
       const analysis::ModeSet set = constant_modes_of(definition_of(beam));
       const std::vector<double> out = frequencies(set, "blade flap");
       const std::vector<double> in = frequencies(set, "blade lead-lag");
-      // The fastest pairs differ by less than rounding, and bend any way.
+      // The fastest pairs differ by less than round-off, and bend any way.
       const std::vector<double> any = frequencies(set, "blade bending");
       BOOST_REQUIRE(out.size() == in.size());
       BOOST_REQUIRE(out.size() >= 3U);

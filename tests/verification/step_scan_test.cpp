@@ -56,9 +56,9 @@ analysis::Floquet run(const ScanCase& scan, int steps, const std::vector<std::st
   return floquet_of(input.turbine, steps, input.floquet.period, input.trim);
 }
 
-/// Error of an exponent by step and rounding [rad/s]: the mesh is the same in all runs.
+/// Error of an exponent by step and round-off [rad/s]: the mesh is the same in all runs.
 double error_of(const analysis::Mode& mode) {
-  return std::max((mode.step_error + mode.rounding_error) * std::abs(mode.exponent),
+  return std::max((mode.step_error + mode.round_off_error) * std::abs(mode.exponent),
                   mode.growth_error);
 }
 
@@ -72,7 +72,7 @@ double distance(Complex a, Complex b, double speed) {
 }
 
 /// Below `limit` [rad/s] each resolved mode of `from` is one of `to`, within the errors of both;
-/// returns how many were compared. Decays that rounding hides in one of them are left out.
+/// returns how many were compared. Decays that round-off hides in one of them are left out.
 int compare(const analysis::ModeSet& from, const analysis::ModeSet& to, double limit) {
   const double slowest = std::min(from.deflated_rate, to.deflated_rate);
   int compared = 0;
@@ -87,7 +87,7 @@ int compare(const analysis::ModeSet& from, const analysis::ModeSet& to, double l
                                   distance(mode.exponent, best->exponent, from.rotor_speed)))
         best = &other;
     BOOST_REQUIRE(best != nullptr);
-    // A multiplier of one that rounding has split: 1e-6 of the rotor speed counts as zero.
+    // A multiplier of one that round-off has split: 1e-6 of the rotor speed counts as zero.
     BOOST_TEST(distance(mode.exponent, best->exponent, from.rotor_speed) <
                    error_of(mode) + error_of(*best) + 2e-6 * from.rotor_speed,
                mode.label << " " << mode.exponent << " and " << best->exponent << ", errors "

@@ -1,4 +1,4 @@
-// Time histories against public codes, closed forms, Floquet's theory and themselves.
+// Time series against public codes, closed forms, Floquet's theory and themselves.
 #include <array>
 #include <map>
 
@@ -9,8 +9,8 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 
-#include "history.hpp"
 #include "record.hpp"
+#include "time_series.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -266,7 +266,7 @@ BOOST_AUTO_TEST_CASE(energy_of_the_undamped_turbine_changes_by_the_work_of_the_d
       "baseline", with(mesh(true, 2, 2), {"nacelle.yaw.joint=locked", "hub.inertia=[0, 0, 0]"}));
   const auto system = system_of(input.turbine);
   const analysis::Trim trim = trim_of(*system, 0);
-  const TransientStart start = released(*system, trim, "tower lateral 1", 0.2);
+  const TransientStart start = released(*system, trim, "tower side-side 1", 0.2);
   const double period = system->period();
   std::vector<double> gains;
   for (const int steps : {200, 400, 800})
@@ -295,29 +295,29 @@ BOOST_AUTO_TEST_CASE(midpoint_rule_gives_reactions_of_second_order_beside_rigid_
   constexpr Eigen::Index settled = 60;
   const std::vector<std::string> names{"RootFzb1", "RootMxb1", "TwrBsMyt", "TwrBsFxt"};
   const turbine::TurbineChannels channels(*system, {}, names);
-  std::vector<Eigen::MatrixXd> histories;
+  std::vector<Eigen::MatrixXd> runs;
   for (const int parts : {1, 3, 9, 27}) {
-    Eigen::MatrixXd history = Eigen::MatrixXd::Zero(4, rows);
+    Eigen::MatrixXd series = Eigen::MatrixXd::Zero(4, rows);
     Keeper<double> watch([&](const TransientSample& sample) {
       const long row = (sample.step - 1 - parts / 2) / parts;
       std::array<double, 4> values{};
       if (sample.step <= 0 || (sample.step - 1 - parts / 2) % parts != 0 || row >= rows) return 0.0;
       channels.evaluate(sample.t, sample.z, sample.z_dot, values);
-      history.col(row) = Eigen::Map<const Eigen::Vector4d>(values.data());
+      series.col(row) = Eigen::Map<const Eigen::Vector4d>(values.data());
       return 0.0;
     });
     analysis::run_transient(*system, analysis::start_on(*system, trim, 0.0),
                             steps_of(longest / parts, rows * longest, TransientMethod::midpoint),
                             watch);
-    histories.push_back(history);
+    runs.push_back(series);
   }
   for (Eigen::Index i = 0; i < 4; ++i) {
     const auto difference = [&](std::size_t a, std::size_t b) {
-      return (histories[a] - histories[b]).row(i).tail(rows - settled).cwiseAbs().maxCoeff();
+      return (runs[a] - runs[b]).row(i).tail(rows - settled).cwiseAbs().maxCoeff();
     };
     const double slope = std::log(difference(0, 1) / difference(1, 2)) / std::log(3.0);
     const double fine = std::log(difference(1, 2) / difference(2, 3)) / std::log(3.0);
-    const double range = histories[3].row(i).maxCoeff() - histories[3].row(i).minCoeff();
+    const double range = runs[3].row(i).maxCoeff() - runs[3].row(i).minCoeff();
     BOOST_TEST_MESSAGE(names[static_cast<std::size_t>(i)] << ": orders " << slope << " " << fine
                                                           << ", last change "
                                                           << difference(2, 3) / range);
@@ -406,11 +406,11 @@ BOOST_AUTO_TEST_CASE(disturbance_along_a_mode_decays_and_oscillates_as_floquet_s
   const double period = system->period();
   constexpr int steps = 400;
   constexpr int revolutions = 20;
-  for (const std::string label : {"tower lateral 1", "blade flap symmetric 1"}) {
+  for (const std::string label : {"tower side-side 1", "blade flap symmetric 1"}) {
     const FoundMode found = mode_of(*system, trim, label);
     // Half the difference of a disturbance and its opposite: what is even in it drops out.
     constexpr double amplitude = 1e-3;
-    std::array<std::vector<Eigen::VectorXd>, 2> histories;
+    std::array<std::vector<Eigen::VectorXd>, 2> runs;
     for (const int side : {0, 1}) {
       TransientStart start = analysis::start_on(*system, trim, 0.0);
       start.z += (side == 0 ? amplitude : -amplitude) * analysis::real_part(found.shape);
@@ -420,14 +420,14 @@ BOOST_AUTO_TEST_CASE(disturbance_along_a_mode_decays_and_oscillates_as_floquet_s
       analysis::run_transient(
           *system, start, steps_of(period / steps, revolutions * period, TransientMethod::midpoint),
           keeper);
-      histories[static_cast<std::size_t>(side)] = keeper.values;
+      runs[static_cast<std::size_t>(side)] = keeper.values;
     }
     // Once a revolution: s(n+1) = 2 Re mu s(n) - |mu|^2 s(n-1) in every position.
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
     const auto difference = [&](int row) -> Eigen::VectorXd {
       const auto at = static_cast<std::size_t>(row);
-      return 0.5 * (histories[0][at] - histories[1][at]);
+      return 0.5 * (runs[0][at] - runs[1][at]);
     };
     for (int n = 1; n + 1 < revolutions; ++n) {
       const Eigen::VectorXd before = difference(1 + (n - 1) * steps);

@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(coarse_and_fine_meshes_of_a_large_turbine_are_balanced_in_f
 }
 
 BOOST_AUTO_TEST_CASE(residual_between_the_samples_falls_with_every_pair_of_harmonics) {
-  // Several times each: another program found 3.9 and 5.9 (below), here at least 2.5. Rounding of
+  // Several times each: another program found 3.9 and 5.9 (below), here at least 2.5. Round-off of
   // the loads, 1e-11 of 1e5 N, is far below.
   for (const auto& [elements, order] : {std::pair{4, 1}, std::pair{3, 2}}) {
     const auto system = heavy(elements, order);
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(automatic_harmonics_are_even_for_two_blades) {
     BOOST_TEST(trim.solution.harmonics() % 2 == 0);
     BOOST_TEST(trim.solution.harmonics() > 0);
     BOOST_TEST(trim.residual_between <= wanted * trim.load_level);
-    for (const auto& [harmonics, residual] : trim.history) {
+    for (const auto& [harmonics, residual] : trim.attempts) {
       BOOST_TEST(harmonics % 2 == 0);
       if (harmonics != trim.solution.harmonics()) BOOST_TEST(residual > wanted * trim.load_level);
     }
@@ -260,9 +260,9 @@ BOOST_AUTO_TEST_CASE(oscillating_follower_loads_are_balanced_as_shooting_says) {
   load.to = 1.0;
   load.force = Vector3(0.0, 0.0, 5.0);
   load.follower = true;
-  load.history.per_rev = 2;
-  load.history.amplitude = 1.0;
-  load.history.phase = 0.7;
+  load.variation.per_rev = 2;
+  load.variation.amplitude = 1.0;
+  load.variation.phase = 0.7;
   definition.loads = {load};
   const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;

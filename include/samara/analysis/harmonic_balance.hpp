@@ -12,7 +12,8 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
                             const PeriodicSolution* start);
 
 /// The largest balance row of the residual of `solution`, in the middle between the samples of
-/// harmonic balance (`shift` 0.5) or at them (0). The constant `loads` hold neutral coordinates.
+/// harmonic balance (`shift` 0.5) or at them (0). The constant `loads` hold unconstrained
+/// coordinates.
 double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                         const std::vector<HeldCoordinate>& loads, double shift);
 

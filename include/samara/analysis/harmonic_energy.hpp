@@ -20,7 +20,7 @@ namespace samara::analysis {
 
 class HarmonicEnergy {
  public:
-  /// For histories over one of `sectors` parts of the period; `share` of `shares`, about alike,
+  /// For time series over one of `sectors` parts of the period; `share` of `shares`, about alike,
   /// of the energy: the sum over all shares is the whole.
   explicit HarmonicEnergy(const system::PeriodicSystem& system, int sectors = 1, int share = 0,
                           int shares = 1);

@@ -21,7 +21,7 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
 bool has_canonical_shapes(const system::PeriodicSystem& system);
 
 /// Among the combinations of constant modes of equal exponents those in which each blade is ahead
-/// of the one behind it by the same angle, where has_canonical_shapes; exponents by rounding.
+/// of the one behind it by the same angle, where has_canonical_shapes; exponents by round-off.
 void choose_shapes(const system::PeriodicSystem& system,
                    std::vector<std::complex<double>>& exponents,
                    std::vector<Eigen::MatrixXcd>& shapes);

@@ -36,7 +36,7 @@ struct Mode {
   /// Estimated errors of the exponent, relative to its modulus (docs/theory.md, section 5.9).
   double step_error = 0.0;
   double mesh_error = 0.0;
-  double rounding_error = 0.0;
+  double round_off_error = 0.0;
   double growth_error = 0.0;       ///< of the real part [rad/s]: a growth below it is none
   double mesh_growth_error = 0.0;  ///< of this, what the elements make
   /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
@@ -50,7 +50,7 @@ struct Mode {
 
 /// Error of an exponent, relative to its modulus.
 inline double total_error(const Mode& mode) {
-  return mode.step_error + mode.mesh_error + mode.rounding_error;
+  return mode.step_error + mode.mesh_error + mode.round_off_error;
 }
 
 /// Logarithm of the ratio of two maxima one cycle apart; not a number for a real exponent.
@@ -69,7 +69,7 @@ struct ModeSet {
   bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*
   int states = 0;             ///< exponents there are, each of a pair counted
   int found = 0;              ///< of these, those of `modes`
-  /// Of these, decays that end below rounding within the integration: their exponents are not
+  /// Of these, decays that end below round-off within the integration: their exponents are not
   /// known and not among `modes`. All of them decay at `deflated_rate` [1/s] or faster.
   int deflated = 0;
   double deflated_rate = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Estimates of what step, mesh and rounding do to an exponent (docs/theory.md, section 5.9).
+// Estimates of what step, mesh and round-off do to an exponent (docs/theory.md, section 5.9).
 #pragma once
 
 #include <complex>
@@ -34,7 +34,7 @@ Eigen::Vector2d find_mesh_error(const std::vector<system::MeshError>& elements,
                                 const Eigen::MatrixXcd& shape, std::complex<double> exponent,
                                 double energy_of_mode);
 
-/// Error of the growth by step and rounding. `spread`: of the step; `principal`: the exponent
+/// Error of the growth by step and round-off. `spread`: of the step; `principal`: the exponent
 /// without multiples of the rotor speed, which the step must tell from zero.
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal);
 

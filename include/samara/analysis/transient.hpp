@@ -1,4 +1,4 @@
-// The time history of r(t, z, z_dot) = 0 from a given state (docs/theory.md, section 9).
+// The time series of r(t, z, z_dot) = 0 from a given state (docs/theory.md, section 9).
 //
 // PETSc's TS integrates the system as it is, fully implicit, with the exact tangents K + shift M:
 // BDF2 (second order, damps what a step does not resolve) or the implicit midpoint rule (second
@@ -18,7 +18,7 @@
 
 namespace samara::analysis {
 
-/// Where a history begins, or goes on.
+/// Where a time series begins, or goes on.
 struct TransientStart {
   double time = 0.0;                 ///< of z [s]
   long step = 0;                     ///< steps done since `origin`
@@ -40,7 +40,7 @@ struct TransientSample {
   bool on_grid = true;  ///< false: part of a step that was cut
 };
 
-/// Takes what a history gives, while it runs.
+/// Takes what a time series gives, while it runs.
 class TransientObserver : public Observer {
  public:
   /// After each step, and before the first one of a run that does not go on with another.

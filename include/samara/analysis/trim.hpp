@@ -39,7 +39,7 @@ struct Trim {
                     state_residual);
   }
   /// Harmonics tried and the residual between the samples that each left (more than one: auto).
-  std::vector<std::pair<int, double>> history = {};
+  std::vector<std::pair<int, double>> attempts = {};
   /// Largest evolution or definition row, at the samples and between them, relative to its terms.
   double state_residual = 0.0;
   /// Of harmonic balance: largest harmonic of a balance row that is to vanish [N, N m]; what the

@@ -24,8 +24,8 @@ struct Declarations {
   std::vector<system::Unknown> unknowns;
   std::vector<system::RowRole> rows;
   std::vector<system::EnergyGroup> energies;
-  std::vector<system::NeutralCoordinate> neutral;
-  std::vector<system::NeutralCoordinate> free;  ///< PeriodicSystem::free_coordinates
+  std::vector<system::UnconstrainedCoordinate> unconstrained;
+  std::vector<system::UnconstrainedCoordinate> free;  ///< PeriodicSystem::free_coordinates
   std::vector<system::MeshError> mesh_errors;
   std::vector<system::Motion> motions;
   std::vector<Channel> channels;
@@ -55,10 +55,10 @@ class Registry {
   /// Changes what is described: a position that nothing holds, whose row is a balance of loads.
   void set_free(int unknown);
   /// A coordinate that only loads and inertia restore, and the row of the load that would hold it.
-  void add_free(const system::NeutralCoordinate& free);
+  void add_free(const system::UnconstrainedCoordinate& free);
   void set_row(int unknown, system::RowRole row);
   void add(const system::EnergyGroup& group);
-  void add(const system::NeutralCoordinate& neutral);
+  void add(const system::UnconstrainedCoordinate& unconstrained);
   void add(const system::MeshError& error);
   void add(const system::Motion& motion);
   void add(const Channel& channel);

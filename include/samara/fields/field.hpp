@@ -35,7 +35,7 @@ struct Range {
 inline constexpr Range any_number{};
 inline constexpr Range positive{"a number > 0", 0.0, std::numeric_limits<double>::infinity(), true};
 inline constexpr Range non_negative{"a number >= 0", 0.0};
-/// Beyond it nothing converges; below it rounding decides.
+/// Beyond it nothing converges; below it round-off decides.
 inline constexpr Range tolerance{"a number from 1e-14 to 1e-3", 1e-14, 1e-3};
 inline constexpr Range fraction_of_one{"a number from 0 to 1", 0.0, 1.0};
 inline constexpr Range beyond_the_root{"a number above 0, to 1", std::numeric_limits<double>::min(),

@@ -17,7 +17,7 @@ namespace samara::io {
 /// The keys of `samara loads`.
 struct LoadOptions {
   std::vector<std::string> channels;  ///< empty: all
-  std::optional<double> from;         ///< [s] of a history; none: its first row
+  std::optional<double> from;         ///< [s] of a time series; none: its first row
   std::optional<double> until;        ///< [s]
   int azimuths = 720;                 ///< of a steady state, a revolution
   std::vector<double> hours;          ///< [h] of the lifetime, one a result; empty: no lifetime
@@ -36,7 +36,7 @@ LoadOptions read_load_options(const std::vector<std::string>& settings);
 struct LoadReport {
   std::string source;  ///< path of the result
   std::vector<turbine::Channel> channels;
-  loads::LoadHistory history;
+  loads::LoadSeries series;
   loads::LoadEvaluation evaluation;
 };
 

@@ -41,7 +41,7 @@ struct RunRecord {
   int ranks = 1;
 };
 
-struct HistoryContent;
+struct TimeSeriesContent;
 
 class ResultFile {
  public:
@@ -58,7 +58,7 @@ class ResultFile {
   /// /static
   void write_static(const analysis::StaticPath& path);
   /// /transient
-  void write_history(const HistoryContent& history);
+  void write_series(const TimeSeriesContent& series);
   /// /floquet
   void write_floquet(const analysis::Floquet& floquet);
   /// /modes: what /floquet has, without what belongs to a period.

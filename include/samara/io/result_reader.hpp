@@ -10,7 +10,7 @@ namespace samara::io {
 
 /// What a result holds that loads can be taken from.
 enum class ResultKind {
-  history,       ///< rows of `samara transient`
+  time_series,   ///< rows of `samara transient`
   steady_state,  ///< harmonics of `samara trim` or `samara floquet`
   other,
 };

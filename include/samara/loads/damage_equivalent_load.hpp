@@ -33,7 +33,7 @@ struct DamageOptions {
 std::vector<double> compute_damage_equivalent_loads(const std::vector<Cycle>& cycles,
                                                     double duration, const DamageOptions& options);
 
-/// A history that stands for `hours` of the lifetime.
+/// A time series that stands for `hours` of the lifetime.
 struct LoadCase {
   std::vector<Cycle> cycles;
   double duration = 0.0;  ///< [s] in which they were counted
@@ -42,7 +42,7 @@ struct LoadCase {
 
 /// The same over all cases, each repeated 3600 hours / duration times. N_eq is f_eq times the time
 /// of all cases, or `equivalent_cycles` of the lifetime, e.g. 1e7.
-/// @throws InputError where there is no case or no time; otherwise as for one history.
+/// @throws InputError where there is no case or no time; otherwise as for one time series.
 std::vector<double> compute_lifetime_loads(const std::vector<LoadCase>& cases,
                                            const DamageOptions& options,
                                            std::optional<double> equivalent_cycles = {});

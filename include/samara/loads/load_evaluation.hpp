@@ -1,5 +1,5 @@
-// All that is made of one history of loads: statistics, extreme events, harmonics, rainflow counts
-// and damage-equivalent loads (docs/theory.md, section 8).
+// All that is made of one time series of loads: statistics, extreme events, harmonics, rainflow
+// counts and damage-equivalent loads (docs/theory.md, section 8).
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 #include "samara/loads/damage_equivalent_load.hpp"
 #include "samara/loads/load_harmonics.hpp"
-#include "samara/loads/load_history.hpp"
+#include "samara/loads/load_series.hpp"
 #include "samara/loads/load_statistics.hpp"
 #include "samara/loads/rainflow.hpp"
 
@@ -41,11 +41,11 @@ struct LoadEvaluation {
 /// `azimuth_deg` [deg], one a row, for the harmonics; empty: it is not known.
 /// @throws InputError as the single evaluations, with the channel's name; for want of an azimuth or
 /// of a whole revolution only where harmonics are asked for.
-LoadEvaluation evaluate_loads(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
+LoadEvaluation evaluate_loads(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg,
                               const LoadEvaluationOptions& options);
 
-/// Equivalent loads [channel][exponent] of a lifetime of several histories with the same channels,
-/// each for some `hours` [h]. As `compute_lifetime_loads`.
+/// Equivalent loads [channel][exponent] of a lifetime of several time series with the same
+/// channels, each for some `hours` [h]. As `compute_lifetime_loads`.
 std::vector<std::vector<double>> evaluate_lifetime(const std::vector<LoadEvaluation>& evaluations,
                                                    const std::vector<double>& durations,
                                                    const std::vector<double>& hours,

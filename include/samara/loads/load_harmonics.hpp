@@ -1,7 +1,7 @@
-// Harmonics of the rotor speed in the channels of a history (docs/theory.md, section 8.2).
+// Harmonics of the rotor speed in the channels of a time series (docs/theory.md, section 8.2).
 #pragma once
 
-#include "samara/loads/load_history.hpp"
+#include "samara/loads/load_series.hpp"
 
 namespace samara::loads {
 
@@ -10,17 +10,17 @@ struct LoadHarmonics {
   Eigen::MatrixXd amplitudes;  ///< in the unit of the channel; >= 0 but for k = 0, the mean
   Eigen::MatrixXd phases;      ///< [rad], -pi to pi; 0 for k = 0
   int revolutions = 0;         ///< that they are of, the last whole ones
-  Eigen::Index first_row = 0;  ///< of these revolutions, which end with the history
+  Eigen::Index first_row = 0;  ///< of these revolutions, which end with the time series
 };
 
 /// Harmonics 0 ... `harmonics` by least squares over the last whole revolutions, weighted by
 /// azimuth (trapezoidal rule), which may advance unevenly: exact for a sum of these harmonics, and
 /// close to Fourier's integrals if there are others. `azimuth_deg` [deg] is one a row and grows; it
 /// may jump back by 360 deg, if no step is larger than 180 deg. What is before the azimuth began to
-/// grow is left out. A periodic history is one revolution.
+/// grow is left out. A periodic time series is one revolution.
 /// @throws InputError where there is not one whole revolution, or too few rows for the harmonics;
-/// otherwise as `check` of the history.
-LoadHarmonics compute_harmonics(const LoadHistory& history, const Eigen::VectorXd& azimuth_deg,
+/// otherwise as `check` of the time series.
+LoadHarmonics compute_harmonics(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg,
                                 int harmonics);
 
 }  // namespace samara::loads

@@ -1,9 +1,9 @@
-// Statistics and extreme events of the channels of a history (docs/theory.md, section 8.1).
+// Statistics and extreme events of the channels of a time series (docs/theory.md, section 8.1).
 #pragma once
 
 #include <vector>
 
-#include "samara/loads/load_history.hpp"
+#include "samara/loads/load_series.hpp"
 
 namespace samara::loads {
 
@@ -11,7 +11,7 @@ namespace samara::loads {
 /// they do not depend on where the steps are short.
 struct ChannelStatistics {
   double mean = 0.0;
-  double standard_deviation = 0.0;  ///< of the whole history, not an estimate from a sample
+  double standard_deviation = 0.0;  ///< of the whole time series, not an estimate from a sample
   double minimum = 0.0;
   double maximum = 0.0;
   double range = 0.0;            ///< maximum - minimum
@@ -22,10 +22,10 @@ struct ChannelStatistics {
 };
 
 /// One a channel.
-/// @throws as `check` of the history.
-std::vector<ChannelStatistics> compute_statistics(const LoadHistory& history);
+/// @throws as `check` of the time series.
+std::vector<ChannelStatistics> compute_statistics(const LoadSeries& series);
 
-/// A channel is at its largest or smallest value; `history.values.row(row)` is what the others have
+/// A channel is at its largest or smallest value; `series.values.row(row)` is what the others have
 /// at the same time.
 struct ExtremeEvent {
   Eigen::Index channel = 0;
@@ -35,7 +35,7 @@ struct ExtremeEvent {
 };
 
 /// Minimum and maximum of every channel, in the order of the channels.
-/// @throws as `check` of the history.
-std::vector<ExtremeEvent> find_extreme_events(const LoadHistory& history);
+/// @throws as `check` of the time series.
+std::vector<ExtremeEvent> find_extreme_events(const LoadSeries& series);
 
 }  // namespace samara::loads

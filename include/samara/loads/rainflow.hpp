@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "samara/loads/load_history.hpp"
+#include "samara/loads/load_series.hpp"
 
 namespace samara::loads {
 
@@ -33,9 +33,8 @@ std::vector<Cycle> count_periodic_cycles(const Eigen::Ref<const Eigen::VectorXd>
                                          double gate = 0.0);
 
 /// Of one channel, periodic or not.
-/// @throws as `check` of the history and `find_turning_points`
-std::vector<Cycle> count_cycles(const LoadHistory& history, Eigen::Index channel,
-                                double gate = 0.0);
+/// @throws as `check` of the time series and `find_turning_points`
+std::vector<Cycle> count_cycles(const LoadSeries& series, Eigen::Index channel, double gate = 0.0);
 
 /// Counts by range and mean; a bin has its lower edge, the last one both.
 struct RainflowTable {

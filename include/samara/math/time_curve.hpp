@@ -47,8 +47,8 @@ class TimeCurve {
 /// curve's value, acceleration its rate.
 class IntegratedCurve {
  public:
-  /// Exact to rounding for t from 0 to `until` [s] where the curve is a polynomial of degree 9 over
-  /// each hundredth of that time.
+  /// Exact to round-off for t from 0 to `until` [s] where the curve is a polynomial of degree 9
+  /// over each hundredth of that time.
   IntegratedCurve(TimeCurve curve, double until);
 
   TimeCurve::Value at(double t) const;

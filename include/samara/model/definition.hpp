@@ -91,7 +91,7 @@ struct BeamDefinition {
 enum class JointKind { free, locked, prescribed };
 
 /// angle + amplitude cos(frequency t + phase).
-struct JointHistory {
+struct PrescribedMotion {
   double angle = 0.0;      ///< mean [rad]
   double amplitude = 0.0;  ///< [rad]
   int per_rev = 0;         ///< the frequency as a multiple of the rotor speed; 0: `frequency` holds
@@ -103,7 +103,7 @@ struct JointHistory {
   /// At time t [s] where the rotor turns with `rotor_speed` [rad/s].
   elements::JointMotion at(double t, double rotor_speed) const;
 
-  bool operator==(const JointHistory&) const = default;
+  bool operator==(const PrescribedMotion&) const = default;
 };
 
 /// A second spring and damper from an angle on, both ways.
@@ -117,9 +117,9 @@ struct StopDefinition {
 
 struct JointDefinition {
   JointKind kind = JointKind::locked;
-  double stiffness = 0.0;    ///< [N m/rad]
-  double damping = 0.0;      ///< [N m s/rad]
-  JointHistory motion = {};  ///< of a prescribed joint
+  double stiffness = 0.0;        ///< [N m/rad]
+  double damping = 0.0;          ///< [N m s/rad]
+  PrescribedMotion motion = {};  ///< of a prescribed joint
 
   bool operator==(const JointDefinition&) const = default;
 };
@@ -165,16 +165,16 @@ struct NacelleDefinition {
 };
 
 struct ShaftDefinition {
-  double speed = 0.0;            ///< Omega0 >= 0 [rad/s], about +s2
-  double overhang = 0.0;         ///< yaw axis to teeter pin or apex, along s2 [m]
-  double tilt = 0.0;             ///< > 0 raises the downwind end [rad]
-  double height = 0.0;           ///< tower top to shaft axis along y3 [m]
-  double azimuth = 0.0;          ///< of blade 1 at t = 0 [rad]
-  double mass = 0.0;             ///< [kg]
-  double center_of_mass = 0.0;   ///< along s2 from the yaw axis [m]
-  double inertia_axial = 0.0;    ///< [kg m^2]
-  double inertia_lateral = 0.0;  ///< [kg m^2]
-  JointDefinition torsion;       ///< between generator and rotor
+  double speed = 0.0;               ///< Omega0 >= 0 [rad/s], about +s2
+  double overhang = 0.0;            ///< yaw axis to teeter pin or apex, along s2 [m]
+  double tilt = 0.0;                ///< > 0 raises the downwind end [rad]
+  double height = 0.0;              ///< tower top to shaft axis along y3 [m]
+  double azimuth = 0.0;             ///< of blade 1 at t = 0 [rad]
+  double mass = 0.0;                ///< [kg]
+  double center_of_mass = 0.0;      ///< along s2 from the yaw axis [m]
+  double inertia_axial = 0.0;       ///< [kg m^2]
+  double inertia_transverse = 0.0;  ///< [kg m^2]
+  JointDefinition torsion;          ///< between generator and rotor
   GeneratorDefinition generator;
   double gear_ratio =
       1.0;          ///< turns of the generator for one of the shaft, < 0 the other way; not 0
@@ -297,7 +297,7 @@ struct MassDamperDefinition {
 };
 
 /// How a load changes with time: mean + amplitude cos(frequency t + phase), or a table.
-struct LoadHistory {
+struct LoadVariation {
   double mean = 1.0;
   double amplitude = 0.0;
   int per_rev = 0;         ///< the frequency as a multiple of the rotor speed; 0: `frequency` holds
@@ -310,7 +310,7 @@ struct LoadHistory {
   /// The factor at time t [s] where the rotor turns with `rotor_speed` [rad/s].
   double factor(double t, double rotor_speed) const;
 
-  bool operator==(const LoadHistory&) const = default;
+  bool operator==(const LoadVariation&) const = default;
 };
 
 /// A prescribed load on a beam: at a point (from = to), or uniform along a part of it.
@@ -322,7 +322,7 @@ struct LoadDefinition {
   Vector3 force = Vector3::Zero();   ///< [N], or [N/m] where from < to
   Vector3 moment = Vector3::Zero();  ///< [N m], or [N m/m]
   bool follower = false;  ///< components in the deformed section; else in the axes of the root
-  LoadHistory history;
+  LoadVariation variation;
 
   bool operator==(const LoadDefinition&) const = default;
 };

@@ -18,7 +18,7 @@ struct BeamLoad {
   Vector6 load = Vector6::Zero();  ///< force, moment; components in a (dead) or in the section
   bool follower = false;
   bool at_tip = false;
-  LoadHistory history;
+  LoadVariation variation;
   Matrix3 tip_axes = Matrix3::Identity();  ///< C_ab of the tip, where the load is there
   int first_element = 0;
   std::vector<Eigen::MatrixXd> weights;  ///< 1 for a point load, [m] for a distributed one

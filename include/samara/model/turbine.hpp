@@ -26,7 +26,7 @@ struct RootLink {
   Vector3 axis = -Vector3::UnitX();    ///< that it turns about, in the axes behind it
   bool is_pitch = false;               ///< it turns as the blade is pitched
   int hinge = -1;                      ///< and as this hinge does; -1: as none
-  JointHistory motion = {};            ///< and as prescribed
+  PrescribedMotion motion = {};        ///< and as prescribed
 
   bool is_prescribed() const { return !motion.is_constant() || motion.angle != 0.0; }
 };
@@ -69,10 +69,10 @@ struct Turbine {
   double rotor_pitch_slope = 0.0;  ///< torque on the hub by the mean pitch [N m/rad]
   double pitch = 0.0;              ///< common to all blades [rad]
   elements::RigidChain chain;
-  JointHistory yaw_motion;     ///< of a yaw that is not free
-  JointHistory teeter_motion;  ///< of a teeter that is not free
-  double speed = 0.0;          ///< Omega0 [rad/s]
-  double azimuth = 0.0;        ///< of blade 1 at t = 0 [rad]
+  PrescribedMotion yaw_motion;     ///< of a yaw that is not free
+  PrescribedMotion teeter_motion;  ///< of a teeter that is not free
+  double speed = 0.0;              ///< Omega0 [rad/s]
+  double azimuth = 0.0;            ///< of blade 1 at t = 0 [rad]
   bool identical_blades = true;
   int degrees_of_freedom = 0;  ///< elastic strains of all points + free joints
 
@@ -111,8 +111,8 @@ struct Turbine {
 
  private:
   elements::JointMotion motion_at(const std::optional<math::TimeCurve>& curve,
-                                  const JointHistory& history, double t) const {
-    if (!curve) return history.at(t, speed);
+                                  const PrescribedMotion& motion, double t) const {
+    if (!curve) return motion.at(t, speed);
     const math::TimeCurve::Value now = curve->at(t);
     return {now.value, now.rate, now.acceleration};
   }

@@ -140,7 +140,7 @@ struct MeshError {
 /// A coordinate whose mean nothing restores, and the row of the load that would hold it. Where an
 /// integral of its rate already gives this load, the row is the evolution row of the integral: the
 /// mean of that row says nothing new, and the "load" is the offset of the rate that it leaves.
-struct NeutralCoordinate {
+struct UnconstrainedCoordinate {
   std::string name;  ///< "yaw"
   PetscInt unknown = 0;
   PetscInt row = 0;

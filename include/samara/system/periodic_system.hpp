@@ -57,10 +57,10 @@ class PeriodicSystem {
 
   virtual const RotorSymmetry& symmetry() const = 0;
   virtual const std::vector<EnergyGroup>& energy_groups() const = 0;
-  virtual const std::vector<NeutralCoordinate>& neutral_coordinates() const = 0;
+  virtual const std::vector<UnconstrainedCoordinate>& unconstrained_coordinates() const = 0;
   /// Coordinates that only loads and inertia restore, of hinges and of supports that give way, each
   /// with the row of the load that would hold it.
-  virtual std::vector<NeutralCoordinate> free_coordinates() const { return {}; }
+  virtual std::vector<UnconstrainedCoordinate> free_coordinates() const { return {}; }
   /// None where a system does not know its motions.
   virtual std::vector<Motion> motions() const { return {}; }
   /// In the order of motions(), about the state `steady` at t; null where there are none.

@@ -32,8 +32,8 @@ class TurbineSystem final : public system::PeriodicSystem {
   bool is_conservative() const override;
   const system::RotorSymmetry& symmetry() const override;
   const std::vector<system::EnergyGroup>& energy_groups() const override;
-  const std::vector<system::NeutralCoordinate>& neutral_coordinates() const override;
-  std::vector<system::NeutralCoordinate> free_coordinates() const override;
+  const std::vector<system::UnconstrainedCoordinate>& unconstrained_coordinates() const override;
+  std::vector<system::UnconstrainedCoordinate> free_coordinates() const override;
   std::vector<system::Motion> motions() const override;
   std::unique_ptr<system::MotionEnergies> motion_energies(double t, Vec steady) const override;
   std::vector<system::MeshError> mesh_errors() const override;

@@ -14,15 +14,15 @@
 
 namespace samara::analysis {
 
-class SignalHistory {
+class SignalSeries {
  public:
   /// `states` initial states, dealt to the ranks in turn.
-  SignalHistory(const system::PeriodicSystem& system, int sectors, long steps, Eigen::Index states,
-                const Ranks& ranks);
+  SignalSeries(const system::PeriodicSystem& system, int sectors, long steps, Eigen::Index states,
+               const Ranks& ranks);
   /// Waits for nothing: messages on their way are given up where an analysis ends early.
-  ~SignalHistory();
-  SignalHistory(const SignalHistory&) = delete;
-  SignalHistory& operator=(const SignalHistory&) = delete;
+  ~SignalSeries();
+  SignalSeries(const SignalSeries&) = delete;
+  SignalSeries& operator=(const SignalSeries&) = delete;
 
   /// The share of this rank.
   HarmonicEnergy& energy() { return energies_[static_cast<std::size_t>(ranks_.rank)]; }

@@ -1,4 +1,4 @@
-#include "samara/io/history_file.hpp"
+#include "samara/io/time_series_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 
 #include "hdf5_reader.hpp"
 #include "held_loads.hpp"
-#include "history_datasets.hpp"
+#include "time_series_datasets.hpp"
 
 namespace samara::io {
 namespace {
@@ -53,8 +53,9 @@ std::string new_run_name() {
 
 }  // namespace
 
-HistoryFile::HistoryFile(const std::string& path, const Case& input, RunRecord record,
-                         HistoryContent content, std::function<void(ResultFile&)> write_rest)
+TimeSeriesFile::TimeSeriesFile(const std::string& path, const Case& input, RunRecord record,
+                               TimeSeriesContent content,
+                               std::function<void(ResultFile&)> write_rest)
     : path_(resolved_path(path)),
       input_(input),
       record_(std::move(record)),
@@ -72,11 +73,11 @@ HistoryFile::HistoryFile(const std::string& path, const Case& input, RunRecord r
   note_replaced();
 }
 
-HistoryFile::~HistoryFile() { give_room(); }
+TimeSeriesFile::~TimeSeriesFile() { give_room(); }
 
-void HistoryFile::resume() {
-  const HistoryReader before(path_);
-  const HistoryContent& old = before.content();
+void TimeSeriesFile::resume() {
+  const TimeSeriesReader before(path_);
+  const TimeSeriesContent& old = before.content();
   const auto name_of = [](const turbine::Channel& channel) { return channel.name; };
   if (!std::ranges::equal(old.channels, content_.channels, {}, name_of, name_of))
     throw InputError(path_ +
@@ -90,7 +91,7 @@ void HistoryFile::resume() {
     rows_ = reached;
     return;
   }
-  for (const HistorySegment& segment : old.segments) {
+  for (const TimeSeriesSegment& segment : old.segments) {
     if (rows_ + segment.rows > reached) break;
     content_.segments.push_back(segment);
     rows_ += segment.rows;
@@ -98,7 +99,7 @@ void HistoryFile::resume() {
   if (rows_ != reached) throw InputError(path_ + ": its segments do not end at its checkpoint");
 }
 
-void HistoryFile::append(double t, std::span<const double> values) {
+void TimeSeriesFile::append(double t, std::span<const double> values) {
   content_.time.push_back(t);
   content_.values.insert(content_.values.end(), values.begin(), values.end());
   ++rows_;
@@ -107,20 +108,20 @@ void HistoryFile::append(double t, std::span<const double> values) {
   publish();
 }
 
-void HistoryFile::write_checkpoint(const analysis::TransientStart& point) {
+void TimeSeriesFile::write_checkpoint(const analysis::TransientStart& point) {
   close_segment();
   add_checkpoint(point);
   publish();
 }
 
-void HistoryFile::add_checkpoint(const analysis::TransientStart& point) {
-  std::vector<HistoryCheckpoint>& kept = content_.checkpoints;
+void TimeSeriesFile::add_checkpoint(const analysis::TransientStart& point) {
+  std::vector<TimeSeriesCheckpoint>& kept = content_.checkpoints;
   if (!kept.empty() && kept.back().rows == rows_) kept.pop_back();
   kept.push_back({point, rows_, events_});
   if (kept.size() > kept_checkpoints) kept.erase(kept.begin());
 }
 
-void HistoryFile::finish(const std::string& status, const analysis::TransientStart* end) {
+void TimeSeriesFile::finish(const std::string& status, const analysis::TransientStart* end) {
   give_room();
   if (!content_.segments.empty()) close_segment();
   content_.status = status;
@@ -128,7 +129,7 @@ void HistoryFile::finish(const std::string& status, const analysis::TransientSta
   publish();
 }
 
-bool HistoryFile::finish_failed(const std::string& status) noexcept {
+bool TimeSeriesFile::finish_failed(const std::string& status) noexcept {
   give_room();
   try {
     content_.status = status;
@@ -143,13 +144,13 @@ bool HistoryFile::finish_failed(const std::string& status) noexcept {
   }
 }
 
-std::string HistoryFile::folder_name() const {
+std::string TimeSeriesFile::folder_name() const {
   return fs::path(path_).filename().string() + ".parts";
 }
 
-fs::path HistoryFile::folder() const { return fs::path(path_).parent_path() / folder_name(); }
+fs::path TimeSeriesFile::folder() const { return fs::path(path_).parent_path() / folder_name(); }
 
-void HistoryFile::close_segment() {
+void TimeSeriesFile::close_segment() {
   due_ = std::chrono::steady_clock::now() + segment_time;
   if (content_.time.empty()) return;
   std::error_code error;
@@ -160,8 +161,8 @@ void HistoryFile::close_segment() {
   const std::string name = run_ + number.data();
   Hdf5File file;
   const hsize_t rows = content_.time.size();
-  file.write(history_time, content_.time, {rows}, meaning_of_history_time());
-  file.write(history_values, content_.values, {rows, content_.channels.size()},
+  file.write(series_time, content_.time, {rows}, meaning_of_series_time());
+  file.write(series_values, content_.values, {rows, content_.channels.size()},
              {"see the result", "see the result", "the rows", {"time", "channel"}});
   write_whole_file((folder() / name).string(), file.image());
   content_.segments.push_back({folder_name() + "/" + name, content_.time.size()});
@@ -169,22 +170,22 @@ void HistoryFile::close_segment() {
   content_.values.clear();
 }
 
-void HistoryFile::publish() {
+void TimeSeriesFile::publish() {
   ResultFile file(path_, input_, record_);
   write_rest_(file);
-  file.write_history(content_);
+  file.write_series(content_);
   file.publish();
   if (content_.status == "running") keep_room();
   remove_replaced();
 }
 
 /// Runs of which the result that stands at the path now has segments.
-void HistoryFile::note_replaced() {
+void TimeSeriesFile::note_replaced() {
   if (!is_result(path_)) return;
   try {
     const Hdf5Reader file(path_);
-    if (!file.has(history_segment_file)) return;
-    for (const std::string& segment : file.texts(history_segment_file))
+    if (!file.has(series_segment_file)) return;
+    for (const std::string& segment : file.texts(series_segment_file))
       if (const fs::path name(segment);
           name.parent_path() == folder_name() && is_segment_name(name.filename().string()))
         replaced_.insert(name.filename().string().substr(0, run_.size()));
@@ -195,7 +196,7 @@ void HistoryFile::note_replaced() {
 
 /// Segments that this result does not name any more, of runs that the result at its path named
 /// before. Nothing else in the folder is touched.
-void HistoryFile::remove_replaced() {
+void TimeSeriesFile::remove_replaced() {
   if (replaced_.empty()) return;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder(), error)) {
@@ -204,7 +205,7 @@ void HistoryFile::remove_replaced() {
     if (!replaced_.contains(run) || !(is_segment_name(name) || name == run + room_ending)) continue;
     const std::string listed = folder_name() + "/" + name;
     const bool is_named = std::ranges::any_of(
-        content_.segments, [&listed](const HistorySegment& one) { return one.file == listed; });
+        content_.segments, [&listed](const TimeSeriesSegment& one) { return one.file == listed; });
     std::error_code ignored;
     if (!is_named) fs::remove(entry.path(), ignored);
   }
@@ -213,7 +214,7 @@ void HistoryFile::remove_replaced() {
 }
 
 /// Keeps room on the disk for a last version of the result, which says how the run ended.
-void HistoryFile::keep_room() {
+void TimeSeriesFile::keep_room() {
   if (content_.segments.empty()) return;
   std::error_code error;
   const auto size =
@@ -226,21 +227,21 @@ void HistoryFile::keep_room() {
   ::close(file);
 }
 
-void HistoryFile::give_room() noexcept {
+void TimeSeriesFile::give_room() noexcept {
   if (room_ > 0) ::unlink((folder() / (run_ + room_ending)).c_str());
   room_ = 0;
 }
 
-class HistoryReader::Storage {
+class TimeSeriesReader::Storage {
  public:
   explicit Storage(const std::string& path) : file(path) {}
   Hdf5Reader file;
 };
 
-HistoryReader::HistoryReader(const std::string& path) : path_(path) {
+TimeSeriesReader::TimeSeriesReader(const std::string& path) : path_(path) {
   storage_ = std::make_unique<Storage>(require_result(path));
   const Hdf5Reader& file = storage_->file;
-  if (!file.has(history_time)) throw InputError(path + ": has no time history");
+  if (!file.has(series_time)) throw InputError(path + ": has no time series");
   const std::vector<std::string> names = file.texts("/transient/channel_name");
   const std::vector<std::string> units = file.texts("/transient/channel_unit");
   const std::vector<std::string> frames = file.texts("/transient/channel_frame");
@@ -264,21 +265,21 @@ HistoryReader::HistoryReader(const std::string& path) : path_(path) {
 
 /// Of the segments those before the last ones that are missing or damaged, as a machine that goes
 /// down may leave them.
-void HistoryReader::read_segments() {
+void TimeSeriesReader::read_segments() {
   const std::string& path = path_;
   const Hdf5Reader& file = storage_->file;
-  const std::vector<hsize_t> times = file.shape(history_time);
+  const std::vector<hsize_t> times = file.shape(series_time);
   if (times.size() != 1 ||
-      file.shape(history_values) != std::vector<hsize_t>{times[0], content_.channels.size()})
-    throw InputError(path + ": " + history_values + " has not a row for each of " + history_time +
+      file.shape(series_values) != std::vector<hsize_t>{times[0], content_.channels.size()})
+    throw InputError(path + ": " + series_values + " has not a row for each of " + series_time +
                      " with a value of each channel");
   rows_ = times[0];
-  const std::vector<std::string> segments = file.texts(history_segment_file);
-  const std::vector<std::size_t> counts = file.counts(history_segment_rows);
+  const std::vector<std::string> segments = file.texts(series_segment_file);
+  const std::vector<std::size_t> counts = file.counts(series_segment_rows);
   if (counts.size() != segments.size())
-    throw InputError(path + ": " + history_segment_file + " and " + history_segment_rows +
+    throw InputError(path + ": " + series_segment_file + " and " + series_segment_rows +
                      " differ in length");
-  for (const char* name : {history_time, history_values})
+  for (const char* name : {series_time, series_values})
     for (const std::string& source : file.sources(name))
       if (std::ranges::find(segments, source) == segments.end())
         throw InputError(path + ": " + name + " shows " + source +
@@ -291,7 +292,7 @@ void HistoryReader::read_segments() {
   for (std::size_t i = 0; i < segments.size(); ++i)
     expected.push_back(
         {(folder / segments[i]).string(),
-         {{history_time, {counts[i]}}, {history_values, {counts[i], content_.channels.size()}}}});
+         {{series_time, {counts[i]}}, {series_values, {counts[i], content_.channels.size()}}}});
   const std::vector<bool> whole = find_whole(expected);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const std::size_t rows = counts[i];
@@ -316,11 +317,11 @@ void HistoryReader::read_segments() {
 }
 
 /// Those that the rows reach, the oldest first.
-void HistoryReader::read_checkpoints() {
+void TimeSeriesReader::read_checkpoints() {
   const Hdf5Reader& file = storage_->file;
-  for (const std::string group : history_checkpoints) {
+  for (const std::string group : series_checkpoints) {
     if (!file.has(group + "/state")) continue;
-    HistoryCheckpoint checkpoint;
+    TimeSeriesCheckpoint checkpoint;
     analysis::TransientStart& point = checkpoint.point;
     point.time = file.number_attribute(group, "time");
     point.origin = file.number_attribute(group, "origin");
@@ -345,14 +346,14 @@ void HistoryReader::read_checkpoints() {
   }
 }
 
-HistoryReader::~HistoryReader() = default;
+TimeSeriesReader::~TimeSeriesReader() = default;
 
-std::vector<double> HistoryReader::read_time(std::size_t first, std::size_t count) const {
-  return storage_->file.slice(history_time, first, count);
+std::vector<double> TimeSeriesReader::read_time(std::size_t first, std::size_t count) const {
+  return storage_->file.slice(series_time, first, count);
 }
 
-std::vector<double> HistoryReader::read_values(std::size_t first, std::size_t count) const {
-  return storage_->file.slice(history_values, first, count, content_.channels.size());
+std::vector<double> TimeSeriesReader::read_values(std::size_t first, std::size_t count) const {
+  return storage_->file.slice(series_values, first, count, content_.channels.size());
 }
 
 }  // namespace samara::io

@@ -1,4 +1,4 @@
-#include "samara/loads/load_history.hpp"
+#include "samara/loads/load_series.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -31,8 +31,8 @@ Eigen::Index first_bad_row(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return values.size();
 }
 
-void check_times(const LoadHistory& history, Faults& faults) {
-  const Eigen::VectorXd& times = history.times;
+void check_times(const LoadSeries& series, Faults& faults) {
+  const Eigen::VectorXd& times = series.times;
   if (const Eigen::Index bad = first_bad_row(times); bad < times.size()) {
     faults.add() << "time: row " << bad + 1 << " is not a finite number";
     return;
@@ -44,42 +44,42 @@ void check_times(const LoadHistory& history, Faults& faults) {
       return;
     }
   const Eigen::Index last = times.size() - 1;
-  if (history.is_periodic() && !(times(last) - times(0) < history.period))
+  if (series.is_periodic() && !(times(last) - times(0) < series.period))
     faults.add() << "time: the rows last " << times(last) - times(0)
-                 << " s, no less than the period of " << history.period
+                 << " s, no less than the period of " << series.period
                  << " s; the first row must not come again at the end";
 }
 
-void check_values(const LoadHistory& history, Faults& faults) {
-  for (Eigen::Index c = 0; c < history.values.cols(); ++c)
-    if (const Eigen::Index bad = first_bad_row(history.values.col(c)); bad < history.values.rows())
-      faults.add() << history.names[static_cast<std::size_t>(c)] << ": row " << bad + 1 << " (time "
-                   << history.times(bad) << " s) is not a finite number";
+void check_values(const LoadSeries& series, Faults& faults) {
+  for (Eigen::Index c = 0; c < series.values.cols(); ++c)
+    if (const Eigen::Index bad = first_bad_row(series.values.col(c)); bad < series.values.rows())
+      faults.add() << series.names[static_cast<std::size_t>(c)] << ": row " << bad + 1 << " (time "
+                   << series.times(bad) << " s) is not a finite number";
 }
 
 }  // namespace
 
-void check(const LoadHistory& history) {
-  if (history.values.rows() != history.times.size() ||
-      history.values.cols() != static_cast<Eigen::Index>(history.names.size()))
-    throw InternalError("a history's names, times and values differ in size");
+void check(const LoadSeries& series) {
+  if (series.values.rows() != series.times.size() ||
+      series.values.cols() != static_cast<Eigen::Index>(series.names.size()))
+    throw InternalError("the names, times and values differ in size");
   Faults faults;
-  if (!std::isfinite(history.period) || history.period < 0.0)
-    faults.add() << "the period must be a number >= 0 s, not " << history.period;
-  if (history.names.empty()) faults.add() << "the history has no channel";
-  const Eigen::Index least = history.is_periodic() ? 1 : 2;
-  if (history.times.size() < least)
-    faults.add() << "the history has too few rows: " << history.times.size()
+  if (!std::isfinite(series.period) || series.period < 0.0)
+    faults.add() << "the period must be a number >= 0 s, not " << series.period;
+  if (series.names.empty()) faults.add() << "the time series has no channel";
+  const Eigen::Index least = series.is_periodic() ? 1 : 2;
+  if (series.times.size() < least)
+    faults.add() << "the time series has too few rows: " << series.times.size()
                  << " instead of at least " << least;
   faults.raise();
-  check_times(history, faults);
-  check_values(history, faults);
+  check_times(series, faults);
+  check_values(series, faults);
   faults.raise();
 }
 
-double duration(const LoadHistory& history) {
-  if (history.is_periodic()) return history.period;
-  return history.times(history.times.size() - 1) - history.times(0);
+double duration(const LoadSeries& series) {
+  if (series.is_periodic()) return series.period;
+  return series.times(series.times.size() - 1) - series.times(0);
 }
 
 Eigen::VectorXd trapezoidal_weights(const Eigen::VectorXd& points, double period) {

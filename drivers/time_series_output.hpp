@@ -1,7 +1,7 @@
 // The time series of a transient on its way to the result, until a signal ends it.
 #pragma once
 
-#include "samara/io/history_file.hpp"
+#include "samara/io/time_series_file.hpp"
 #include "samara/simulation/transient_simulation.hpp"
 
 #include "interruption.hpp"
@@ -9,10 +9,11 @@
 
 namespace samara::drivers {
 
-class HistoryOutput final : public simulation::TransientOutput {
+class TimeSeriesOutput final : public simulation::TransientOutput {
  public:
   /// Both must live on.
-  HistoryOutput(io::HistoryFile& file, Progress& progress) : file_(file), progress_(progress) {}
+  TimeSeriesOutput(io::TimeSeriesFile& file, Progress& progress)
+      : file_(file), progress_(progress) {}
 
   void row(double t, std::span<const double> values) override {
     file_.append(t, values);
@@ -31,7 +32,7 @@ class HistoryOutput final : public simulation::TransientOutput {
   bool has_rows() const { return has_rows_; }
 
  private:
-  io::HistoryFile& file_;
+  io::TimeSeriesFile& file_;
   Progress& progress_;
   bool has_rows_ = false;
 };

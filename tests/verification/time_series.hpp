@@ -1,4 +1,4 @@
-// Time histories of the verification cases.
+// Time series of the verification cases.
 #pragma once
 
 #include <functional>

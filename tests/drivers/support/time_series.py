@@ -1,4 +1,4 @@
-"""Reads the histories that the program writes, with readers of their own."""
+"""Reads the time series that the program writes, with readers of their own."""
 
 import struct
 

@@ -1,4 +1,4 @@
-#include "signal_history.hpp"
+#include "signal_series.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -8,8 +8,8 @@ constexpr Eigen::Index message_values = 1 << 18;
 
 }  // namespace
 
-SignalHistory::SignalHistory(const system::PeriodicSystem& system, int sectors, long steps,
-                             Eigen::Index states, const Ranks& ranks)
+SignalSeries::SignalSeries(const system::PeriodicSystem& system, int sectors, long steps,
+                           Eigen::Index states, const Ranks& ranks)
     : ranks_(ranks), states_(states), steps_(steps) {
   for (int r = 0; r < ranks_.size; ++r) {
     energies_.emplace_back(system, sectors, r, ranks_.size);
@@ -24,7 +24,7 @@ SignalHistory::SignalHistory(const system::PeriodicSystem& system, int sectors, 
   values_.resize(energy().signals() * steps, states);
 }
 
-SignalHistory::~SignalHistory() {
+SignalSeries::~SignalSeries() {
   for (Block& block : blocks_)
     for (MPI_Request& request : block.requests) {
       if (request == MPI_REQUEST_NULL) continue;
@@ -33,7 +33,7 @@ SignalHistory::~SignalHistory() {
     }
 }
 
-void SignalHistory::append(const Eigen::MatrixXd& states) {
+void SignalSeries::append(const Eigen::MatrixXd& states) {
   if (ranks_.size == 1) {
     energy().take(states, values_.middleRows(taken_ * energy().signals(), energy().signals()));
     ++taken_;
@@ -57,7 +57,7 @@ void SignalHistory::append(const Eigen::MatrixXd& states) {
     for (Block& last : blocks_) receive(last);
 }
 
-void SignalHistory::send(Block& block) const {
+void SignalSeries::send(Block& block) const {
   const auto own = static_cast<std::size_t>(ranks_.rank);
   const Eigen::Index rows = block.outgoing[own].rows();
   for (int r = 0; r < ranks_.size; ++r) {
@@ -75,7 +75,7 @@ void SignalHistory::send(Block& block) const {
   std::swap(block.incoming[own], block.outgoing[own]);
 }
 
-void SignalHistory::receive(Block& block) {
+void SignalSeries::receive(Block& block) {
   if (block.requests.empty()) return;
   MPI_Waitall(static_cast<int>(block.requests.size()), block.requests.data(), MPI_STATUSES_IGNORE);
   block.requests.clear();

@@ -1,4 +1,4 @@
-#include "samara/io/history_export.hpp"
+#include "samara/io/time_series_export.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 #include "samara/io/whole_file.hpp"
 
 #include "hdf5_reader.hpp"
-#include "history_datasets.hpp"
+#include "time_series_datasets.hpp"
 
 namespace samara::io {
 namespace {
@@ -70,12 +70,12 @@ std::string signature_line(const Origin& origin) {
 
 /// Calls take(first, times, values) slice by slice.
 template <class Take>
-void for_each_slice(const HistoryReader& history, const Take& take) {
-  const std::size_t width = history.content().channels.size() + 1;
+void for_each_slice(const TimeSeriesReader& series, const Take& take) {
+  const std::size_t width = series.content().channels.size() + 1;
   const std::size_t count = std::max<std::size_t>(1, slice_values / width);
-  for (std::size_t first = 0; first < history.rows(); first += count) {
-    const std::size_t rows = std::min(count, history.rows() - first);
-    take(first, history.read_time(first, rows), history.read_values(first, rows));
+  for (std::size_t first = 0; first < series.rows(); first += count) {
+    const std::size_t rows = std::min(count, series.rows() - first);
+    take(first, series.read_time(first, rows), series.read_values(first, rows));
   }
 }
 
@@ -87,11 +87,11 @@ void append_number(std::string& text, double value) {
 }
 
 /// Writes all rows as lines, with `delimiter` between the numbers.
-void write_lines(const HistoryReader& history, char delimiter, WholeFile& file) {
-  const std::size_t width = history.content().channels.size();
+void write_lines(const TimeSeriesReader& series, char delimiter, WholeFile& file) {
+  const std::size_t width = series.content().channels.size();
   std::string text;
-  for_each_slice(history, [&](std::size_t, const std::vector<double>& times,
-                              const std::vector<double>& values) {
+  for_each_slice(series, [&](std::size_t, const std::vector<double>& times,
+                             const std::vector<double>& values) {
     text.clear();
     for (std::size_t row = 0; row < times.size(); ++row) {
       append_number(text, times[row]);
@@ -105,36 +105,35 @@ void write_lines(const HistoryReader& history, char delimiter, WholeFile& file) 
   });
 }
 
-void write_table(const HistoryReader& history, WholeFile& file) {
+void write_table(const TimeSeriesReader& series, WholeFile& file) {
   std::string head = "time [s]";
-  for (const turbine::Channel& channel : history.content().channels)
+  for (const turbine::Channel& channel : series.content().channels)
     head += "," + channel.name + " [" + channel.unit + "]";
   file.write(head + "\n");
-  write_lines(history, ',', file);
+  write_lines(series, ',', file);
 }
 
 /// Names in line 7, units in line 8: readers look for the line that begins with Time, or count.
-void write_openfast_text(const Origin& origin, const HistoryReader& history, WholeFile& file) {
+void write_openfast_text(const Origin& origin, const TimeSeriesReader& series, WholeFile& file) {
   std::string names = "Time";
   std::string units = "(s)";
-  for (const turbine::Channel& channel : history.content().channels) {
+  for (const turbine::Channel& channel : series.content().channels) {
     names += "\t" + channel.name;
     units += "\t(" + channel.unit + ")";
   }
   file.write("\n" + signature_line(origin) + "\n\n\nDescription from the case: " + origin.title +
              "\n\n" + names + "\n" + units + "\n");
-  write_lines(history, '\t', file);
+  write_lines(series, '\t', file);
 }
 
 /// From row to row [s]. @throws InputError where it is not always the same
-double find_step(const HistoryReader& history) {
-  const std::size_t rows = history.rows();
+double find_step(const TimeSeriesReader& series) {
+  const std::size_t rows = series.rows();
   if (rows < 2) return 0.0;
-  const double start = history.read_time(0, 1).at(0);
-  const double step =
-      (history.read_time(rows - 1, 1).at(0) - start) / static_cast<double>(rows - 1);
-  for_each_slice(history, [&](std::size_t first, const std::vector<double>& times,
-                              const std::vector<double>&) {
+  const double start = series.read_time(0, 1).at(0);
+  const double step = (series.read_time(rows - 1, 1).at(0) - start) / static_cast<double>(rows - 1);
+  for_each_slice(series, [&](std::size_t first, const std::vector<double>& times,
+                             const std::vector<double>&) {
     for (std::size_t i = 0; i < times.size(); ++i)
       if (std::abs(times[i] - start - static_cast<double>(first + i) * step) > same_step * step) {
         std::ostringstream text;
@@ -192,14 +191,14 @@ Packing find_packing(double least, double largest) {
 }
 
 /// Of each channel. @throws InputError where a value is no number
-std::vector<Packing> find_packings(const HistoryReader& history) {
-  const std::vector<turbine::Channel>& channels = history.content().channels;
+std::vector<Packing> find_packings(const TimeSeriesReader& series) {
+  const std::vector<turbine::Channel>& channels = series.content().channels;
   const std::size_t width = channels.size();
   constexpr double infinite = std::numeric_limits<double>::infinity();
   std::vector<double> least(width, infinite);
   std::vector<double> largest(width, -infinite);
-  for_each_slice(history, [&](std::size_t, const std::vector<double>&,
-                              const std::vector<double>& values) {
+  for_each_slice(series, [&](std::size_t, const std::vector<double>&,
+                             const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const std::size_t channel = i % width;
       if (!std::isfinite(values[i]))
@@ -215,10 +214,10 @@ std::vector<Packing> find_packings(const HistoryReader& history) {
   return packings;
 }
 
-Bytes openfast_binary_head(const Origin& origin, const HistoryReader& history,
+Bytes openfast_binary_head(const Origin& origin, const TimeSeriesReader& series,
                            const std::vector<Packing>& packings) {
-  const std::vector<turbine::Channel>& channels = history.content().channels;
-  if (history.rows() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+  const std::vector<turbine::Channel>& channels = series.content().channels;
+  if (series.rows() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     throw InputError("more rows than an .outb can count; hint: .h5 has room for them");
   std::size_t width = least_name_width;
   for (const turbine::Channel& channel : channels)
@@ -230,9 +229,9 @@ Bytes openfast_binary_head(const Origin& origin, const HistoryReader& history,
   head.add(packed_with_name_width);
   head.add(static_cast<std::int16_t>(width));
   head.add(static_cast<std::int32_t>(channels.size()));
-  head.add(static_cast<std::int32_t>(history.rows()));
-  head.add(history.rows() > 0 ? history.read_time(0, 1).at(0) : 0.0);
-  head.add(find_step(history));
+  head.add(static_cast<std::int32_t>(series.rows()));
+  head.add(series.rows() > 0 ? series.read_time(0, 1).at(0) : 0.0);
+  head.add(find_step(series));
   for (const Packing& packing : packings) head.add(packing.scale);
   for (const Packing& packing : packings) head.add(packing.offset);
   head.add(static_cast<std::int32_t>(words.size()));
@@ -245,11 +244,11 @@ Bytes openfast_binary_head(const Origin& origin, const HistoryReader& history,
 }
 
 void write_openfast_binary(const Bytes& head, const std::vector<Packing>& packings,
-                           const HistoryReader& history, WholeFile& file) {
+                           const TimeSeriesReader& series, WholeFile& file) {
   file.write(head.get());
   std::vector<std::int16_t> packed;
-  for_each_slice(history, [&](std::size_t, const std::vector<double>&,
-                              const std::vector<double>& values) {
+  for_each_slice(series, [&](std::size_t, const std::vector<double>&,
+                             const std::vector<double>& values) {
     packed.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i)
       packed[i] = packings[i % packings.size()].pack(values[i]);
@@ -284,58 +283,57 @@ std::vector<char> read_bytes(const std::string& path) {
 }
 
 /// The result with the rows of its segments in it.
-std::vector<char> joined_result(const std::string& source, const HistoryReader& history) {
+std::vector<char> joined_result(const std::string& source, const TimeSeriesReader& series) {
   std::vector<char> bytes = read_bytes(source);
-  if (history.content().segments.empty()) return bytes;
+  if (series.content().segments.empty()) return bytes;
   Hdf5File file(bytes);
-  for (const char* name :
-       {history_values, history_time, history_segment_rows, history_segment_file})
+  for (const char* name : {series_values, series_time, series_segment_rows, series_segment_file})
     file.remove(name);
-  const hsize_t width = history.content().channels.size();
-  const Hdf5Id times = file.make_rows(history_time, {history.rows()}, meaning_of_history_time());
+  const hsize_t width = series.content().channels.size();
+  const Hdf5Id times = file.make_rows(series_time, {series.rows()}, meaning_of_series_time());
   const Hdf5Id values =
-      file.make_rows(history_values, {history.rows(), width}, meaning_of_history_values());
-  for_each_slice(history, [&](std::size_t first, const std::vector<double>& slice_times,
-                              const std::vector<double>& slice) {
+      file.make_rows(series_values, {series.rows(), width}, meaning_of_series_values());
+  for_each_slice(series, [&](std::size_t first, const std::vector<double>& slice_times,
+                             const std::vector<double>& slice) {
     file.write_rows(times, first, slice_times.size(), slice_times);
     file.write_rows(values, first, slice_times.size(), slice);
   });
-  file.write(history_segment_file, std::vector<std::string>{}, meaning_of_segment_file());
-  file.write(history_segment_rows, std::vector<int>{}, meaning_of_segment_rows());
-  if (!history.damage().empty()) {  // checkpoints that the rows do not reach go
+  file.write(series_segment_file, std::vector<std::string>{}, meaning_of_segment_file());
+  file.write(series_segment_rows, std::vector<int>{}, meaning_of_segment_rows());
+  if (!series.damage().empty()) {  // checkpoints that the rows do not reach go
     const Hdf5Reader before(source);
-    for (const std::string group : history_checkpoints)
+    for (const std::string group : series_checkpoints)
       if (before.has(group)) file.remove(group);
-    write_checkpoints(file, history.content().checkpoints);
+    write_checkpoints(file, series.content().checkpoints);
   }
   return file.image();
 }
 
 }  // namespace
 
-HistoryFormat find_history_format(const std::string& path) {
+TimeSeriesFormat find_series_format(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
   std::ranges::transform(ending, ending.begin(), to_lower);
-  if (ending == ".h5") return HistoryFormat::result;
-  if (ending == ".csv") return HistoryFormat::table;
-  if (ending == ".out") return HistoryFormat::openfast_text;
-  if (ending == ".outb") return HistoryFormat::openfast_binary;
+  if (ending == ".h5") return TimeSeriesFormat::result;
+  if (ending == ".csv") return TimeSeriesFormat::table;
+  if (ending == ".out") return TimeSeriesFormat::openfast_text;
+  if (ending == ".outb") return TimeSeriesFormat::openfast_binary;
   throw InputError(path + ": its ending does not name a format; hint: .h5, .csv, .out or .outb");
 }
 
 void require_export_path(const std::string& path, const std::string& source) {
-  const HistoryFormat format = find_history_format(path);
+  const TimeSeriesFormat format = find_series_format(path);
   if (is_same_file(path, source))
     throw InputError(path + ": is the result itself; hint: -o gives the export another name");
-  if (format == HistoryFormat::result) return require_result_path(path);
-  if (!require_writable(path) || (format == HistoryFormat::table && is_table(path))) return;
+  if (format == TimeSeriesFormat::result) return require_result_path(path);
+  if (!require_writable(path) || (format == TimeSeriesFormat::table && is_table(path))) return;
   std::ifstream stream(path, std::ios::binary);
   bool is_own = false;
-  if (format == HistoryFormat::openfast_text) {  // in its second line
+  if (format == TimeSeriesFormat::openfast_text) {  // in its second line
     std::string start(1 + signature.size(), '\0');
     stream.read(start.data(), static_cast<std::streamsize>(start.size()));
     is_own = start.compare(1, signature.size(), signature) == 0;
-  } else if (format == HistoryFormat::openfast_binary) {
+  } else if (format == TimeSeriesFormat::openfast_binary) {
     is_own = is_own_binary(stream);
   }
   if (!is_own)
@@ -344,23 +342,23 @@ void require_export_path(const std::string& path, const std::string& source) {
                      "the export another name");
 }
 
-void export_history(const std::string& source, const HistoryReader& history,
-                    const std::string& path) {
-  const HistoryFormat format = find_history_format(path);
-  if (format == HistoryFormat::result)
-    return write_whole_file(path, joined_result(source, history));
+void export_series(const std::string& source, const TimeSeriesReader& series,
+                   const std::string& path) {
+  const TimeSeriesFormat format = find_series_format(path);
+  if (format == TimeSeriesFormat::result)
+    return write_whole_file(path, joined_result(source, series));
   const Origin origin = read_origin(source);
   std::vector<Packing> packings;
   Bytes head;
-  if (format == HistoryFormat::openfast_binary) {  // before there is a file: it may refuse
-    packings = find_packings(history);
-    head = openfast_binary_head(origin, history, packings);
+  if (format == TimeSeriesFormat::openfast_binary) {  // before there is a file: it may refuse
+    packings = find_packings(series);
+    head = openfast_binary_head(origin, series, packings);
   }
   WholeFile file(path);
-  if (format == HistoryFormat::table) write_table(history, file);
-  if (format == HistoryFormat::openfast_text) write_openfast_text(origin, history, file);
-  if (format == HistoryFormat::openfast_binary)
-    write_openfast_binary(head, packings, history, file);
+  if (format == TimeSeriesFormat::table) write_table(series, file);
+  if (format == TimeSeriesFormat::openfast_text) write_openfast_text(origin, series, file);
+  if (format == TimeSeriesFormat::openfast_binary)
+    write_openfast_binary(head, packings, series, file);
   file.publish();
 }
 

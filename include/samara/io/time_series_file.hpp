@@ -1,4 +1,4 @@
-// Time histories on disk while they grow.
+// Time series on disk while they grow.
 //
 // Rows are gathered and every few seconds closed away as a segment, a complete HDF5 file of its own
 // in the folder RESULT.h5.parts beside RESULT.h5. The result is then written anew: it names the
@@ -30,7 +30,7 @@
 namespace samara::io {
 
 /// Rows that are in a file of their own.
-struct HistorySegment {
+struct TimeSeriesSegment {
   std::string file;  ///< relative to the folder of the result
   std::size_t rows = 0;
 };
@@ -38,38 +38,38 @@ struct HistorySegment {
 /// A result that has lost its last rows can still go on from the one before.
 inline constexpr std::size_t kept_checkpoints = 2;
 
-/// From where a history can go on.
-struct HistoryCheckpoint {
+/// From where a time series can go on.
+struct TimeSeriesCheckpoint {
   analysis::TransientStart point;
-  std::size_t rows = 0;        ///< of the history up to it
+  std::size_t rows = 0;        ///< of the time series up to it
   std::vector<double> events;  ///< when each event came [s]; not-a-number: not yet
 };
 
-/// What the result says of a history.
-struct HistoryContent {
+/// What the result says of a time series.
+struct TimeSeriesContent {
   std::vector<turbine::Channel> channels;
-  std::vector<HistorySegment> segments;
+  std::vector<TimeSeriesSegment> segments;
   std::vector<double> time;    ///< of rows that are in no segment; empty where there are segments
   std::vector<double> values;  ///< row by row
   std::string model;           ///< Case::model_text
   std::optional<double> azimuth;   ///< of blade 1 at t = 0 [rad]; none: that of the case
   double brake_torque = 0.0;       ///< that acts from the start [N m]
   bool is_generator_lost = false;  ///< from the start
-  std::vector<HistoryCheckpoint> checkpoints;  ///< the last ones, `kept_checkpoints` at the most
+  std::vector<TimeSeriesCheckpoint> checkpoints;  ///< the last ones, `kept_checkpoints` at the most
   std::string status;  ///< "running", "complete", "interrupted", "failed: ..."
 };
 
-class HistoryFile {
+class TimeSeriesFile {
  public:
   /// `content`: channels, and how the drive train is at the start; `write_rest` adds to each
   /// version of the result what else belongs in it.
-  HistoryFile(const std::string& path, const Case& input, RunRecord record, HistoryContent content,
-              std::function<void(ResultFile&)> write_rest);
-  ~HistoryFile();
-  HistoryFile(const HistoryFile&) = delete;
-  HistoryFile& operator=(const HistoryFile&) = delete;
+  TimeSeriesFile(const std::string& path, const Case& input, RunRecord record,
+                 TimeSeriesContent content, std::function<void(ResultFile&)> write_rest);
+  ~TimeSeriesFile();
+  TimeSeriesFile(const TimeSeriesFile&) = delete;
+  TimeSeriesFile& operator=(const TimeSeriesFile&) = delete;
 
-  /// Goes on with the history that is in the result already, up to its checkpoint.
+  /// Goes on with the time series that is in the result already, up to its checkpoint.
   void resume();
 
   void append(double t, std::span<const double> values);
@@ -80,7 +80,7 @@ class HistoryFile {
   /// When the events came, for the checkpoints from now on.
   void note_events(const std::vector<double>& times) { events_ = times; }
 
-  /// Writes what is left. `end`: from which the history can go on, where there is such a point.
+  /// Writes what is left. `end`: from which the time series can go on, where there is such a point.
   void finish(const std::string& status, const analysis::TransientStart* end);
 
   /// The same after a failure, which may be that nothing can be written any more: first the status,
@@ -102,7 +102,7 @@ class HistoryFile {
   const Case& input_;
   RunRecord record_;
   std::function<void(ResultFile&)> write_rest_;
-  HistoryContent content_;
+  TimeSeriesContent content_;
   std::size_t rows_ = 0;
   std::vector<double> events_;
   std::string run_;  ///< starts the names of the segments of this run
@@ -113,17 +113,17 @@ class HistoryFile {
   std::int64_t room_ = 0;  ///< bytes that are kept on the disk for the end
 };
 
-/// Reads the history of a result: where a segment is missing or damaged, up to that one, and with
-/// the checkpoints that its rows reach.
-class HistoryReader {
+/// Reads the time series of a result: where a segment is missing or damaged, up to that one, and
+/// with the checkpoints that its rows reach.
+class TimeSeriesReader {
  public:
   /// @throws InputError where there is none
-  explicit HistoryReader(const std::string& path);
-  ~HistoryReader();
-  HistoryReader(const HistoryReader&) = delete;
-  HistoryReader& operator=(const HistoryReader&) = delete;
+  explicit TimeSeriesReader(const std::string& path);
+  ~TimeSeriesReader();
+  TimeSeriesReader(const TimeSeriesReader&) = delete;
+  TimeSeriesReader& operator=(const TimeSeriesReader&) = delete;
 
-  const HistoryContent& content() const { return content_; }
+  const TimeSeriesContent& content() const { return content_; }
   std::size_t rows() const { return rows_; }
   /// What is missing, in words for a note; empty where all is there.
   const std::string& damage() const { return damage_; }
@@ -139,7 +139,7 @@ class HistoryReader {
 
   std::string path_;
   std::unique_ptr<Storage> storage_;
-  HistoryContent content_;
+  TimeSeriesContent content_;
   std::size_t rows_ = 0;
   std::string damage_;
 };

@@ -1,5 +1,5 @@
-// A history of loads, or of anything else that is evaluated like loads: rows are instants, columns
-// channels (docs/theory.md, section 8).
+// A time series of loads, or of anything else that is evaluated like loads: rows are instants,
+// columns channels (docs/theory.md, section 8).
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace samara::loads {
 
-struct LoadHistory {
+struct LoadSeries {
   std::vector<std::string> names;  ///< of the channels, as errors call them
   Eigen::VectorXd times;           ///< [s], growing, in steps that may vary
   Eigen::MatrixXd values;          ///< row an instant, column a channel, each in its own unit
   /// [s] of a periodic steady state, whose rows are one period and do not repeat the first; 0 for
-  /// a history that begins and ends.
+  /// a time series that begins and ends.
   double period = 0.0;
 
   bool is_periodic() const { return period > 0.0; }
@@ -24,10 +24,10 @@ struct LoadHistory {
 /// @throws InputError, one error a line, where there is no channel, less than two rows (one if
 /// periodic), a time that does not grow or a number that is none.
 /// @throws InternalError where names, times and values differ in size.
-void check(const LoadHistory& history);
+void check(const LoadSeries& series);
 
-/// T [s]: from the first to the last time, or the period. Of a history that `check` accepts.
-double duration(const LoadHistory& history);
+/// T [s]: from the first to the last time, or the period. Of a time series that `check` accepts.
+double duration(const LoadSeries& series);
 
 /// Weights of the trapezoidal rule over `points`, which grow: the integral of a function that is
 /// linear in between is the sum of weights and values. With a period > 0 the last point's neighbour

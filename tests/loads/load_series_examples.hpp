@@ -7,7 +7,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/base/error.hpp"
-#include "samara/loads/load_history.hpp"
+#include "samara/loads/load_series.hpp"
 
 namespace samara::test {
 
@@ -16,7 +16,7 @@ inline Eigen::VectorXd column(const std::vector<double>& values) {
 }
 
 /// One channel, "load".
-inline loads::LoadHistory one_channel(const Eigen::VectorXd& times, const Eigen::VectorXd& values) {
+inline loads::LoadSeries one_channel(const Eigen::VectorXd& times, const Eigen::VectorXd& values) {
   return {{"load"}, times, values, 0.0};
 }
 
