@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Writes the tables of docs/lee2002.md: Tables II and III of Lee, Hodges & Patil (2002) as printed,
-beside what Samara finds.
+beside the results of Samara.
 
-    scripts/lee2002_tables.py            # some minutes; rewrites docs/lee2002.md between its markers
+    scripts/lee2002_tables.py            # a few minutes; rewrites docs/lee2002.md between its markers
     scripts/lee2002_tables.py --check    # writes nothing; exit code 1 where the page differs
 """
 
@@ -19,11 +19,11 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/lee2002.md"
 CASES = ROOT / "inputs/lee2002"
 
-COARSE = {"steps": 500, "order": 1}  # what the paper used
-FINE = {"steps": 2400, "order": 6, "elements": 2}  # frequencies to some 1e-5 of themselves
+COARSE = {"steps": 500, "order": 1}  # as in the paper
+FINE = {"steps": 2400, "order": 6, "elements": 2}  # relative errors of frequencies of some 1e-5
 
-# Mode of the paper: label of Samara, and the print: Table II (2, 3, 4 elements), Table III (10, 100,
-# 1000, rigid). The modes yaw and teeter are no oscillations here; the text of the page treats them.
+# Mode of the paper, label of Samara, printed values: Table II (2, 3, 4 elements), Table III (10, 100,
+# 1000, rigid). The modes yaw and teeter do not oscillate here; the text of the page describes them.
 PRINT = [
     ("1st tower side-side", "tower side-side 1", (0.282, 0.291, 0.292), (0.219, 0.292, 0.760, None)),
     ("2nd tower side-side", "tower side-side 2", (14.711, 8.711, 8.377), (3.164, 8.377, 22.225, None)),
@@ -45,9 +45,10 @@ PRINT = [
     ("2nd antisymm. lead-lag", "blade lead-lag antisymmetric 2", (7.589, 5.550, 5.345), (4.660, 5.345, 5.647, 5.588)),
 ]
 
-# Modes whose label is not that of the paper's row, by run: chosen by shape, and marked in the tables.
+# Modes whose label differs from the paper's row, by run: chosen by shape, and marked in the tables.
 # 2 elements: tower side-side bending and antisymmetric lead-lag coincide modulo one per revolution.
-# Ratio 10: the tower is as soft as the blades, and most lead-lag modes strain it more than them.
+# Ratio 10: the tower is as soft as the blades, and most lead-lag modes strain the tower more than
+# the blades.
 BY_SHAPE = {
     "2 elements": {
         "tower side-side 1": "blade lead-lag antisymmetric 1",
@@ -68,13 +69,13 @@ BY_SHAPE = {
     },
 }
 
-# Of these the frequency is that of the tower, in the fixed frame; the rotor sees so many per
-# revolution more.
+# Frequencies of these modes are those of the tower, in the fixed frame. In the rotating frame they are
+# higher by this number per revolution.
 IN_ROTOR = {("ratio 10, fine", "tower fore-aft 4"): 1.0}
 
 
 def fold_distance(a, b):
-    """Distance of two frequencies per revolution where a multiple of one, and the sign, is free."""
+    """Distance of two frequencies per revolution if a multiple of one and the sign are free."""
     return abs(abs(a - round(a)) - abs(b - round(b)))
 
 
@@ -108,8 +109,8 @@ class Run:
 
     def find(self, wanted):
         label = self.label(wanted)
-        # One that is alone among those that are resolved has no number, and a label may say that
-        # it is not resolved.
+        # The label has no number if the mode is the only resolved one of its kind, and it ends in
+        # "(unresolved)" if the mode is not resolved.
         for name in (label, label.removesuffix(" 1"), f"{label} (unresolved)",
                      f"{label.removesuffix(' 1')} (unresolved)"):
             if name in self.modes:
@@ -126,7 +127,7 @@ class Run:
         return f"{frequency:.3f}" + ("" if resolved else "*") + mark
 
     def stepped(self, wanted):
-        """The frequency of the sequence of steps, (2/dt) atan(omega dt/2): what the article has."""
+        """The frequency of the sequence of steps, (2/dt) atan(omega dt/2), as in the article."""
         half = math.pi / self.steps
         return math.atan(self.frequency(wanted) * half) / half
 
@@ -179,7 +180,7 @@ def table_3(runs, fines, columns):
 
 
 def statistics(pairs):
-    """How near the print is to ours, directly and folded, beside what chance gives."""
+    """Counts of printed values near those of Samara, as printed, folded, and expected by chance."""
     rows = []
     for limit in (0.01, 0.02, 0.05, 0.1):
         near = sum(abs(a - b) < limit for a, b in pairs)
@@ -187,7 +188,7 @@ def statistics(pairs):
         chance = len(pairs) * (1 - (1 - 2 * limit) ** 2)
         rows.append([f"{limit}", f"{near}", f"{folded}", f"{chance:.1f}"])
     heads = ["closer than", "as printed", "folded", "folded, by chance"]
-    return f"{len(pairs)} entries, those of Table III at ratio 100 counted once.\n\n" + table(heads, rows)
+    return f"{len(pairs)} entries; those of Table III at ratio 100 are counted once.\n\n" + table(heads, rows)
 
 
 def make_blocks(program):
@@ -230,7 +231,7 @@ def main():
             sys.exit(f"{PAGE}: no markers of {name!r}")
         result = pattern.sub(lambda match, text=text: match[1] + text + match[2], result)
     if options.check:
-        sys.exit(0 if result == page else f"{PAGE} differs from what the program finds")
+        sys.exit(0 if result == page else f"{PAGE} differs from the results of the program")
     PAGE.write_text(result, encoding="utf-8")
 
 

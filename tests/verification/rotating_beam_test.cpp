@@ -282,8 +282,7 @@ BOOST_AUTO_TEST_CASE(r3_hinged_rotor_flaps_once_a_revolution) {
   // I2 = I1 + I3, without which one coordinate had no mass at all.
   for (const auto& [order, elements] : {std::pair{1, 5}, std::pair{3, 4}}) {
     for (const double stiffness : {1e-2, 1.0, 50.0}) {
-      const Figures page{"R3", "once a revolution, warped by the step of Floquet's analysis",
-                         mesh_name(elements, order)};
+      const Figures page{"R3", "once a revolution", mesh_name(elements, order)};
       const std::string what = ", EI " + in_short(stiffness);
       BeamCase beam;
       beam.speed = 1.7;
