@@ -98,7 +98,7 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   Spectrum spectrum;
   spectrum.shapes.resize(system.size(), 0);
   for (std::size_t i = 0; i < pairs.values.size(); ++i) {
-    const Complex exponent = sigma - 1.0 / pairs.values[i];
+    const Complex exponent = Complex(sigma) - 1.0 / pairs.values[i];
     if (exponent.imag() < 0.0) continue;
     const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
     const auto keep = [&](Complex value, const Eigen::VectorXcd& combination) {

@@ -14,6 +14,7 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+import elastodyn  # noqa: E402
 from program import SOURCE, ProgramTest  # noqa: E402
 
 FOLDER = os.environ.get("SAMARA_PUBLIC_DECKS")
@@ -92,6 +93,7 @@ class PublicDecks(ProgramTest):
                          (None, None))
         if deck is None:
             self.skipTest(f"no {name} in the folder")
+        self.deck = deck
         self.assertTrue(self.import_row(row, deck))
 
     def multipliers(self):
@@ -117,16 +119,45 @@ class PublicDecks(ProgramTest):
         with open(self.folder / "modes.csv", encoding="utf-8", newline="") as file:
             return {row["label"]: float(row["frequency_hz"]) for row in csv.DictReader(file)}
 
-    def alone(self, block):
-        """Frequencies of the imported tower or blade, clamped and at rest, without anything on it."""
+    def alone(self, block, *options, hub=0.0):
+        """Frequencies of the imported tower or blade, clamped, without anything on it."""
         text = (self.folder / "case.yaml").read_text(encoding="utf-8")
         start = text.index(f"\n{block}:")
-        text = text[start : text.index("\nnacelle:")] if block == "tower" else text[start:]
+        end = text.find("\nnacelle:") if block == "tower" else -1
+        text = text[start:] if end < 0 else text[start:end]
         for key in ("tip_mass", "precone_deg", "pitch_deg"):
             text = re.sub(rf"\n  {key}: .*", "", text)
         text = re.sub(r"\n  count: .*", "\n  count: 1", text)
+        if block == "blades":
+            text = f"\nhub: {{radius: {hub}}}" + text
         self.write("alone.yaml", "samara: 1\ngravity: 0\n" + text)
-        return self.frequencies("alone.yaml")
+        return self.frequencies("alone.yaml", *options)
+
+    def assert_beam(self, block, beam, speed=0.0):
+        """The lowest two frequencies, damping taken out, within 0.3 % of those of the tables."""
+        self.alone(block, "--set", f"shaft.speed={speed}", hub=beam.root)
+        with open(self.folder / "modes.csv", encoding="utf-8", newline="") as file:
+            found = sorted(math.hypot(float(row["exponent_re"]), float(row["exponent_im"]))
+                           for row in csv.DictReader(file) if float(row["exponent_im"]) > 0.0)
+        for one, known in zip(found, beam.frequencies(speed)):
+            self.assertLess(abs(one / (2 * math.pi * known) - 1.0), 3e-3, block)
+
+    def test_blades_and_towers_have_the_frequencies_of_their_tables(self):
+        """At rest and at the rotor speed; the deck's tables in elements of this test's own."""
+        for name, has_tower in (("AWT_YFix_WSt", True), ("UAE_Dnwind_YRamp_WSt", True),
+                                ("WP_VSP_ECD", True), ("5MW_Land_DLL_WTurb", True),
+                                ("AOC_WSt", False), ("SWRT_YFree_VS_EDG01", False)):
+            with self.subTest(deck=name):
+                self.find(f"{name}.fst")
+                main = elastodyn.Deck(self.deck).file("EDFile")
+                blade = elastodyn.blade(main)
+                self.assert_beam("blades", blade)
+                if speed := main.number("RotSpeed") * math.pi / 30.0:
+                    self.assert_beam("blades", blade, speed)
+                if has_tower:
+                    self.assert_beam("tower", elastodyn.tower(main))
+        self.find("IEA-22-280-RWT-Monopile.fst")
+        self.assert_beam("tower", elastodyn.tower(elastodyn.Deck(self.deck).file("EDFile")))
 
     def assert_near(self, found, known, tolerance):
         for label, value in known.items():

@@ -261,6 +261,16 @@ BOOST_AUTO_TEST_CASE(an_inertia_at_the_speed_of_the_shaft_is_refused_with_the_ne
               "case.yaml:10:3: shaft.gear_ratio: expected a number other than 0");
 }
 
+BOOST_AUTO_TEST_CASE(renamed_keys_are_refused_with_the_new_spelling) {
+  check_error(minimal + "shaft:\n  inertia: {axial: 3, lateral: 4}\n",
+              "case.yaml:10:23: shaft.inertia.lateral: is named transverse; hint: transverse, with "
+              "the same number");
+  check_error(
+      minimal + tower + "  damping: {lateral: 0.01}\n",
+      "case.yaml:16:13: tower.damping.lateral: is named side_side; hint: side_side, with the "
+      "same number");
+}
+
 BOOST_AUTO_TEST_CASE(a_generator_table_reaches_to_the_speed_behind_the_gear) {
   const std::string shaft = minimal +
                             "shaft:\n  speed: 2\n  gear_ratio: -10\n  generator:\n"
