@@ -10,7 +10,8 @@
 namespace samara::analysis {
 namespace {
 
-/// Of a step: constraints that change with time are differenced over it, to both sides.
+/// Relative to a step: interval over which constraints that change with time are differenced, to
+/// both sides.
 constexpr double difference_fraction = 0.01;
 
 using system::RowRole;

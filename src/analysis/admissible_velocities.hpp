@@ -12,7 +12,7 @@
 namespace samara::analysis {
 
 /// Jumps of the velocities with the impulses that make them: n x columns, with velocities in the
-/// places of velocities and impulses in those of reactions. What stands elsewhere means nothing.
+/// places of velocities and impulses in those of reactions. Other places have no meaning.
 using Jumps = Eigen::MatrixXd;
 
 class AdmissibleVelocities {

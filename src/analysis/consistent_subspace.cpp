@@ -94,7 +94,7 @@ void ConsistentSubspace::find_states(const SparseTangents& at_start) {
       require_no_rates(tangents_on(system_, solution_, turn * system_.period()).M);
 }
 
-/// Of constraint and definition rows, and of states in kinematic rows.
+/// Checks constraint and definition rows, and states in kinematic rows.
 void ConsistentSubspace::require_no_rates(const Eigen::SparseMatrix<double>& M) const {
   for (Eigen::Index j = 0; j < M.outerSize(); ++j)
     for (Sparse::InnerIterator it(M, j); it; ++it) {
@@ -234,7 +234,7 @@ Eigen::MatrixXd ConsistentSubspace::states_of(const Eigen::MatrixXd& z) const {
   return xi;
 }
 
-/// Of a unit of each entry of eta and of xi: positions, internal loads in eta, and states.
+/// Columns for a unit of each entry of eta and of xi: positions, internal loads in eta, and states.
 Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
   const SparseTangents tangents = tangents_on(system_, solution_, t);
   const auto d = static_cast<Eigen::Index>(degrees_of_freedom());

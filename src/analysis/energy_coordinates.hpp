@@ -22,9 +22,9 @@ class EnergyCoordinates {
 
   /// From columns per unit of (eta, eta_dot, xi), in place, to columns per unit of these.
   void divide(Eigen::MatrixXd& columns) const;
-  /// Of states (eta, eta_dot, xi), 2 d + n_1 x columns.
+  /// Energy coordinates of states (eta, eta_dot, xi), 2 d + n_1 x columns.
   Eigen::MatrixXd of(const Eigen::MatrixXd& states) const;
-  /// Of eta_dot alone, d x columns.
+  /// Energy coordinates of eta_dot only, d x columns.
   Eigen::MatrixXd rates(const Eigen::MatrixXd& eta_dot) const {
     return rate_.triangularView<Eigen::Upper>() * eta_dot;
   }

@@ -32,7 +32,7 @@ using namespace std::complex_literals;
 /// |lambda| dt / 2 beyond which a mode counts as unresolved.
 constexpr double largest_half_phase = 0.7;
 constexpr double largest_residual = 1e-6;
-/// Of the largest multiplier: a smaller one is round-off.
+/// Relative to the largest multiplier: a smaller one is round-off.
 constexpr double least_multiplier = 1e-12;
 /// A multiplier below the first that leaves more than the second of its exponent open is round-off.
 constexpr double small_multiplier = 1e-6;
@@ -40,12 +40,12 @@ constexpr double largest_round_off = 1e-2;
 /// Share of the kinetic energy of a resolved mode in harmonics beyond that phase, at the most: more
 /// is a mixture of modes so fast that they all look alike, with multipliers near -1 or 1.
 constexpr double largest_fast_share = 0.01;
-/// Of an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
+/// Relative to an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
 constexpr double least_imaginary = 1e-6;
-/// Of an exponent that is none of a free motion.
+/// Distance of an exponent that belongs to no free motion.
 constexpr double far_from_zero = std::numeric_limits<double>::infinity();
-/// Of the energy of a state of length 1 in energy coordinates: less is round-off. A motion that
-/// rests comes with the square root of round-off as its exponent, and moves with that speed.
+/// Relative to the energy of a state of length 1 in energy coordinates: less is round-off. A motion
+/// that rests comes with the square root of round-off as its exponent, and moves with that speed.
 constexpr double rest_energy = 1e-10;
 /// Numbers in the time series of the modes that are identified at a time, about.
 constexpr Eigen::Index batch_values = 1 << 24;
@@ -54,7 +54,8 @@ constexpr int shape_samples = 24;
 /// Instants a sector that name a mode which is not resolved.
 constexpr Eigen::Index label_samples = 3;
 
-/// Of the ends of the first steps: what changes sign with each, see Analysis::smooth_velocities.
+/// Weights of the first steps' ends for the part that alternates in sign, see
+/// Analysis::smooth_velocities.
 constexpr std::array<double, 9> alternating_weights{1.0 / 256.0,   -8.0 / 256.0, 28.0 / 256.0,
                                                     -56.0 / 256.0, 70.0 / 256.0, -56.0 / 256.0,
                                                     28.0 / 256.0,  -8.0 / 256.0, 1.0 / 256.0};
@@ -200,7 +201,7 @@ class Analysis {
     return std::log(multiplier) * static_cast<double>(sectors_) / system_.period();
   }
 
-  /// Of a multiplier [1/s].
+  /// Decay of a multiplier of this size [1/s].
   double decay_of(double size) const {
     return -std::log(size) * static_cast<double>(sectors_) / system_.period();
   }
@@ -346,7 +347,7 @@ class Analysis {
     }
   }
 
-  /// What rests has no energy to be named after, and is in no harmonic but 0.
+  /// A mode at rest has no energy to be named after, and no harmonic but 0.
   void settle_rest(Eigen::Index mode) {
     Mode& at_rest = set_.modes[static_cast<std::size_t>(mode)];
     at_rest.parts.clear();
@@ -442,7 +443,8 @@ class Analysis {
       set_.modes[static_cast<std::size_t>(m)].residual = residuals(m);
   }
 
-  /// Of the modes that may count as resolved; of the others as much as their names need.
+  /// Shapes of the modes that may count as resolved; of the other modes as much as their names
+  /// need.
   void collect_shapes() {
     std::vector<Eigen::Index> trusted;
     std::vector<Eigen::Index> others;
@@ -478,8 +480,8 @@ class Analysis {
   }
 
   /// A real growth or decay of the joints alone, and what counts as zero, is no oscillation: the
-  /// harmonics that the rotor sees of it are those of its own turning, and k stays 0. What changes
-  /// sign with every step, or nearly so, is none of them: a decay too fast for the step.
+  /// harmonics that the rotor sees of it are those of its own turning, and k stays 0. A motion
+  /// that changes sign with every step, or nearly so, is excluded: a decay too fast for the step.
   void settle_rigid_body_modes() {
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set_.modes.size()));
     if (ranks_.rank == 0) {

@@ -15,7 +15,7 @@
 namespace samara::analysis {
 namespace {
 
-/// Of Unknown::scale: a state counts with it at the least where its residual is measured.
+/// Relative to Unknown::scale: least size of a state in the measure of its residual.
 constexpr double least_state = 1e-3;
 
 /// A scaled residual that is round-off.
@@ -228,7 +228,7 @@ class Balance {
   Eigen::SparseMatrix<double, Eigen::RowMajor> pattern_;  ///< of K and M together
 };
 
-/// What SNES's callbacks see: the unknowns and rows are scaled by `scaling`.
+/// Context of SNES's callbacks: the unknowns and rows are scaled by `scaling`.
 struct SolverContext {
   Balance* balance = nullptr;
   const Eigen::VectorXd* start = nullptr;  ///< whose tangent the matrix holds, before the first one
@@ -336,8 +336,8 @@ void fail(SNES solver, const SolverContext& context) {
   throw ConvergenceError(text.str());
 }
 
-/// What MUMPS would choose badly here; an option of the user's stands. (MatMumpsSetIcntl before the
-/// first factorization has no effect in PETSc 3.18.)
+/// Settings that MUMPS chooses badly here; an option of the user has priority. (MatMumpsSetIcntl
+/// before the first factorization has no effect in PETSc 3.18.)
 /// - 7: METIS is for larger meshes; a chain of blocks fills in half as much in the order of
 ///   approximate minimum fill.
 /// - 6: the permutation to a large diagonal comes with a scaling, both from the values of the first

@@ -14,7 +14,7 @@ using system::EnergyGroup;
 
 /// Energies closer than this, relative, are a tie.
 constexpr double tie = 1e-6;
-/// Of a group's largest pivot: what is smaller is round-off of a semi-definite weight.
+/// Relative to a group's largest pivot: a smaller pivot is round-off of a semi-definite weight.
 constexpr double no_energy = 1e-13;
 
 struct Image {
@@ -22,7 +22,7 @@ struct Image {
   double sign;
 };
 
-/// What P^-1 moves onto an unknown: (P^-1 y)_j = sign_i y_i where source_i = j.
+/// Images of the unknowns under P^-1: (P^-1 y)_j = sign_i y_i where source_i = j.
 std::vector<Image> images(const system::RotorSymmetry& symmetry) {
   std::vector<Image> before(symmetry.source.size());
   for (std::size_t i = 0; i < before.size(); ++i)

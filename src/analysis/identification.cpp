@@ -81,7 +81,7 @@ std::optional<system::Owner> moving_joint(const system::PeriodicSystem& system,
   return joint;
 }
 
-/// Of a system that does not know its motions: by the strain energy.
+/// Motion in a system that does not declare its motions: by the strain energy.
 system::Motion strained_motion(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
                                const Mode& mode, double zero) {
   const std::map<std::string, double> strain = strain_energies(system, shape);
@@ -106,7 +106,7 @@ const char* word_of(int n, int instances) {
   return n == instances - 1 ? " progressive" : " reactionless";
 }
 
-/// What a mode is called, piece by piece.
+/// Name of a mode, by its pieces.
 struct Name {
   system::Motion motion;
   std::string together;  ///< of the blades

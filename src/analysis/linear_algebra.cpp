@@ -14,7 +14,7 @@
 namespace samara::analysis {
 namespace {
 
-/// Of |J x - b| to |x| + |b|, where J's rows and columns have entries of about one.
+/// Ratio of |J x - b| to |x| + |b|, where the rows and columns of J have entries of about one.
 constexpr double largest_solve_residual = 1e-11;
 /// Factors of a badly scaled matrix lose digits that refinement brings back.
 constexpr int most_refinements = 3;
@@ -49,7 +49,7 @@ bool is_given(KSP solver, const char* option) {
 
 bool is_solver_chosen(KSP solver) { return is_given(solver, "pc_factor_mat_solver_type"); }
 
-/// What MUMPS says of its last phase: INFOG(1) and (2) of its user's guide.
+/// Report of MUMPS on its last phase: INFOG(1) and (2) of its user's guide.
 FactorFailure explain_mumps(KSP solver, PC factored, PCFailedReason reason) {
   Mat factors = nullptr;
   PetscInt code = 0;
@@ -290,7 +290,7 @@ void DirectSolver::take_pivoting_solver() {
   petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
 }
 
-/// Of one column, a new one each time.
+/// Residual of one column, a new one each time.
 double DirectSolver::compute_residual(const Eigen::MatrixXd& right) const {
   const auto n = static_cast<PetscInt>(right.rows());
   Eigen::VectorXd x = solution_.col(probe_);

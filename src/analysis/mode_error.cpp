@@ -9,7 +9,7 @@ namespace {
 /// Estimates are more than the first term of the error.
 constexpr double step_safety = 2.5;
 constexpr double mesh_safety = 2.0;
-/// Of an error of the exponent, the part that is growth: step and elements keep the symmetries that
+/// Part of an exponent's error that is growth: step and elements keep the symmetries that
 /// forbid it, or nearly so (docs/theory.md, section 5.8).
 constexpr double growing_part = 0.01;
 constexpr double growing_part_of_tables = 0.05;

@@ -33,7 +33,7 @@ class SignalSeries {
   /// Signals of this rank, step after step, x all initial states; whole after the last step.
   const Eigen::MatrixXd& values() const { return values_; }
 
-  /// Of the rank that has most; the same on every rank.
+  /// Rows of the rank that has most; the same on every rank.
   Eigen::Index most_rows() const { return most_signals_ * steps_; }
 
  private:

@@ -31,9 +31,9 @@ constexpr double round_off = 1e-12;
 /// Cosine between the tangents at both ends of an arc; below it the step may have changed branches.
 constexpr double least_cosine = 0.3;
 
-/// Of free coordinates, relative to the stiffness that takes their place at the start: what
-/// restores less leaves them to the loads, what still restores less under loads does not restore at
-/// all.
+/// Stiffness of free coordinates, relative to the stiffness that holds them at the start:
+/// coordinates with less than `weak` are left to the loads, those with less than `restored` under
+/// loads are unrestored.
 constexpr double weak = 1e-6;
 constexpr double restored = 1e-8;
 
@@ -53,7 +53,7 @@ struct Point {
   double factor = 0.0;
 };
 
-/// What holds free coordinates while they are being freed: in the row of each remaining (load -
+/// Loads on free coordinates while they are released: in the row of each, remaining (load -
 /// stiffness x), with the load that held it at x = 0.
 struct Easing {
   std::vector<PetscInt> unknowns;
@@ -126,7 +126,7 @@ class Equilibrium {
     solver_.solve(columns);
   }
 
-  /// What holds some of the held coordinates, by their positions: the stiffness of all the rest.
+  /// Stiffness of the rest of the turbine against some of the held coordinates, by their positions.
   Eigen::MatrixXd stiffness_of(const Point& point, const std::vector<PetscInt>& coordinates) {
     assemble(point);
     const Eigen::SparseMatrix<double> K = to_sparse(jacobian_.get());
@@ -163,7 +163,7 @@ class Equilibrium {
     return system;
   }
 
-  /// What a unconstrained row lacks is what the holding load gives.
+  /// The holding load is the residual of an unconstrained coordinate's row.
   std::vector<HeldCoordinate> held_loads(const Point& point) const {
     std::vector<HeldCoordinate> held;
     for (const system::UnconstrainedCoordinate& unconstrained : held_)
@@ -195,8 +195,8 @@ class Equilibrium {
   }
 
   /// Largest change relative to the largest value, of positions and of internal loads, and of
-  /// first-order states relative to their own value or scale. What is rigid moves by round-off
-  /// alone.
+  /// first-order states relative to their own value or scale. Rigid parts move by round-off
+  /// only.
   double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x) const {
     double worst = 0.0;
     for (const std::vector<Eigen::Index>* unknowns : {&positions_, &loads_}) {
@@ -226,7 +226,7 @@ class Equilibrium {
     return largest;
   }
 
-  /// Of the positions alone.
+  /// Product over the positions only.
   double product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
     double sum = 0.0;
     for (const Eigen::Index i : positions_) sum += a(i) * b(i);
@@ -582,7 +582,7 @@ class PathFollower {
         throw ConvergenceError("a coordinate that was set free moves too far in one step");
   }
 
-  /// Of the free directions, under almost no spring beside the turbine and its loads.
+  /// Checks the free directions, with almost no spring beside the turbine and its loads.
   void require_restored(const Point& point) {
     const double remaining = easing_.remaining;
     easing_.remaining = restored;

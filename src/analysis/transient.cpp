@@ -19,30 +19,30 @@
 namespace samara::analysis {
 namespace {
 
-/// What integrates this system, with the orders that docs/theory.md, section 9.1, states.
+/// Integrators that suit this system, with the orders of docs/theory.md, section 9.1.
 constexpr std::array<const char*, 5> sound_types{TSBDF, TSTHETA, TSCN, TSALPHA, TSBEULER};
-/// Of BDF beside rigid strains (docs/theory.md, section 9.1).
+/// Order of BDF with rigid strains (docs/theory.md, section 9.1).
 constexpr PetscInt most_stable_order = 2;
 /// Newton with an old tangent goes on while each correction is this much smaller than the last.
 constexpr double slow_contraction = 0.1;
 /// The first steps after a start differ in what multiplies M.
 constexpr int starting_steps = 3;
-/// Of a step against the one before: BDF2 is stable up to 2.4.
+/// Ratio of a step to the one before: BDF2 is stable up to 2.4.
 constexpr double largest_growth = 2.0;
 constexpr double least_growth = 0.1;
 /// A tolerance that no error reaches.
 constexpr double left_out = 1e30;
-/// Of the state: corrections this small that no longer shrink are round-off.
+/// Relative to the state: smaller corrections that no longer shrink are round-off.
 constexpr double stagnation = 1e-8;
 constexpr double round_off = 1e-9;
-/// Of the step: the first one of BDF2, which begins with a step of first order. The next ones may
-/// be twice as long each. So the error of the start is a thousandth of what it would be.
+/// Relative to the step: the first one of BDF2, which begins with a step of first order. The next
+/// ones may be twice as long each. So the error of the start is a thousandth of what it would be.
 constexpr double first_step = 1.0 / 32.0;
 constexpr int most_newton_steps = 20;
 /// How far an angle may be from where its rate leads within a step [rad]. The equations of a step
 /// have other solutions, whole turns away or with a hinge folded back.
 constexpr double largest_deviation = 0.1;
-/// Of a step: the one that finds the rates at the start.
+/// Relative to a step: the one that finds the rates at the start.
 constexpr double start_fraction = 1e-3;
 constexpr int start_iterations = 4;
 
@@ -313,8 +313,8 @@ class Integration {
     petsc::check(VecRestoreArrayRead(x_.get(), &values));
   }
 
-  /// Half of what the next step is expected to miss is taken off the velocities before it. What a
-  /// step misses goes with the square of its length.
+  /// Half of the expected error of the next step is subtracted from the velocities before it. The
+  /// error of a step is proportional to the square of its length.
   void kick(double dt) {
     if (!velocities_) return;
     const double growth = dt / kick_step_;
@@ -330,8 +330,8 @@ class Integration {
     const Eigen::VectorXd before = admissible_;
     const Eigen::VectorXd z = read_state(x_.get());
     put(z, z_end_.get());
-    // What the step missed is d = e - k, of the jump e at its end and the kick k before it; the
-    // next kick is -d/2, or with the last d -(2/3 d - d_last/6).
+    // The error of the step is d = e - k, with the jump e at its end and the correction k before
+    // it; the next kick is -d/2, or with the last d -(2/3 d - d_last/6).
     const bool is_first = missed_.size() == 0;
     const Eigen::VectorXd carried =
         is_first ? Eigen::VectorXd(0.5 * used_kick_)

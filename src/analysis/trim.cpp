@@ -16,14 +16,15 @@ namespace {
 
 /// Relative to the largest internal load: below it a constant is the solution.
 constexpr double round_off = 1e-11;
-/// Of the largest residual of the undeformed system: what changes by more is no round-off.
+/// Relative to the largest residual of the undeformed system: a larger change is no round-off.
 constexpr double changing = 1e-6;
 
 double allowed_residual(const Trim& trim, double relative) {
   return relative * std::max(trim.load_level, 1.0);
 }
 
-/// Of evolution and definition rows, relative to their terms: below it a constant is the solution.
+/// Residual of evolution and definition rows, relative to their terms, below which a constant state
+/// is the solution.
 constexpr double state_round_off = 1e-9;
 
 /// With Q identical blades the tower sees multiples of Q. Leaving out the multiple next above H

@@ -21,9 +21,10 @@ void add(StateSpace& sum, double factor, const StateSpace& form) {
   }
 }
 
-/// Of the largest entry of a column: a row that is smaller everywhere is round-off.
+/// Relative to the largest entry of a column: a row that is smaller everywhere is round-off.
 constexpr double least_row = 1e-6;
-/// Of the largest entry of a matrix: what is smaller everywhere in row and column is round-off.
+/// Relative to the largest entry of a matrix: entries smaller throughout row and column are
+/// round-off.
 constexpr double round_off = 1e-12;
 
 /// The largest size of every entry at any azimuth.
@@ -38,8 +39,8 @@ StateSpace largest_of(const std::vector<StateSpace>& samples) {
 }
 
 /// The difference of two forms: each entry relative to the geometric mean of the largest ones of
-/// its row and of its column at any azimuth, whatever the units are. What inputs do at once (D) is
-/// counted from the round-off of what they do by way of the states.
+/// its row and of its column at any azimuth, whatever the units are. The direct effect of inputs
+/// (D) is counted from the round-off of what they do by way of the states.
 double compare(const StateSpace& found, const StateSpace& wanted, const StateSpace& largest) {
   double worst = 0.0;
   const double rate = std::sqrt(std::max(1.0, largest.A.size() > 0 ? largest.A.maxCoeff() : 0.0));

@@ -17,7 +17,7 @@
 namespace samara::linear {
 namespace {
 
-/// Of the sum of squares of first-order states: a motion below it is round-off.
+/// Relative to the sum of squares of first-order states: a smaller motion is round-off.
 constexpr double no_motion = 1e-20;
 
 using analysis::exponential;
@@ -30,7 +30,7 @@ using Eigen::MatrixXd;
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr Complex imaginary{0.0, 1.0};
 
-/// What decays by more in a revolution is beyond the digits of the monodromy matrix.
+/// A mode that decays to less in a revolution is beyond the digits of the monodromy matrix.
 constexpr double least_multiplier = 1e-4;
 /// Below it differences are round-off.
 constexpr double round_off = 1e-9;
@@ -43,7 +43,7 @@ constexpr double different_mode = 0.03;
 /// Multipliers this close to one are of motions that nothing restores, several of which round-off
 /// parts by more than that: they stay together.
 constexpr double neutral_multiplier = 1e-3;
-/// Of an exponent, relative to it or to the rotor speed: the difference that half the steps make.
+/// Largest change of an exponent by half the steps, relative to it or to the rotor speed.
 constexpr double resolved = 1e-4;
 
 MatrixXcd small_exponential(const MatrixXcd& matrix) {
@@ -226,7 +226,7 @@ void LyapunovFloquet::choose_branch(Block& block) const {
     size += V.topRows(positions_).squaredNorm();
     states += V.bottomRows(V.rows() - 2 * positions_).squaredNorm();
   }
-  // Of first-order states alone there is no motion whose frequency chooses.
+  // First-order states alone have no motion whose frequency could decide.
   const double shift = size > no_motion * states
                            ? std::round((turning / size - mean_of(block.exponent).imag()) / speed_)
                            : 0.0;
@@ -392,7 +392,7 @@ StateSpace LyapunovFloquet::transformation(double psi) const {
   return {exponents_, frame.Q, frame.P, MatrixXd::Zero(scale_.size(), scale_.size())};
 }
 
-/// What is left out answers at once, as if A stood still meanwhile: 0 = A x + B u in its space.
+/// Omitted modes respond quasi-statically, with A at this azimuth: 0 = A x + B u in their space.
 StateSpace LyapunovFloquet::form(double psi, const StateSpace& map) const {
   const MatrixXd& Q = map.B;
   const MatrixXd& P = map.C;

@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-/// Of the modulus of an exponent, or of 1 rad/s: decay below it is none.
+/// Relative to the modulus of an exponent, or to 1 rad/s: a smaller decay counts as none.
 constexpr double neutral_decay = 1e-6;
 
 bool is_stable(Complex exponent) {

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double revolution = 360.0;  // [deg], as azimuths are
 constexpr double degree = std::numbers::pi / 180.0;
-/// Of a revolution: azimuths closer than this are the same, and so little is not missing to a whole
+/// Relative to a revolution: closer azimuths are the same, and so small a gap counts as a whole
 /// revolution.
 constexpr double same_azimuth = 1e-9;
-/// Of the largest pivot: below it the rows do not tell the harmonics apart.
+/// Relative to the largest pivot: below it the rows do not separate the harmonics.
 constexpr double least_pivot = 1e-8;
 
 void check_azimuth(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg) {
@@ -72,7 +72,7 @@ Window find_window(const Eigen::VectorXd& azimuth) {
   return window;
 }
 
-/// Of a periodic time series, whose first row does not come again.
+/// Checks the azimuth of a periodic time series, whose first row is not repeated at its end.
 void check_one_revolution(const Eigen::VectorXd& azimuth) {
   const double span = azimuth(azimuth.size() - 1) - azimuth(0);
   if (first_growing_row(azimuth) > 0 || !(span < revolution))

@@ -14,17 +14,17 @@ constexpr std::array<double, 4> places{0.0, 0.27, 0.51, 0.78};
 /// Halvings that narrow down a jump or a kink. A smooth change shrinks with the interval.
 constexpr int jump_halvings = 24;
 constexpr int kink_halvings = 12;
-/// Of the change before, what a jump keeps at least.
+/// A jump keeps at least this part of the change before.
 constexpr double kept_jump = 1e-3;
 constexpr double kept_kink = 0.5;
-/// Of the largest change, or rate: smaller ones are not looked at.
+/// Relative to the largest change, or rate: smaller ones are not examined.
 constexpr double least_change = 1e-3;
 constexpr double least_kink = 1e-2;
-/// Of the size of the values: what is smaller is round-off.
+/// Relative to the size of the values: smaller differences are round-off.
 constexpr double round_off = 1e-12;
-/// Of the change: what the neighbours do not explain.
+/// Least part of a change that the neighbours do not explain.
 constexpr double least_surprise = 0.1;
-/// Of the range: so far off the line a motion is not followed by the steps.
+/// Relative to the range: the steps do not resolve a motion that deviates more from the line.
 constexpr double largest_deviation = 0.1;
 
 /// A curve by its values at rising times.

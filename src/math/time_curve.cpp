@@ -16,7 +16,7 @@ namespace {
 using Point = TimeCurve::Point;
 using Value = TimeCurve::Value;
 
-/// Of the time in seconds: the distance of the differences of a formula.
+/// Step of the differences of a formula [s].
 constexpr double difference_step = 1e-3;
 constexpr int integration_points = 5;
 constexpr double longest_interval = 0.05;

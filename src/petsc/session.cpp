@@ -15,7 +15,7 @@
 namespace samara::petsc {
 namespace {
 
-/// What a rank that failed waits for the others, who may be in the middle of a computation [s].
+/// Time that a failed rank waits for the others, which may be in the middle of a computation [s].
 constexpr double patience = 5.0;
 /// For so long a rank that waits looks without a pause [s].
 constexpr double spinning = 1e-3;
@@ -45,7 +45,7 @@ int launcher_number(std::initializer_list<const char*> names, int otherwise) {
 }
 
 /// Open MPI looks for networks that a single machine does not need; that takes longer than many a
-/// run (0.38 s against 0.07 s). What the user sets in the environment stands.
+/// run (0.38 s against 0.07 s). Settings of the user in the environment have priority.
 void prepare_transport() {
   const auto set = [](const char* name, const char* value) { setenv(name, value, 0); };
   const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");

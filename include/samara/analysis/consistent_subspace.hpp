@@ -46,12 +46,12 @@ class ConsistentSubspace {
   /// second; zero of the others.
   Eigen::MatrixXd spread_rates(const Eigen::MatrixXd& rates) const;
 
-  /// What constraint rows determine from eta and xi: positions, and internal loads of beams held
-  /// twice.
+  /// Unknowns that constraint rows determine from eta and xi: positions, and internal loads of
+  /// beams held twice.
   const std::vector<PetscInt>& tied() const { return tied_; }
   const std::vector<PetscInt>& constraint_rows() const { return constraints_; }
   const std::vector<PetscInt>& kinematic_rows() const { return kinematic_; }
-  /// What kinematic rows determine.
+  /// Unknowns that kinematic rows determine.
   const std::vector<PetscInt>& velocities() const { return velocities_; }
 
   /// eta of the columns of z, scaled: d x columns.

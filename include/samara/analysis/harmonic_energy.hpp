@@ -25,7 +25,7 @@ class HarmonicEnergy {
   explicit HarmonicEnergy(const system::PeriodicSystem& system, int sectors = 1, int share = 0,
                           int shares = 1);
 
-  /// Of the kinetic energy.
+  /// Names of the parts of the kinetic energy.
   const std::vector<std::string>& part_names() const { return parts_; }
   /// Columns of energies(): these parts, and behind them those of first-order states
   /// (find_state_parts), which have half the sum of their squares in the place of an energy.

@@ -1,4 +1,4 @@
-// What a mode is called, from the kinetic energy of its motions, and where it stands among others
+// Name of a mode, from the kinetic energy of its motions, and its place in the list of modes
 // (docs/theory.md, section 5.6).
 #pragma once
 

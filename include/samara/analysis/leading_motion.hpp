@@ -11,7 +11,7 @@
 
 namespace samara::analysis {
 
-/// Of several parts alike, the blades, of which there are motions.
+/// Number of equal parts, the blades, that have motions.
 int count_instances(const std::vector<system::Motion>& motions);
 
 /// The motion that a mode is named after: that with most kinetic and strain energy.

@@ -1,4 +1,4 @@
-// What the analyses need of linear algebra: a scaled direct solver for many right-hand sides, the
+// Linear algebra of the analyses: a scaled direct solver for many right-hand sides, the
 // dense product and the dense eigenproblem.
 #pragma once
 

@@ -69,7 +69,7 @@ struct ModeSet {
   bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*
   int states = 0;             ///< exponents there are, each of a pair counted
   int found = 0;              ///< of these, those of `modes`
-  /// Of these, decays that end below round-off within the integration: their exponents are not
+  /// Number of these that decay below round-off within the integration: their exponents are not
   /// known and not among `modes`. All of them decay at `deflated_rate` [1/s] or faster.
   int deflated = 0;
   double deflated_rate = std::numeric_limits<double>::infinity();

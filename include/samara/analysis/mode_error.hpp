@@ -15,7 +15,7 @@ namespace samara::analysis {
 /// exponent (2/dt) tanh(s dt/2): the inverse of the step's map (1 + lambda dt/2)/(1 - lambda dt/2).
 std::complex<double> unwarped(std::complex<double> s, double step);
 
-/// What the step changes in a mode whose energy is in several harmonics: each is warped by its own
+/// Change by the step of a mode whose energy is in several harmonics: each is warped by its own
 /// frequency. `principal`: of the sequence of steps [rad/s]; `shares` of the kinetic energy by
 /// harmonic from `first`; `harmonic`: the one whose warping is mapped back [rad/s, complex modulus
 /// and real part].

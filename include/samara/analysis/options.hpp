@@ -1,4 +1,4 @@
-// What the user asks of the analyses (the keys `trim`, `floquet`, `static` and `transient` of a
+// Options of the analyses (the keys `trim`, `floquet`, `static` and `transient` of a
 // case file).
 #pragma once
 
@@ -42,7 +42,8 @@ struct TransientOptions {
   double step = 0.0;          ///< [s], > 0; with a step_tolerance the longest
   double tolerance = 1e-9;    ///< of the last Newton correction's error, relative to the state
   long checkpoint_steps = 0;  ///< between checkpoints; 0: none
-  /// Of the error of a step in every position, absolute [m, rad] and relative; 0: all steps alike.
+  /// Tolerance of a step's error in every position, absolute [m, rad] and relative; 0: constant
+  /// steps.
   double step_tolerance = 0.0;
   std::optional<double> stop_at;  ///< [s], where the run ends if it is before the end
 };

@@ -42,8 +42,8 @@ struct Trim {
   std::vector<std::pair<int, double>> attempts = {};
   /// Largest evolution or definition row, at the samples and between them, relative to its terms.
   double state_residual = 0.0;
-  /// Of harmonic balance: largest harmonic of a balance row that is to vanish [N, N m]; what the
-  /// samples show beyond it are harmonics that were left out. Not a number: not known.
+  /// Harmonic balance only: largest harmonic of a balance row that is to vanish [N, N m]; residuals
+  /// that the samples show beyond it are harmonics that were left out. Not a number: not known.
   double harmonic_residual = 0.0;
 };
 

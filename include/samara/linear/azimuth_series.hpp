@@ -17,7 +17,7 @@ class AzimuthSeries {
   /// them to know the residual. harmonics 0: a form that does not change is sampled once.
   AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths, int harmonics);
 
-  /// Of given coefficients, A0 Ac_1 As_1 Ac_2 ..., with the residual of what they were made of.
+  /// Series of given coefficients, A0 Ac_1 As_1 Ac_2 ..., with the residual of their fit.
   explicit AzimuthSeries(std::vector<StateSpace> coefficients, double residual = 0.0)
       : coefficients_(std::move(coefficients)), residual_(residual) {}
 

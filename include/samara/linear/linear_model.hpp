@@ -47,7 +47,7 @@ inline constexpr std::array<StateSpacePart, 4> state_space_parts{
      {"C", &StateSpace::C, "output", "state"},
      {"D", &StateSpace::D, "output", "input"}}};
 
-/// What a column of B and D stands for: an input, its rate or its acceleration.
+/// Meaning of a column of B and D: an input, its rate or its acceleration.
 struct InputColumn {
   std::size_t input = 0;
   int derivative = 0;

@@ -17,7 +17,7 @@ class LyapunovFloquet {
  public:
   /// Integrates over a revolution, by way of `azimuths` equally spaced ones, at which the forms
   /// below then cost nothing, in `steps` steps at the least; half as many tell how large the error
-  /// is. Of the slowest modes that are resolved so, `states` coordinates at the most; 0: all.
+  /// is. The coordinates are those of the slowest such modes, at most `states`; 0: all.
   /// `series` must live on; the last `first_order` of its states are xi, the others eta and its
   /// rate.
   /// @throws InputError where there are none, or less than `states`

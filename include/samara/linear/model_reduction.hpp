@@ -17,8 +17,8 @@ struct ReducedForm {
   StateSpace form;
   int kept = 0;            ///< neutral and unstable states, all of which are kept
   Eigen::VectorXd hankel;  ///< Hankel singular values of the stable part, falling; balanced only
-  /// Of the largest singular value of the difference of both transfer functions at any frequency,
-  /// in units of outputs over inputs; balanced only.
+  /// Bound of the largest singular value of the difference of both transfer functions at any
+  /// frequency, in units of outputs over inputs; balanced only.
   double error_bound = 0.0;
 };
 

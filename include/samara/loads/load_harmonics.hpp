@@ -16,8 +16,8 @@ struct LoadHarmonics {
 /// Harmonics 0 ... `harmonics` by least squares over the last whole revolutions, weighted by
 /// azimuth (trapezoidal rule), which may advance unevenly: exact for a sum of these harmonics, and
 /// close to Fourier's integrals if there are others. `azimuth_deg` [deg] is one a row and grows; it
-/// may jump back by 360 deg, if no step is larger than 180 deg. What is before the azimuth began to
-/// grow is left out. A periodic time series is one revolution.
+/// may jump back by 360 deg, if no step is larger than 180 deg. Rows before the azimuth begins to
+/// grow are left out. A periodic time series is one revolution.
 /// @throws InputError where there is not one whole revolution, or too few rows for the harmonics;
 /// otherwise as `check` of the time series.
 LoadHarmonics compute_harmonics(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg,

@@ -26,7 +26,7 @@ struct LoadSeries {
 /// @throws InternalError where names, times and values differ in size.
 void check(const LoadSeries& series);
 
-/// T [s]: from the first to the last time, or the period. Of a time series that `check` accepts.
+/// T [s]: from the first to the last time, or the period. For a time series that `check` accepts.
 double duration(const LoadSeries& series);
 
 /// Weights of the trapezoidal rule over `points`, which grow: the integral of a function that is

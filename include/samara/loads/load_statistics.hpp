@@ -7,8 +7,8 @@
 
 namespace samara::loads {
 
-/// Of one channel, in its unit; mean and deviation are weighted by time (trapezoidal rule), so that
-/// they do not depend on where the steps are short.
+/// Statistics of one channel, in its unit; mean and deviation are weighted by time (trapezoidal
+/// rule), so that they do not depend on where the steps are short.
 struct ChannelStatistics {
   double mean = 0.0;
   double standard_deviation = 0.0;  ///< of the whole time series, not an estimate from a sample

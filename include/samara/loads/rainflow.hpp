@@ -32,7 +32,7 @@ std::vector<Cycle> count_cycles(const Eigen::Ref<const Eigen::VectorXd>& values,
 std::vector<Cycle> count_periodic_cycles(const Eigen::Ref<const Eigen::VectorXd>& values,
                                          double gate = 0.0);
 
-/// Of one channel, periodic or not.
+/// Cycles of one channel, periodic or not.
 /// @throws as `check` of the time series and `find_turning_points`
 std::vector<Cycle> count_cycles(const LoadSeries& series, Eigen::Index channel, double gate = 0.0);
 

@@ -21,7 +21,7 @@ struct CurveFault {
 };
 
 /// The first jump of the curve from 0 to `until` [s], or else the first step in which it is fast:
-/// more than a tenth of its range off the straight line. Of more than 50000 steps the curve is
+/// more than a tenth of its range off the straight line. With more than 50000 steps the curve is
 /// searched in as many parts, for jumps alone.
 std::optional<CurveFault> find_jump(const TimeCurve& curve, double until, double step);
 

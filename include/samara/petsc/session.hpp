@@ -26,7 +26,7 @@ class Session {
   static bool is_launched();
   static int launch_rank();
 
-  /// What every rank ends with: the largest of their exit codes. Every rank calls it at the same
+  /// Common exit code of all ranks: the largest of theirs. Every rank calls it at the same
   /// points of its work; the first one that failed prints its message, whole lines, to stderr.
   /// Where the others do not come within some seconds (they wait for this rank in a collective
   /// call), the rank that failed prints its message and ends them all.
