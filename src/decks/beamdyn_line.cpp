@@ -16,7 +16,7 @@ namespace {
 
 constexpr int most_degree = 6;
 
-/// Of the length through the key points.
+/// Relative to the length of the line through the key points.
 constexpr double longest_line = 1.5;
 
 /// A line is straight where it stays this close to its axis, of its length.

@@ -59,7 +59,7 @@ class BeamdynLine {
     double arc_to(double xi) const;
   };
 
-  /// Of a member, at xi.
+  /// Place on a member, at xi.
   Place place(const Member& member, double xi) const;
   void refine(const Member& member, double xi, const Place& end, double xi_end, int depth,
               std::vector<Place>& places) const;

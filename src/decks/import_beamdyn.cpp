@@ -12,7 +12,7 @@
 namespace samara::decks {
 namespace {
 
-/// Of places along the blade, and of the root's coordinates by its length.
+/// Tolerance of places along the blade, and of the root's coordinates relative to its length.
 constexpr double same_place = 1e-9;
 
 constexpr double most_twist = 180.0;  // deg

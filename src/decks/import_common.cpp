@@ -14,7 +14,7 @@
 namespace samara::decks {
 namespace {
 
-/// Of the length, between the two stations of a jump.
+/// Distance of the two stations of a jump, relative to the length.
 constexpr double jump_width = 1e-12;
 
 /// Places closer than this are one [of the length].

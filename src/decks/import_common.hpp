@@ -1,4 +1,4 @@
-// What the importers share: the report, functions along a beam, section axes.
+// Common parts of the importers: the report, functions along a beam, section axes.
 #pragma once
 
 #include <string>
@@ -21,7 +21,8 @@ struct Mesh {
   int order = 1;
 };
 
-/// Of imported beams: the first ten modes are within 0.5 % of converged ones (docs/import.md).
+/// Meshes of imported beams: the first ten modes are within 0.5 % of converged ones
+/// (docs/import.md).
 inline constexpr Mesh bending_blade_mesh{3, 4};  ///< of blades that do nothing but bend
 inline constexpr Mesh blade_mesh{2, 4};          ///< of blades with all six strains
 inline constexpr Mesh bending_tower_mesh{1, 5};  ///< of towers below the former

@@ -26,7 +26,7 @@ Vector3 axis_of(double skew_deg, double tilt_deg) {
   return {std::cos(skew) * std::cos(tilt), std::sin(skew) * std::cos(tilt), std::sin(tilt)};
 }
 
-/// What turns about a furl axis: ElastoDyn knows its inertia about that axis alone.
+/// Body that turns about a furl axis: ElastoDyn states its inertia about that axis only.
 void add_inertia(OpenfastImport& import, Deck& deck, const std::string& side, Body& body) {
   const std::string key = side + "Iner";
   const Vector3 axis = axis_of(deck.number(side + "Skew"), deck.number(side + "Tilt"));

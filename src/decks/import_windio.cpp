@@ -25,7 +25,7 @@ constexpr double no_distance = 1e-14;
 /// More mass per length [kg/m] than any tower or monopile of steel has.
 constexpr double most_mass = 1e5;
 
-/// Of the hub, stated and found [m].
+/// Largest difference of the stated and the derived height of the hub [m].
 constexpr double height_tolerance = 1e-3;
 
 constexpr double degrees = 180.0 / std::numbers::pi;
@@ -186,7 +186,7 @@ class Importer {
     return key == "shaft.generator.own_inertia" ? "shaft.generator" : key;
   }
 
-  /// What a deck may leave out is 0 in the case, and said.
+  /// A value that a deck may leave out is 0 in the case, with a note.
   void missing(const std::string& what, const std::string& key) {
     note(comment_place(key), "not in the deck");
     report_.push_back({path_, what, Fate::ignored, "not in the deck: " + key + " is 0"});
@@ -200,7 +200,7 @@ class Importer {
     warnings_.push_back(place + ": " + words);
   }
 
-  /// What the command line states counts, whatever the deck has.
+  /// A value of the command line replaces that of the deck.
   template <class Value>
   void apply_stated(const std::string& key, Value& value) {
     const auto found = options_.stated.find(key);
@@ -327,7 +327,7 @@ class Importer {
                    : "overhang, tilt, precone positive");
   }
 
-  /// What carries the tower cannot be imported.
+  /// The structure below the tower cannot be imported.
   void read_supports() {
     for (const char* name : {"monopile", "jacket", "floating_platform"}) {
       const std::string path = std::string("components.") + name;
@@ -1125,7 +1125,7 @@ class Importer {
     return entries;
   }
 
-  /// Some files have i_flap = 0 and -i_edge in the place of i_cp. Of a thin section i_plr is the
+  /// Some files have i_flap = 0 and -i_edge in the place of i_cp. For a thin section i_plr is the
   /// sum of the two others.
   void derive_flap_inertia(const std::string& path, const Curve& edge, const Curve& polar,
                            Curve& flap, Curve& cross) {

@@ -14,7 +14,7 @@
 
 namespace samara::decks {
 
-/// What is wrong with a deck of several files, in the order found.
+/// Faults of a deck of several files, in the order found.
 class DeckErrors {
  public:
   void add(const std::string& place, const std::string& what);

@@ -1,4 +1,5 @@
-// What the readers of OpenFAST's files share: the case that grows, the report, the errors.
+// Common data of the readers of OpenFAST's files: the case under construction, the report, the
+// errors.
 #pragma once
 
 #include <memory>

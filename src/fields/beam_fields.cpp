@@ -8,7 +8,7 @@ constexpr std::array<const char*, 6> directions{"u1", "u2", "u3", "theta1", "the
 constexpr int most_elements = 100000;
 constexpr int most_order = 6;  ///< Gauss points an element
 
-/// What a diagonal section mass has.
+/// Values of a diagonal section mass.
 struct SectionMass {
   double mass = 0.0;
   Vector3 inertia = Vector3::Zero();

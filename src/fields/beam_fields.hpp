@@ -1,4 +1,4 @@
-// What tower and blades have in common.
+// Common keys of tower and blades.
 #pragma once
 
 #include "samara/fields/turbine_fields.hpp"

@@ -5,7 +5,7 @@
 
 namespace samara::fields {
 
-/// Of the gains of a loop.
+/// Units of the gains of a loop.
 struct Units {
   const char* proportional;
   const char* integral;

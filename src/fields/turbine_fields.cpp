@@ -20,12 +20,12 @@ void declare_nacelle(Visitor& fields, model::NacelleDefinition& nacelle) {
                [&] { declare_joint(fields, three_joints, nacelle.yaw); });
 }
 
-/// What acts on a blade: "tower", "blades" or "blade 2". Zero: each of them.
+/// Name of a loaded beam: "tower", "blades" or "blade 2"; `blade` 0: all blades.
 std::string name_beam(bool on_tower, int blade) {
   return on_tower ? "tower" : blade == 0 ? "blades" : "blade " + std::to_string(blade);
 }
 
-/// Of "blade 2" its number, 0 where it is none up to `count`.
+/// Number in "blade 2"; 0 where the text names no blade up to `count`.
 int find_blade(const std::string& text, int count) {
   for (int k = 1; k <= count; ++k)
     if (text == "blade " + std::to_string(k)) return k;

@@ -98,7 +98,7 @@ void print(const Entry& entry, std::size_t indent, const std::string& bullet, st
   std::string line = std::string(indent, ' ') + bullet;
   const bool is_item = entry.key.empty();
   if (!is_item) line += entry.key + ":";
-  // What stands at the top has lines of its own.
+  // Entries of the top level have lines of their own.
   const std::string value = indent == 0 && !entry.entries.empty() ? "" : in_one_line(entry);
   std::string comment = entry.unit;
   if (!entry.comment.empty()) comment += (comment.empty() ? "" : "; ") + entry.comment;

@@ -36,7 +36,7 @@ std::string this_process() {
   return "process " + std::to_string(::getpid()) + " on " + host.data();
 }
 
-/// What the holder wrote, in one short line.
+/// Text that the holder wrote, in one short line.
 std::string holder_of(int file) {
   std::array<char, 300> text{};
   const ssize_t count = ::pread(file, text.data(), text.size() - 1, 0);

@@ -16,7 +16,7 @@ constexpr std::size_t most_unstored = 1000000;
 
 /// Bytes of one read at the most (2 GB): larger data are read slice by slice.
 constexpr std::size_t most_bytes = std::size_t{1} << 31;
-/// Of texts, which nobody has as many of as of numbers.
+/// Limit of texts, which are smaller than numbers in all results.
 constexpr std::size_t most_text_bytes = std::size_t{64} << 20;
 
 constexpr unsigned most_rank = 32;

@@ -50,7 +50,7 @@ class Hdf5Reader {
   std::string text_attribute(const std::string& object, const std::string& name) const;
 
  private:
-  /// What is read: a dataset or an attribute.
+  /// Item to read: a dataset or an attribute.
   struct Item {
     Hdf5Id id;
     bool is_attribute = false;

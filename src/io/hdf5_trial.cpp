@@ -19,7 +19,7 @@
 namespace samara::io {
 namespace {
 
-/// Of one dataset or attribute, that is read at once.
+/// Limit of one dataset or attribute that is read at once.
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
 /// Processor time of the child [s]; a whole file takes some hundredths of it. A damaged one may
@@ -58,7 +58,7 @@ std::size_t bytes_of(const Hdf5Id& space, const Hdf5Id& type) {
   return static_cast<std::size_t>(count) * width;
 }
 
-/// What the child says: for each text its place, the number of entries and these, each with its
+/// Message of the child: for each text its place, the number of entries and these, each with its
 /// length before it; a number at the end that tells that all is there.
 class Report {
  public:

@@ -1,4 +1,4 @@
-// What of a case makes the model.
+// The part of a case that makes the model, as text.
 #pragma once
 
 #include <string>

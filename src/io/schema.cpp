@@ -240,7 +240,7 @@ class SchemaWriter : public fields::Description {
     return mapping;
   }
 
-  /// Of two groups at the most one is there; where keys of a group are compulsory, one group is.
+  /// At most one of two groups is given; where keys of a group are compulsory, exactly one.
   void add_exclusive(const std::vector<std::vector<std::string>>& groups, Json& rules) {
     Json ways = Json::array();
     bool is_needed = false;

@@ -17,7 +17,7 @@ inline constexpr char series_values[] = "/transient/values";
 inline constexpr char series_segment_file[] = "/transient/segment_file";
 inline constexpr char series_segment_rows[] = "/transient/segment_rows";
 
-/// Of the last checkpoint, and of the one before.
+/// Groups of the last checkpoint, and of the one before.
 inline constexpr std::array<const char*, kept_checkpoints> series_checkpoints{
     "/transient/checkpoint", "/transient/checkpoint_before"};
 

@@ -29,7 +29,7 @@ constexpr std::chrono::seconds segment_time{2};
 /// Values that are gathered at the most (64 MB).
 constexpr std::size_t segment_values = std::size_t{8} << 20;
 
-/// Of the file that keeps room, behind the run's name.
+/// Ending of the file that reserves disk space, behind the run's name.
 constexpr const char* room_ending = ".room";
 constexpr std::uintmax_t least_room = std::uintmax_t{1} << 20;
 
@@ -263,7 +263,7 @@ TimeSeriesReader::TimeSeriesReader(const std::string& path) : path_(path) {
   read_checkpoints();
 }
 
-/// Of the segments those before the last ones that are missing or damaged, as a machine that goes
+/// Segments before the last ones that are missing or damaged, as a machine that goes
 /// down may leave them.
 void TimeSeriesReader::read_segments() {
   const std::string& path = path_;

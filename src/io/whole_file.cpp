@@ -29,7 +29,7 @@ std::string temporary_name() {
 }
 constexpr int most_attempts = 8;
 
-/// Of a new file, before the process's mask takes some away.
+/// Permissions of a new file, before the mask of the process removes some.
 constexpr mode_t readable_by_all = 0666;
 
 /// Waits until what was written is on the disk. Some file systems cannot, and say so.

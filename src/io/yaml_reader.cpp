@@ -313,7 +313,7 @@ void MapReader::refuse_word(const YamlNode& entry, std::string_view key,
 std::string MapReader::report_unknown(const YamlNode& entry) const {
   std::string what = "unknown key " + quote(entry.key);
   if (!where_.empty() && entry.place.setting < 0) what += " in " + where_;
-  // What nobody will see needs no suggestion.
+  // A fault that is not shown needs no suggestion.
   const std::string similar =
       errors_.size() < max_errors_shown ? find_similar(entry.key, known_) : "";
   if (!similar.empty()) {

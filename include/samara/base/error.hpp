@@ -7,7 +7,7 @@
 
 namespace samara {
 
-/// What the user can mend: a file, a key, an option, a path (exit code 2).
+/// Input error, which the user can correct: a file, a key, an option, a path (exit code 2).
 /// The message may have several lines, one error each.
 class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -1,4 +1,4 @@
-// What is wrong with a definition, field by field.
+// Faults of a definition, field by field.
 #pragma once
 
 #include <string>

@@ -7,7 +7,7 @@
 
 namespace samara {
 
-/// Of a letter of ASCII, whatever the locale.
+/// Lower case of an ASCII letter, whatever the locale.
 inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Returns the word that `word` is probably meant to be, or an empty string.

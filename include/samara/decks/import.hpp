@@ -8,7 +8,7 @@
 
 namespace samara::decks {
 
-/// What became of a key of the deck.
+/// Fate of a key of the deck.
 enum class Fate {
   taken,    ///< the value stands in the case as it is, or in another unit or axis
   derived,  ///< the case holds what follows from it

@@ -19,7 +19,7 @@ class FileLock {
   FileLock& operator=(const FileLock&) = delete;
 
   bool is_held() const { return file_ >= 0; }
-  /// Of the lock file; empty where nothing is held.
+  /// Path of the lock file; empty where no lock is held.
   std::string path() const { return is_held() ? lock_path_ : ""; }
 
  private:

@@ -22,7 +22,7 @@ namespace samara::io {
 /// Version of the names and shapes below, the attribute `samara_schema` of the root.
 inline constexpr int result_schema = 1;
 
-/// What a reader must know of a dataset: its attributes, and a name for each of its axes. An axis
+/// Meaning of a dataset for its readers: its attributes, and a name for each of its axes. An axis
 /// is an HDF5 dimension scale: the dataset of that name in the same group or one above, which lists
 /// its entries; numbers from 1 are written where there is none. A list with its own name as its
 /// axis becomes such a scale.

@@ -8,7 +8,7 @@
 
 namespace samara::io {
 
-/// What a result holds that loads can be taken from.
+/// Kind of a result that loads can be taken from.
 enum class ResultKind {
   time_series,   ///< rows of `samara transient`
   steady_state,  ///< harmonics of `samara trim` or `samara floquet`
@@ -22,8 +22,8 @@ ResultKind find_result_kind(const std::string& path);
 /// @throws InputError as `find_result_kind`, and where this program does not accept the case
 Case read_result_case(const std::string& path);
 
-/// Of /trim the solution and the loads that hold coordinates. @throws InputError where there is
-/// none
+/// Reads from /trim the solution and the loads that hold coordinates. @throws InputError where
+/// there is none
 analysis::Trim read_result_trim(const std::string& path);
 
 /// Finds the unknowns of held coordinates, of which a file has the names.

@@ -6,8 +6,8 @@
 // run, it is a complete file of all rows but the last seconds'. A run that is over before the first
 // segment is due leaves one file.
 //
-// Segments and results are on the disk (fsync) before anything names them. Of the folder only
-// segments of runs that the result named before are ever removed.
+// Segments and results are on the disk (fsync) before anything names them. Only
+// segments of runs that the result named before are removed from the folder.
 //
 // Serial: one rank writes, and holds a FileLock on the result.
 #pragma once
@@ -45,7 +45,7 @@ struct TimeSeriesCheckpoint {
   std::vector<double> events;  ///< when each event came [s]; not-a-number: not yet
 };
 
-/// What the result says of a time series.
+/// Description of a time series in a result.
 struct TimeSeriesContent {
   std::vector<turbine::Channel> channels;
   std::vector<TimeSeriesSegment> segments;
@@ -125,7 +125,7 @@ class TimeSeriesReader {
 
   const TimeSeriesContent& content() const { return content_; }
   std::size_t rows() const { return rows_; }
-  /// What is missing, in words for a note; empty where all is there.
+  /// Missing parts, in words for a note; empty where the time series is complete.
   const std::string& damage() const { return damage_; }
   /// Rows first to first + count of the times, and of the values row by row.
   std::vector<double> read_time(std::size_t first, std::size_t count) const;
