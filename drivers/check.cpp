@@ -19,7 +19,7 @@
 namespace samara::drivers {
 namespace {
 
-/// Of a centre of mass: smaller is round-off [m].
+/// Smaller coordinates of a centre of mass are round-off [m].
 constexpr double small_length = 1e-9;
 /// Relative: a rotor whose unbalance is smaller has none.
 constexpr double balanced = 1e-9;
@@ -101,7 +101,8 @@ std::string balance_words(const model::Masses& masses) {
   return general(off, 5) + " kg m off the shaft, " + general(azimuth, 5) + " deg ahead of blade 1";
 }
 
-/// What mu the damping ratios of a beam have become, and what its modes get: a line a direction.
+/// The mu that follow from the damping ratios of a beam, and the ratios of its modes: a line a
+/// direction.
 std::vector<std::string> damping_lines(const model::BeamDefinition& definition,
                                        const model::Beam& beam,
                                        const std::array<const char*, 3>& names) {

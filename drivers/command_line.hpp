@@ -1,4 +1,4 @@
-// What the user typed, taken apart; and what the program says of itself.
+// Parsed command line, and the help texts of the program.
 #pragma once
 
 #include <span>

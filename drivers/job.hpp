@@ -1,4 +1,4 @@
-// What a command works on, and how it delivers.
+// Input of a command, and delivery of its results.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ struct Job {
   bool all_modes = false;              ///< also those that are not resolved are listed
   int first_modes = 0;                 ///< so many rows are listed; 0: all
   std::string restart_path;            ///< empty: the run starts at its beginning
-  /// Of a command that reads results: these; `input` is the case of the first.
+  /// Results that the command reads, if any; `input` is the case of the first.
   std::vector<std::string> sources;
   std::vector<std::string> settings;  ///< its own --set arguments, which are no keys of the case
 };
@@ -29,7 +29,7 @@ struct Job {
 /// How the result came about, for its attributes.
 io::RunRecord record_of(const Job& job);
 
-/// What a command reads it does not write over. @throws InputError
+/// Refuses to overwrite a file that the command reads. @throws InputError
 void require_other_path(const std::string& path, const std::vector<std::string>& sources);
 
 /// Writes the files and prints the tables; the tables also where a file cannot be written, for they

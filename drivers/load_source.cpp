@@ -26,7 +26,7 @@ constexpr std::array<const char*, 3> azimuth_names{"Azimuth", "LSSTipPxa", "LSST
 /// Values that are read at a time (8 MB).
 constexpr std::size_t slice_values = std::size_t{1} << 20;
 
-/// Of a time: how far `from` and `until` may be from that of a row.
+/// Relative to a time: largest distance of `from` and `until` from that of a row.
 constexpr double round_off = 1e-9;
 
 bool is_azimuth(const std::string& name) {

@@ -13,7 +13,7 @@ struct LoadSource {
   Eigen::VectorXd azimuth;  ///< [deg] of each row; empty: the time series has none
 };
 
-/// Of a steady state needs a PETSc session; a rough one is noted.
+/// A steady state needs a PETSc session; a rough one is noted.
 /// @throws InputError where the result has neither, or not what the options ask for
 LoadSource read_load_source(const std::string& path, const io::LoadOptions& options,
                             analysis::Observer& observer);

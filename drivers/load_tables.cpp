@@ -15,7 +15,7 @@ constexpr Eigen::Index most_range_columns = 20;
 
 constexpr int digits = 5;
 
-/// Of a channel's largest value: what is below it is round-off.
+/// Relative to a channel's largest value: smaller values are round-off.
 constexpr double round_off = 1e-12;
 
 /// `value` of a channel with these extremes.

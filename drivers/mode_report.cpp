@@ -131,7 +131,7 @@ std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
          " %";
 }
 
-/// What the modes do that do not grow, in words.
+/// Behaviour of the modes that do not grow, in words.
 std::string rest_words(const StabilityAssessment& result) {
   std::vector<std::string> rest;
   const int decaying = static_cast<int>(result.decaying.size());
@@ -201,7 +201,7 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   }
 }
 
-/// What was left out of the verdict, a line each.
+/// Modes that were left out of the verdict, a line each.
 std::string doubtful_words(const ModeSet& set, const StabilityAssessment& result, bool all) {
   std::string text;
   const std::size_t alone = result.growing_alone.size();

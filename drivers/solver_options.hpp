@@ -8,7 +8,7 @@ namespace samara::drivers {
 /// The table of `samara --help-options`.
 std::string solver_options_text();
 
-/// What to write instead of an option that nothing asked for, as a hint; empty where it is no
+/// Hint with the right spelling of an option that nothing asked for; empty where it is no
 /// option of a solver that lacks its prefix. `option`: with its dash.
 std::string prefixed_option(const std::string& option, const std::string& command);
 

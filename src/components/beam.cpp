@@ -28,19 +28,20 @@ constexpr int turn = 15;
 constexpr int velocity = 18;
 constexpr int spin = 21;
 constexpr int point_values = 24;
-// Of an end: motion and balance.
+// Values of an end: motion and balance.
 constexpr int end_velocity = 0;
 constexpr int end_spin = 3;
 constexpr int end_balance = 6;
 constexpr int end_values = 12;
-// Of the root on its support: the same, the law of the springs and the load on what carries them.
+// Values of the root on its support: the same, the law of the springs and the load on their
+// carrier.
 constexpr int support_law = 12;
 constexpr int support_root = 18;
 constexpr int support_values = 24;
-// Of a change of reference: rotation and section load of each point of the element before it.
+// Values of a change of reference: rotation and section load of each point of the element before.
 constexpr int most_points = 6;
 constexpr int change_arguments = 9 * most_points;
-// Of damping in proportion to the mass: u, u_dot; u, theta of the root and their rates.
+// Arguments of mass-proportional damping: u, u_dot; u, theta of the root and their rates.
 constexpr int drag_arguments = 18;
 
 using system::EnergyGroup;
@@ -520,7 +521,7 @@ void Beam::state_support(System& system) const {
                                                      Memory::of_arguments);
 }
 
-/// What the plain sums of the curvature balances miss where references differ.
+/// Correction of the plain sums of the curvature balances where references differ.
 template <class System>
 void Beam::state_changes(System& system) const {
   const model::Beam& beam = *placed_.beam;

@@ -8,7 +8,7 @@
 
 namespace samara::components {
 
-/// Of element e; `points`: first unknown of each point of the beam.
+/// Mesh error of element e; `points`: first unknown of each point of the beam.
 system::MeshError find_mesh_error(const model::Beam& beam, int e, const std::vector<int>& points);
 
 }  // namespace samara::components

@@ -26,7 +26,7 @@ void BladeRoot::place(Registry& registry, int rank) {
     pitch_port_ = registry.add_port(2);
 }
 
-/// Of q, U and, where wanted, the rates of q.
+/// Arguments q, U and, if `with_rates`, the rates of q.
 std::vector<Argument> BladeRoot::hinge_arguments(bool with_rates) const {
   std::vector<Argument> arguments;
   const int count = static_cast<int>(root().hinges.size());

@@ -97,7 +97,7 @@ void RigidBodies::set_joints(const System& system, const ChainArguments<T>& x,
   }
 }
 
-/// Of the tower top, in t1 t2 t3.
+/// Motion of the tower top, in t1 t2 t3.
 template <class T, class System>
 FrameMotion<T> RigidBodies::base_motion(const System& system, const ChainArguments<T>& x,
                                         const Mat3<T>& C_top) const {

@@ -81,7 +81,7 @@ Matrix3 RigidBodies::bearing_axes() const {
          math::turn_about<double>(Vector3::UnitX(), turbine_.chain.tilt);
 }
 
-/// What the tower top carries, at zero azimuth and the mean of a prescribed yaw: nacelle and
+/// Bodies on the tower top, at zero azimuth and the mean of a prescribed yaw: nacelle and
 /// shaft, and the hub, of which a free teeter leaves only the mass at the pin; what turns about
 /// the hinge is the hub's own. A generator that is not free rolls with the nacelle, gear or not.
 Matrix6 RigidBodies::carried_mass() const {

@@ -19,7 +19,7 @@ constexpr double least_element = 0.25;
 /// Gauss points between two stations: sections are linear there, their compliance is not.
 constexpr int fine_points = 6;
 
-/// Of a semi-definite matrix's pivots: round-off.
+/// Relative to the largest pivot of a semi-definite matrix: a smaller pivot is round-off.
 constexpr double semi_definite = 1e-12;
 
 TestFunctions test_functions(const math::QuadratureRule& rule) {
@@ -147,7 +147,7 @@ std::vector<MeanSection> mean_sections(const BeamDefinition& definition,
   return means;
 }
 
-/// Of the element that ends with the last points of `beam`.
+/// Remainder of the element that ends with the last points of `beam`.
 SectionRemainder section_remainder(const BeamDefinition& definition, const ReferenceLine& line,
                                    const math::QuadratureRule& rule, const Beam& beam, double start,
                                    double span, double mass_factor, double stiffness_factor) {

@@ -169,7 +169,7 @@ std::vector<BeamMode> compute_beam_modes(const Beam& beam) {
     Eigen::Index count = 1;
     while (first + count < n && values(first + count) > (1.0 - same_frequency) * values(first))
       ++count;
-    // Of one frequency any combinations are modes: those that bend about one axis most.
+    // At a double frequency every combination is a mode: take those that bend most about one axis.
     const Eigen::MatrixXd own = shapes.middleCols(first, count);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(own.transpose() *
                                                               (energies[4] + energies[2]) * own);

@@ -1,4 +1,4 @@
-// What a definition leaves to be found.
+// Completes a definition: values that follow from other values.
 #include <algorithm>
 
 #include "samara/base/error.hpp"

@@ -74,7 +74,7 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   return chain;
 }
 
-/// What the tower's end carries, in t1 t2 t3: the tower's axes are a = (t3, t1, t2).
+/// Body on the end of the tower, in t1 t2 t3: the axes of the tower are a = (t3, t1, t2).
 elements::RigidBody tower_top_of(const Matrix6& mass) {
   Matrix3 C_Ta;
   C_Ta << 0, 1, 0, 0, 0, 1, 1, 0, 0;

@@ -11,7 +11,7 @@ namespace samara::model {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
-/// Of a set point that is meant to be the mean speed.
+/// Relative difference up to which a set point equals the mean speed.
 constexpr double speed_round_off = 1e-6;
 /// `length` beside `reference_line` must agree to this, relative.
 constexpr double length_tolerance = 1e-3;

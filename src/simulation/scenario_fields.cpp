@@ -29,7 +29,7 @@ constexpr int most_growth_steps = 100000;
 constexpr double most_time_steps = 1e9;
 /// How far from a whole number of steps a time may be, of a step.
 constexpr double step_round_off = 1e-6;
-/// Of positions [m, rad].
+/// Range of step errors of positions [m, rad].
 constexpr Range step_error{"a number from 1e-12 to 0.1", 1e-12, 0.1};
 
 void declare_trim(Visitor& fields, analysis::TrimOptions& trim) {

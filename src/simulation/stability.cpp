@@ -90,7 +90,7 @@ bool knows_first_modes(const ModeSet& set) {
 
 Motion motion_of(const Mode& mode, double rotor_speed) {
   const double zero = analysis::zero_exponent * rate_scale(rotor_speed);
-  // Of the error of a growth, what step and round-off make is about zero; the elements' is not.
+  // Step and round-off make an error of the growth about zero; the elements do not.
   const double unsure = mode.growth_error - mode.mesh_growth_error;
   if (std::abs(mode.exponent) < zero ||
       (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure))

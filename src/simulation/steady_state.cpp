@@ -13,7 +13,7 @@
 namespace samara::simulation {
 namespace {
 
-/// Of the largest load: loads out of balance by more make a steady state rough.
+/// Relative to the largest load: loads out of balance by more make a steady state rough.
 constexpr double rough_imbalance = 1e-4;
 
 constexpr double degree = std::numbers::pi / 180.0;

@@ -9,8 +9,8 @@
 namespace samara::simulation {
 namespace {
 
-/// Of a step: an event this close to an instant of the grid is there. A step that short would lose
-/// its digits.
+/// Relative to a step: an event this close to an instant of the grid is there. A step that short
+/// would lose its digits.
 constexpr double closest_event = 1e-3;
 
 analysis::TransientOptions options_of(const TransientSetup& transient) {

@@ -15,9 +15,9 @@
 namespace samara::simulation {
 namespace {
 
-/// Of motions at the start: rates relative to the largest, angles [rad].
+/// Tolerance of motions at the start: rates relative to the largest, angles [rad].
 constexpr double motion_tolerance = 2e-6;
-/// Of a step: how far a checkpoint may be from the grid.
+/// Relative to a step: largest distance of a checkpoint from the grid.
 constexpr double grid_tolerance = 1e-9;
 
 /// Turns the rotor at t = 0; what goes with it keeps its azimuth.
@@ -39,7 +39,7 @@ model::Turbine turbine_at_start(model::Turbine turbine, const TransientState& st
   return turbine;
 }
 
-/// What is prescribed goes on where it was.
+/// Prescribed motions must continue from their values at the checkpoint.
 void require_same_motion(const model::Turbine& there, double t, const model::Turbine& here) {
   const auto compare = [](const std::string& what, double before, double now, double size,
                           double unit, const std::string& unit_name) {
@@ -111,7 +111,7 @@ void TransientSimulation::start(analysis::Observer& observer) {
   if (scenario_.transient.start == TransientOrigin::undeformed) {
     state.point = analysis::start_undeformed(*system_, 0.0);
   } else {
-    // What moves in time begins where the steady state is.
+    // Motions in time begin at their values in the steady state.
     const model::Turbine steady = model::build_turbine(scenario_.turbine);
     at_place("transient.start: trim",
              [&] { require_same_motion(steady, 0.0, system_->turbine()); });

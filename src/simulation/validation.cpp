@@ -56,7 +56,7 @@ class Validation {
   }
 
   std::vector<Fault> find(Analysis analysis) {
-    // What a case asks of a transient is right or wrong whatever is run.
+    // The transient block of a case is checked for every analysis.
     if (analysis != Analysis::transient && scenario_.transient.options.duration > 0.0) {
       check_curves();
       for (std::size_t i = 0; i < scenario_.transient.events.size(); ++i) check_event(i);

@@ -13,7 +13,7 @@ namespace samara::turbine {
 namespace slots {
 
 // Quantities, threes along x y z of OpenFAST's frames unless said.
-// Of a blade:
+// Channels of a blade:
 inline constexpr int coned_force = 0;  // root load, axes of the cone
 inline constexpr int coned_moment = 3;
 inline constexpr int root_force = 6;  // root load, pitched axes
@@ -24,7 +24,7 @@ inline constexpr int tip_turn = 18;          // rotation vector of the tip, pitc
 inline constexpr int tip_acceleration = 21;  // in the axes of the tip's section
 inline constexpr int blade_pitch = 24;
 inline constexpr int blade_slots = 25;
-// Of the whole:
+// Channels of the whole turbine:
 inline constexpr int base_force = 0;  // tower base
 inline constexpr int base_moment = 3;
 inline constexpr int top_force = 6;  // tower top, axes p of the tower top
@@ -49,7 +49,7 @@ inline constexpr int rotor_power = 46;
 inline constexpr int generator_torque = 47;
 inline constexpr int brake_torque = 48;
 inline constexpr int whole_slots = 49;
-// Of a station:
+// Channels of a station:
 inline constexpr int section_force = 0;  // axes of the section
 inline constexpr int section_moment = 3;
 inline constexpr int section_move = 6;  // axes of the root

@@ -13,7 +13,7 @@ namespace {
 /// change by no more than that, which no analysis resolves.
 constexpr double symmetry_round_off = 1e-9;
 
-/// Of the hub: its axis must be a principal one through its centre, and all axes across
+/// Asymmetry of the hub: its axis must be a principal one through its centre, and all axes across
 /// it alike where it is turned by less than half a turn.
 std::string hub_fault(const model::Turbine& turbine, bool round) {
   const elements::RigidBody& hub = turbine.chain.hub;
@@ -30,7 +30,7 @@ std::string hub_fault(const model::Turbine& turbine, bool round) {
   return "";
 }
 
-/// Of the prescribed motions: the yaw must repeat from blade to blade, and half a turn
+/// Asymmetry of the prescribed motions: the yaw must repeat from blade to blade, and half a turn
 /// must reverse the teeter angle of two blades.
 std::string motion_fault(const model::Turbine& turbine) {
   const int blades = static_cast<int>(turbine.blades.size());
@@ -48,7 +48,7 @@ std::string motion_fault(const model::Turbine& turbine) {
   return "";
 }
 
-/// Of the prescribed loads.
+/// Asymmetry of the prescribed loads.
 std::string load_fault(const model::Turbine& turbine) {
   const int blades = static_cast<int>(turbine.blades.size());
   const auto repeats = [&](const model::BeamLoad& load) {

@@ -18,7 +18,7 @@ using system::PartKind;
 constexpr int blade_rank = 0;
 constexpr int tower_rank = 1;
 constexpr int shared_rank = 2;
-/// Of hinges, whose balance is a moment of the roots' reactions and no more, of the states of
+/// Equations of hinges, whose balance is only a moment of the roots' reactions, of the states of
 /// controls, and of extensions.
 constexpr int last_rank = extension_rank;
 

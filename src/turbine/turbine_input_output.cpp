@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
-/// Of a complex step: no difference is taken, so nothing is lost.
+/// Size of a complex step: no difference is taken, so no digits are lost.
 constexpr double tiny = 1e-30;
 
 constexpr char pitch_name[] = "pitch";

@@ -13,7 +13,7 @@ using Complex = std::complex<double>;
 using Vector3c = Eigen::Matrix<Complex, 3, 1>;
 using Vector6c = Eigen::Matrix<Complex, 6, 1>;
 
-/// Of the six directions of a section, or of a root, in its axes, the motion that each belongs to.
+/// Motions of the six directions of a section, or of a root, in its axes.
 struct Directions {
   std::array<const char*, 4> names;
   std::array<int, 6> motion;
@@ -29,7 +29,7 @@ constexpr Directions root_directions{{"support", "pitch hinge", "flap hinge", "l
                                      {0, 0, 0, 1, 2, 3}};
 constexpr Directions foundation_directions{{"", "", "", ""}, {0, 0, 0, 0, 0, 0}};
 constexpr int motions_a_beam = 4;
-/// Of the four motions of a beam, in all lists of names.
+/// Whether motion i of the four motions of a beam is bending, in all lists of names.
 constexpr bool bends(int i) { return i == 1 || i == 2; }
 
 /// Number of a hinge's motion among root_directions.

@@ -24,20 +24,20 @@ struct ReferenceChange {
   Vector3 turn = Vector3::Zero();  ///< reference before it, as seen from the one behind it
 };
 
-/// What is at the end of a beam.
+/// Attachment at the end of a beam.
 enum class BeamEnd {
   free,     ///< its tip mass and end support: the balance is the beam's own
   carries,  ///< bodies: another component has the rows of the balance
 };
 
-/// What a system says of a beam in it.
+/// Data of a beam in a system.
 struct BeamSetting {
   const model::Beam* mesh = nullptr;  ///< must live on
   system::Owner owner;
   system::Frame frame = system::Frame::fixed;
   BeamEnd end = BeamEnd::free;
   const char* end_name = "tip";
-  /// Of strains and curvatures: the motions they restore, shear that of the bending it makes.
+  /// Motions that strains and curvatures restore; shear counts to the bending that it causes.
   std::array<const char*, 6> directions{};
   std::string support_part;                         ///< of the root's springs
   std::array<const char*, 6> support_directions{};  ///< the motions they restore

@@ -28,8 +28,8 @@ class BladeRoot {
 
   /// First of q, U of each free hinge.
   int first() const { return first_; }
-  /// Of the angle and rate that an actuator or a controller adds to the blade's own pitch; -1: none
-  /// does.
+  /// Port of the angle and rate that an actuator or a controller adds to the blade's own pitch; -1:
+  /// none does.
   int pitch_port() const { return pitch_port_; }
   /// Pitch by all but a hinge and a pitch link [rad], after state_load.
   template <class T>
@@ -57,7 +57,7 @@ class BladeRoot {
     T angle = T(0);
     T rate = T(0);
   };
-  /// Of the pitch, but for a hinge and a pitch link: `added` by its port.
+  /// Rotation of the pitch without hinge and pitch link: `added` by its port.
   template <class T, class System>
   Turn<T> pitch_turn(const System& system, const Eigen::Matrix<T, 2, 1>& added) const;
   /// `angles`: pitch and its rate from the port, q, then U.

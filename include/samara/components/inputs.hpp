@@ -8,7 +8,7 @@
 
 namespace samara::components {
 
-/// What acts on a turbine from outside beside its loads (docs/theory.md, section 10).
+/// Inputs of a turbine beside its loads (docs/theory.md, section 10).
 template <class T>
 struct TurbineInputs {
   std::vector<T> pitch;       ///< of each blade beside its own, toward feather [rad]; empty: none

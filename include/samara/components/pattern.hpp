@@ -14,7 +14,7 @@
 
 namespace samara::components {
 
-/// What the values of a port depend on.
+/// Dependence of the values of a port.
 struct PortColumn {
   int unknown = 0;
   bool is_rate = false;
@@ -34,7 +34,7 @@ struct TangentPlan {
     int unknown = 0;         ///< of the first column
     std::size_t offset = 0;  ///< of the first entry in the values of K or M
   };
-  /// What a share has through a port.
+  /// Part of a share that goes through a port.
   struct Carried {
     int argument = 0;  ///< first of the port's values
     int port = 0;
@@ -113,7 +113,7 @@ class Pattern {
     std::vector<math::Dependence> values;
     std::vector<std::set<int>> columns;  ///< of each value: places in the plan's columns
   };
-  /// What an argument of the present function stands for.
+  /// Meaning of an argument of the present function.
   struct Source {
     Argument::Kind kind = Argument::Kind::zeros;
     int first = 0;  ///< unknown, or port

@@ -9,12 +9,12 @@ namespace samara::components {
 
 class PitchActuator final : public Stated<PitchActuator> {
  public:
-  /// Of blade `k` from 0. The turbine, which has actuators, must live on.
+  /// Actuator of blade `k` from 0. The turbine, which has actuators, must outlive it.
   PitchActuator(const model::Turbine& turbine, std::size_t k, int rank);
 
-  /// Of one value: a controller's pitch beside that of the blade [rad].
+  /// Port of one value: a controller's pitch beside that of the blade [rad].
   int command_port() const { return command_port_; }
-  /// Of angle and rate beside the blade's own pitch [rad, rad/s]: what the actuator makes.
+  /// Sets the port of angle and rate that the actuator adds to the blade's own pitch [rad, rad/s].
   void set_pitch(int port) { pitch_port_ = port; }
 
   void place(Registry& registry) override;

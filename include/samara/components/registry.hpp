@@ -19,7 +19,7 @@ struct Channel {
   double factor = 1.0;  ///< value per SI unit of the unknown
 };
 
-/// What components say of themselves.
+/// Declarations of the components.
 struct Declarations {
   std::vector<system::Unknown> unknowns;
   std::vector<system::RowRole> rows;
@@ -67,8 +67,8 @@ class Registry {
 
   /// All that has been declared to one that places.
   Declarations finish();
-  /// Of a rotor whose blades are alike: the unknowns of each go to the next one's. Below two blades
-  /// every unknown is its own image.
+  /// Symmetry of a rotor whose blades are alike: the unknowns of each go to the next one's. Below
+  /// two blades every unknown is its own image.
   system::RotorSymmetry symmetry(int blades) const;
 
  private:
@@ -82,7 +82,7 @@ class Registry {
   Declarations declared_;
   std::vector<bool> is_described_;
   std::vector<int> reversed_;
-  /// Of several parts alike, by name and number: their unknowns, in the order of every other one.
+  /// Unknowns of equal parts, by name and number, in the same order for each part.
   std::map<std::string, std::map<int, std::vector<int>>> instances_;
 };
 

@@ -13,7 +13,7 @@
 
 namespace samara::components {
 
-/// What a turbine says of its bodies.
+/// Data of the bodies of a turbine.
 struct BodiesSetting {
   const Beam* tower = nullptr;  ///< null: the bodies stand on the ground
   std::vector<const Beam*> blades;
@@ -21,7 +21,7 @@ struct BodiesSetting {
   int hinge_rank = 0;   ///< behind that of the roots' reactions: of the hinges of blades
 };
 
-/// What is asked of the bodies beside their rows. It is only given where torque tables reach.
+/// Motions and loads of the bodies beside their rows. They exist only where torque tables reach.
 template <class T>
 struct BodiesReport {
   T azimuth;         ///< of S against the bearing [rad]
@@ -58,7 +58,7 @@ class RigidBodies final : public Stated<RigidBodies> {
   template <class System>
   void state(System& system) const;
 
-  /// What is asked of the bodies beside their rows. T: double or std::complex<double>.
+  /// Motions and loads of the bodies beside their rows. T: double or std::complex<double>.
   template <class T>
   BodiesReport<T> report(Residual<T>& residual) const;
 

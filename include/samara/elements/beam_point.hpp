@@ -16,7 +16,7 @@ namespace samara::elements {
 
 inline constexpr int point_size = 18;
 
-/// What is constant at a Gauss point.
+/// Constants of a Gauss point.
 struct BeamPoint {
   Vector3 x = Vector3::Zero();              ///< undeformed position, components in a [m]
   Matrix3 C_ab = Matrix3::Identity();       ///< undeformed section basis
@@ -35,8 +35,8 @@ struct Attachment {
   Vec3<T> gravity = Vec3<T>::Zero();  ///< [m/s^2]
 };
 
-/// What a point gives to the balances of its element, components in a except the kinematic rows.
-/// A node with test function N_a adds w_j { N_a' flux + L N_a load } of force and moment, and
+/// Contribution of a point to the balances of its element, components in a except the kinematic
+/// rows. A node with test function N_a adds w_j { N_a' flux + L N_a load } of force and moment, and
 /// w_j { -N_a' u - L N_a stretch }, w_j { -N_a' theta - L N_a turn } of strain and curvature.
 template <class T>
 struct PointTerms {

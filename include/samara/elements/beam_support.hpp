@@ -1,4 +1,4 @@
-// What holds the ends of a beam, where it is not the clamp of its root or nothing at its tip
+// Supports of a beam's ends, other than a clamped root and a free tip
 // (docs/theory.md, section 2.7).
 #pragma once
 

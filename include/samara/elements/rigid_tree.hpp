@@ -74,7 +74,7 @@ struct TreeNode {
   double stiffness = 0.0;              ///< [N m/rad]
   double damping = 0.0;                ///< [N m s/rad]
   std::vector<std::shared_ptr<const TorqueFunction>> laws;  ///< by its angle and rate
-  /// What is behind looks the same at all angles: its axes do not turn, and the joint behind it,
+  /// The parts behind are the same at all angles: their axes do not turn, and the joint behind,
   /// about the same axis, turns by both angles.
   bool is_round = false;
   /// A rotor about the same axis that turns `gear_ratio` times as fast against what carries the
@@ -118,7 +118,7 @@ struct JointRows {
   T position;   ///< q - the prescribed angle, of a joint that is not free
 };
 
-/// What a walk leaves of a node.
+/// Result of a walk at a node.
 template <class T>
 struct NodeResult {
   JointRows<T> rows;
@@ -187,8 +187,8 @@ FrameMotion<T> moved_to(const Vec3<T>& r, const FrameMotion<T>& m) {
   return {m.omega, m.alpha, m.v + swept, m.a + turning + centripetal, m.gravity};
 }
 
-/// What a vector has across a unit vector. Along a base vector nothing is left of it, not even a
-/// dependence.
+/// Part of a vector across a unit vector. If that is a base vector, the component along it is an
+/// exact zero without derivatives.
 template <class T>
 Vec3<T> across(const Vec3<T>& axis, const Vec3<T>& v) {
   Mat3<T> projection;

@@ -9,7 +9,7 @@
 
 namespace samara::elements {
 
-/// Of a rotor's torque line, by the angular velocity of its hub.
+/// Torque of a rotor's torque line, by the angular velocity of its hub.
 class SpinTorque final : public TorqueFunction {
  public:
   explicit SpinTorque(TorqueLine line) : line_(std::move(line)) {}
@@ -22,7 +22,7 @@ class SpinTorque final : public TorqueFunction {
   TorqueLine line_;
 };
 
-/// Of a torque line against the turning of what is geared to a joint: `gear` times as fast as it.
+/// Torque of a torque line against the rotation behind a gear, `gear` times as fast as the joint.
 class GearedTorque final : public TorqueFunction {
  public:
   GearedTorque(TorqueLine line, double gear) : line_(std::move(line)), gear_(gear) {}
@@ -36,7 +36,7 @@ class GearedTorque final : public TorqueFunction {
   double gear_;
 };
 
-/// Of a brake, against the turning whichever way that is: below `brake_speed` it falls, to nothing
+/// Torque of a brake, against the rotation in either sense: below `brake_speed` it falls, to zero
 /// at rest.
 class BrakeTorque final : public TorqueFunction {
  public:
@@ -53,7 +53,7 @@ class BrakeTorque final : public TorqueFunction {
   double torque_;
 };
 
-/// Of stops: a second spring and damper from an angle on, both ways.
+/// Torque of stops: a second spring and damper beyond an angle, in both senses.
 class StopTorque final : public TorqueFunction {
  public:
   StopTorque(double angle, double stiffness, double damping)

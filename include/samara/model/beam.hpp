@@ -70,7 +70,7 @@ struct Beam {
     return (ends[at + 1] - ends[at]) * length;
   }
 
-  /// What point p gives of its length to integrals over the beam [m].
+  /// Weight of point p in integrals over the length of the beam [m].
   double point_length(int p) const {
     return element_length(p / order) * functions.weights[static_cast<std::size_t>(p % order)];
   }

@@ -44,7 +44,7 @@ struct PointMassDefinition {
   bool operator==(const PointMassDefinition&) const = default;
 };
 
-/// What holds an end of a beam. Order of directions: u1 u2 u3 theta1 theta2 theta3, root axes.
+/// Support of an end of a beam. Order of directions: u1 u2 u3 theta1 theta2 theta3, root axes.
 struct SupportDefinition {
   Matrix6 stiffness = Matrix6::Zero();  ///< [N/m, N, N m]; rigid and free rows, columns are 0
   std::array<bool, 6> rigid{true, true, true, true, true, true};  ///< directions that cannot move
@@ -220,8 +220,8 @@ struct HingeDefinition {
   HingeAxis axis = HingeAxis::flap;
   double offset = 0.0;  ///< along b1 from the shaft axis, or from the hinge inboard of it [m], >= 0
   JointDefinition joint;  ///< a motion by `per_rev` is that of blade 1, others follow by azimuth
-  /// Of a flap hinge: its axis is turned, so that flapping by a small angle beta pitches the blade
-  /// by -tan(delta3) beta [rad].
+  /// Skew of a flap hinge: its axis is turned, so that flapping by a small angle beta pitches the
+  /// blade by -tan(delta3) beta [rad].
   double delta3 = 0.0;
 
   bool operator==(const HingeDefinition&) const = default;
@@ -238,7 +238,7 @@ struct PitchActuatorDefinition {
   bool operator==(const PitchActuatorDefinition&) const = default;
 };
 
-/// What differs of a hinge on one blade.
+/// Values of a hinge that differ on one blade.
 struct HingeDifference {
   std::optional<double> stiffness;  ///< [N m/rad]
   std::optional<double> damping;    ///< [N m s/rad]
@@ -246,7 +246,7 @@ struct HingeDifference {
   bool operator==(const HingeDifference&) const = default;
 };
 
-/// What differs on one blade.
+/// Values that differ on one blade.
 struct BladeDifference {
   double pitch = 0.0;             ///< added to the pitch of all blades [rad]
   double mass_factor = 1.0;       ///< times the section masses, > 0
@@ -327,7 +327,7 @@ struct LoadDefinition {
   bool operator==(const LoadDefinition&) const = default;
 };
 
-/// Of the speed error and its integral.
+/// Gains on the speed error and its integral.
 struct ControlLoop {
   double proportional = 0.0;  ///< torque [N m s/rad] or pitch [s] by the speed error
   double integral = 0.0;      ///< [N m/rad] or [1] by its integral
@@ -335,7 +335,7 @@ struct ControlLoop {
   bool operator==(const ControlLoop&) const = default;
 };
 
-/// Of the generator's speed, all on its side of the gear.
+/// Controller of the generator's speed; all values count on the generator's side of the gear.
 struct ControllerDefinition {
   double filter = 0.0;  ///< corner of the first-order filter of the measured speed [rad/s], > 0
   std::optional<double> set_point;    ///< [rad/s]; none: the generator's mean speed

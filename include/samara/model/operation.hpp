@@ -1,4 +1,4 @@
-// What is done to a turbine in time beside its steady operation.
+// Actions on a turbine in time beside its steady operation.
 #pragma once
 
 #include <optional>

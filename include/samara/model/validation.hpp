@@ -1,4 +1,4 @@
-// What is wrong with a turbine's definition where each field by itself may be right.
+// Faults of a turbine's definition that involve more than one field.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace samara::model {
 /// All faults, fields by the keys of a case file (docs/case_file.md).
 std::vector<Fault> find_faults(const TurbineDefinition& turbine);
 
-/// What is no fault, but has not the effect that it seems to have.
+/// Values that are no fault, but have no effect.
 std::vector<Fault> find_notes(const TurbineDefinition& turbine);
 
 }  // namespace samara::model

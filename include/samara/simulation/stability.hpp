@@ -12,8 +12,8 @@ namespace samara::simulation {
 
 enum class Motion { rigid_body, undamped, growing, decaying };
 
-/// What the exponent says; rates below their error, and exponents below analysis::zero_exponent,
-/// count as zero.
+/// Stability of a mode by its exponent; rates below their error, and exponents below
+/// analysis::zero_exponent, count as zero.
 Motion motion_of(const analysis::Mode& mode, double rotor_speed);
 
 /// Estimated errors of an exponent, relative to its modulus, beyond which a mode is marked, and

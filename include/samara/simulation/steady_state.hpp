@@ -19,7 +19,7 @@ analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                          analysis::Observer& observer);
 
-/// What is rough about the steady state and what makes it better; empty where nothing is.
+/// Note on a rough steady state, with the way to a better one; empty where it is not rough.
 std::string roughness(const analysis::Trim& trim);
 
 /// Notes the same where there is something to note. `source`: where the steady state comes from.

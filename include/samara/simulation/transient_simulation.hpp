@@ -78,7 +78,7 @@ class TransientSimulation {
 
   const Scenario& scenario() const { return scenario_; }
   const std::vector<turbine::Channel>& channels() const { return channels_; }
-  /// Of the turbine as the scenario has it at t = 0, before any event.
+  /// System of the turbine at t = 0 of the scenario, before any event.
   const turbine::TurbineSystem& system() const { return *system_; }
   /// The turbine as it is at the start: at its azimuth, with what events before did to it.
   const model::Turbine& turbine() const { return turbine_; }
@@ -92,10 +92,10 @@ class TransientSimulation {
   /// @throws InputError where the scenario has other steps or events
   void restart(const Scenario& before, TransientState state);
 
-  /// Starts where the simulation of `before` ended: with it t = 0 comes. What events did to the
-  /// drive train stays done.
-  /// A generator whose law is another one, or is to count as such (`is_new_law`), gives the torque
-  /// of the law alone: what held the mean speed before goes.
+  /// Starts at the end of the simulation of `before`, which is t = 0 here. Effects of events on the
+  /// drive train remain.
+  /// A generator with another law, or one that counts as such (`is_new_law`), gives the torque of
+  /// the law only: the torque that held the mean speed before is removed.
   /// @throws InputError where motions do not go on from there
   void start_after(const Scenario& before, const TransientState& end, analysis::Observer& observer,
                    bool is_new_law = false);

@@ -1,4 +1,4 @@
-// What is wrong with a scenario, for the analysis that it is meant for.
+// Faults of a scenario, for the analysis that it is meant for.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What acts on a periodic system from outside and what is asked of it, as an analysis sees it
+// Inputs and outputs of a periodic system, as an analysis sees them
 // (docs/theory.md, section 10): r(t, z, z_dot, u, u_dot) = 0, y = y(t, z, z_dot, u).
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the unknowns, rows, energies and motions of a system are. Analyses decide by these; names
+// Metadata of the unknowns, rows, energies and motions of a system. Analyses decide by these; names
 // are for people.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace samara::system {
 
-/// What an unknown is in the mechanics of the system.
+/// Role of an unknown in the mechanics of the system.
 enum class UnknownRole {
   position,   ///< displacement, rotation, joint coordinate
   velocity,   ///< velocity, generalized speed
@@ -21,7 +21,7 @@ enum class UnknownRole {
   auxiliary,  ///< without memory, with an algebraic row of its own
 };
 
-/// What a row says.
+/// Role of a row.
 enum class RowRole {
   constraint,  ///< position level, without rates: strain, curvature, a locked joint
   kinematic,   ///< velocity = rate of position
@@ -70,7 +70,7 @@ struct Unknown {
   /// A position that constraints tie others to, free itself: that of a hinge. Its row, in the same
   /// place, is the load on a support that is not there.
   bool is_free = false;
-  /// Of a state: a usual size. Differences of states are measured by it.
+  /// Usual size of a state, the unit of differences of states.
   double scale = 1.0;
 
   /// A position or a first-order state: what the error of a solution is measured by, each over its

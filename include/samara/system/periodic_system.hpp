@@ -65,7 +65,7 @@ class PeriodicSystem {
   virtual std::vector<Motion> motions() const { return {}; }
   /// In the order of motions(), about the state `steady` at t; null where there are none.
   virtual std::unique_ptr<MotionEnergies> motion_energies(double, Vec) const { return nullptr; }
-  /// Of every element that has an error; none where nothing is discretized in space.
+  /// Errors of all elements that have one; none where nothing is discretized in space.
   virtual std::vector<MeshError> mesh_errors() const { return {}; }
 
   /// The start of every trim: the undeformed system in its prescribed motion. It depends on t where

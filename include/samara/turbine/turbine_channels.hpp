@@ -1,4 +1,4 @@
-// What users ask of a turbine's state: motions and loads by the channel names of OpenFAST, in its
+// Output channels of a turbine's state: motions and loads by the channel names of OpenFAST, in its
 // units and frames (docs/channels.md). Loads are those of the outer body on the inner one: of the
 // blade on the hub, of the rotor on the shaft, of the nacelle on the tower, of the tower on the
 // ground. Root and tower loads are unknowns of the formulation, not differences.

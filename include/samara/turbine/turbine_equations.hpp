@@ -58,7 +58,7 @@ class TurbineEquations {
   void evaluate(double t, const std::vector<double>& z, const std::vector<double>& z_dot,
                 components::Tangents& tangents) const;
 
-  /// What is asked of the rigid bodies beside their rows.
+  /// Motions and loads of the rigid bodies beside their rows.
   template <class T>
   components::BodiesReport<T> report(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
                                      const TurbineInputs<T>& inputs) const;
@@ -71,7 +71,7 @@ class TurbineEquations {
 
   model::Turbine turbine_;
   std::vector<std::unique_ptr<components::Beam>> beams_;  ///< of the blades, then of the tower
-  /// Of the program, behind all others.
+  /// Extensions of the calling program, behind all others.
   std::vector<std::unique_ptr<components::Component>> extensions_;
   std::unique_ptr<components::Controller> controller_;                 ///< null: none
   std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< of each blade, if any

@@ -1,4 +1,4 @@
-// What happens to a turbine at an instant: protection, failures.
+// Events of a turbine at an instant: protection, failures.
 #pragma once
 
 #include <optional>

@@ -43,7 +43,7 @@ class TurbineSystem final : public system::PeriodicSystem {
   petsc::Handle<Mat> make_mass() const override;
   std::vector<std::vector<PetscInt>> pattern() const override;
   std::unique_ptr<system::PeriodicSystem> unloaded() const override;
-  /// Of the blades; the tower top's rotation stays one below 170 degrees.
+  /// Counts rotations of the blades anew; the rotation of the tower top stays below 170 degrees.
   std::unique_ptr<system::PeriodicSystem> counted_from(Vec z) const override;
   void count_from_undeformed(Vec z) const override;
   void residual(double t, Vec z, Vec z_dot, Vec r) const override;
