@@ -18,6 +18,7 @@
 #include "samara/turbine/turbine_input_output.hpp"
 
 #include "cases.hpp"
+#include "time_series.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -172,6 +173,38 @@ BOOST_AUTO_TEST_CASE(on_a_turning_blade_the_tangential_spring_is_weaker_by_the_s
   const analysis::ModeSet set = analysis::find_constant_modes(system, trim.solution);
   BOOST_TEST(set.modes[0].exponent.imag() == std::sqrt(half - root), tolerance(1e-6));
   BOOST_TEST(set.modes[1].exponent.imag() == std::sqrt(half + root), tolerance(1e-6));
+}
+
+BOOST_AUTO_TEST_CASE(radial_masses_keep_the_angular_momentum_of_a_free_rotor) {
+  // (J + Q m (r + q)^2) Omega is constant: the sense of Coriolis' force, which exponents do not
+  // show.
+  constexpr double inertia = 2.0 * (4.0 / 3.0) * (1000.0 - 1.0) + 50.0;
+  std::string text = rotor("  - {on: blades, at: 0.4, mass: 50, axial: {stiffness: 5000}}\n");
+  text.replace(text.find("{speed: 3}"), 10,
+               "{speed: 3, generator: {joint: free, own_inertia: 50}}");
+  text.replace(text.find("blades:\n"), 8, "blades:\n  count: 2\n");
+  const io::Case input = io::parse_case("test", text, {});
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  const turbine::TurbineChannels channels(system, {}, {"RotSpeed", "BStC1_B1_ZQ"});
+  Keeper<std::array<double, 2>> watch([&](const analysis::TransientSample& sample) {
+    std::array<double, 2> values{};
+    channels.evaluate(sample.t, sample.z, sample.z_dot, values);
+    return values;
+  });
+  analysis::run_transient(system, analysis::start_undeformed(system, 0.0),
+                          steps_of(1e-3, 1.0, analysis::TransientMethod::midpoint), watch);
+  const double start = (inertia + 100.0 * std::pow(1.0 + 0.4 * 9.0, 2)) * 3.0;
+  double furthest = 0.0;
+  double slowest = 3.0;
+  for (const auto& [rpm, q] : watch.values) {
+    const double speed = rpm * pi / 30.0;
+    const double momentum = (inertia + 100.0 * std::pow(1.0 + 0.4 * 9.0 + q, 2)) * speed;
+    BOOST_REQUIRE_SMALL(momentum / start - 1.0, 1e-5);
+    furthest = std::max(furthest, q);
+    slowest = std::min(slowest, speed);
+  }
+  BOOST_TEST(furthest > 0.5);
+  BOOST_TEST(slowest < 2.8);
 }
 
 BOOST_AUTO_TEST_CASE(a_damper_too_stiff_to_move_is_a_mass) {
