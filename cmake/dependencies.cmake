@@ -29,7 +29,7 @@ add_library(samara_external_petsc INTERFACE)
 target_link_libraries(samara_external_petsc
                       INTERFACE PkgConfig::SLEPC PkgConfig::PETSC MPI::MPI_CXX BLAS::BLAS)
 
-# What the file formats need: only the room io may name it.
+# Libraries of the file formats: only the room io may use them.
 add_library(samara_external_files INTERFACE)
 target_include_directories(samara_external_files SYSTEM INTERFACE ${YAML_CPP_INCLUDE_DIR})
 target_link_libraries(samara_external_files INTERFACE yaml-cpp nlohmann_json::nlohmann_json ${HDF5_HL} PkgConfig::HDF5 MPI::MPI_CXX)

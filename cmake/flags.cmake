@@ -28,7 +28,7 @@ if(SAMARA_FUZZ)
   endif()
 endif()
 
-# What makes errors of memory hard to exploit, for targets that read files, which come from
+# Hardening against memory errors, for targets that read files, which come from
 # anywhere. Where elements are computed it costs 5 to 7 % of a run and guards nothing.
 add_link_options(-Wl,-z,relro,-z,now)
 function(samara_harden target)

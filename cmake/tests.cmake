@@ -39,7 +39,7 @@ function(samara_add_ctest name label)
                                           ENVIRONMENT "${samara_test_environment}" TIMEOUT 5000)
 endfunction()
 
-# What Boost calls the suites and cases that stand outermost in a source, with commas between.
+# Boost's names of the outermost suites and cases of a source, separated by commas.
 function(samara_list_boost_tests source names)
   file(STRINGS ${source} lines REGEX "^BOOST_AUTO_TEST_(SUITE|CASE|SUITE_END) *[(]")
   set(found "")

@@ -39,7 +39,7 @@ TOWER_COLOR, BLADE_COLOR = "#b04a00", "#1f5f9e"
 
 
 class Result:
-    """What the picture needs of a result file."""
+    """Data of a result file for the plot."""
 
     def __init__(self, path):
         with h5py.File(path) as file:

@@ -22,7 +22,7 @@ MOST = 8  # panels
 
 
 class TimeSeries:
-    """What the picture needs of a result file."""
+    """Data of a result file for the plot."""
 
     def __init__(self, path):
         with h5py.File(path) as file:

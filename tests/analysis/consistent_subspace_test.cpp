@@ -48,7 +48,8 @@ constexpr double round_off = 1e-9;
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(degrees_of_freedom_are_three_a_tower_point_six_a_blade_point_and_two) {
-  // Of points: 3 M + 6 N + 2 for M points in the tower and N in a blade, with an order for each.
+  // Degrees of freedom: 3 M + 6 N + 2 for M points in the tower and N in a blade, with an order for
+  // each.
   for (const Mesh& mesh : {Mesh{4, 1, 4, 1}, Mesh{1, 1, 1, 1}, Mesh{3, 2, 5, 1}, Mesh{1, 3, 2, 2},
                            Mesh{2, 4, 1, 6}, Mesh{7, 1, 3, 3}, Mesh{2, 5, 12, 1}}) {
     const turbine::TurbineSystem system(model::build_turbine(lee_turbine(mesh)), PETSC_COMM_SELF);

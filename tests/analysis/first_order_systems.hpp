@@ -228,7 +228,7 @@ class PeriodicJoint final : public DrivenJoint {
  public:
   PeriodicJoint() : DrivenJoint(2.0 * pi) { autonomous_ = false; }
 
-  /// Of u, u', x_1, x_2: u'' = -k u / m - L (g'' x_1 + 2 g' x_2 + g x_2').
+  /// Rates of u, u', x_1, x_2: u'' = -k u / m - L (g'' x_1 + 2 g' x_2 + g x_2').
   using DrivenJoint::explicit_form;
   Eigen::MatrixXd explicit_form(double t) const {
     const Eigen::RowVector4d x_2(w * w * h, 0.0, -w * w, -2.0 * zeta * w);

@@ -27,7 +27,7 @@ analysis::Floquet floquet_at_rest(const system::PeriodicSystem& system, int step
   return find_floquet_modes(system, rest, {steps, period}, PETSC_COMM_SELF, observer);
 }
 
-/// Of the multipliers found, the one nearest to `wanted` or to its conjugate.
+/// The computed multiplier that is nearest to `wanted` or to its conjugate.
 Complex nearest(const analysis::Floquet& floquet, Complex wanted) {
   Complex best = std::numeric_limits<double>::infinity();
   for (const analysis::Mode& mode : floquet.set.modes)
@@ -54,7 +54,8 @@ void require_order_two(const std::vector<Complex>& found, Complex exact, double 
              "limit " << limit << " exact " << exact);
 }
 
-/// Of slopes at the steps below, where the next term of the error is some 1e-3 of the first.
+/// Tolerance of slopes at the steps below, where the next term of the error is some 1e-3 of the
+/// first.
 constexpr double slope_slack = 0.01;
 
 }  // namespace
@@ -318,7 +319,7 @@ BOOST_AUTO_TEST_CASE(mode_shapes_are_solutions_of_the_equations) {
             shape.col(static_cast<Eigen::Index>(k + 1)) * std::exp(principal * span);
         worst = std::max(worst, (moved - next).norm() / next.norm());
       }
-      // Of an instant at the middle of a step the mean of its ends: (Omega dt)^2 = 3e-5.
+      // At the middle of a step the mean of its ends is taken: (Omega dt)^2 = 3e-5.
       BOOST_TEST(worst < 1e-4, "mode " << mode.exponent << " k " << mode.harmonic);
     }
   }

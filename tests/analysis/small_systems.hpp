@@ -88,7 +88,7 @@ class SmallSystem : public system::PeriodicSystem {
     if (mass != nullptr) put(M, mass);
   }
 
-  /// Of a vector of the system's size.
+  /// Values of a vector of the system's size.
   Eigen::VectorXd values_of(Vec vector) const {
     const petsc::ReadView view(vector);
     return Eigen::Map<const Eigen::VectorXd>(view.data(), size());

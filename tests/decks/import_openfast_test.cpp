@@ -417,7 +417,7 @@ BOOST_AUTO_TEST_CASE(straight_key_points_make_a_length) {
   }
 }
 
-/// Of the deck's two members the first has two key points, the second three.
+/// The first of the deck's two members has two key points, the second three.
 double through_members(const KeyPoints& values, double z) {
   if (z < 4.0) return values[0] + (values[1] - values[0]) * z / 4.0;
   const double a = (z - 13.0) * (z - 20.0) / ((4.0 - 13.0) * (4.0 - 20.0));

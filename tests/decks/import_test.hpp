@@ -1,4 +1,4 @@
-// What the tests of the importers share: decks, folders, independent integrals.
+// Common parts of the importers' tests: decks, folders, independent integrals.
 #pragma once
 
 #include <filesystem>

@@ -147,7 +147,7 @@ class Tables(ProgramTest):
         self.assertRegex(text, r"(?m)^neutral: no mode grows; \d+ are undamped, neither growing")
 
     def test_too_few_resolved_modes_are_no_verdict(self):
-        # Of the first ten modes these steps resolve some, and what they resolve neither grows nor
+        # These steps resolve some of the first ten modes, and the resolved ones neither grow nor
         # decays: nothing is known of the others.
         self.write("case.yaml", MINIMAL)
         for steps in ("12", "100", "500"):

@@ -1,4 +1,4 @@
-"""What the user can mend ends with exit code 2, one clear line, and nothing written."""
+"""Input errors end with exit code 2, one clear line, and nothing written."""
 
 import os
 import pathlib
@@ -168,7 +168,7 @@ blades:
 
 
 class Solvers(ProgramTest):
-    """What a solver cannot do has its own name, and what it can do is done."""
+    """Requests that a solver cannot fulfil have a message of their own; the others are fulfilled."""
 
     def test_a_work_array_that_is_too_small_is_no_singular_matrix(self):
         self.write("case.yaml", HEAVY_TIP)
@@ -249,7 +249,7 @@ class Results(ProgramTest):
 
 
 class CommandLine(ProgramTest):
-    """What is typed."""
+    """Faults of the command line."""
 
     def test_nothing(self):
         self.refuse(words=["missing command", "check, static, modes, trim, floquet"])

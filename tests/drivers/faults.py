@@ -122,7 +122,7 @@ class Folders(FaultTest):
             self.succeed("transient", "case.yaml", "-o", "r.h5", *block(duration, 0.5))
         for name, content in foreign.items():
             self.assertEqual((self.folder / "r.h5.parts" / name).read_bytes(), content)
-        # Of the run that was replaced nothing is left.
+        # Nothing is left of the replaced run.
         self.succeed("transient", "case.yaml", "-o", "r.h5", *block(0.1, "none"))
         self.assertEqual(sorted(path.name for path in (self.folder / "r.h5.parts").iterdir()),
                          sorted(foreign))
@@ -269,7 +269,7 @@ class Surroundings(FaultTest):
 
 
 class Damage(FaultTest):
-    """What a machine that goes down may leave of the last segments."""
+    """Last segments as a machine that loses power may leave them."""
 
     def test_a_damaged_end_costs_no_more_than_its_rows(self):
         self.succeed("transient", "case.yaml", "-o", "whole.h5", *block(4))

@@ -19,7 +19,7 @@ REAL = os.environ.get("SAMARA_DECKS")
 
 
 class Imports(ProgramTest):
-    """What is written."""
+    """Written cases and reports."""
 
     def test_the_case_can_be_checked(self):
         for arguments in (
@@ -331,7 +331,7 @@ class Turbines(ProgramTest):
 
 
 class Refusals(ProgramTest):
-    """What the user can mend."""
+    """Input errors."""
 
     def test_monopile(self):
         run = self.samara("import", "windio", SECOND, "-o", "case.yaml")

@@ -31,7 +31,7 @@ def hill_eigenvalues(A, speed, harmonics):
 
 
 def nearest(exponents, wanted, speed):
-    """Of the exponents and their conjugates, each but for a multiple of i Omega."""
+    """The exponent, or its conjugate, nearest to `wanted` modulo i Omega."""
     values = numpy.concatenate([exponents, exponents.conj()])
     values = values + 1j * speed * numpy.round((wanted - values).imag / speed)
     return values[numpy.argmin(abs(values - wanted))]
@@ -205,7 +205,7 @@ class Linearize(ProgramTest):
             return numpy.tensordot(numpy.concatenate([[1], functions]), series, 1)
 
         def series(form, x, steps=4000, revolutions=2):
-            # What the small form leaves out must not be excited: no input, only a state.
+            # The states that the small form omits must not be excited: no input, only an initial state.
             dt = revolutions * 2 * numpy.pi / speed / steps
             rows = []
             for i in range(steps):

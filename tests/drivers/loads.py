@@ -218,7 +218,7 @@ class SteadyStates(ProgramTest):
         self.assertAlmostEqual(attributes["period"], PERIOD, places=9)
         self.assertEqual(attributes["rows"], 720)
         self.assertEqual(list(steady["channel_name"]), CHANNELS)
-        # Of the time step, which is a thousandth of a revolution.
+        # Error of the time step, which is a thousandth of a revolution.
         small = 2e-3 * steady["range"]
         for name in ("mean", "minimum", "maximum", "standard_deviation"):
             with self.subTest(name=name):

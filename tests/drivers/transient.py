@@ -294,7 +294,7 @@ loads:
 
 
 class RoughInput(ProgramTest):
-    """What is rough is said, what cannot be followed is refused."""
+    """Rough motions are noted, motions that steps cannot resolve are refused."""
 
     ROUGH = ["--set", "gravity=5", "--set", "trim.method=shooting", "--set", "trim.steps=4"]
 
@@ -385,7 +385,7 @@ INERTIA = 50 + 2 * (1000 / 3 + 10 * 1e-4)  # about the shaft
 
 
 class Operation(ProgramTest):
-    """What is done in time, against closed forms of a rigid rotor."""
+    """Actions in time, against closed forms of a rigid rotor."""
 
     def test_events_at_the_start_and_next_to_a_row(self):
         # One row an instant, and the loads before the first step are those of the trim.

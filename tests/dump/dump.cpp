@@ -1,4 +1,4 @@
-// What a turbine's equations are at random states, as text with the names of unknowns, rows and
+// Equations of a turbine at random states, as text with the names of unknowns, rows and
 // channels: scripts/compare_trees compares two trees of sources by it.
 //
 //     dump_system CASE.yaml > out.txt

@@ -21,7 +21,7 @@ struct ChainState {
   double speed_dot = 0.0;  ///< of a generator that is not free
 };
 
-/// Of the apex, components in H.
+/// Motion of the apex, components in H.
 template <class T>
 struct HubMotion {
   Vec3<T> velocity, omega, gravity;

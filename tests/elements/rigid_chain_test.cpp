@@ -115,7 +115,7 @@ struct Wave {
   double phase = 0.0;
 };
 
-/// What is prescribed: psi = psi_0 + Omega t, and the angles of joints that are not free.
+/// Prescribed motion: psi = psi_0 + Omega t, and the angles of joints that are not free.
 struct Prescribed {
   double azimuth = 0.0;
   double speed = 0.0;

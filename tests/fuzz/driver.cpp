@@ -42,7 +42,7 @@ constexpr std::size_t largest_input = 1 << 20;
 constexpr std::size_t most_changed = 128;  // bytes, at a time
 constexpr int most_findings = 20;
 
-/// What parent and child both see.
+/// Memory that parent and child share.
 struct Shared {
   volatile std::uint64_t executions;
   volatile std::uint64_t seeds_done;

@@ -1,5 +1,6 @@
-// What the harnesses share. A harness is one function that reads bytes as the program would read
-// them, and takes refusals (InputError, DomainError) as right answers: anything else is a finding.
+// Common parts of the harnesses. A harness is one function that reads bytes as the program would
+// read them, and takes refusals (InputError, DomainError) as right answers: anything else is a
+// finding.
 //
 // The function has libFuzzer's name. Built with clang it is driven by libFuzzer, else by
 // driver.cpp, with the same options.

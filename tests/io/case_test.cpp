@@ -115,7 +115,7 @@ void check_error_start(const std::string& text, const std::string& start) {
   BOOST_TEST(errors[0].substr(0, start.size()) == start);
 }
 
-/// What read_case says about a path that holds no case.
+/// Message of read_case for a path that holds no case.
 std::string read_path_error(const std::string& path) {
   try {
     read_case(path, {});
@@ -394,7 +394,7 @@ BOOST_AUTO_TEST_CASE(a_torque_law_without_effect_is_noted) {
   const elements::TorqueLine line = at_rest.turbine.shaft.rotor.at(0.0);
   BOOST_TEST(line.torque == 0.0);
   BOOST_TEST(line.slope == 0.0);
-  // What a locked generator's table reaches to does not matter.
+  // The range of a locked generator's table does not matter.
   BOOST_TEST(read(replace(text_of("locked", "9"), "rotor:\n    " + law, "rotor: {torque: 1}"))
                  .notes.size() == 1u);
 }

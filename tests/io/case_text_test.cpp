@@ -1,4 +1,4 @@
-// What is written of a turbine is the turbine.
+// A written turbine reads back as the same turbine.
 #include "samara/io/case_text.hpp"
 
 #include <filesystem>

@@ -10,7 +10,7 @@ SOURCE = pathlib.Path(os.environ["SAMARA_SOURCE_DIR"])
 
 
 def reference(folder, source=SOURCE):
-    """What doxygen says of the headers of `source`."""
+    """Warnings of Doxygen on the headers of `source`."""
     settings = (SOURCE / "docs" / "Doxyfile").read_text(encoding="utf-8")
     return subprocess.run(["doxygen", "-"], cwd=source, capture_output=True, text=True,
                           input=settings + f"\nOUTPUT_DIRECTORY = \"{folder}\"\n", check=False)

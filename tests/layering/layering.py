@@ -48,7 +48,7 @@ def find_room(path):
 
 
 def find_fault(room, header):
-    """What is wrong with a file of `room` including `header`, or None."""
+    """The fault of a file of `room` that includes `header`, or None."""
     if ".." in header.split("/"):
         return "an include names the whole path from include/, not one relative to the file"
     if header.startswith("samara/"):

@@ -13,7 +13,7 @@ using loads::LoadSeries;
 
 namespace {
 
-/// Of amplitudes of the order of one; least squares of about a thousand rows.
+/// Tolerance of amplitudes of the order of one; least squares of about a thousand rows.
 constexpr double tolerance = 1e-10;
 constexpr double degree = std::numbers::pi / 180.0;
 

@@ -1,4 +1,4 @@
-// What the tests of loads share.
+// Common parts of the tests of loads.
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double step = 0.01;
 
-/// Of a second.
+/// Curve of a formula in t [s].
 TimeCurve curve_of(const std::string& formula) { return TimeCurve::formula(formula); }
 
 }  // namespace

@@ -27,7 +27,7 @@ double integrate_power(const QuadratureRule& rule, int power) {
   return sum;
 }
 
-/// What the rule of n points leaves of the integral of x^(2n) over [0, 1] (Abramowitz & Stegun,
+/// Error of the rule of n points for the integral of x^(2n) over [0, 1] (Abramowitz & Stegun,
 /// 25.4.30): (n!)^4 / ((2n + 1) ((2n)!)^2).
 double gauss_error_of_first_inexact_power(int n) {
   const double factorial = std::tgamma(n + 1.0);

@@ -38,7 +38,7 @@ inline simulation::Scenario rigid_rotor() {
   return scenario;
 }
 
-/// Of rotor and generator about the shaft [kg m^2].
+/// Inertia of rotor and generator about the shaft [kg m^2].
 inline double total_inertia(const simulation::Scenario& scenario) {
   const model::Turbine turbine = model::build_turbine(scenario.turbine);
   return model::compute_masses(scenario.turbine, turbine).meshed_rotor.inertia(1, 1) +

@@ -70,7 +70,7 @@ struct Bodies {
     for (const Piece& piece : pieces) sum += piece.mass;
     return sum;
   }
-  /// Of gravity.
+  /// Potential of gravity.
   double potential(double gravity) const {
     double sum = 0.0;
     for (const Piece& piece : pieces) sum += piece.mass * gravity * piece.center(2);

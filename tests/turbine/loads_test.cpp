@@ -69,7 +69,7 @@ turbine::TurbineSystem build(const sample::Choice& choice,
   return turbine::TurbineSystem(model::build_turbine(definition), PETSC_COMM_SELF);
 }
 
-/// What the loads add to r.
+/// Contribution of the loads to r.
 Eigen::VectorXd load_rows(const sample::Choice& choice,
                           const std::vector<model::LoadDefinition>& loads, double t,
                           const sample::RandomState& state) {

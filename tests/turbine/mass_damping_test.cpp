@@ -45,7 +45,7 @@ JetVector unturned(const JetVector& theta, const JetVector& v) {
 Vector3 values_of(const JetVector& v) { return {v(0).value, v(1).value, v(2).value}; }
 Vector3 rates_of(const JetVector& v) { return {v(0).rate, v(1).rate, v(2).rate}; }
 
-/// What the damping adds to the residual of a beam, against what it should be.
+/// Contribution of the damping to the residual of a beam, against its closed form.
 void check_beam(const components::PlacedBeam& placed, const sample::RandomState& state,
                 const Eigen::VectorXd& added, const Vector3& alpha) {
   const model::Beam& beam = *placed.beam;

@@ -15,7 +15,7 @@
 
 namespace samara::sample {
 
-/// What varies from sample to sample.
+/// Variation from sample to sample.
 struct Choice {
   int blades = 2;
   int order = 1;

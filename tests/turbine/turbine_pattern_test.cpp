@@ -185,7 +185,7 @@ model::TurbineDefinition random_turbine(unsigned seed) {
   return d;
 }
 
-/// What the blades are turned by, and what else changes in time, without any value at t = 0.
+/// Motions of the blades and other changes in time, without any value at t = 0.
 void operate(model::Turbine& turbine, Draw& draw) {
   const math::TimeCurve curve = math::TimeCurve::through({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.3}});
   if (draw.one_in(4)) turbine.operation.pitch.assign(turbine.blades.size(), curve);
@@ -203,7 +203,7 @@ Places to_places(const std::vector<std::vector<PetscInt>>& rows) {
   return places;
 }
 
-/// Of entries larger than `above`.
+/// Places of entries larger than `above`.
 void collect(Mat matrix, double above, Places& places) {
   const Eigen::MatrixXd values = sample::to_dense(matrix);
   BOOST_TEST(values.allFinite());
@@ -232,7 +232,7 @@ struct FoundPlaces {
   Places K, M;
 };
 
-/// What the tangents fill at some states and times, from the undeformed one on.
+/// Entries that the tangents fill at some states and times, from the undeformed one on.
 FoundPlaces fill(const turbine::TurbineSystem& system) {
   FoundPlaces found;
   const petsc::Handle<Mat> jacobian = system.make_jacobian();

@@ -334,7 +334,7 @@ BOOST_AUTO_TEST_CASE(residual_is_the_sum_over_points_nodes_and_bodies) {
 }
 
 BOOST_AUTO_TEST_CASE(residual_of_a_complex_state_is_the_sum_too) {
-  // What other tests may differentiate by a complex step of the program's own equations.
+  // Other tests rely on it: they differentiate the equations by a complex step.
   for (const sample::Choice& choice : sample::choices()) {
     const turbine::TurbineSystem system = build(choice);
     const sample::RandomState state = sample::random_state(system, 1);

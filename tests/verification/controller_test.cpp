@@ -41,7 +41,7 @@ std::string rotor(const std::string& controls, const std::string& blades = "") {
          blades + "controller:\n  speed_filter: 1.570796\n" + controls;
 }
 
-/// Of that rotor and its generator about the shaft [kg m^2].
+/// Inertia of that rotor and its generator about the shaft [kg m^2].
 double inertia() {
   return 900.0 * (std::pow(61.5, 3) - std::pow(1.5, 3)) / 3.0 + 10.0 + gear * gear * 500.0;
 }
@@ -200,7 +200,7 @@ BOOST_AUTO_TEST_CASE(actuators_are_of_second_order) {
   for (const std::string word : {"collective", "regressive", "progressive"})
     BOOST_TEST(std::ranges::count(floquet.set.modes, "pitch actuator " + word,
                                   &analysis::Mode::label) == 1);
-  // What a pitch input makes of the pitch, without a controller.
+  // Response of the pitch to a pitch input, without a controller.
   std::string open = rotor("", actuator);
   open.erase(open.find("controller:"));
   const Solved alone(open);

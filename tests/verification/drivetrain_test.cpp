@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(a_generator_behind_a_gear_rolls_once_with_the_nacelle_and_t
       for (const double omega : rolling_frequencies(ratio, inertia, free_generator))
         BOOST_TEST(nearest(all, omega) == omega, tolerance(1e-8));
     }
-  // What is told apart: the sense of the generator's turning, and inertia times n^2 at n = 1.
+  // Differences to detect: the sense of the generator's rotation, and inertia times n^2 at n = 1.
   const double plus = rolling_frequencies(97.0, 0.05, true).front();
   BOOST_TEST(std::abs(rolling_frequencies(-97.0, 0.05, true).front() / plus - 1.0) > 1e-4);
   const double locked = rolling_frequencies(97.0, 0.05, false).front();

@@ -84,7 +84,7 @@ struct ParticleBlade {
     }
     return x;
   }
-  /// Of springs and centrifugal forces.
+  /// Potential of springs and centrifugal forces.
   double potential(const Eigen::Vector3d& q) const {
     double sum = 0.5 * q.dot(stiffness.cwiseProduct(q));
     for (const Particle& one : particles)
@@ -127,7 +127,7 @@ struct ParticleBlade {
     for (int i = 0; i < 50; ++i) q -= hessian(q).lu().solve(gradient(q));
     return q;
   }
-  /// Of small motions about q: M q'' + (C + G) q' + K q = 0.
+  /// Equations of small motions about q: M q'' + (C + G) q' + K q = 0.
   std::vector<Complex> exponents(const Eigen::Vector3d& q) const {
     Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d D = damping.asDiagonal();

@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(small_inputs_move_the_nonlinear_turbine_as_the_linear_model
       largest = largest.cwiseMax(y[k].cwiseAbs());
       difference = difference.cwiseMax((found - y[k]).cwiseAbs());
     }
-    // Of the largest response in the same unit: some of the others nearly vanish.
+    // Relative to the largest response in the same unit: some of the others nearly vanish.
     std::map<std::string, double> sizes;
     for (Eigen::Index o = 0; o < outputs; ++o) {
       double& unit_size = sizes[linear.ports.outputs()[static_cast<std::size_t>(o)].unit];
@@ -320,7 +320,7 @@ BOOST_AUTO_TEST_CASE(a_turning_foot_loads_the_tower_as_a_rigid_body_does) {
   const std::vector<std::string> inputs{"base_rot_n1", "base_rot_n2", "base_rot_n3", "base_n2"};
   const std::vector<std::string> settings{"nacelle.yaw={joint: locked}",
                                           "hub.teeter={joint: locked}", "shaft.overhang=2.388"};
-  // What is constant in the inputs' columns is answered at once: x = -A^-1 B u.
+  // The response to a constant input is quasi-static: x = -A^-1 B u.
   const auto answer_of = [](const linear::StateSpace& form) -> MatrixXd {
     const MatrixXd deflection = form.A.partialPivLu().solve(form.B);
     return 1e3 * (form.D - form.C * deflection);  // kN, kN m

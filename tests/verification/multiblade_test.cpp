@@ -77,7 +77,7 @@ BOOST_AUTO_TEST_CASE(floquet_exponents_are_those_of_multiblade_coordinates) {
     const Complex b = nearest_exponent(fine, wanted);
     BOOST_TEST(std::abs(b + (b - a) / 3.0 - wanted) < 1e-6 * std::abs(wanted),
                wanted << " " << a << " " << b);
-    // Of second order: a quarter of the error is left.
+    // Second order: a quarter of the error is left.
     BOOST_TEST(std::abs(b - wanted) == 0.25 * std::abs(a - wanted),
                boost::test_tools::tolerance(0.01));
   }

@@ -1,4 +1,4 @@
-// What modes are called, against shares of kinetic energy that are computed here.
+// Names of modes, against shares of kinetic energy that are computed here.
 #include <set>
 #include <string>
 
@@ -287,7 +287,7 @@ BOOST_AUTO_TEST_CASE(a_rotor_that_turns_as_a_whole_is_rotor_rotation) {
 }
 
 BOOST_AUTO_TEST_CASE(blades_together_move_in_multiblade_components) {
-  // Of three blades that do not know of each other each component has the frequency of one blade,
+  // With three uncoupled blades each component has the frequency of one blade,
   // which the ground sees at omega, omega + Omega and |omega - Omega|.
   std::string text = twisted;
   text.insert(text.find("  length"), "  count: 3\n");

@@ -130,7 +130,8 @@ BOOST_AUTO_TEST_CASE(frequencies_of_nrel5mw_at_12_rpm_converge_with_slope_two_s)
 }
 
 BOOST_AUTO_TEST_CASE(floquet_of_nrel5mw_under_gravity_is_near_the_mean_over_the_azimuth) {
-  // What the mean leaves out, three per revolution of the weight, changes frequencies by 1e-4.
+  // The mean omits the part of the weight at three per revolution, which changes frequencies by
+  // 1e-4.
   const io::Case input = beam_blades(coarse());
   const std::vector<double> mean = mean_frequencies(input);
   const analysis::Floquet floquet =

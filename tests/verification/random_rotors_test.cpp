@@ -16,8 +16,8 @@ using namespace samara::test;
 namespace {
 
 constexpr double weight = 9.81;
-/// Of the critical own weight of an upright cantilever, m g l^3 / EI = 7.84: blades bend under
-/// their weight, but do not buckle.
+/// Relative to the critical own weight of an upright cantilever, m g l^3 / EI = 7.84: blades bend
+/// under their weight, but do not buckle.
 constexpr double most_weight = 0.4 * 7.84;
 constexpr int steps = 300;
 constexpr double clear_share = 0.8;

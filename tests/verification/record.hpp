@@ -61,7 +61,7 @@ struct Figures {
     check(quantity, "relative", found, {reference, reference}, std::abs(found / reference - 1.0),
           tolerance);
   }
-  /// Of two references: how far beyond the nearer one, relative to it; 0 between them.
+  /// With two references: distance beyond the nearer one, relative to it; 0 between them.
   void check_spread(const std::string& quantity, double found, std::pair<double, double> references,
                     double tolerance) const {
     const auto [low, high] = std::minmax(references.first, references.second);

@@ -37,14 +37,14 @@ constexpr std::array<Converged, 10> converged{{{"teeter", 0.99901},
                                                {"blade lead-lag", 53.684},
                                                {"blade flap symmetric", 55.817}}};
 
-/// Of the frequencies of that label, in multiples of the rotor speed.
+/// Frequencies with that label, in multiples of the rotor speed.
 double nearest_per_rev(const analysis::ModeSet& set, const Converged& wanted) {
   std::vector<double> found = frequencies(set, wanted.label);
   for (double& value : found) value /= set.rotor_speed;
   return nearest(found, wanted.per_rev);
 }
 
-/// What (19) makes of a frequency, and back.
+/// Frequency after the map (19) of the step, and its inverse.
 
 /// omega dt / 2 beyond which a mode counts as unresolved (docs/case_file.md).
 constexpr double largest_half_phase = 0.7;

@@ -27,7 +27,7 @@ struct RitzBeam {
   double bending = 1.0;  ///< EI of the bending considered
 };
 
-/// What a teetering hub shares out to each of its two blades, about h1, h2, h3.
+/// Share of a teetering hub for each of its two blades, about h1, h2, h3.
 struct RitzHub {
   bool teeters = false;
   double inertia1 = 0.0;
@@ -180,7 +180,8 @@ inline std::vector<double> shear_beam_frequencies(const ShearBeam& beam, bool le
       block(G, 2, 1) -= couple * bb;
     }
   }
-  // Of the inverse, so that the lowest modes are the largest values, time in units of the first.
+  // Eigenvalues of the inverse, so that the lowest modes are the largest, time in units of the
+  // first.
   const double unit = std::sqrt(beam.EI / (beam.mass * l * l * l * l));
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   const Eigen::PartialPivLU<Eigen::MatrixXd> stiffness(K);

@@ -41,7 +41,7 @@ model::LoadDefinition force_at(double place, const Vector3& force) {
   return load;
 }
 
-/// What people compare: at the end of a beam.
+/// Compared values: at the end of a beam.
 struct End {
   Vector3 u;
   double angle = 0.0;  ///< of its rotation [rad]
@@ -149,7 +149,7 @@ struct DeadForceBeam {
     return root_moment - integrate(root_moment, part).col(0).cross(part * force);
   }
 
-  /// Of the end, by Newton's method for the moment of the root.
+  /// Position of the end, by Newton's method for the moment of the root.
   Vector3 compute_deflection() const {
     const double scale = length * force.norm();
     constexpr int parts = 5;
