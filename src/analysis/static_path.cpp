@@ -46,7 +46,7 @@ constexpr double first_part = 0.125;
 constexpr double least_part = 1e-6;
 constexpr double longest_stride = 0.5;
 
-/// A point of the path: the state, in which a unconstrained coordinate gives its place to the load
+/// A point of the path: the state, in which an unconstrained coordinate gives its place to the load
 /// that holds it, and the load factor.
 struct Point {
   Eigen::VectorXd x;

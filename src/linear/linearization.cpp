@@ -71,7 +71,7 @@ NamedForm reduced_of(const NamedForm& form, const LinearizeOptions& options,
                       (options.reduction == ReductionMethod::modal ? ", the slowest modes"
                                                                    : ", balanced and truncated") +
                       "; the first " + std::to_string(reduced.kept) +
-                      " states are unconstrained or unstable";
+                      " states are neutral or unstable";
   small.states.clear();
   for (Eigen::Index i = 0; i < reduced.form.A.rows(); ++i)
     small.states.push_back({"reduced " + std::to_string(i + 1), "1", 1.0});

@@ -399,7 +399,7 @@ void declare_linearize(Visitor& fields, const model::TurbineDefinition& turbine,
                          .or_else("those"),
                      "numbers", options.at);
   fields.block(Field("reduce",
-                     "constant forms with fewer states, as `FORM_reduced`; unconstrained and "
+                     "constant forms with fewer states, as `FORM_reduced`; neutral and "
                      "unstable modes are "
                      "kept. A turbine whose matrices do not change with the azimuth has one of "
                      "`state_space`; else of `average` and `hill`")

@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(a_free_yaw_has_the_spring_and_damper_of_servodyn) {
   folder.replace("Main.fst", "\"unused\"      ServoFile", "\"Servo.dat\"   ServoFile");
   folder.write("Servo.dat",
                "---- SERVODYN ----\nText\n  2.5e6 YawSpr - spring (N-m/rad)\n"
-               "  3e4 YawDamp - damper\n  4 YawNeut - unconstrained angle (degrees)\n");
+               "  3e4 YawDamp - damper\n  4 YawNeut - neutral angle (degrees)\n");
   const model::JointDefinition driven = parse(import_main(folder)).turbine.nacelle.yaw;
   BOOST_TEST((driven.kind == model::JointKind::free));
   BOOST_TEST(driven.stiffness == 2.5e6);

@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(renamed_keys_are_refused_with_the_new_spelling) {
               "the same number");
   check_error(
       minimal + tower + "  damping: {lateral: 0.01}\n",
-      "case.yaml:16:13: tower.damping.lateral: is named side_side; hint: side_side, with the "
+      "case.yaml:15:13: tower.damping.lateral: is named side_side; hint: side_side, with the "
       "same number");
 }
 

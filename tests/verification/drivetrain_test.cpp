@@ -92,7 +92,7 @@ std::vector<double> rolling_frequencies(double ratio, double inertia, bool free_
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> pairs(
       Eigen::MatrixXd(K.topLeftCorner(n, n)), Eigen::MatrixXd(M.topLeftCorner(n, n)));
   std::vector<double> found;
-  for (Eigen::Index i = free_generator ? 1 : 0; i < n; ++i)  // g and q together are unconstrained
+  for (Eigen::Index i = free_generator ? 1 : 0; i < n; ++i)  // g and q together are neutral
     found.push_back(std::sqrt(pairs.eigenvalues()(i)));
   return found;
 }
