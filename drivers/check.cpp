@@ -1,4 +1,4 @@
-// samara check: what the case describes; solves nothing.
+// samara check: reports the model of a case; solves nothing.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,11 +21,11 @@ namespace {
 
 /// Smaller coordinates of a centre of mass are round-off [m].
 constexpr double small_length = 1e-9;
-/// Relative: a rotor whose unbalance is smaller has none.
+/// Relative limit: a rotor with a smaller unbalance counts as balanced.
 constexpr double balanced = 1e-9;
 /// A damping ratio below it is round-off.
 constexpr double no_damping = 1e-12;
-/// More has no turbine [m/s], [m].
+/// Limits that no turbine exceeds [m/s], [m].
 constexpr double usual_tip_speed = 120.0;
 constexpr double usual_tower = 300.0;
 
@@ -80,7 +80,7 @@ std::string joint_words(const elements::Hinge& hinge, const model::PrescribedMot
   return text;
 }
 
-/// How far the elements' lumped masses are from the sections'.
+/// Inertia about the shaft, and the relative difference of the meshed rotor.
 std::string inertia_words(const model::Masses& masses) {
   const double exact = masses.rotor.inertia(1, 1);
   const double meshed = masses.meshed_rotor.inertia(1, 1);
@@ -101,7 +101,7 @@ std::string balance_words(const model::Masses& masses) {
   return general(off, 5) + " kg m off the shaft, " + general(azimuth, 5) + " deg ahead of blade 1";
 }
 
-/// The mu that follow from the damping ratios of a beam, and the ratios of its modes: a line a
+/// The mu that follow from the damping ratios of a beam, and the ratios of its modes: one line per
 /// direction.
 std::vector<std::string> damping_lines(const model::BeamDefinition& definition,
                                        const model::Beam& beam,
@@ -141,8 +141,8 @@ std::string support_words(const model::SupportDefinition& support) {
   }
   std::string text = "on springs in " + count(springs, "direction") + ", free in " +
                      std::to_string(free) + ", with " + general(support.mass, 6) +
-                     " kg, which count with the beam";
-  if (!support.added_mass.isZero(0.0)) text += ", and an added mass, which does not";
+                     " kg, included in the mass of the beam";
+  if (!support.added_mass.isZero(0.0)) text += ", and an added mass, not included";
   return text;
 }
 
@@ -151,7 +151,7 @@ double rotor_radius(const model::TurbineDefinition& definition) {
          std::cos(definition.blades.precone);
 }
 
-/// Figures that no turbine has, a line each: mostly a unit that was mistaken.
+/// Warnings on figures that no turbine has, one line each; the usual cause is a wrong unit.
 std::string unusual_figures(const model::TurbineDefinition& definition) {
   std::string text;
   const double tip_speed = std::abs(definition.shaft.speed) * rotor_radius(definition);
@@ -166,7 +166,7 @@ std::string unusual_figures(const model::TurbineDefinition& definition) {
   return text.empty() ? text : "\n" + text;
 }
 
-/// From the hub outward, with their distances from the shaft axis.
+/// Hinges from the hub outward, with their distances from the shaft axis.
 std::string hinge_words(const model::BladesDefinition& blades) {
   std::string text;
   double along = 0.0;
@@ -181,7 +181,7 @@ std::string hinge_words(const model::BladesDefinition& blades) {
   return text;
 }
 
-/// "20000 kg, fore-aft 0.3281 Hz 3.834 %, side-side ..." of each damper that the case states.
+/// One line per damper of the case: "20000 kg, fore-aft 0.3281 Hz 3.834 %, side-side ...".
 std::vector<std::string> mass_damper_lines(const turbine::TurbineSystem& system) {
   std::vector<std::string> lines;
   for (const auto& damper : system.equations().mass_dampers()) {
@@ -203,7 +203,7 @@ std::vector<std::string> mass_damper_lines(const turbine::TurbineSystem& system)
   return lines;
 }
 
-/// The controller, the pitch actuators and the rotor's torque by the pitch.
+/// The controller, the pitch actuators and the slope of the rotor torque over the pitch.
 std::vector<std::pair<std::string, std::string>> control_lines(
     const model::TurbineDefinition& definition, const model::Turbine& turbine) {
   std::vector<std::pair<std::string, std::string>> lines;

@@ -33,7 +33,7 @@ bool is_safe(char c) {
          std::string_view("-_=./:,+@%").find(c) != std::string_view::npos;
 }
 
-/// `word` as a shell reads it back.
+/// `word` quoted so that a shell reads it as one word.
 std::string quote(const std::string& word) {
   if (!word.empty() && std::all_of(word.begin(), word.end(), is_safe)) return word;
   std::string quoted = "'";
@@ -46,7 +46,7 @@ bool is_number(const std::string& word) {
   return digit != std::string::npos && std::isdigit(static_cast<unsigned char>(word[digit])) != 0;
 }
 
-/// PETSc's rule: what starts with a dash is an option, unless it is a negative number.
+/// PETSc's rule: a word that starts with a dash is an option, unless it is a negative number.
 bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && !is_number(word);
 }
@@ -193,7 +193,7 @@ class Parser {
   }
 
   void take_petsc(const std::string& word) {
-    if (word == "-set" || word == "-csv")  // PETSc would only say at the end that it is unused
+    if (word == "-set" || word == "-csv")  // PETSc would report only at the end that it is unused
       throw InputError("unknown option " + word + "; did you mean \"-" + word + "\"?");
     line_.petsc_options.push_back(word);
     if (next_ == arguments_.size() || is_option(arguments_[next_])) return;
@@ -219,7 +219,7 @@ class Parser {
       line_.more_results.push_back(word);
     } else {
       throw InputError("unexpected argument \"" + word + "\": the " + operand_word() + " is " +
-                       line_.case_path + ", one a run; hint: samara " +
+                       line_.case_path + ", one per run; hint: samara " +
                        std::string(line_.command->name) + " --help");
     }
   }
@@ -262,7 +262,7 @@ class Parser {
     }
     if (!line_.import_option.empty() || line_.report)
       throw InputError((line_.report ? "--report" : line_.import_option) + ": samara " + name +
-                       " has no use for it, samara import has");
+                       " does not use it, samara import does");
     if (line_.command->most_results > 0)
       require_result(name);
     else if (line_.case_path.empty()) {
@@ -279,9 +279,9 @@ class Parser {
       throw InputError("--first: samara " + name + " lists no modes; modes and floquet do");
     if (line_.parked && name != "modes")
       throw InputError("--parked: samara " + name +
-                       " has no use for it, samara modes has; hint: --set shaft.speed=0");
+                       " does not use it, samara modes does; hint: --set shaft.speed=0");
     if (!line_.restart_path.empty() && name != "transient")
-      throw InputError("--restart: samara " + name + " has no use for it, samara transient has");
+      throw InputError("--restart: samara " + name + " does not use it, samara transient does");
     if (!line_.csv_path.empty() && !line_.command->has_csv)
       throw InputError(
           "--csv: samara " + name + " has no table to write" +
@@ -297,7 +297,7 @@ class Parser {
     if (line_.command->run != nullptr) return;
     if (!line_.settings.empty())
       throw InputError("--set: samara " + name +
-                       " has no use for it; hint: it serves the commands that read the case");
+                       " does not use it; hint: it applies to the commands that read the case");
     if (!line_.petsc_options.empty())
       throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
     if (line_.result_path.empty())
@@ -312,12 +312,12 @@ class Parser {
     if (!line_.settings.empty() || !line_.csv_path.empty())
       throw InputError(std::string(line_.csv_path.empty() ? "--set" : "--csv") + ": samara " +
                        name +
-                       " has no use for it; hint: it serves the commands that read the case");
+                       " does not use it; hint: it applies to the commands that read the case");
     if (!line_.petsc_options.empty())
       throw InputError(line_.petsc_options[0] + ": samara " + name + " solves nothing");
     if (line_.format != "windio" && !line_.windio_option.empty())
       throw InputError(line_.windio_option + ": the decks of " + line_.format +
-                       " state it; it serves windio");
+                       " contain it; it applies to windio");
     if (line_.result_path.empty() && !line_.report)
       throw InputError(
           "missing -o CASE.yaml; hint: --report alone prints the report and writes no case");
@@ -332,19 +332,20 @@ class Parser {
 constexpr char import_lines[] =
     R"(options
   -o CASE.yaml      the case file; only a case of samara is ever overwritten
-  --report          makes -o optional: the report alone, nothing is written
-  --tower-only      leaves out what carries the tower, which is clamped at its foot
+  --report          makes -o optional; without -o only the report is printed
+  --tower-only      leaves out the parts below the tower, which is clamped at its foot
   --mu-order ORDER  beamdyn or hawc2: the order of structural_damping.mu (windio)
-  --nacelle-mass M  states what a deck lacks, or has otherwise (windio), in units and axes of the
-                    case; also --nacelle-center Y1,Y2,Y3 --nacelle-inertia I1,I2,I3 --yaw-mass
-                    --hub-mass --hub-center --hub-inertia I1,I2,I3 --generator-inertia
-                    --rotor-speed-rpm
+  --nacelle-mass M  gives a value that a deck lacks, or replaces it (windio), in the units and axes
+                    of the case; also --nacelle-center Y1,Y2,Y3 --nacelle-inertia I1,I2,I3
+                    --yaw-mass --hub-mass --hub-center --hub-inertia I1,I2,I3
+                    --generator-inertia --rotor-speed-rpm
   --help            this text
 )";
 
 constexpr char export_lines[] =
     R"(options
-  -o FILE           the time series, as its ending says; only a file that samara wrote is overwritten
+  -o FILE           the time series, in the format of its ending.
+                    Only a file that samara wrote is overwritten
   --help            this text
 )";
 
@@ -352,7 +353,7 @@ constexpr char load_lines[] =
     R"(options
   --set key=value   channels, from, until, exponents, equivalent_frequency, harmonics, bins,
                     goodman, azimuths, hours, equivalent_cycles; may be repeated
-  -o LOADS.h5       all that was evaluated; without it nothing is written
+  -o LOADS.h5       all results of the evaluation; without it nothing is written
   --csv FILE.csv    statistics and equivalent loads as comma-separated values, too
   --help            this text
 )";
@@ -366,7 +367,7 @@ constexpr char option_lines[] =
   --all             lists unresolved modes, too (modes, floquet)
   --first N         lists the first N modes; the verdict counts all (modes, floquet)
   --parked          the rotor stands still, as with --set shaft.speed=0 (modes)
-  --restart FILE.h5 goes on from the last checkpoint of a result (transient)
+  --restart FILE.h5 continues from the last checkpoint of a result (transient)
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
   --help-options    the prefixes of options of PETSc and SLEPc
@@ -418,8 +419,8 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
 exit codes
   0  done
   1  the environment failed, or samara has a defect
-  2  something you can mend: the case, an option, a path
-  3  an iteration did not converge, or too little is resolved for a verdict
+  2  an input error: the case, an option, a path
+  3  an iteration did not converge, or there is no verdict on stability
   130 ended by Ctrl-C
 
 The keys of a case are explained in docs/case_file.md.

@@ -1,4 +1,4 @@
-// The sub-commands, one file each.
+// The sub-commands; each has a file of its own.
 #pragma once
 
 #include "samara/turbine/turbine_input_output.hpp"
@@ -20,7 +20,7 @@ void run_linearize(const Job& job);
 void run_import(const CommandLine& line);
 void run_export(const CommandLine& line);
 
-/// The inputs and outputs of the linear model. @throws InputError where there is none of a name
+/// The inputs and outputs of the linear model. @throws InputError for an unknown name
 turbine::TurbineInputOutput make_input_output(const io::Case& input,
                                               const turbine::TurbineSystem& system);
 

@@ -1,4 +1,4 @@
-// samara export: a time series in one file, also in formats that others read.
+// samara export: writes a time series as one file, also in formats of other programs.
 #include <iostream>
 
 #include "samara/base/error.hpp"

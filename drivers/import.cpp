@@ -1,4 +1,4 @@
-// samara import: the deck of another program as a case file.
+// samara import: converts the deck of another program to a case file.
 #include "samara/decks/import.hpp"
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace samara::drivers {
 namespace {
 
-/// The lines of one fate, in the order of the deck.
+/// The lines with the same fate, in the order of the deck.
 std::string report_table(const decks::Import& import, decks::Fate fate) {
   Table table;
   table.add_column("file", "", Align::left);
@@ -38,9 +38,9 @@ void run_import(const CommandLine& line) {
   if (!line.result_path.empty()) decks::write_case(line.result_path, import);
   for (const std::string& warning : import.warnings) std::cerr << warning << "\n";
   constexpr std::array<std::pair<const char*, decks::Fate>, 3> blocks{
-      {{"taken: the value stands in the case", decks::Fate::taken},
-       {"derived: the case holds what follows from it", decks::Fate::derived},
-       {"ignored: the case holds nothing of it", decks::Fate::ignored}}};
+      {{"taken: the value is in the case", decks::Fate::taken},
+       {"derived: the case has values that follow from it", decks::Fate::derived},
+       {"ignored: the case has nothing from it", decks::Fate::ignored}}};
   for (const auto& [title, fate] : blocks)
     std::cout << title << "\n\n" << report_table(import, fate) << "\n";
   if (!line.result_path.empty()) std::cout << "case: " << line.result_path << "\n";

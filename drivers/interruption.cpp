@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<int, 4> handled_signals{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
-// Any thread may take a signal.
+// A signal may arrive on any thread.
 std::atomic<int> is_noting = 0;
 std::atomic<int> noted_signal = 0;
 std::atomic<int> has_file = 0;
@@ -21,7 +21,7 @@ std::atomic<int> is_paused = 0;
 std::atomic<int> waiting_signal = 0;
 std::array<char, PATH_MAX> file_at_end{};
 
-// Only what a handler may call.
+// Only functions that a signal handler may call.
 
 [[noreturn]] void leave(int number) {
   if (has_file != 0) ::unlink(file_at_end.data());
@@ -30,7 +30,7 @@ std::array<char, PATH_MAX> file_at_end{};
   ::_exit(128 + number);
 }
 
-/// A reader that leaves (samara ... | head) ends the process by the signal, as everywhere.
+/// If the reader of a pipe ends first (samara ... | head), SIGPIPE ends the process, as usual.
 void take_broken_pipe(int number) {
   if (is_paused != 0) {
     waiting_signal = number;
@@ -50,8 +50,8 @@ void take_signal(int number) {
   noted_signal = number;
 }
 
-/// Called before the libraries start, a sanitizer's too: MPI, PETSc and HDF5 take milliseconds for
-/// it. Leaves alone what the parent has told the process to ignore.
+/// Called before the libraries start, including a sanitizer's: MPI, PETSc and HDF5 need
+/// milliseconds to start. Signals that the parent process ignores stay ignored.
 [[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void prepare() {
   for (const int number : handled_signals) {
     struct sigaction action {};

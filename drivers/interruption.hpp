@@ -1,16 +1,16 @@
-// SIGINT, SIGTERM and SIGHUP: they end the program in good order, from its first instruction on.
+// SIGINT, SIGTERM and SIGHUP end the program in good order, from its first instruction on.
 //
-// A signal ends the process at once with exit code 128 + its number (130, 143, 129): files are
-// whole at any moment, so that nothing is left half written. While a time series runs, the first
-// signal is noted instead, the time series ends with its rows written, and the second one ends it
-// at once.
+// A signal ends the process at once with exit code 128 + its number (130, 143, 129). All files are
+// complete at any moment, so no file is left half written. During a time series the first signal is
+// only noted: the time series ends and its rows are written. The second signal ends the process at
+// once.
 #pragma once
 
 #include <string>
 
 namespace samara::drivers {
 
-/// While it lives, the first signal is noted and nothing more.
+/// While an object exists, the first signal is only noted.
 class Interruption {
  public:
   Interruption();
@@ -18,15 +18,16 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// The exit code for the signal that was noted, 0: none has come.
+  /// The exit code for the noted signal; 0: no signal.
   static int noted();
   static bool is_asked() { return noted() != 0; }
 
-  /// A file that goes when a signal ends the process; empty: none.
+  /// A file that is removed when a signal ends the process; empty: none.
   static void remove_at_end(const std::string& path);
 };
 
-/// While it lives, signals wait. (A mask would not do: other threads, MPI's, would take them.)
+/// Signals are deferred while an object exists. (A mask is not sufficient: other threads, such as
+/// MPI's, would receive them.)
 class SignalPause {
  public:
   SignalPause();

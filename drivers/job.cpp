@@ -53,7 +53,7 @@ void deliver(const Job& job, const std::string& tables,
 void require_other_path(const std::string& path, const std::vector<std::string>& sources) {
   for (const std::string& source : sources)
     if (io::is_same_file(path, source))
-      throw InputError(path + ": is read by this run; hint: -o gives what it writes another name");
+      throw InputError(path + ": is read by this run; hint: give the output another name with -o");
 }
 
 }  // namespace samara::drivers

@@ -38,8 +38,8 @@ std::string form_table(const linear::Linearization& linear) {
                        : scientific(form.series.residual(), 1)});
   if (linear.rotor_speed == 0.0) return table.text();
   return table.text() +
-         "residual: of the series in the azimuth midway between the azimuths, relative; where it "
-         "is\nnot small more linearize.azimuths and harmonics are needed\n";
+         "residual: relative residual of the series midway between the azimuths; if it is not "
+         "small,\nmore linearize.azimuths and harmonics are needed\n";
 }
 
 }  // namespace

@@ -20,20 +20,20 @@ namespace {
 
 using turbine::Channel;
 
-/// Names of the channel of harmonics, which has no statistics unless it is asked for.
+/// Names of the azimuth channel, for harmonics. It has statistics only if it is requested.
 constexpr std::array<const char*, 3> azimuth_names{"Azimuth", "LSSTipPxa", "LSSTipPxs"};
 
-/// Values that are read at a time (8 MB).
+/// Number of values read at once (8 MB).
 constexpr std::size_t slice_values = std::size_t{1} << 20;
 
-/// Relative to a time: largest distance of `from` and `until` from that of a row.
+/// Largest distance of `from` and `until` from the time of a row, relative to the time.
 constexpr double round_off = 1e-9;
 
 bool is_azimuth(const std::string& name) {
   return std::ranges::find(azimuth_names, name) != azimuth_names.end();
 }
 
-/// The columns of all channels that are wanted.
+/// The columns of all requested channels.
 struct Columns {
   std::vector<std::size_t> wanted;
   std::size_t azimuth = 0;
@@ -82,7 +82,7 @@ LoadSource make_source(const std::string& path, const std::vector<Channel>& all,
   return source;
 }
 
-/// Rows as they are found, before their number is known.
+/// Rows that are collected before their number is known.
 class Rows {
  public:
   explicit Rows(const Columns& columns) : columns_(columns) {}
@@ -142,7 +142,7 @@ LoadSource read_series(const std::string& path, const io::LoadOptions& options) 
   return source;
 }
 
-/// Those that are asked for and the azimuth; empty: all.
+/// The requested channels and the azimuth; empty: all.
 std::vector<std::string> channel_names(const io::LoadOptions& options) {
   std::vector<std::string> names = options.channels;
   if (!names.empty() && std::ranges::none_of(names, is_azimuth)) names.emplace_back("Azimuth");
@@ -173,7 +173,7 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
   const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   if (solution.coefficients().rows() != system.size())
     throw InputError(path + ": its steady state has " +
-                     std::to_string(solution.coefficients().rows()) + " unknowns, the model " +
+                     std::to_string(solution.coefficients().rows()) + " unknowns, the model has " +
                      std::to_string(system.size()) + "; hint: run samara trim again");
   const turbine::TurbineChannels channels = make_channels(system, input.transient, options);
   const std::vector<Channel>& all = channels.channels();

@@ -1,4 +1,4 @@
-// Time series of loads out of results: rows of a transient, or one revolution of a steady state.
+// Time series of loads from results: rows of a transient, or one revolution of a steady state.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace samara::drivers {
 
 struct LoadSource {
   io::LoadReport report;    ///< without its evaluation
-  Eigen::VectorXd azimuth;  ///< [deg] of each row; empty: the time series has none
+  Eigen::VectorXd azimuth;  ///< azimuth of each row [deg]; empty: the time series has none
 };
 
-/// A steady state needs a PETSc session; a rough one is noted.
-/// @throws InputError where the result has neither, or not what the options ask for
+/// A steady state needs a PETSc session. A rough steady state gives a note.
+/// @throws InputError if the result has neither, or lacks data that the options request
 LoadSource read_load_source(const std::string& path, const io::LoadOptions& options,
                             analysis::Observer& observer);
 

@@ -9,16 +9,16 @@
 namespace samara::drivers {
 namespace {
 
-/// Tables with more columns than these are in the result only.
+/// Tables with more columns than these are only in the result.
 constexpr std::size_t most_event_columns = 8;
 constexpr Eigen::Index most_range_columns = 20;
 
 constexpr int digits = 5;
 
-/// Relative to a channel's largest value: smaller values are round-off.
+/// Relative to a channel's largest value. Smaller values are round-off.
 constexpr double round_off = 1e-12;
 
-/// `value` of a channel with these extremes.
+/// Text of `value`, of a channel with these extremes.
 std::string word_of(double value, const loads::ChannelStatistics& extremes) {
   const double largest = std::max(std::abs(extremes.minimum), std::abs(extremes.maximum));
   return general(std::abs(value) < round_off * largest ? 0.0 : value, digits);
@@ -66,7 +66,7 @@ std::string statistics_table(const io::LoadReport& report, const io::LoadOptions
     table.add_row(row);
   }
   return "statistics, and damage-equivalent loads (DEL): ranges of cycles at " +
-         general(options.evaluation.frequency, 4) + " Hz that do the same damage\n\n" +
+         general(options.evaluation.frequency, 4) + " Hz that cause the same damage\n\n" +
          table.text();
 }
 

@@ -23,18 +23,18 @@ void check_hours(const std::vector<std::string>& sources, const io::LoadOptions&
   if (options.hours.empty() ? sources.size() == 1 : options.hours.size() == sources.size()) return;
   throw InputError("--set hours: " + std::to_string(sources.size()) + " results and " +
                    std::to_string(options.hours.size()) +
-                   " numbers; hint: hours=[...] says how long of the lifetime each result stands "
-                   "for");
+                   " numbers; hint: hours=[...] gives the hours of the lifetime that each result "
+                   "represents");
 }
 
-/// Keys in which the results of one lifetime may differ: what acts on the turbine, how it is
-/// operated, and what differs between blades.
+/// Keys in which the results of one lifetime may differ: loads on the turbine, its operation, and
+/// differences between blades.
 constexpr std::array<std::string_view, 10> operation_keys{
     "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator",
     "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each",
     "nacelle.yaw", "hub.teeter"};
 
-/// The lifetime is that of one turbine.
+/// Checks that all results are from one turbine.
 void require_one_turbine(const std::vector<std::string>& sources) {
   const std::string first = io::read_result_case(sources.front()).model_text;
   for (std::size_t i = 1; i < sources.size(); ++i)
@@ -42,7 +42,7 @@ void require_one_turbine(const std::vector<std::string>& sources) {
                            operation_keys);
 }
 
-/// The options of the evaluation, with Goodman's corrections by channel.
+/// The options of the evaluation, with the Goodman corrections by channel.
 loads::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
                                                 const std::vector<std::string>& names) {
   loads::LoadEvaluationOptions evaluation = options.evaluation;
@@ -50,14 +50,14 @@ loads::LoadEvaluationOptions evaluation_options(const io::LoadOptions& options,
   for (const auto& [name, correction] : options.goodman) {
     const auto found = std::ranges::find(names, name);
     if (found == names.end())
-      throw InputError("--set goodman: \"" + name +
-                       "\" is none of the channels that are evaluated" + suggest(name, names));
+      throw InputError("--set goodman: \"" + name + "\" is not one of the evaluated channels" +
+                       suggest(name, names));
     evaluation.goodman[static_cast<std::size_t>(found - names.begin())] = correction;
   }
   return evaluation;
 }
 
-/// Tables of cycles that a computer has room for.
+/// Checks that the tables of cycles fit in the memory.
 void require_tables(std::size_t channels, const io::LoadOptions& options) {
   constexpr double most_entries = 5e7;
   const loads::LoadEvaluationOptions& evaluation = options.evaluation;

@@ -1,5 +1,5 @@
-// The program samara: reads the command line and the case, runs the command, ends with the exit
-// code that says who acts next (docs/case_file.md).
+// The program samara: reads the command line and the case, runs the command, and ends with an exit
+// code (docs/case_file.md).
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -33,11 +33,10 @@ using petsc::Session;
 
 constexpr std::array<Command, 11> commands{{
     {.name = "check",
-     .summary = "what the case describes: masses, sizes, unknowns; solves nothing",
+     .summary = "reports the model of a case: masses, sizes, unknowns; solves nothing",
      .description =
          "Reads a case and reports the model: masses and their centres, sizes, joints, the mesh\n"
-         "and the number of unknowns. Solves nothing, and writes a result only where -o asks for\n"
-         "one.\n",
+         "and the number of unknowns. Solves nothing. A result is written only with -o.\n",
      .example = "inputs/lee2002/baseline.yaml",
      .run = run_check},
     {.name = "static",
@@ -82,10 +81,10 @@ constexpr std::array<Command, 11> commands{{
      .analysis = simulation::Analysis::floquet,
      .run = run_floquet},
     {.name = "transient",
-     .summary = "the motion in time, with loads by OpenFAST's channel names",
+     .summary = "simulation in time, with loads by OpenFAST's channel names",
      .description =
-         "Follows the turbine in time from its periodic steady state, from rest, or from where\n"
-         "another run ended. Motions and loads go into the result while it runs, by the channel\n"
+         "Simulates the turbine in time from its periodic steady state, from rest, or from the\n"
+         "end of another run. Motions and loads go into the result while it runs, by the channel\n"
          "names of OpenFAST.\n",
      .example = "inputs/lee2002/baseline.yaml --set \"transient={duration: 20, step: 0.005}\"",
      .writes_result = true,
@@ -106,8 +105,8 @@ constexpr std::array<Command, 11> commands{{
      .summary = "a case file from a turbine of OpenFAST or windIO",
      .description =
          "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it\n"
-         "as a case file, and reports key by key what was taken, derived or ignored, and why. See\n"
-         "docs/import.md.\n",
+         "as a case file, and reports for each key whether it was taken, derived or ignored, and\n"
+         "why. See docs/import.md.\n",
      .example = "openfast Main.fst -o turbine.yaml",
      .writes_result = true,
      .formats = "openfast|windio",
@@ -146,13 +145,13 @@ constexpr std::array<Command, 11> commands{{
      .print = io::case_schema},
 }};
 
-/// How a piece of work ended.
+/// Result of a piece of work.
 struct Outcome {
   int code = 0;
   std::string message;  ///< whole lines
 };
 
-/// Lines that begin with a place in the case stand for themselves.
+/// Adds the program's name to lines that do not begin with a place in the case.
 std::string with_name(const std::string& message, const std::string& case_path) {
   std::istringstream lines(message);
   std::string text;
@@ -186,7 +185,7 @@ Outcome attempt(const std::string& case_path, const Work& work) {
   }
 }
 
-/// Everything that can be found wrong before anything is computed.
+/// Finds all faults that can be found before the computation.
 Job prepare(const CommandLine& line) {
   Job job;
   if (line.command->most_results > 0) {
@@ -217,16 +216,16 @@ Job prepare(const CommandLine& line) {
   return job;
 }
 
-/// From here on no other run writes the result.
+/// From here on no other run can write the result.
 void lock_result(Job& job) {
   if (Session::rank() != 0 || job.result_path.empty()) return;
-  const SignalPause pause;  // or a signal would leave the lock's file
+  const SignalPause pause;  // without it a signal could leave the lock's file behind
   job.lock = std::make_shared<io::FileLock>(job.result_path);
   Interruption::remove_at_end(job.lock->path());
   if (!job.lock->is_held())
     std::cerr << "note: " << job.result_path
-              << ": its folder knows no locks; another run into the same result would not be "
-                 "noticed\n";
+              << ": its folder does not support locks; another run with this result would not be "
+                 "detected\n";
 }
 
 void release_result(Job& job) {
@@ -243,7 +242,7 @@ void report_unused_options(const std::string& command) {
   for (std::string word; words >> word;)
     if (const std::string whole = prefixed_option(word, command); !whole.empty())
       hint += (hint.empty() ? "did you mean " : ", ") + whole;
-  std::cerr << "samara: options that nothing in this run asked for: " << unused << "; hint: "
+  std::cerr << "samara: options that this run did not use: " << unused << "; hint: "
             << (hint.empty() ? "misspelt, or of a solver that this command does not start"
                              : hint + "?")
             << "; samara --help-options lists the prefixes\n";
@@ -288,15 +287,16 @@ int run(const std::vector<std::string>& arguments) {
   if (const int code = session.agree(outcome.code, outcome.message)) return code;
   outcome = attempt(line.case_path, [&] { line.command->run(job); });
   release_result(job);
-  if (outcome.code == 0 && Interruption::is_asked())  // when all was done
+  if (outcome.code == 0 && Interruption::is_asked())  // after all was done
     outcome = {Interruption::noted(), "samara: interrupted; the result is complete\n"};
   const int code = session.agree(outcome.code, outcome.message);
   if (code == 0 && Session::rank() == 0) report_unused_options(line.command->name);
   return code;
 }
 
-/// A standard stream that is closed would give its number to the next file that is opened, which
-/// would get what is printed. In its place comes one that cannot be used.
+/// Opens the standard streams that are closed. Otherwise the next file that is opened would get the
+/// number of the stream, and the printed text would go into that file. The replacement cannot be
+/// used.
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0)  // the lowest free number is this one

@@ -24,10 +24,10 @@ using simulation::StabilityAssessment;
 
 constexpr double visible_share = 0.05;
 constexpr std::size_t most_parts = 2;
-constexpr std::size_t most_harmonics = 2;  // 1 beside an error
+constexpr std::size_t most_harmonics = 2;  // 1 if there is an error
 constexpr std::size_t most_names = 4;
 
-/// Whether the ground sees other frequencies than the rotor, and each of one mode.
+/// True if the fixed frame has other frequencies than the rotor, one for each mode.
 bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.instances > 2; }
 
 std::string percent(double share) { return fixed(100.0 * share, 0); }
@@ -42,8 +42,8 @@ std::string parts_of(const Mode& mode) {
   return text;
 }
 
-/// The harmonics beside the identified one, the largest first: "k-2:31% k+1:7%". Shares that print
-/// alike are ordered by distance, so that round-off does not decide.
+/// The harmonics except the identified one, the largest first: "k-2:31% k+1:7%". Shares that print
+/// equal are ordered by distance, so that round-off has no influence on the order.
 std::string other_harmonics(const ModeSet& set, std::size_t m, std::size_t most) {
   struct Entry {
     int offset;
@@ -110,7 +110,7 @@ std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& a
 
 std::string seconds(double time) { return general(time, 3) + " s"; }
 
-/// "yaw 1 doubles in 2.5 s, ..." of modes that grow, the fastest first.
+/// "yaw 1 doubles in 2.5 s, ..." for the growing modes, fastest growth first.
 std::string name_growing(const ModeSet& set, const std::vector<std::size_t>& growing) {
   std::string text;
   for (std::size_t i = 0; i < std::min(growing.size(), most_names); ++i) {
@@ -131,7 +131,7 @@ std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
          " %";
 }
 
-/// Behaviour of the modes that do not grow, in words.
+/// Text on the behaviour of the modes that do not grow.
 std::string rest_words(const StabilityAssessment& result) {
   std::vector<std::string> rest;
   const int decaying = static_cast<int>(result.decaying.size());
@@ -150,7 +150,7 @@ std::string rest_words(const StabilityAssessment& result) {
 
 std::string hertz(double rate) { return general(rate / (2.0 * std::numbers::pi), 3) + " Hz"; }
 
-/// Below which frequency all modes are resolved, and below which their errors are small.
+/// Frequencies below which all modes are resolved, and below which their errors are small.
 std::string resolved_words(const StabilityAssessment& result, const std::string& deflated) {
   std::string text = std::isfinite(result.reach)
                          ? "all modes below " + hertz(result.reach) + " are resolved"
@@ -166,21 +166,21 @@ std::string resolved_words(const StabilityAssessment& result, const std::string&
 
 std::string deflated_words(const ModeSet& set) {
   if (set.deflated == 0) return "";
-  return ", but for " + count(set.deflated, "exponent") + " of " + std::to_string(set.states) +
+  return ", except for " + count(set.deflated, "exponent") + " of " + std::to_string(set.states) +
          (set.deflated == 1 ? " that decays" : " that decay") + " faster than " +
          general(set.deflated_rate, 3) + " 1/s";
 }
 
 bool is_periodic(const ModeSet& set) { return set.participation.size() > 0; }
 
-/// The first line, and of growing modes a second about the others.
+/// The first line of the verdict; for growing modes also a second line on the other modes.
 std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   const std::string rest = rest_words(result);
   const int growing = static_cast<int>(result.growing.size());
   switch (result.stability) {
     case Stability::unstable:
       return "unstable: " + count(growing, "mode") + (growing == 1 ? " grows: " : " grow: ") +
-             name_growing(set, result.growing) + (rest.empty() ? "" : "\nof the others " + rest);
+             name_growing(set, result.growing) + (rest.empty() ? "" : "\nother modes: " + rest);
     case Stability::neutral:
       return "neutral: no mode grows; " + rest;
     case Stability::stable:
@@ -193,7 +193,7 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
       return "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
              (is_periodic(set) ? "; hint: more floquet.steps" : "");
     case Doubt::growing_alone:
-      return "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; of the others " + rest);
+      return "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; other modes: " + rest);
     default:
       return "no verdict: every mode has an error above " + general(100.0 * largest_error, 2) +
              " %; hint: a higher order of blades and tower, or more elements" +
@@ -201,7 +201,7 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   }
 }
 
-/// Modes that were left out of the verdict, a line each.
+/// Modes that were left out of the verdict, one line each.
 std::string doubtful_words(const ModeSet& set, const StabilityAssessment& result, bool all) {
   std::string text;
   const std::size_t alone = result.growing_alone.size();
@@ -209,12 +209,12 @@ std::string doubtful_words(const ModeSet& set, const StabilityAssessment& result
     text += count(static_cast<int>(alone), "mode") +
             (alone == 1 ? " grows alone: " : " grow alone: ") +
             name_growing(set, result.growing_alone) +
-            ";\nwhere nothing damps, growth and decay come in pairs, so this is an error of the "
+            ";\nwithout damping, growth and decay come in pairs, so this is an error of the "
             "mesh\n(hint: a higher order of blades and tower, or more elements)\n";
   if (result.rough > 0)
     text += count(result.rough, "mode") + (result.rough == 1 ? " has" : " have") +
-            " too large an error and " + (result.rough == 1 ? "counts" : "count") +
-            " for no verdict\n(hint: a higher order of blades and tower, more elements" +
+            " too large an error and " + (result.rough == 1 ? "does" : "do") +
+            " not count for the verdict\n(hint: a higher order of blades and tower, more elements" +
             (is_periodic(set) ? ", more floquet.steps" : "") + ")\n";
   if (result.unresolved > 0)
     text +=

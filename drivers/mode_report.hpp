@@ -8,24 +8,25 @@
 
 namespace samara::drivers {
 
-/// Which modes are listed.
+/// Selection of the listed modes.
 struct ModeListing {
-  bool all = false;  ///< also those that are not resolved
-  int first = 0;     ///< so many rows; 0: all
+  bool all = false;  ///< also modes that are not resolved
+  int first = 0;     ///< number of rows; 0: all
 };
 
-/// One line a mode, by its number in the result; those that are not resolved stand below the
-/// others. Harmonics stand there where the set has participations.
+/// One line per mode, with its number in the result. Modes that are not resolved are below the
+/// others. Harmonics are listed if the set has participations.
 std::string mode_table(const analysis::ModeSet& set,
                        const simulation::StabilityAssessment& assessment,
                        const ModeListing& listing);
 
-/// "stable: ...", "neutral: ..." or "unstable: ...", the frequency up to which it holds and what
-/// was left out; or "no verdict: ..." and what to change. `all`: unresolved modes are listed.
+/// "stable: ...", "neutral: ..." or "unstable: ...", the frequency up to which the verdict is valid
+/// and the modes that were left out; or "no verdict: ..." and a hint on the remedy. `all`:
+/// unresolved modes are listed.
 std::string verdict_text(const analysis::ModeSet& set,
                          const simulation::StabilityAssessment& assessment, bool all);
 
-/// @throws ConvergenceError where there is no verdict, for the exit code
+/// @throws ConvergenceError if there is no verdict, for the exit code
 void require_verdict(const analysis::ModeSet& set,
                      const simulation::StabilityAssessment& assessment);
 

@@ -1,4 +1,4 @@
-// samara modes: the modes of constant tangents, of a parked rotor or a balanced one in its axes.
+// samara modes: the modes for constant tangents (a parked rotor, or a balanced one in its axes).
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/trim.hpp"

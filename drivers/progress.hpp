@@ -1,4 +1,5 @@
-// Tells of a long analysis on stderr: a bar on a terminal, a line now and then otherwise.
+// Reports the progress of a long analysis on stderr: a bar on a terminal, otherwise lines at
+// intervals.
 #pragma once
 
 #include <chrono>
@@ -10,15 +11,15 @@ namespace samara::drivers {
 
 class Progress final : public analysis::Observer {
  public:
-  /// `speaks`: false on all ranks but the first.
+  /// `speaks`: true only on the first rank.
   explicit Progress(bool speaks);
   ~Progress() override;
 
   void note(const std::string& text) override;
-  /// Costs a look at the clock.
+  /// The cost is one reading of the clock.
   void progress(const std::string& stage, long done, long all) override;
 
-  /// Takes the bar away: what follows goes to stdout.
+  /// Removes the bar before output to stdout.
   void finish() { clear_bar(); }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 struct Prefix {
   const char* name;
-  std::vector<std::string_view> objects;  ///< what follows the prefix
+  std::vector<std::string_view> objects;  ///< words after the prefix
   std::vector<std::string_view> commands;
   const char* words;
 };

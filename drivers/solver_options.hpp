@@ -1,4 +1,4 @@
-// The options of PETSc and SLEPc that the program's solvers take, by their prefixes.
+// The options of PETSc and SLEPc for the solvers of the program, by prefix.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@ namespace samara::drivers {
 /// The table of `samara --help-options`.
 std::string solver_options_text();
 
-/// Hint with the right spelling of an option that nothing asked for; empty where it is no
-/// option of a solver that lacks its prefix. `option`: with its dash.
+/// The right spelling of an option that was not used; empty if it is not an option of a solver
+/// without its prefix. `option`: with its dash.
 std::string prefixed_option(const std::string& option, const std::string& command);
 
 }  // namespace samara::drivers

@@ -1,4 +1,4 @@
-// samara static: equilibrium at rest under gravity and loads that grow.
+// samara static: equilibrium at rest under gravity and loads, by load stepping.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,12 +22,12 @@ using analysis::StaticState;
 
 constexpr std::size_t most_rows = 12;
 
-/// Relative to the size of what it is part of: below it a value is round-off.
+/// Relative to the size of the whole quantity. A smaller value is round-off.
 constexpr double round_off = 1e-9;
 
 constexpr double to_degrees = 180.0 / std::numbers::pi;
 
-/// The states to print: some at equal distances, the last, and those beside limit points.
+/// The states to print: some at equal distances, the last one, and those next to limit points.
 std::set<std::size_t> shown_states(const StaticPath& path) {
   std::set<std::size_t> shown;
   const std::size_t last = path.states.size() - 1;
@@ -40,7 +40,7 @@ std::set<std::size_t> shown_states(const StaticPath& path) {
   return shown;
 }
 
-/// End and root of one beam, a line a state.
+/// End and root of one beam, one line per state.
 std::string beam_table(const StaticPath& path, const model::Beam& beam, int tip, int root) {
   Table table;
   table.add_column("factor", "");
@@ -81,12 +81,12 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   std::string text = (definition.title.empty() ? input.path : definition.title) + "\n";
   text += "loads        gravity " + general(definition.gravity, 6) + " m/s^2, " +
           count(static_cast<int>(definition.loads.size()), "prescribed load") +
-          "; all times the factor\n";
+          "; all times the load factor\n";
   text += std::string("method       ") + (by_arc ? "arc length" : "prescribed load factors") +
           ", " + count(static_cast<int>(path.states.size()) - 1, "step") +
           (path.cuts > 0 ? ", cut " + count(path.cuts, "time") : "") + "\n";
   text += "Newton       " + count(newton_steps, "step") +
-          " in all, every last one below static.tolerance\n";
+          " in total, the last one of each state below static.tolerance\n";
   text += "residual     " + scientific(residual, 1) + " [N, N m] at most; largest load " +
           general(path.load_level, 4) + "\n";
   for (const double factor : path.limit_points)

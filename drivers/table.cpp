@@ -5,7 +5,7 @@
 namespace samara::drivers {
 namespace {
 
-/// Columns on the screen: bytes that continue a UTF-8 character take none.
+/// Columns on the screen. Bytes that continue a UTF-8 character take none.
 std::size_t width_of(const std::string& word) {
   return static_cast<std::size_t>(std::count_if(word.begin(), word.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;

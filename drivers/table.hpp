@@ -1,4 +1,4 @@
-// Aligned tables for people.
+// Aligned tables for the terminal.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace samara::drivers {
 
 enum class Align { left, right };
 
-/// Rows of words under a head of names and, where there are any, units.
+/// Rows of words below a head of names and units, if there are any.
 class Table {
  public:
   void add_column(const std::string& name, const std::string& unit, Align align = Align::right);
-  /// One word a column.
+  /// One word per column.
   void add_row(const std::vector<std::string>& words);
   std::string text() const;
 

@@ -1,4 +1,4 @@
-// The time series of a transient on its way to the result, until a signal ends it.
+// Writes the time series of a transient to the result, until a signal ends it.
 #pragma once
 
 #include "samara/io/time_series_file.hpp"
@@ -11,7 +11,7 @@ namespace samara::drivers {
 
 class TimeSeriesOutput final : public simulation::TransientOutput {
  public:
-  /// Both must live on.
+  /// Both arguments must outlive the object.
   TimeSeriesOutput(io::TimeSeriesFile& file, Progress& progress)
       : file_(file), progress_(progress) {}
 

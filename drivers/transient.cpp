@@ -1,4 +1,4 @@
-// samara transient: the motion in time.
+// samara transient: simulation in time.
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -62,7 +62,7 @@ std::string summary(const io::Case& input, const simulation::TransientSummary& d
   return text;
 }
 
-/// An event that never came is one that the user has wrong.
+/// An event that never occurred is an input error.
 void require_fired(const simulation::TransientSetup& transient, const std::vector<double>& fired) {
   for (std::size_t i = 0; i < fired.size(); ++i) {
     if (std::isfinite(fired[i])) continue;
@@ -140,7 +140,7 @@ void run_transient(const Job& job) {
     if (output.has_rows()) {
       const bool is_written = file.finish_failed(std::string("failed: ") + error.what());
       std::cerr << "samara: "
-                << (is_written ? "what was computed is in "
+                << (is_written ? "the computed rows are in "
                                : "the last rows are lost; others may be in ")
                 << job.result_path << "\n";
     }

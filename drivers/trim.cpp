@@ -25,16 +25,16 @@ using analysis::Trim;
 constexpr int most_harmonics_shown = 5;
 constexpr int instants = 180;
 
-/// Relative to the size of what it is part of: below it a value is round-off.
+/// Relative to the size of the whole quantity. A smaller value is round-off.
 constexpr double round_off = 1e-9;
 
-/// A line of the table: an unknown that people ask for.
+/// A line of the table: an unknown of interest to the user.
 struct Output {
   std::string name;
   std::string unit;
   int unknown = 0;
   double factor = 1.0;  ///< from SI to `unit`
-  double zero = 0.0;    ///< below it a value is round-off
+  double zero = 0.0;    ///< a smaller value is round-off
 };
 
 std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load_level) {
@@ -51,7 +51,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
   const auto add_angle = [&outputs](const std::string& name, int unknown) {
     outputs.push_back({name, "deg", unknown, 180.0 / std::numbers::pi, round_off});
   };
-  // Blades that repeat each other differ in azimuth only.
+  // Equal blades differ only in azimuth.
   const int shown = system.symmetry().sectors > 1 ? 1 : static_cast<int>(turbine.blades.size());
   for (int k = 0; k < shown; ++k) {
     const std::string blade = turbine.blades[static_cast<std::size_t>(k)].name;
@@ -90,7 +90,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
   return outputs;
 }
 
-/// The value of largest size over a revolution.
+/// The value of largest modulus over a revolution.
 double largest_value(const analysis::PeriodicSolution& solution, int unknown) {
   const Eigen::RowVectorXd row = solution.coefficients().row(unknown);
   if (solution.is_constant()) return row(0);
@@ -128,12 +128,12 @@ std::string output_table(const turbine::TurbineSystem& system, const Trim& trim)
   if (shown > 0) notes += "kP: amplitude at k times the rotor speed";
   if (shown < solution.harmonics()) notes += "; higher ones are in the result";
   if (system.symmetry().sectors > 1)
-    notes += std::string(notes.empty() ? "" : "; ") +
-             "the other blades do the same, each at its azimuth";
+    notes +=
+        std::string(notes.empty() ? "" : "; ") + "the other blades are equal, each at its azimuth";
   return table.text() + (notes.empty() ? "" : notes + "\n");
 }
 
-/// PETSc's reason for the end of the nonlinear solve.
+/// PETSc's reason for the end of the nonlinear solve, in words.
 std::string explain(const std::string& reason) {
   if (reason == "CONVERGED_FNORM_ABS") return "the residual vanished (" + reason + ")";
   if (reason == "CONVERGED_FNORM_RELATIVE")
@@ -142,8 +142,9 @@ std::string explain(const std::string& reason) {
   return reason;
 }
 
-/// A free generator holds the mean speed, by its law and a constant torque beside it. The load that
-/// was found acts at the shaft, the words count at the generator.
+/// Torque of a free generator that holds the mean speed: by its law, and a constant torque in
+/// addition. The load of the solution acts at the shaft; the printed torque is that of the
+/// generator.
 std::string generator_words(const io::Case& input, double shaft_load, double shaft_zero) {
   const model::ShaftDefinition& shaft = input.turbine.shaft;
   const double law = shaft.generator.law.at(shaft.generator_speed()).torque;
@@ -154,11 +155,11 @@ std::string generator_words(const io::Case& input, double shaft_load, double sha
   };
   std::string text =
       "generator    " + number(law - load) + " N m against its turning hold the mean speed";
-  if (law != 0.0) text += ": " + number(law) + " by its law and " + number(-load) + " beside it";
+  if (law != 0.0) text += ": " + number(law) + " by its law and " + number(-load) + " in addition";
   return text + "\n";
 }
 
-/// The work of the controller in the mean of a revolution.
+/// Mean speed, torque and pitch of the controller over a revolution.
 std::string controller_words(const turbine::TurbineSystem& system, const Trim& trim) {
   const turbine::TurbineChannels channels(system, {}, {"GenSpeed", "GenTq", "BldPitch1"});
   const petsc::Handle<Vec> z = system.make_state();

@@ -1,5 +1,5 @@
-// The two-bladed teetering turbine of Lee, Hodges and Patil, Wind Energy 5 (2002), Table I, with a
-// tower 100 times as stiff as the blades: its Floquet exponents.
+// Floquet exponents of the two-bladed teetering turbine of Lee, Hodges and Patil, Wind Energy 5
+// (2002), Table I, with a tower 100 times as stiff as the blades.
 #include <cstdio>
 
 #include <samara/analysis/floquet.hpp>
@@ -11,7 +11,7 @@ using namespace samara;
 
 namespace {
 
-/// A uniform beam that neither stretches nor shears.
+/// A uniform beam without stretch and shear.
 model::BeamDefinition uniform(double length, double rigidity) {
   model::BeamDefinition beam;
   beam.length = length;

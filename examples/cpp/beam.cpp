@@ -1,4 +1,4 @@
-// A beam: the first bending frequencies of a uniform cantilever, a tower without anything on it.
+// The first bending frequencies of a uniform cantilever beam: a tower without a nacelle.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -25,7 +25,7 @@ int main() {
   tower.elements = 8;
   tower.order = 2;
   model::SectionDefinition section;
-  section.rigid = {true, true, true, false, false, false};  // neither stretch nor shear
+  section.rigid = {true, true, true, false, false, false};  // no stretch and no shear
   section.stiffness.diagonal() << 0.0, 0.0, 0.0, 1e8, stiffness, 4.0 * stiffness;
   section.mass.diagonal() << mass, mass, mass, 2.0, 1e-3, 1e-3;
   tower.sections = {section};

@@ -1,4 +1,4 @@
-// A component of one's own: the torque of a generator that follows its speed error with a lag,
+// A user-defined component: the torque of a generator that follows its speed error with a lag,
 //   tau T' = c (omega - omega_0) - T,
 // a first-order state that acts on the shaft. On a rigid rotor of inertia J the roots are those of
 // J tau s^2 + J s + c = 0.
@@ -19,7 +19,7 @@ struct LagSettings {
   double lag = 0.0;    // tau [s]
 };
 
-/// The equations, once, as a template on the scalar; residual and tangents are made of it.
+/// The equations, stated once as a template on the scalar. Residual and tangents follow from them.
 class LaggingTorque final : public components::Stated<LaggingTorque> {
  public:
   LaggingTorque(LagSettings settings, const turbine::TurbineLayout& layout)
@@ -35,7 +35,7 @@ class LaggingTorque final : public components::Stated<LaggingTorque> {
                       {owner, "", "torque", "N m", system::UnknownRole::state, system::Frame::fixed,
                        false, settings_.slope},
                       system::RowRole::evolution);
-    const int speed = layout_.generator() + 1;  // the rate of its angle beside the mean speed
+    const int speed = layout_.generator() + 1;  // rate of its angle beside the mean speed
     connections_.arguments = {components::unknowns(torque_, 1), components::rates(torque_, 1),
                               components::unknowns(speed, 1)};
     connections_.shares = {{torque_, 1, 0}, {speed, 1, 1}};
@@ -48,7 +48,7 @@ class LaggingTorque final : public components::Stated<LaggingTorque> {
     const auto rows_of = [this]<class T>(const Eigen::Matrix<T, 3, 1>& x) {
       Eigen::Matrix<T, 2, 1> y;
       y(0) = x(1) * settings_.lag + x(0) - (x(2) - T(speed_)) * settings_.slope;
-      y(1) = -x(0);  // against the turning, in the row of Kane's equation of the generator
+      y(1) = -x(0);  // against the rotation, in the row of Kane's equation of the generator
       return y;
     };
     system.template add<3, 2>(connections_, rows_of);

@@ -1,5 +1,5 @@
-// Mathieu's equation x'' + 2 zeta x' + (a - 2 q cos 2t) x = 0 as a periodic system of one's own:
-// Floquet's exponents without a turbine.
+// Mathieu's equation x'' + 2 zeta x' + (a - 2 q cos 2t) x = 0 as a user-defined periodic system:
+// Floquet exponents without a turbine.
 #include <cmath>
 #include <cstdio>
 #include <numbers>

@@ -1,5 +1,5 @@
-// A transient with an observer: the generator of a rigid rotor is lost, and a brake stops it. PETSc
-// is started by this program, as by one that has work of its own for it.
+// A transient with an observer: the generator of a rigid rotor is lost, and a brake stops the
+// rotor. This program starts PETSc itself, like a program that uses PETSc for other work as well.
 #include <cstdio>
 #include <numbers>
 
@@ -58,7 +58,7 @@ class Printer final : public simulation::TransientOutput {
 int main(int argc, char** argv) {
   if (PetscInitialize(&argc, &argv, nullptr, nullptr) != 0) return 1;
   {
-    const petsc::Session session({});  // adopts what runs
+    const petsc::Session session({});  // uses the PETSc session that runs already
     simulation::TransientSimulation simulation(rotor());
     const double inertia =
         model::compute_masses(simulation.scenario().turbine, simulation.turbine())

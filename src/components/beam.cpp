@@ -18,7 +18,7 @@ constexpr int block = elements::point_size;
 
 // Arguments of a point or an end: z, z_dot, motion of the root.
 constexpr int end_arguments = 2 * block + 9;
-// Values of a point, threes.
+// Offsets of the values of a point, three components each.
 constexpr int force_flux = 0;
 constexpr int force_load = 3;
 constexpr int moment_flux = 6;
@@ -28,20 +28,22 @@ constexpr int turn = 15;
 constexpr int velocity = 18;
 constexpr int spin = 21;
 constexpr int point_values = 24;
-// Values of an end: motion and balance.
+// Offsets of the values of an end: motion and balance.
 constexpr int end_velocity = 0;
 constexpr int end_spin = 3;
 constexpr int end_balance = 6;
 constexpr int end_values = 12;
-// Values of the root on its support: the same, the law of the springs and the load on their
-// carrier.
+// Offsets of the further values of a root on its support: the law of the springs, and the load on
+// the part that carries them.
 constexpr int support_law = 12;
 constexpr int support_root = 18;
 constexpr int support_values = 24;
-// Values of a change of reference: rotation and section load of each point of the element before.
+// Arguments of a change of reference: rotation and section load of each point of the element
+// before.
 constexpr int most_points = 6;
 constexpr int change_arguments = 9 * most_points;
-// Arguments of mass-proportional damping: u, u_dot; u, theta of the root and their rates.
+// Arguments of mass-proportional damping: u, u_dot of the point; u, theta of the root and their
+// rates.
 constexpr int drag_arguments = 18;
 
 using system::EnergyGroup;
@@ -155,7 +157,8 @@ Beam::Beam(const BeamSetting& setting) : setting_(setting) {
   if (setting_.mesh->order > most_points) throw InternalError("an element has too many points");
 }
 
-/// A chain is eliminated toward what carries it, or what it carries.
+/// The blocks of a beam are eliminated toward the part that carries the beam, or toward the bodies
+/// that the beam carries.
 void Beam::place(Registry& registry) {
   const model::Beam& beam = *placed_.beam;
   placed_.points.assign(at(beam.point_count()), 0);
@@ -189,7 +192,7 @@ void Beam::describe(Registry& registry) {
       describe_unknowns(registry, first, "support");
       describe_support(registry, first);
       describe_mass(registry, first, beam.support.added_mass);
-    } else {  // point masses count from 1, whatever the root stands on
+    } else {  // point masses count from 1, with and without a support of the root
       describe_unknowns(registry, first, "mass " + std::to_string(beam.has_support ? m : m + 1));
     }
     describe_mass(registry, first, beam.mass_nodes[m].mass);
@@ -209,7 +212,7 @@ void Beam::describe(Registry& registry) {
   if (beam.has_drag) connect_drag();
 }
 
-/// Unknowns of a point from number `from` on, `first` the first of them.
+/// Declares the unknowns of a point from number `from` on; `first`: index of the first of them.
 void Beam::describe_unknowns(Registry& registry, int first, const std::string& place,
                              int from) const {
   for (int i = from; i < block; ++i) {
@@ -275,8 +278,8 @@ void Beam::describe_energies(Registry& registry, int p) const {
                                point.damping(i)});
 }
 
-/// A dead force has a potential where the axes that it is fixed in move as prescribed; a moment has
-/// none.
+/// A dead force has a potential where the axes in which it is fixed move as prescribed. A dead
+/// moment has none.
 bool Beam::is_conservative() const {
   const model::Beam& beam = *placed_.beam;
   if (beam.has_drag || (beam.has_support && !beam.support.damping.isZero(0.0))) return false;
@@ -309,7 +312,7 @@ void Beam::connect_points() {
   }
 }
 
-/// `point`: the last one before the end, whose balance has the section load there.
+/// `point`: the last one before the end. Its balance contains the section load there.
 Connections Beam::connect_end(int first, int point, bool has_balance) {
   linear_.push_back({first, first, 6, 1.0});
   linear_.push_back({placed_.points[at(point)] + 12, first + 12, 6, -1.0});
@@ -379,7 +382,7 @@ void Beam::connect_loads() {
     connections.shares.push_back({row + 3, 3, 3, -weight});
   };
   for (const model::BeamLoad& load : beam.loads) {
-    // A dead load is the same everywhere: one part. A follower has one for each place.
+    // A dead load is equal at all places and has one part. A follower has one part for each place.
     const auto part_at = [&](int first, const Matrix3& C_ab) -> Connections& {
       if (load.follower || loads_.empty() || loads_.back().load != &load) {
         loads_.push_back({&load, C_ab, {}});
@@ -457,8 +460,8 @@ void Beam::state_points(System& system) const {
   }
 }
 
-/// The boundary quantities of a beam: reactions at the root, the loads and the motion at the tip,
-/// and where a mass sits between two elements, the end of one and the start of the other.
+/// The boundary quantities of a beam: reactions at the root, loads and motion at the tip. At a mass
+/// between two elements: the end of the one and the start of the other.
 template <class System>
 void Beam::state_ends(System& system) const {
   const model::Beam& beam = *placed_.beam;
@@ -495,7 +498,7 @@ void Beam::state_ends(System& system) const {
   }
 }
 
-/// The root on its body and springs: their law, the motion of the body, its balance.
+/// The root on its rigid body and springs: law of the springs, motion of the body and its balance.
 template <class System>
 void Beam::state_support(System& system) const {
   const model::Beam& beam = *placed_.beam;
@@ -521,14 +524,14 @@ void Beam::state_support(System& system) const {
                                                      Memory::of_arguments);
 }
 
-/// Correction of the plain sums of the curvature balances where references differ.
+/// Correction of the sums in the curvature balances at elements with different references.
 template <class System>
 void Beam::state_changes(System& system) const {
   const model::Beam& beam = *placed_.beam;
   for (std::size_t i = 0; i < changes_.size(); ++i) {
     const ReferenceChange& change = changes_[i];
     const auto missed = [&]<class T>(const Eigen::Matrix<T, change_arguments, 1>& x) {
-      Vec3<T> before = Vec3<T>::Zero();  // the rotation at the start: the root has none
+      Vec3<T> before = Vec3<T>::Zero();  // rotation at the start; zero at the root
       if (change.mass >= 0) {
         before = x.template head<3>();
       } else if (change.element > 0) {
@@ -548,7 +551,7 @@ void Beam::state_changes(System& system) const {
   }
 }
 
-/// The prescribed loads: -f, -m of the force and moment balances.
+/// The prescribed loads: -f and -m in the force and moment balances.
 template <class System>
 void Beam::state_loads(System& system) const {
   for (const LoadPart& part : loads_) {
@@ -562,7 +565,7 @@ void Beam::state_loads(System& system) const {
       if (load.follower) given = elements::follower_load<T>(theta, part.C_ab, value);
       if constexpr (System::has_inputs) {
         if (load.follower || setting_.end == BeamEnd::free) return given;
-        const TurbineInputs<T>& inputs = system.inputs();  // dead: fixed in the ground
+        const TurbineInputs<T>& inputs = system.inputs();  // dead load: fixed in the ground
         const Vec3<T> force = inputs.at_foot(given.template head<3>());
         const Vec3<T> moment = inputs.at_foot(given.template tail<3>());
         given << force, moment;
@@ -583,7 +586,7 @@ void Beam::state_loads(System& system) const {
   system.template add<1, 3>(end_force_, end_force);
 }
 
-/// Damping in proportion to the mass, on the sections, and its reaction on the root.
+/// Mass-proportional damping on the sections, and its reaction on the root.
 template <class System>
 void Beam::state_drag(System& system) const {
   const model::Beam& beam = *placed_.beam;

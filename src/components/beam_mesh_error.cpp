@@ -21,8 +21,8 @@ Eigen::VectorXd highest_derivative(int s) {
   return std::tgamma(s) * powers.inverse().row(s - 1).transpose();
 }
 
-/// (s!)^2 / ((2 s)! (2 s + 1)!): of the first term that Gauss collocation of order s leaves out of
-/// an exponential.
+/// (s!)^2 / ((2 s)! (2 s + 1)!): coefficient of the first term of an exponential that Gauss
+/// collocation of order s omits.
 double leading_constant(int s) {
   return std::pow(std::tgamma(s + 1), 2) / (std::tgamma(2 * s + 1) * std::tgamma(2 * s + 2));
 }
@@ -35,10 +35,10 @@ Matrix6 square_root(const Matrix6& matrix) {
 
 }  // namespace
 
-/// Element e of a beam. With y = (u, theta, F, M) along the span, y' = A y, an element of order s
-/// has the Pade approximant of exp(A L), which misses exp(A L) by c_s (A L)^(2 s + 1). The first
-/// order change of an eigenvalue is the energy of the derivative of order s, which the element's
-/// own points give: the derivative of order s - 1 of y'.
+/// Error of element e of a beam. With y = (u, theta, F, M) along the span and y' = A y, an element
+/// of order s has the Pade approximant of exp(A L). Its error is c_s (A L)^(2 s + 1). The
+/// first-order change of an eigenvalue is the energy of the derivative of order s. That is the
+/// derivative of order s - 1 of y', which follows from the points of the element.
 system::MeshError find_mesh_error(const model::Beam& beam, int e, const std::vector<int>& points) {
   const int s = beam.order;
   const double L = beam.element_length(e);
@@ -63,10 +63,10 @@ system::MeshError find_mesh_error(const model::Beam& beam, int e, const std::vec
     const Eigen::Index velocity = 12 * j;
     const Eigen::Index load = velocity + 6;
     const double weight = weights(j);
-    // F' and M': inertia, and the shear force's moment.
+    // F' and M': inertia, and the moment of the shear force.
     error.rate.block<6, 6>(0, velocity) = weight * turn * point.mass;
     error.constant.block<3, 3>(3, load) = weight * along;
-    // V' and Omega': the section's turning, and the rates of strain.
+    // V' and Omega': rotation of the section, and the rates of strain.
     error.constant.block<3, 3>(6, velocity + 3) = weight * along;
     error.rate.block<6, 6>(6, load) = weight * turn * point.compliance;
   }

@@ -94,7 +94,8 @@ void BladeRoot::describe_channel(Registry& registry, model::HingeAxis axis, int 
                        180.0 / std::numbers::pi});
 }
 
-/// Nothing brings a hinge without a spring anywhere.
+/// True without rotor speed, gravity and prescribed loads. Nothing then turns a hinge that has no
+/// spring.
 bool BladeRoot::is_unloaded() const {
   return turbine_.speed == 0.0 && turbine_.chain.gravity == 0.0 &&
          turbine_.blades[k_].loads.empty();

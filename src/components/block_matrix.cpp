@@ -48,7 +48,7 @@ void BlockMatrix::copy_to(Mat matrix) const {
     const std::vector<int>& columns = columns_[static_cast<std::size_t>(row)];
     for (std::size_t n = 0; n < columns.size(); ++n) {
       const PetscInt j = columns[n];
-      // MatSetValuesBlocked reads rows; the blocks here are columns.
+      // MatSetValuesBlocked reads row by row; the blocks are stored column by column.
       const Eigen::Matrix<double, block, block, Eigen::RowMajor> values =
           Eigen::Map<const Eigen::Matrix<double, block, block>>(values_.data() +
                                                                 offset(row, static_cast<int>(n)));

@@ -42,22 +42,23 @@ void Controller::describe(Registry& registry) {
   registry.describe(first_ + 1,
                     {owner, "", "integral", "rad", UnknownRole::state, Frame::fixed, false, usual},
                     RowRole::evolution);
-  registry.add(Channel{"CtrlIntegral", "rad", "generator", "integral of that", first_ + 1, 1.0});
+  registry.add(Channel{"CtrlIntegral", "rad", "generator",
+                       "integral of the speed error of the controller", first_ + 1, 1.0});
 }
 
-/// Against the nacelle, in the sense of its turning.
+/// Speed of the generator relative to the nacelle, positive in its sense of rotation.
 template <class T>
 T Controller::generator_speed(const Eigen::Matrix<T, arguments, 1>& x) const {
   const elements::RigidChain& chain = turbine_.chain;
   const Vec3<T> top = from_beam_order<T>(x.template head<3>());
-  const Vec3<T> nacelle =
-      math::turn_about<T>(Vector3::UnitZ(), x(at_yaw)).transpose() * top;  // but for the yaw's rate
+  // Without the rate of the yaw joint.
+  const Vec3<T> nacelle = math::turn_about<T>(Vector3::UnitZ(), x(at_yaw)).transpose() * top;
   const T carried = nacelle(1) * std::cos(chain.tilt) + x(at_yaw + 1) * std::sin(chain.tilt);
   return (x(at_generator) - carried) * chain.gear();
 }
 
-/// With gains divided by 1 + (p + angle)/K, p the blades' own pitch, u = (1 + (p + angle)/K) angle:
-/// a quadratic equation for the angle.
+/// The gains are divided by 1 + (p + angle)/K, p the own pitch of the blades. This gives the
+/// quadratic equation u = (1 + (p + angle)/K) angle for the angle.
 template <class T>
 void Controller::schedule(T& angle, T& rate) const {
   using std::sqrt;
@@ -65,7 +66,7 @@ void Controller::schedule(T& angle, T& rate) const {
   const double start = K + turbine_.pitch;
   const T square = angle * (4.0 * K) + T(start * start);
   if (math::plain_value(square) <= 0.0)
-    throw DomainError("controller: the pitch is beyond what its gain schedule can give");
+    throw DomainError("controller: the pitch is outside the range of its gain schedule");
   const T root = sqrt(square);
   angle = (root - T(start)) * 0.5;
   rate = rate * T(K) / root;

@@ -23,7 +23,7 @@ void MassDamper::place(Registry& registry) {
   first_ = registry.add_shared(setting_.shared_rank, 2 * static_cast<int>(axis_count()));
 }
 
-/// First unknown of the node that carries it.
+/// First unknown of the node that carries the damper.
 int MassDamper::node() const {
   const PlacedBeam& placed = setting_.beam->placed();
   const int number = setting_.damper->node;
@@ -77,10 +77,10 @@ void MassDamper::describe_axis(Registry& registry, std::size_t i) const {
                                    axis.damping / axis.stiffness});
 }
 
-/// Named as OpenFAST names those of its structural control, along its x y z.
+/// Channel names follow OpenFAST's structural control, along its x y z.
 void MassDamper::describe_channels(Registry& registry, std::size_t i) const {
   const model::MassDamper& damper = *setting_.damper;
-  // Axes b1 b2 b3 and y1 y2 y3 in those: downwind, then side-side against the second axis, then up.
+  // OpenFAST's x y z in b1 b2 b3 and in y1 y2 y3: downwind, side-side against the second axis, up.
   struct Along {
     char letter;
     double sign;
@@ -102,7 +102,7 @@ void MassDamper::describe_channels(Registry& registry, std::size_t i) const {
                        along.sign});
 }
 
-/// Kinetic energy in the velocities of the node and its own, at the mean of a prescribed yaw.
+/// Kinetic energy in the velocities of the node and of the damper, at the mean of a prescribed yaw.
 void MassDamper::describe_mass(Registry& registry) const {
   const model::MassDamper& damper = *setting_.damper;
   const int first_velocity = node() + 6;
@@ -152,7 +152,8 @@ void MassDamper::connect() {
     connections_.shares.push_back({first(i), 2, 2 * static_cast<int>(i)});
   }
   if (axis_count() < most_axes) connections_.arguments.push_back(zeros(4));
-  // The balance of a beam's node has what it takes to move the mass, that of bodies the load.
+  // The balance of a beam's node contains the inertial load of the mass; that of bodies contains
+  // the load on the bodies.
   const double weight = is_on_bodies() ? 1.0 : -1.0;
   connections_.shares.push_back({first_of_node + 12, 3, node_force, weight});
   connections_.shares.push_back({first_of_node + 15, 3, node_moment, weight});
@@ -176,7 +177,7 @@ FrameMotion<T> MassDamper::node_motion(const Eigen::Matrix<T, arguments, 1>& x,
   return node;
 }
 
-/// `top`: of the tower's end, in t1 t2 t3. `turn`: components in the nacelle from those.
+/// `top`: motion of the tower's end, in t1 t2 t3. `turn`: components in the nacelle from t1 t2 t3.
 template <class T, class System>
 FrameMotion<T> MassDamper::nacelle_motion(const System& system,
                                           const Eigen::Matrix<T, arguments, 1>& x,
@@ -219,7 +220,7 @@ void MassDamper::state(System& system) const {
       carrier = nacelle_motion<T>(system, x, carrier, turn);
     }
     Vec3<T> r = damper.place.template cast<T>();
-    Vec3<T> velocity = Vec3<T>::Zero();  // against the carrier
+    Vec3<T> velocity = Vec3<T>::Zero();  // relative to the carrier
     Vec3<T> acceleration = Vec3<T>::Zero();
     for (std::size_t i = 0; i < axis_count(); ++i) {
       const Vec3<T> axis = damper.axis(i).template cast<T>();

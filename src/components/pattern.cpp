@@ -14,7 +14,7 @@ namespace {
 using math::Dependence;
 constexpr int block = BlockMatrix::block;
 
-/// Each once, ascending.
+/// Sorts each list in ascending order and removes duplicates.
 void sort(std::vector<std::vector<int>>& rows) {
   for (std::vector<int>& row : rows) {
     std::ranges::sort(row);
@@ -83,8 +83,8 @@ std::vector<int>& Pattern::row(int row, bool is_rate) {
   return (is_rate ? plan_.M : plan_.K)[at(row)];
 }
 
-/// Prolongs the last entries by a column, or begins new ones where it is not the next or is in
-/// another block.
+/// Extends the last entries by a column. Begins new entries if the column is not the next one or is
+/// in another block.
 void Pattern::append(std::vector<TangentPlan::Entries>& entries, int from,
                      const PortColumn& column) {
   if (!entries.empty()) {
@@ -101,7 +101,7 @@ void Pattern::append(std::vector<TangentPlan::Entries>& entries, int from,
 void Pattern::add_share(const Share& share, const Dependence* y) {
   if (share.count < 1 || share.count > 3 ||
       share.row / block != (share.row + share.count - 1) / block)
-    throw InternalError("a share of a function has not one to three rows of one block");
+    throw InternalError("a share of a function must have one to three rows in one block");
   TangentPlan::SharePlan plan;
   std::uint64_t all = 0;
   for (int i = 0; i < share.count; ++i) {
@@ -142,7 +142,7 @@ void Pattern::add_share(const Share& share, const Dependence* y) {
   call.shares.push_back(plan);
 }
 
-/// The number of a column of a port, a new one where it has none yet.
+/// The number of a column of a port. A missing column is added.
 int Pattern::place_of(int port, const PortColumn& column) {
   std::vector<PortColumn>& columns = plan_.port_columns[at(port)];
   const auto found = std::find(columns.begin(), columns.end(), column);

@@ -6,7 +6,7 @@
 namespace samara::components {
 namespace {
 
-/// Within both limits; a number that is none stays what it is.
+/// Limits a value to [lowest, highest]. A NaN stays a NaN.
 template <class T>
 T limited(const T& value, double lowest, double highest) {
   if (math::plain_value(value) < lowest) return T(lowest);
@@ -43,9 +43,9 @@ void PitchActuator::describe(Registry& registry) {
   connections_.provisions = {{pitch_port_, 2}};
 }
 
-/// angle' = rate; rate' = 2 zeta omega (wanted - rate), the wanted rate omega (command - angle)/(2
-/// zeta) within its limit: rate' = omega^2 (command - angle) - 2 zeta omega rate as long as nothing
-/// is at a limit, and no more than the limit at any time.
+/// angle' = rate; rate' = 2 zeta omega (wanted - rate). The wanted rate is omega (command -
+/// angle)/(2 zeta), within its limit. Where no limit is active, this is rate' = omega^2 (command -
+/// angle) - 2 zeta omega rate. The rate never exceeds its limit.
 template <class System>
 void PitchActuator::state(System& system) const {
   const model::PitchActuatorDefinition& law = *turbine_.pitch_actuator;

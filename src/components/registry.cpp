@@ -10,7 +10,7 @@ namespace samara::components {
 namespace {
 
 constexpr int block = BlockMatrix::block;
-/// Unknowns that share a block stand in slots of six, as forces and moments do.
+/// Blocks that several components share are filled in slots of six unknowns: a force and a moment.
 constexpr int slot = 6;
 
 }  // namespace
@@ -36,7 +36,8 @@ int Registry::add_block(int rank) {
 
 int Registry::add_shared(int rank, int count) {
   const int slots = (count + slot - 1) / slot;
-  if (count < 1 || slot * slots > block) throw InternalError("unknowns that fit in no block");
+  if (count < 1 || slot * slots > block)
+    throw InternalError("the number of unknowns does not fit in a block");
   Rank& own = ranks_[rank];
   if (own.free_slots < slots) {
     add_block(rank);

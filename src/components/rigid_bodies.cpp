@@ -18,13 +18,13 @@ constexpr int at_top_velocity_dot = at_joints + joint_unknowns;
 constexpr int at_joint_rates = at_top_velocity_dot + 6;
 constexpr int at_top_load = at_joint_rates + joint_unknowns;
 constexpr int at_hub_load = at_top_load + 6;
-// Its values: rows of the tower top, two of each joint, the motion of the hub.
+// Values of the chain: rows of the tower top, two of each joint, the motion of the hub.
 constexpr int top_rows = 0;
 constexpr int joint_rows = 6;
 constexpr int hub_motion = joint_rows + joint_unknowns;
 constexpr int chain_values = hub_motion + 9;
 
-/// Places of the nodes' unknowns among those of the joints: yaw, generator, torsion, teeter.
+/// Position of each node's unknowns among those of the joints: yaw, generator, torsion, teeter.
 constexpr std::array<int, elements::chain_nodes> slot_of{0, 3, 2, 1};
 
 using elements::FrameMotion;
@@ -61,7 +61,7 @@ void RigidBodies::connect() {
   if (has_top) foot_.provisions = {{setting_.tower->placed().root_port, 0}};
 }
 
-/// The motions that are prescribed, and what acts on the joints.
+/// Sets the prescribed motions and the torques on the joints.
 template <class T, class System>
 void RigidBodies::set_joints(const System& system, const ChainArguments<T>& x,
                              RigidTree::States<T>& states) const {

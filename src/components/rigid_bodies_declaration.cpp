@@ -1,4 +1,4 @@
-// Where the rigid bodies' unknowns are, and what they are.
+// Places and descriptions of the unknowns of the rigid bodies.
 #include <algorithm>
 
 #include "samara/components/rigid_bodies.hpp"
@@ -57,7 +57,8 @@ void RigidBodies::describe(Registry& registry) {
         system::UnconstrainedCoordinate{"generator", joint(generator), integral_, "rad/s"});
   else if (chain.generator.free)
     add_unconstrained("generator", generator);
-  if (setting_.blades.size() == 2)  // the hinge axis turns with the shaft: half a turn reverses it
+  // The hinge axis turns with the shaft: half a revolution reverses it.
+  if (setting_.blades.size() == 2)
     for (int i = 0; i < joint_unknowns; ++i) registry.reverse(joint(teeter) + i);
   describe_energies(registry);
   for (std::size_t k = 0; k < roots_.size(); ++k)
@@ -81,9 +82,10 @@ Matrix3 RigidBodies::bearing_axes() const {
          math::turn_about<double>(Vector3::UnitX(), turbine_.chain.tilt);
 }
 
-/// Bodies on the tower top, at zero azimuth and the mean of a prescribed yaw: nacelle and
-/// shaft, and the hub, of which a free teeter leaves only the mass at the pin; what turns about
-/// the hinge is the hub's own. A generator that is not free rolls with the nacelle, gear or not.
+/// Mass of the bodies on the tower top, at zero azimuth and the mean of a prescribed yaw: nacelle,
+/// shaft and hub. With a free teeter the hub counts only as a mass at the pin; its rotation about
+/// the hinge has an energy of its own. A generator that is not free rolls with the nacelle, with or
+/// without a gear.
 Matrix6 RigidBodies::carried_mass() const {
   const elements::RigidChain& chain = turbine_.chain;
   const Matrix3 yawed = math::turn_about<double>(Vector3::UnitZ(), turbine_.yaw_motion.angle);
@@ -106,7 +108,7 @@ Matrix6 RigidBodies::carried_mass() const {
   elements::RigidBody shaft = chain.shaft;
   elements::RigidBody hub = chain.hub;
   if (turns_freely(chain))
-    shaft.inertia(1, 1) = hub.inertia(1, 1) = 0.0;  // counted with their speed
+    shaft.inertia(1, 1) = hub.inertia(1, 1) = 0.0;  // counted with the speed of the shaft
   add_body(shaft, tilted, bearing);
   if (!chain.generator.free)
     add(0.0, Vector3::Zero(), chain.generator_inertia * tilted.col(1) * tilted.col(1).transpose());
@@ -162,7 +164,7 @@ void RigidBodies::describe_energies(Registry& registry) const {
   describe_spring(registry, chain.torsion, "shaft torsion", Frame::rotating, joint(torsion));
 }
 
-/// J_g w^2/2 of a free generator, w = (1 - n) omega_Y.s2 + n U_g.
+/// J_g w^2/2 of a free generator with w = (1 - n) omega_Y.s2 + n U_g.
 void RigidBodies::describe_generator(Registry& registry) const {
   const elements::RigidChain& chain = turbine_.chain;
   if (chain.generator_inertia == 0.0) return;

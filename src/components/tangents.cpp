@@ -8,7 +8,7 @@ namespace samara::components {
 namespace {
 
 constexpr int block = BlockMatrix::block;
-/// Three rows by the values of a port.
+/// Matrix of three rows, one column per value of a port.
 using ByPort =
     Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, TangentPlan::most_port_values>;
 

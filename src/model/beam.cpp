@@ -13,13 +13,13 @@
 namespace samara::model {
 namespace {
 
-/// Shortest element that point masses may leave, of an even one.
+/// Shortest element next to a point mass, relative to the even length.
 constexpr double least_element = 0.25;
 
-/// Gauss points between two stations: sections are linear there, their compliance is not.
+/// Gauss points between two stations. Sections are linear there, their compliance is not.
 constexpr int fine_points = 6;
 
-/// Relative to the largest pivot of a semi-definite matrix: a smaller pivot is round-off.
+/// Relative to the largest pivot of a semi-definite matrix. A smaller pivot is round-off.
 constexpr double semi_definite = 1e-12;
 
 TestFunctions test_functions(const math::QuadratureRule& rule) {
@@ -40,7 +40,8 @@ TestFunctions test_functions(const math::QuadratureRule& rule) {
   return functions;
 }
 
-/// Evenly spaced, but that a point mass draws the nearest end to its place.
+/// Ends of elements with even spacing, except that each point mass moves the nearest end to its
+/// place.
 std::vector<double> element_ends(const std::string& name, const BeamDefinition& definition) {
   std::vector<double> ends;
   const int n = definition.elements;
@@ -58,7 +59,7 @@ std::vector<double> element_ends(const std::string& name, const BeamDefinition& 
       throw InputError(name + ": the mesh of " + std::to_string(n) +
                        (n == 1 ? " element" : " elements") +
                        " is too coarse for the places of its point masses and mass dampers; hint: "
-                       "more elements");
+                       "increase elements");
   return ends;
 }
 
@@ -100,10 +101,11 @@ std::vector<double> cuts_of(const BeamDefinition& definition, double start, doub
   return cuts;
 }
 
-/// Where stations lie inside an element, points would miss what stands between them: the integrals
-/// (1 / w_j) int l_j(xi) m(xi) dxi, with the polynomials l_j through the points, keep its moments.
-/// Between stations they are the values at the points, which are taken then (none is returned), as
-/// they are where an integral is no possible section.
+/// Mean sections of an element with stations inside it. The values at the points would omit
+/// sections between the points. The integrals (1 / w_j) int l_j(xi) m(xi) dxi, with the polynomials
+/// l_j through the points, keep the moments of the section data. Without stations inside, the
+/// integrals equal the values at the points: nothing is returned, and those are used. They are also
+/// used if an integral is not a possible section.
 std::vector<MeanSection> mean_sections(const BeamDefinition& definition,
                                        const math::QuadratureRule& rule, const ReferenceLine& line,
                                        double start, double span) {

@@ -18,20 +18,20 @@ namespace {
 constexpr std::array<std::array<int, 2>, 3> strains{{{4, 2}, {5, 1}, {3, 3}}};
 constexpr std::array<const char*, 3> words{"bending about b2", "bending about b3", "torsion"};
 
-/// Frequencies that differ by less, relative, are one.
+/// Relative difference up to which frequencies count as equal.
 constexpr double same_frequency = 1e-6;
 
-/// A mu below this part of the largest is round-off where it is negative.
+/// A negative mu that is smaller than this fraction of the largest one is round-off.
 constexpr double mu_round_off = 1e-9;
 
-/// Rigid motions of the points (and of the masses behind them) by the elastic strains.
+/// Rigid motions of the points (and of the masses behind them) as functions of the elastic strains.
 class Kinematics {
  public:
   explicit Kinematics(const Beam& beam) : beam_(beam), points_(beam.point_count()) {
     for (int p = 0; p < points_; ++p)
       for (int i = 0; i < 6; ++i)
         if (beam.points[at(p)].compliance(i, i) > 0.0) coordinates_.emplace_back(p, i);
-    // The root is clamped here, whatever it stands on.
+    // The root is clamped here, with any support.
     std::copy_if(beam.mass_nodes.begin(), beam.mass_nodes.end(), std::back_inserter(masses_),
                  [](const MassNode& node) { return node.end > 0; });
     place_nodes();
@@ -60,8 +60,8 @@ class Kinematics {
   }
 
  private:
-  /// Places: the points, the tip, the masses. The balance of node a of element e is that of its
-  /// start or end: one for each point, and one more at the end and behind each mass.
+  /// Places: the points, the tip, the masses. The balances of the nodes give one row for each
+  /// point, and one more at the end and behind each mass.
   void place_nodes() {
     const int places = points_ + 1 + static_cast<int>(masses_.size());
     value_ = Eigen::MatrixXd::Zero(places, places);
@@ -119,7 +119,7 @@ class Kinematics {
   int points_ = 0;
   std::vector<std::pair<int, int>> coordinates_;
   Eigen::MatrixXd value_, slope_;  ///< the nodes' balances: value x u = slope x u'
-  Eigen::MatrixXd u_, theta_;      ///< of the places, by coordinate
+  Eigen::MatrixXd u_, theta_;      ///< motions of the places, one column per coordinate
 };
 
 /// Strain energy eta^T E eta / 2 of one strain component (-1: all): f_i (C f)_i at every point.
@@ -151,8 +151,8 @@ std::vector<BeamMode> compute_beam_modes(const Beam& beam) {
   const Kinematics kinematics(beam);
   const Eigen::Index n = kinematics.size();
   if (n == 0) return {};
-  // M eta = E eta / omega^2: the slow modes have the large eigenvalues, and E has no small ones
-  // once its rows are scaled.
+  // M eta = E eta / omega^2: slow modes have large eigenvalues. After scaling of its rows E has no
+  // small eigenvalues.
   const Eigen::MatrixXd E = strain_energy(beam, kinematics, -1);
   const Eigen::VectorXd scale = E.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
@@ -169,7 +169,8 @@ std::vector<BeamMode> compute_beam_modes(const Beam& beam) {
     Eigen::Index count = 1;
     while (first + count < n && values(first + count) > (1.0 - same_frequency) * values(first))
       ++count;
-    // At a double frequency every combination is a mode: take those that bend most about one axis.
+    // At a double frequency every combination is a mode. The combinations that diagonalize the
+    // strain energy of bending about b2 are chosen.
     const Eigen::MatrixXd own = shapes.middleCols(first, count);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(own.transpose() *
                                                               (energies[4] + energies[2]) * own);
@@ -217,7 +218,7 @@ Vector6 fit_damping(const Beam& beam, const ModalDamping& ratios) {
                        (is_rigid(beam, strains[d])
                             ? ": its strain is rigid; hint: leave this ratio out"
                             : ": other strains have the larger share of every mode; hint: leave "
-                              "this ratio out, or more elements"));
+                              "this ratio out, or increase elements"));
     given.push_back(d);
   }
   const auto n = static_cast<Eigen::Index>(given.size());
@@ -236,8 +237,8 @@ Vector6 fit_damping(const Beam& beam, const ModalDamping& ratios) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t d = given[static_cast<std::size_t>(i)];
     if (found(i) < -mu_round_off * found.cwiseAbs().maxCoeff() || !std::isfinite(found(i)))
-      throw InputError(std::string("these ratios ask for a negative damping of ") + words[d] +
-                       ": its first mode shares the others' strains and has more damping "
+      throw InputError(std::string("these ratios require a negative damping of ") + words[d] +
+                       ": its first mode has strains of the others and more damping "
                        "already; hint: leave this ratio out, or give mu per strain");
     for (const int strain : strains[d]) mu(strain) = std::max(found(i), 0.0);
   }

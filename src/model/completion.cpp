@@ -1,4 +1,4 @@
-// Completes a definition: values that follow from other values.
+// Completes a definition with values that follow from other values.
 #include <algorithm>
 
 #include "samara/base/error.hpp"

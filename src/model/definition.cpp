@@ -21,15 +21,15 @@ constexpr double symmetry_tolerance = 1e-6;
 constexpr double mass_null_tolerance = 1e-10;
 constexpr double stiffness_null_tolerance = 1e-12;
 
-/// A unit null vector moves a component when its share of it is above this.
+/// A unit null vector moves a component if its share in that component is above this.
 constexpr double component_tolerance = 1e-6;
 
-/// Writes the place of an entry as a reader of the case file counts: from 1.
+/// The place of an entry in words; indices count from 1, as in the case file.
 std::string describe_entry(int row, int column) {
   return "(" + std::to_string(row + 1) + ", " + std::to_string(column + 1) + ")";
 }
 
-/// Returns what keeps a matrix from being finite and symmetric, or an empty string.
+/// Returns the reason why a matrix is not finite or not symmetric, or an empty string.
 std::string find_symmetry_fault(const Matrix6& matrix, const std::string& name) {
   if (!matrix.allFinite()) return "the " + name + " matrix has an entry that is not finite";
   for (int i = 0; i < 6; ++i) {
@@ -44,8 +44,8 @@ std::string find_symmetry_fault(const Matrix6& matrix, const std::string& name) 
   return {};
 }
 
-/// Scales a symmetric matrix to a unit diagonal: units and magnitudes drop out of the definiteness
-/// test. Rows with a zero diagonal stay as they are.
+/// Scales a symmetric matrix to a unit diagonal. Units and magnitudes then have no influence on the
+/// definiteness test. Rows with a zero diagonal do not change.
 Matrix6 scale_to_unit_diagonal(const Matrix6& matrix) {
   Vector6 scale = Vector6::Ones();
   for (int i = 0; i < 6; ++i) {
@@ -82,9 +82,9 @@ std::string find_stiffness_fault(const SectionDefinition& section) {
   return {};
 }
 
-/// Returns which elastic strain moves a rotation that has no inertia, or an empty string.
-/// V and Omega of a section follow from u and theta: torsion turns a section about b1 at will,
-/// while a rotation about b2 or b3 is the slope of the reference line unless shear sets it free.
+/// Returns a fault if an elastic strain moves a rotation without inertia, or an empty string. V and
+/// Omega of a section follow from u and theta. Torsion rotates a section about b1 independently; a
+/// rotation about b2 or b3 is the slope of the reference line, unless shear makes it independent.
 std::string find_massless_fault(const SectionDefinition& section, const Vector6& null_share) {
   if (null_share.head<3>().maxCoeff() > component_tolerance) {
     return "the mass matrix is singular for a motion with translation: a point mass beside the "
@@ -142,7 +142,7 @@ elements::TorqueLine TorqueLaw::at(double speed) const {
   if (table.empty()) return {torque, slope, speed, {}};
   if (!covers(speed)) {
     if (speed == 0.0) return {};
-    throw InternalError("a torque table does not reach to the speed");
+    throw InternalError("a torque table does not cover the speed");
   }
   const auto slope_before = [this](std::size_t i) {
     return (table[i].second - table[i - 1].second) / (table[i].first - table[i - 1].first);
@@ -212,13 +212,13 @@ SupportDefinition free_end() {
 }
 
 std::string find_support_fault(const SupportDefinition& support) {
-  SectionDefinition springs;  // of the same form
+  SectionDefinition springs;  // checked in the form of a section
   springs.stiffness = support.stiffness;
   for (std::size_t i = 0; i < 6; ++i) {
     springs.rigid[i] = support.rigid[i] || support.free[i];
     const auto k = static_cast<Eigen::Index>(i);
     if (springs.rigid[i] && !support.stiffness.row(k).isZero(0.0))
-      return "a direction that is rigid or free has no springs beside it";
+      return "a direction that is rigid or free cannot have springs as well";
   }
   return find_stiffness_fault(springs);
 }

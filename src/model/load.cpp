@@ -11,7 +11,7 @@
 namespace samara::model {
 namespace {
 
-/// Test functions and the polynomials that carry the rotations of the Gauss points.
+/// Test functions, and the polynomials that interpolate the rotations of the Gauss points.
 class Interpolation {
  public:
   explicit Interpolation(int order)
@@ -25,7 +25,7 @@ class Interpolation {
                      math::lagrange(rule_.points, static_cast<int>(j), xi);
   }
 
-  /// The rule of the points integrates N_a l_j, of degree 2 s - 1, exactly.
+  /// The quadrature rule of the points integrates N_a l_j, of degree 2 s - 1, exactly.
   const math::QuadratureRule& rule() const { return rule_; }
 
  private:

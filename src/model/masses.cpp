@@ -9,7 +9,7 @@
 namespace samara::model {
 namespace {
 
-/// Exact for the second moment of a mass that is linear, and close for sections that twist.
+/// Exact for the second moment of a linear mass distribution; accurate for sections that twist.
 constexpr int quadrature_points = 6;
 
 Matrix3 moment_matrix(const Vector3& a, const Vector3& b) {
@@ -26,7 +26,7 @@ MassProperties body_mass(const elements::RigidBody& body) {
   return properties;
 }
 
-/// A piece of a beam: section mass matrix I6 of (3) in axes b, `length` of it at x.
+/// Mass of a piece of a beam: section mass matrix I6 of (3) in axes b, over `length` at x.
 MassProperties section_mass(const Matrix6& mass, double length, const Matrix3& C_ab,
                             const Vector3& x) {
   MassProperties properties;
@@ -78,7 +78,7 @@ MassProperties beam_mass(const Beam& beam) {
   return sum;
 }
 
-/// n1 n2 n3 of the tower's axes b1 = n3, b2 = n1, b3 = n2.
+/// Converts the tower's axes b1 = n3, b2 = n1, b3 = n2 to n1 n2 n3.
 Matrix3 tower_axes() {
   Matrix3 C;
   C << 0, 1, 0, 0, 0, 1, 1, 0, 0;
@@ -99,8 +99,8 @@ MassProperties whole_mass(const Turbine& turbine, const Masses& masses) {
   return sum;
 }
 
-/// The mass dampers of a carrier, in the axes of its node, about its point at rest: that of the
-/// tower's foot, a blade's root or the tower top.
+/// The mass dampers of a carrier at rest, in the axes of its node; about the tower's foot, the
+/// blade's root or the tower top.
 MassProperties damper_masses(const Turbine& turbine, MassDamperDefinition::Carrier carrier,
                              int blade) {
   MassProperties sum;

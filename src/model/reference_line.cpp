@@ -8,11 +8,11 @@
 namespace samara::model {
 namespace {
 
-/// Cosine of 170 degrees: nearer to straight back, the shortest turn onto the tangent is undefined.
+/// Cosine of 170 degrees. Beyond it the shortest rotation from b1 onto the tangent is not defined.
 constexpr double least_cosine = -0.984807753012208;
 constexpr int checks_a_point = 8;
 
-/// Turns e1 onto the unit vector `tangent` about their common normal.
+/// Rotates e1 onto the unit vector `tangent` about their common normal.
 Matrix3 shortest_turn(const Vector3& tangent) {
   const Vector3 e1 = Vector3::UnitX();
   const Matrix3 across = math::skew<double>(Vector3(e1.cross(tangent)));

@@ -26,7 +26,7 @@ elements::RigidBody hub_of(const HubDefinition& hub) {
   body.center = Vector3(0.0, hub.center_of_mass, 0.0);
   body.inertia = hub.inertia.asDiagonal();
   for (const HubMassDefinition& lump : hub.point_masses) {
-    // About the common centre: the reduced mass at the distance of the two.
+    // About the common centre: the reduced mass at the distance between the two centres.
     const double mass = body.mass + lump.mass;
     const Matrix3 across = math::skew<double>(Vector3(lump.center - body.center));
     body.inertia += Matrix3(lump.inertia.asDiagonal());
@@ -74,7 +74,7 @@ elements::RigidChain chain_of(const TurbineDefinition& definition) {
   return chain;
 }
 
-/// Body on the end of the tower, in t1 t2 t3: the axes of the tower are a = (t3, t1, t2).
+/// Body on the end of the tower, in t1 t2 t3. The tower's axes are a = (t3, t1, t2).
 elements::RigidBody tower_top_of(const Matrix6& mass) {
   Matrix3 C_Ta;
   C_Ta << 0, 1, 0, 0, 0, 1, 1, 0, 0;
@@ -89,8 +89,8 @@ elements::RigidBody tower_top_of(const Matrix6& mass) {
   return body;
 }
 
-/// Blade axes: b1 root to tip, b3 = s2 and b2 = b3 x b1 at zero cone and pitch; azimuth turns about
-/// h2, cone moves b1 toward h2, pitch turns b2 (the leading edge) upwind, about -b1.
+/// Blade axes at zero cone and pitch: b1 from root to tip, b3 = s2, b2 = b3 x b1. Azimuth turns
+/// about h2; cone moves b1 toward h2; pitch turns b2 (the leading edge) upwind, about -b1.
 BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   const double azimuth = 2.0 * std::numbers::pi * k / blades.count;
   const auto found = blades.each.find(k + 1);
@@ -104,7 +104,7 @@ BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   const Matrix3 feather = math::turn_about<double>(-Vector3::UnitX(), root.pitch);
   double along = 0.0;
   bool is_pitched = false;
-  // The first link has the axes of the cone in its own, and its arm in H.
+  // The first link has the cone's axes included in its own axes, and its arm in H.
   const auto add_link = [&](double offset, RootLink link) {
     const Matrix3 before = root.links.empty() ? Matrix3(turned * cone) : Matrix3::Identity();
     link.arm = offset * before.col(0);
@@ -123,7 +123,7 @@ BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
     }
     if (hinge.joint.kind == JointKind::prescribed) {
       link.motion = hinge.joint.motion;
-      link.motion.phase += link.motion.per_rev * azimuth;  // each blade as the first, where it was
+      link.motion.phase += link.motion.per_rev * azimuth;  // as the first blade at this azimuth
     }
     if (hinge.joint.kind == JointKind::free) {
       link.hinge = static_cast<int>(root.hinges.size());
@@ -149,7 +149,8 @@ BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   return root;
 }
 
-/// Degrees of freedom: elastic strains, and what the ends can do; a held end takes some away.
+/// Number of degrees of freedom: elastic strains plus the motions of the ends; each held direction
+/// of an end removes one.
 int elastic_strains(const Beam& beam) {
   int count = 0;
   for (const elements::BeamPoint& point : beam.points)
@@ -179,7 +180,7 @@ void add_loads(const TurbineDefinition& definition, Turbine& turbine) {
   }
 }
 
-/// Each stands on an end of an element, as a point mass does.
+/// Adds a node for each damper at an end of an element, as for a point mass.
 void add_damper_nodes(const std::vector<MassDamperDefinition>& dampers, BeamDefinition& tower,
                       BeamDefinition& blade) {
   for (const MassDamperDefinition& damper : dampers) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 /// Relative difference up to which a set point equals the mean speed.
 constexpr double speed_round_off = 1e-6;
-/// `length` beside `reference_line` must agree to this, relative.
+/// Relative tolerance between `length` and the arc length of `reference_line`.
 constexpr double length_tolerance = 1e-3;
 
 std::string indexed(const std::string& list, std::size_t i) {
@@ -78,8 +78,8 @@ class Validation {
         std::ranges::any_of(beam.modal_damping, [](const auto& one) { return one.has_value(); });
     if (has_ratios && !beam.mass_damping.isZero(0.0))
       add(key + ".mass_damping",
-          "not beside damping ratios, which are met by strain rates alone; hint: give damping as "
-          "mu");
+          "cannot be combined with damping ratios, which are fitted by strain rates alone; hint: "
+          "give damping as mu");
   }
 
   void check_line(const std::string& key, const BeamDefinition& beam) {
@@ -105,7 +105,7 @@ class Validation {
     const bool does_something =
         support.mass > 0.0 || !support.added_mass.isZero(0.0) || !support.damping.isZero(0.0);
     if (support.is_clamp() && does_something)
-      add(key, "mass and damping of a support that is rigid in all directions do nothing");
+      add(key, "mass and damping of a support that is rigid in all directions have no effect");
     if (const std::string fault = find_support_fault(support); !fault.empty()) add(key, fault);
   }
 
@@ -153,7 +153,7 @@ class Validation {
       add("controller.set_point",
           "the integral holds the generator at " + general(*controller.set_point, 6) +
               " rad/s, shaft.speed times gear_ratio is " + general(speed, 6) +
-              " rad/s; hint: leave the set point out, it is that speed then",
+              " rad/s; hint: leave the set point out; it is then that speed",
           {"controller.set_point_rpm", "shaft.speed", "shaft.speed_rpm", "shaft.gear_ratio"});
     if (shaft.generator.kind != JointKind::free)
       add("controller",
@@ -167,12 +167,12 @@ class Validation {
     if (controller.torque && controller.pitch && controller.torque->integral != 0.0 &&
         controller.pitch->integral != 0.0)
       add("controller.pitch.integral",
-          "torque and pitch cannot both have an integral: each would hold the speed, and nothing "
-          "would say how they share the torque");
+          "torque and pitch cannot both have an integral: both would hold the speed, and their "
+          "shares of the torque would be undetermined");
     if (controller.pitch && shaft.rotor_pitch_slope == 0.0)
       add("controller.pitch",
-          "nothing makes the torque of the rotor depend on the pitch; hint: "
-          "shaft.rotor.torque_pitch_slope, the place of the air",
+          "the torque of the rotor does not depend on the pitch; hint: give "
+          "shaft.rotor.torque_pitch_slope in place of the aerodynamics",
           {"shaft.rotor.torque_pitch_slope"});
   }
 
@@ -199,8 +199,7 @@ class Validation {
     for (std::size_t i = 0; i < hinges.size(); ++i) {
       along += hinges[i].offset;
       if (find_hinge(hinges[i].axis) != &hinges[i])
-        add(indexed("blades.hinges", i) + ".axis",
-            "given twice; each axis has one hinge at the most");
+        add(indexed("blades.hinges", i) + ".axis", "given twice; each axis has at most one hinge");
       if (hinges[i].delta3 != 0.0 && hinges[i].axis != HingeAxis::flap)
         add(indexed("blades.hinges", i) + ".delta3_deg", "only the axis of a flap hinge is skewed");
     }
@@ -230,13 +229,15 @@ class Validation {
     }
   }
 
-  /// A blade turns on hinges; a beam between two supports stands on them, in axes that do not turn.
+  /// Supports of blade ends. The root of a blade is free only on hinges. A beam between two
+  /// supports is free on the supports, in axes that do not turn.
   void check_ends() {
     const BeamDefinition& beam = turbine_.blades.beam;
     if (beam.end_support.is_none()) {
       if (beam.support.free != std::array<bool, 6>{})
         add("blades.support",
-            "the root of a blade is free on hinges; hint: instead of the support hinges: [{axis: "
+            "the root of a blade can be free only on hinges; hint: replace the support by hinges: "
+            "[{axis: "
             "flap, joint: free}], axis pitch for theta1, flap for theta2, lag for theta3");
       return;
     }
@@ -260,10 +261,9 @@ class Validation {
       if (blade.pitch != 0.0) check(blades.pitch + blade.pitch);
   }
 
-  /// Without blades nothing turns about a shaft.
+  /// Without blades there is no shaft that turns.
   void check_tower_alone() {
-    constexpr const char* text =
-        "there are no blades; hint: what stands on the tower is the nacelle";
+    constexpr const char* text = "there are no blades; hint: give the body on the tower as nacelle";
     if (!(turbine_.shaft == ShaftDefinition())) add("shaft", text);
     if (!(turbine_.hub == HubDefinition())) add("hub", text);
     const NacelleDefinition& nacelle = turbine_.nacelle;
@@ -308,7 +308,7 @@ class Validation {
     for (std::size_t k = 0; k < damper.axes.size(); ++k)
       if (damper.axes[k].axis < 0 || damper.axes[k].axis > 2 ||
           (k > 0 && damper.axes[k].axis == damper.axes[0].axis))
-        add(place, "its axes are two of 0, 1 and 2, each another");
+        add(place, "expected different axes from 0, 1 and 2");
     if (is_on_blade && damper.at == 1.0 && !turbine_.blades.beam.end_support.is_none())
       add(place + ".at", "blades.end_support holds the end; hint: at: 0.99", {place + ".on"});
   }

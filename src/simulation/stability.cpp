@@ -10,22 +10,22 @@ namespace {
 using analysis::Mode;
 using analysis::ModeSet;
 
-/// A verdict holds for the slowest modes, so many at the least.
+/// A verdict refers to the slowest modes, at least this many.
 constexpr std::size_t first_modes = 10;
 
 double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
 
-/// Whether a mode decays as fast as this one grows, or grows as fast as it decays, in the same way.
-/// In a conservative system every growth has its decay, exponents lambda and -lambda*, but for the
-/// error of the mesh.
+/// True if another mode decays as fast as this one grows (or grows as fast as it decays) with the
+/// same frequency. In a conservative system growth and decay come in pairs, exponents lambda and
+/// -lambda*, except for the error of the mesh.
 bool has_partner(const ModeSet& set, const Mode& mode) {
-  constexpr double slack = 0.05;  // of the rate of growth
+  constexpr double slack = 0.05;  // relative to the rate of growth
   const double apart = std::max(slack * std::abs(mode.exponent.real()),
                                 analysis::zero_exponent * rate_scale(set.rotor_speed));
   const double rate = mode.exponent.real();
   return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& other) {
     if (std::abs(other.exponent.real() + rate) > apart) return false;
-    // A row stands for its conjugate, too, and each has a multiple of the rotor speed of its own.
+    // A row also represents its conjugate, and each is known up to a multiple of the rotor speed.
     for (const double sign : {1.0, -1.0}) {
       double distance = sign * other.exponent.imag() - mode.exponent.imag();
       if (set.rotor_speed > 0.0) distance = std::remainder(distance, set.rotor_speed);
@@ -35,8 +35,8 @@ bool has_partner(const ModeSet& set, const Mode& mode) {
   });
 }
 
-/// Where nothing damps, a growth or decay without its partner is an error: a small one of a mode
-/// that is undamped.
+/// In a conservative system a small growth or decay without its partner is an error of an undamped
+/// mode.
 Motion motion_in(const ModeSet& set, const Mode& mode) {
   const Motion motion = motion_of(mode, set.rotor_speed);
   const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
@@ -76,8 +76,8 @@ void sort_modes(const ModeSet& set, StabilityAssessment& result) {
   if (least != result.decaying.end()) result.least_damped = *least;
 }
 
-/// Whether all of the first modes are known: none that is not resolved can be among them. Deflated
-/// decays are known to decay.
+/// True if all of the first modes are known: no mode that is not resolved can be among them.
+/// Deflated decays are known to decay.
 bool knows_first_modes(const ModeSet& set) {
   std::size_t below = static_cast<std::size_t>(set.deflated) / 2;
   std::size_t others = 0;
@@ -90,7 +90,7 @@ bool knows_first_modes(const ModeSet& set) {
 
 Motion motion_of(const Mode& mode, double rotor_speed) {
   const double zero = analysis::zero_exponent * rate_scale(rotor_speed);
-  // Step and round-off make an error of the growth about zero; the elements do not.
+  // Step and round-off cause an error of the growth of an exponent near zero; the elements do not.
   const double unsure = mode.growth_error - mode.mesh_growth_error;
   if (std::abs(mode.exponent) < zero ||
       (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure))

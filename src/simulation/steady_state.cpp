@@ -13,7 +13,7 @@
 namespace samara::simulation {
 namespace {
 
-/// Relative to the largest load: loads out of balance by more make a steady state rough.
+/// Relative to the largest load. With a larger imbalance of loads a steady state is rough.
 constexpr double rough_imbalance = 1e-4;
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -35,8 +35,8 @@ double mean_pitch(const turbine::TurbineSystem& system, const analysis::Trim& tr
   return sum / instants;
 }
 
-/// Which limit of the actuators the controller's pitch is beyond, found by a trim without limits;
-/// empty: none, or that trim fails, too.
+/// Message on the limit of the actuators that the controller's pitch exceeds. It is found by a trim
+/// without limits. Empty: no limit is exceeded, or that trim fails as well.
 std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& options) {
   const model::TurbineDefinition& turbine = scenario.turbine;
   const auto& actuator = turbine.blades.actuator;
@@ -54,9 +54,10 @@ std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& op
       const bool is_high = pitch > actuator->highest;
       if (!is_high && !(pitch < actuator->lowest)) continue;
       return "the controller needs a pitch of " + general(pitch / degree, 4) +
-             " deg, blades.pitch_actuator." + (is_high ? "highest_deg" : "lowest_deg") + " is " +
-             general((is_high ? actuator->highest : actuator->lowest) / degree, 4) +
-             ": there it holds no speed; hint: other limits, or torques that balance at "
+             " deg, but blades.pitch_actuator." + (is_high ? "highest_deg" : "lowest_deg") +
+             " is " + general((is_high ? actuator->highest : actuator->lowest) / degree, 4) +
+             ": it cannot hold the speed at this limit; hint: other limits, or torques that "
+             "balance at "
              "shaft.speed within them";
     }
   } catch (const ConvergenceError&) {

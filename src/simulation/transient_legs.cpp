@@ -9,8 +9,8 @@
 namespace samara::simulation {
 namespace {
 
-/// Relative to a step: an event this close to an instant of the grid is there. A step that short
-/// would lose its digits.
+/// Relative to a step: an event this close to an instant of the grid is moved onto it. A step of
+/// this size would lose its digits.
 constexpr double closest_event = 1e-3;
 
 analysis::TransientOptions options_of(const TransientSetup& transient) {
@@ -68,7 +68,7 @@ void ChannelWatch::checkpoint(const analysis::TransientStart& point) {
 }
 
 void ChannelWatch::take_row(const analysis::TransientSample& sample) {
-  const bool is_new = !last_row_ || sample.t > *last_row_;  // an event may start the run anew
+  const bool is_new = !last_row_ || sample.t > *last_row_;  // an event may restart the run
   if (!is_new || !sample.on_grid || sample.step % transient_.output_steps != 0) return;
   last_row_ = sample.t;
   channels_->evaluate(sample.t, sample.z, sample.z_dot, values_);
@@ -76,7 +76,7 @@ void ChannelWatch::take_row(const analysis::TransientSample& sample) {
   for (std::size_t i = 0; i < values_.size(); ++i) ranges_[i].add(values_[i]);
 }
 
-/// The first of the watched events whose condition holds now.
+/// Finds the first of the watched events whose condition is met now.
 bool ChannelWatch::find_crossing(const analysis::TransientSample& sample) {
   if (!watch_) return false;
   std::vector<double> now(levels_.size());
@@ -140,7 +140,7 @@ void TransientLegs::fire_at(double time) {
       fire(i);
 }
 
-/// The time of an event, or the instant of the grid that is next to it.
+/// The time of an event, or the nearest instant of the grid if it is close.
 double TransientLegs::on_grid(double time) const {
   const double origin = state_.point.origin;
   const double nearest = origin + std::round((time - origin) / options_.step) * options_.step;
@@ -162,7 +162,7 @@ analysis::TransientRun TransientLegs::run_leg(std::optional<double> stop,
   return leg;
 }
 
-/// Goes to where a state event came, from the step before it.
+/// Advances from the step before a state event to the time of the event.
 void TransientLegs::pass(Crossing crossing, const analysis::TransientRun& leg) {
   const double time = std::min(on_grid(crossing.time), leg.end.time);
   if (leg.steps > 0) state_.point = leg.before;

@@ -1,4 +1,4 @@
-// A simulation in legs: from event to event the turbine is the same.
+// A simulation in legs. Between two events the turbine does not change.
 #pragma once
 
 #include <optional>
@@ -8,24 +8,24 @@
 
 namespace samara::simulation {
 
-/// The turbine after the events that came at the times `fired`, one for each event of the setup.
+/// The turbine after the events with the times `fired`, one time for each event of the setup.
 model::Turbine turbine_after(const TransientSetup& transient, model::Turbine turbine,
                              const std::vector<double>& fired);
 
 /// A state event that a step has passed.
 struct Crossing {
   std::size_t event = 0;
-  double time = 0.0;  ///< by the secant of its channel over the step
+  double time = 0.0;  ///< from the secant of its channel over the step
 };
 
-/// Evaluates channels after each step: rows for the output, and the levels of events.
+/// Evaluates channels after each step, for the rows of the output and for the levels of events.
 class ChannelWatch final : public analysis::TransientObserver {
  public:
-  /// Both arguments must live on.
+  /// Both arguments must outlive the object.
   ChannelWatch(const TransientSetup& transient, TransientOutput& output);
 
-  /// The steps that follow are of this system, with these events still to come. It must live on.
-  /// `state`: of the simulation at checkpoints, but for the point.
+  /// The following steps use this system; `watched`: events that have not occurred yet. The system
+  /// must outlive the leg. `state`: state for checkpoints, except the point.
   void begin_leg(const turbine::TurbineSystem& system, const std::vector<std::size_t>& watched,
                  const TransientState& state);
 
@@ -33,7 +33,7 @@ class ChannelWatch final : public analysis::TransientObserver {
   void checkpoint(const analysis::TransientStart& point) override;
   void note(const std::string& text) override { output_.note(text); }
 
-  /// One for each channel.
+  /// One range per channel.
   const std::vector<ChannelRange>& ranges() const { return ranges_; }
   /// The event that ended the leg.
   const std::optional<Crossing>& crossing() const { return crossing_; }
@@ -48,9 +48,9 @@ class ChannelWatch final : public analysis::TransientObserver {
   std::optional<turbine::TurbineChannels> channels_;
   std::optional<turbine::TurbineChannels> watch_;
   std::vector<std::size_t> watched_;
-  std::vector<double> levels_;  ///< of the watched channels at the last sample
+  std::vector<double> levels_;  ///< levels of the watched channels at the last sample
   bool has_level_ = false;
-  double time_ = 0.0;  ///< of the last sample
+  double time_ = 0.0;  ///< time of the last sample
   std::optional<Crossing> crossing_;
   std::vector<double> values_;
   std::vector<ChannelRange> ranges_;
@@ -60,8 +60,9 @@ class ChannelWatch final : public analysis::TransientObserver {
 
 class TransientLegs {
  public:
-  /// `turbine`: at the start, before the events that `state` says have come. `generator`: unknown
-  /// of its angle. The setup and the output must live on.
+  /// `turbine`: at the start, before the events that have occurred according to `state`.
+  /// `generator`: unknown of the generator's angle. The setup and the output must outlive the
+  /// object.
   TransientLegs(const TransientSetup& transient, const model::Turbine& turbine,
                 TransientState state, int generator, TransientOutput& output);
 

@@ -17,10 +17,10 @@ namespace {
 
 /// Tolerance of motions at the start: rates relative to the largest, angles [rad].
 constexpr double motion_tolerance = 2e-6;
-/// Relative to a step: largest distance of a checkpoint from the grid.
+/// Largest distance of a checkpoint from the grid, relative to a step.
 constexpr double grid_tolerance = 1e-9;
 
-/// Turns the rotor at t = 0; what goes with it keeps its azimuth.
+/// Turns the rotor at t = 0. Harmonic loads and motions keep their phase relative to the azimuth.
 void set_azimuth(model::Turbine& turbine, double azimuth) {
   const double gained = azimuth - turbine.azimuth;
   turbine.azimuth = azimuth;
@@ -31,7 +31,7 @@ void set_azimuth(model::Turbine& turbine, double azimuth) {
     for (model::BeamLoad& load : blade.loads) turn(load.variation);
 }
 
-/// The turbine at t = 0 of a simulation with this state.
+/// The turbine at t = 0 of a simulation that starts with this state.
 model::Turbine turbine_at_start(model::Turbine turbine, const TransientState& state) {
   set_azimuth(turbine, state.azimuth);
   turbine.chain.brake_torque = state.brake_torque;
@@ -44,9 +44,10 @@ void require_same_motion(const model::Turbine& there, double t, const model::Tur
   const auto compare = [](const std::string& what, double before, double now, double size,
                           double unit, const std::string& unit_name) {
     if (std::abs(before - now) <= motion_tolerance * size) return;
-    throw InputError("has " + what + " " + general(before / unit, 10) + " " + unit_name +
-                     ", this time series begins with " + general(now / unit, 10) +
-                     "; hint: what moves goes on from there, for a jump would be an infinite load");
+    throw InputError(
+        "has " + what + " " + general(before / unit, 10) + " " + unit_name +
+        ", this time series begins with " + general(now / unit, 10) +
+        "; hint: prescribed motions must continue from there, a jump causes an infinite load");
   };
   constexpr double degree = std::numbers::pi / 180.0;
   const double speed = there.turning_at(t).rate;
@@ -74,7 +75,7 @@ bool loses_generator(const TransientSetup& transient, const std::vector<double>&
   return false;
 }
 
-/// Whether both are the same model: titles say nothing about it.
+/// True if both are the same model; the title does not matter.
 bool is_same_turbine(const model::TurbineDefinition& a, model::TurbineDefinition b) {
   b.title = a.title;
   return a == b;
@@ -104,14 +105,14 @@ TransientSimulation& TransientSimulation::operator=(TransientSimulation&&) noexc
 void TransientSimulation::start(analysis::Observer& observer) {
   if (scenario_.transient.start == TransientOrigin::result)
     throw InputError(
-        "transient.start: starts from a result, which start_after or start_on is given");
+        "transient.start: the start is a result; hint: call start_after or start_on with it");
   TransientState state;
   state.events.assign(scenario_.transient.events.size(), never);
   state.azimuth = system_->turbine().azimuth;
   if (scenario_.transient.start == TransientOrigin::undeformed) {
     state.point = analysis::start_undeformed(*system_, 0.0);
   } else {
-    // Motions in time begin at their values in the steady state.
+    // Motions in time must begin at their values in the steady state.
     const model::Turbine steady = model::build_turbine(scenario_.turbine);
     at_place("transient.start: trim",
              [&] { require_same_motion(steady, 0.0, system_->turbine()); });
@@ -126,11 +127,11 @@ void TransientSimulation::restart(const Scenario& before, TransientState state) 
   require_size(state.point.z.size());
   if (!is_same_turbine(before.turbine, scenario_.turbine))
     throw InputError(
-        "was run with another turbine; hint: as transient.start this result begins a time "
-        "series of its own");
+        "was run with another turbine; hint: give this result as transient.start for a new time "
+        "series");
   const analysis::TransientOptions& options = scenario_.transient.options;
   const analysis::TransientOptions& ran = before.transient.options;
-  const std::string hint = "; hint: as transient.start this result begins a time series of its own";
+  const std::string hint = "; hint: give this result as transient.start for a new time series";
   const analysis::TransientStart& point = state.point;
   const double grid = point.origin + static_cast<double>(point.step) * options.step;
   if (std::abs(grid - point.time) > grid_tolerance * options.step)
@@ -167,8 +168,8 @@ void TransientSimulation::start_after(const Scenario& before, const TransientSta
   state.point.time = 0.0;
   state.point.origin = 0.0;
   state.point.step = 0;
-  // With other loads, or from the middle of a step, rates are not known, and differences of the
-  // state would show what a step leaves in the constraints.
+  // With other loads, or from the middle of a step, rates are not known. Differences of the state
+  // would then show the errors that a step leaves in the constraints.
   state.point.is_row =
       state.point.z_dot.size() > 0 && is_same_turbine(before.turbine, scenario_.turbine);
   use_law(before, is_new_law, state);
@@ -192,7 +193,7 @@ void TransientSimulation::start_on(const Scenario& before, const analysis::Trim&
 }
 
 TransientSummary TransientSimulation::run(TransientOutput& output) {
-  if (!is_started_) throw InputError("a simulation runs after its start");
+  if (!is_started_) throw InputError("a simulation must be started before it runs");
   const analysis::TransientStart& point = state_.point;
   if (point.time >= point.origin + scenario_.transient.options.duration * (1.0 - 1e-12))
     throw InputError("the simulation has reached its end, t = " + general(point.time, 6) + " s");
@@ -204,11 +205,12 @@ TransientSummary TransientSimulation::run(TransientOutput& output) {
 
 void TransientSimulation::require_size(Eigen::Index unknowns) const {
   if (unknowns != system_->size())
-    throw InputError("its state has " + std::to_string(unknowns) + " unknowns, the model " +
+    throw InputError("its state has " + std::to_string(unknowns) + " unknowns, the model has " +
                      std::to_string(system_->size()));
 }
 
-/// A new law is all of the torque: what held the mean speed under the old one goes.
+/// A new law gives the whole torque. The torque that held the mean speed under the old law is
+/// removed.
 void TransientSimulation::use_law(const Scenario& before, bool is_new_law,
                                   TransientState& state) const {
   if (!is_new_law && before.turbine.shaft.generator.law == scenario_.turbine.shaft.generator.law)

@@ -26,7 +26,7 @@ struct Motion {
   const std::optional<math::TimeCurve>& curve;
 };
 
-/// Angles first.
+/// Prescribed motions, angles first.
 std::vector<Motion> motions_of(const TransientSetup& transient) {
   constexpr double degrees = 180.0 / std::numbers::pi;
   return {{"pitch_deg", "deg", degrees, transient.pitch},
@@ -43,7 +43,7 @@ class Validation {
  public:
   explicit Validation(const Scenario& scenario)
       : scenario_(scenario), turbine_(scenario.turbine), faults_(find_range_faults(scenario)) {
-    // A number out of its range says enough of what it makes wrong.
+    // Further faults at a number that is out of its range are not reported.
     const std::vector<Fault> ranges = faults_;
     for (const Fault& fault : model::find_faults(turbine_))
       if (std::ranges::none_of(ranges, [&fault](const Fault& range) {
@@ -89,20 +89,21 @@ class Validation {
   void check_rest() {
     if (turbine_.shaft.speed != 0.0)
       add("shaft.speed",
-          "must be 0, static is at rest; hint: use samara trim, or --set shaft.speed=0");
+          "must be 0: samara static needs a rotor at rest; hint: use samara trim, or --set "
+          "shaft.speed=0");
   }
 
-  /// Floquet's theory needs a period.
+  /// Floquet theory needs a period.
   void check_period() {
     if (turbine_.shaft.speed == 0.0)
       add("shaft.speed",
-          "must not be 0: a rotor that stands still has no period; hint: use samara modes, or "
+          "must not be 0: a parked rotor has no period; hint: use samara modes, or "
           "--set "
           "shaft.speed=...");
   }
 
-  /// Loads and prescribed motions that are constant or go with the rotor, and inertia where the
-  /// root of a beam may move.
+  /// Checks that loads and prescribed motions are constant or periodic with the rotor, and that the
+  /// root of a beam has inertia where it may move.
   void check_steady() {
     for (std::size_t i = 0; i < turbine_.loads.size(); ++i) {
       const model::LoadVariation& variation = turbine_.loads[i].variation;
@@ -130,7 +131,7 @@ class Validation {
     check_harmonics(joint, motion.per_rev);
   }
 
-  /// A trim must have the harmonics of what drives it.
+  /// A trim must include the harmonics of its excitation.
   void check_harmonics(const std::string& place, int per_rev) {
     if (turbine_.shaft.speed == 0.0) return;
     const analysis::TrimOptions& trim = scenario_.trim;
@@ -149,7 +150,7 @@ class Validation {
                     : "--set trim.harmonics=" + std::to_string(per_rev)));
   }
 
-  /// A root that moves needs inertia in every direction that moves.
+  /// The root of a beam needs inertia in every direction that it can move in.
   void check_mass(const std::string& key, const model::SupportDefinition& support) {
     bool displaces = false;
     bool turns = false;
@@ -161,11 +162,12 @@ class Validation {
     }
     if (displaces)
       add(key,
-          "may move without a mass; hint: give the mass and inertia of what stands on the springs "
+          "may move without a mass; hint: give the mass and inertia of the body on the springs "
           "(a foundation, a bearing); samara static needs none");
     if (turns)
       add(key,
-          "may turn about an axis without inertia; hint: instead of a word give stiffness: "
+          "may turn about an axis without inertia; hint: instead of clamped or pinned give "
+          "stiffness: "
           "{theta1: free, ...} with inertia: [I1, I2, I3], > 0 where it may turn; samara static "
           "needs none");
   }
@@ -189,7 +191,7 @@ class Validation {
       const auto& table = turbine_.loads[i].variation.table;
       if (!table.empty() &&
           (table.front().first > 0.0 || table.back().first < transient.options.duration))
-        add(indexed("loads", i) + ".table", "does not reach over the run, from 0 to " +
+        add(indexed("loads", i) + ".table", "does not cover the run, from 0 to " +
                                                 general(transient.options.duration, 6) +
                                                 " s; hint: entries at the start and at the end");
     }
@@ -208,7 +210,8 @@ class Validation {
     const TransientSetup& transient = scenario_.transient;
     if (transient.speed && has_blades("transient.speed") && is_free())
       add("transient.speed",
-          "the generator is free, its torque makes the speed; hint: shaft.generator.joint: locked");
+          "the generator is free, its torque determines the speed; hint: shaft.generator.joint: "
+          "locked");
     if (transient.yaw && turbine_.nacelle.yaw.kind != JointKind::prescribed)
       add("transient.yaw_deg", "only a joint: prescribed has a motion");
     if (transient.teeter && turbine_.hub.teeter.kind != JointKind::prescribed)
@@ -222,7 +225,7 @@ class Validation {
     const std::string place = indexed("transient.events", i);
     if (!has_blades(place)) return;
     if (!event.pitch && !event.generator_off && event.brake == 0.0)
-      add(place, "does nothing; expected pitch, generator_off or brake");
+      add(place, "has no effect; expected pitch, generator_off or brake");
     if (event.trigger.time && !(*event.trigger.time < scenario_.transient.options.duration))
       add(place + ".at", "never comes: transient.duration is " +
                              general(scenario_.transient.options.duration, 6) + " s");
@@ -238,11 +241,11 @@ class Validation {
   void check_pitch_loop(const std::string& field) {
     if (turbine_.controller && turbine_.controller->pitch && turbine_.shaft.speed != 0.0)
       add(field,
-          "controller.pitch gives the pitch, which is not that of the case when this begins; hint: "
-          "a case without controller.pitch");
+          "controller.pitch sets the pitch, it differs from that of the case when this begins; "
+          "hint: a case without controller.pitch");
   }
 
-  /// A motion that the steps cannot follow.
+  /// Finds a fault of a motion that the steps cannot follow.
   void check_followed(const Motion& motion) {
     const analysis::TransientOptions& options = scenario_.transient.options;
     if (!motion.curve) return;
@@ -252,7 +255,7 @@ class Validation {
     if (fault->kind == math::CurveFault::Kind::jump)
       add("transient." + motion.key,
           "jumps, by " + size + " within less than a step, at t = " + general(fault->time, 6) +
-              " s; hint: a table or a formula that takes several steps for it");
+              " s; hint: a table or a formula with a change over several steps");
     else
       add("transient." + motion.key,
           "changes too fast for the steps: from t = " + general(fault->time, 6) +
@@ -265,7 +268,7 @@ class Validation {
   std::vector<Fault> faults_;
 };
 
-/// Too few steps a revolution for the loads that repeat with it; empty: there are enough.
+/// Note on too few steps per revolution for the loads that repeat with it; empty: there are enough.
 std::string step_note(const Scenario& scenario) {
   const analysis::TransientOptions& options = scenario.transient.options;
   double speed = std::abs(scenario.turbine.shaft.speed);

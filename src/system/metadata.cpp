@@ -3,7 +3,7 @@
 namespace samara::system {
 namespace {
 
-/// The words that are there, with spaces between.
+/// The non-empty words, separated by spaces.
 std::string joined(std::initializer_list<std::string_view> words) {
   std::string text;
   for (const std::string_view word : words) {

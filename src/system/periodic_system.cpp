@@ -24,21 +24,21 @@ void require_counts(const PeriodicSystem& system) {
   if (unknowns(UnknownRole::velocity) != rows(RowRole::kinematic))
     throw InternalError(std::to_string(rows(RowRole::kinematic)) + " kinematic rows for " +
                         std::to_string(unknowns(UnknownRole::velocity)) +
-                        " velocities; hint: an equation of first order has a state and an "
+                        " velocities; hint: a first-order equation needs a state and an "
                         "evolution row");
   for (std::size_t i = 0; i < system.rows().size(); ++i) {
     const Unknown& unknown = system.unknowns()[i];
     const RowRole row = system.rows()[i];
     if ((unknown.role == UnknownRole::state) != (row == RowRole::evolution) ||
         (unknown.role == UnknownRole::auxiliary) != (row == RowRole::definition))
-      throw InternalError(words_of(unknown) + " has " + words_of(system, i) + " in its place");
+      throw InternalError(words_of(unknown) + " has " + words_of(system, i) + " at the same index");
     if (!(unknown.scale > 0.0) || !std::isfinite(unknown.scale))
-      throw InternalError(words_of(unknown) + " has a scale that is not positive");
+      throw InternalError(words_of(unknown) + " must have a positive scale");
     const bool has_rate = system.differential()[i];
     if (unknown.role == UnknownRole::state && !has_rate)
       throw InternalError(words_of(unknown) + " has no rate in any row");
     if (unknown.role == UnknownRole::auxiliary && has_rate)
-      throw InternalError("the rate of " + words_of(unknown) + " stands in a row");
+      throw InternalError("the rate of " + words_of(unknown) + " appears in a row");
   }
 }
 
@@ -51,7 +51,7 @@ void require_roles(const PeriodicSystem& system) {
     if (std::ranges::count(system.rows(), RowRole::evolution) +
             std::ranges::count(system.rows(), RowRole::definition) >
         0)
-      throw InternalError("a system with states or auxiliaries declares its pattern");
+      throw InternalError("a system with states or auxiliaries must declare its pattern");
     return;
   }
   const auto unknown_at = [&system](PetscInt i) -> const Unknown& {
@@ -66,14 +66,15 @@ void require_roles(const PeriodicSystem& system) {
       const bool is_refused =
           unknown.role == UnknownRole::auxiliary ||
           unknown.role == (is_constraint ? UnknownRole::velocity : UnknownRole::internal);
-      if (is_refused) throw InternalError(words_of(system, i) + " contains " + words_of(unknown));
+      if (is_refused)
+        throw InternalError(words_of(system, i) + " must not contain " + words_of(unknown));
       if (!is_constraint || unknown.role != UnknownRole::state) continue;
       for (const PetscInt k : pattern[static_cast<std::size_t>(j)]) {
         const UnknownRole role = unknown_at(k).role;
         if (role == UnknownRole::velocity || role == UnknownRole::internal ||
             role == UnknownRole::auxiliary)
-          throw InternalError(words_of(system, i) + " contains " + words_of(unknown) +
-                              ", whose evolution row contains " + words_of(unknown_at(k)));
+          throw InternalError(words_of(system, i) + " must not contain " + words_of(unknown) +
+                              ", because its evolution row contains " + words_of(unknown_at(k)));
       }
     }
   }

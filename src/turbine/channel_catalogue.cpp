@@ -68,10 +68,10 @@ void ChannelCatalogue::add_moment(const std::string& names, const std::string& f
 void ChannelCatalogue::add_rotation() {
   add("Azimuth LSSTipPxa LSSTipPxs", "deg", "shaft", "rotor azimuth, blade 1 up at 0; 0 to 360",
       azimuth_slot, to_degrees);
-  add("RotSpeed LSSTipVxa LSSTipVxs", "rpm", "shaft", "rotor speed against the nacelle",
+  add("RotSpeed LSSTipVxa LSSTipVxs", "rpm", "shaft", "rotor speed relative to the nacelle",
       rotor_speed, to_rpm);
-  add("GenSpeed HSShftV", "rpm", "shaft", "generator speed against the nacelle, behind the gear",
-      generator_speed, to_rpm);
+  add("GenSpeed HSShftV", "rpm", "shaft",
+      "generator speed relative to the nacelle, behind the gear", generator_speed, to_rpm);
   add_moment("GenTq", "shaft", "torque on the generator against its turning, without the brake",
              generator_torque);
   add_moment("HSSBrTq", "shaft", "torque of the brake on the generator against its turning",
@@ -183,7 +183,8 @@ void ChannelCatalogue::add_tower() {
   add_moment("TwrBsMzt", base, "tower-base moment, torsion", base_moment + 2);
 }
 
-/// `letters` after "B1N1" or before "t" of "TwHt1": F, M, T, R with the axis.
+/// The channels of a station. Their names have `before` and `after` around the letters F, M, T, R
+/// and the axis: "B1N1" and "", or "TwHt1" and "t".
 void ChannelCatalogue::add_section(const std::string& before, const std::string& after,
                                    const std::string& place, const std::string& root, int slot) {
   const std::string section = place + ", axes of the section";

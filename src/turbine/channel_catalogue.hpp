@@ -1,4 +1,4 @@
-// Which channels a turbine has, and where their values stand among the quantities that are computed
+// The channels of a turbine, and the places of their values among the quantities that are computed
 // together.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace samara::turbine {
 
 namespace slots {
 
-// Quantities, threes along x y z of OpenFAST's frames unless said.
+// Indices of quantities; vectors have three, along x y z of OpenFAST's frames unless noted.
 // Channels of a blade:
 inline constexpr int coned_force = 0;  // root load, axes of the cone
 inline constexpr int coned_moment = 3;
@@ -64,16 +64,16 @@ class ChannelCatalogue {
   ChannelCatalogue(const TurbineEquations& equations, const ChannelStations& stations);
 
   std::vector<Channel> channels;
-  std::vector<ChannelPick> picks;  ///< of each channel
-  std::size_t sections_from = 0;   ///< from here on the channels of stations
+  std::vector<ChannelPick> picks;  ///< one per channel
+  std::size_t sections_from = 0;   ///< number of the first channel of the stations
   /// Other names of channels, by number.
   std::vector<std::pair<std::string, std::size_t>> aliases;
 
-  /// First quantity of a blade (0-based); of station i of a blade, the tower's behind them.
+  /// First quantity of a blade (0-based).
   static int blade_slot(int blade) { return slots::whole_slots + blade * slots::blade_slots; }
   int section_slot(int beam, std::size_t i) const;
 
-  /// Where the stations of a beam are, fractions of its length.
+  /// Places of the stations of a beam, fractions of its length.
   static const std::vector<double>& stations_of(const model::Beam& beam,
                                                 const std::vector<double>& asked) {
     return asked.empty() ? beam.fractions : asked;

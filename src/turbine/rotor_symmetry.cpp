@@ -8,13 +8,13 @@
 namespace samara::turbine {
 namespace {
 
-/// Relative to the larger of the terms that should cancel, lengths and inertias of the hub's
-/// masses: what places typed with ten digits leave (three masses 120 degrees apart). Frequencies
-/// change by no more than that, which no analysis resolves.
+/// Tolerance relative to the larger of the terms that should cancel (lengths and inertias of the
+/// hub's masses). Places given with ten digits leave such errors (three masses 120 degrees apart).
+/// They change frequencies by no more than this relative amount, which no analysis resolves.
 constexpr double symmetry_round_off = 1e-9;
 
-/// Asymmetry of the hub: its axis must be a principal one through its centre, and all axes across
-/// it alike where it is turned by less than half a turn.
+/// Asymmetry of the hub. Its axis must be a principal axis through its centre. With more than two
+/// blades all axes normal to it must be equivalent.
 std::string hub_fault(const model::Turbine& turbine, bool round) {
   const elements::RigidBody& hub = turbine.chain.hub;
   const Matrix3& I = hub.inertia;
@@ -24,13 +24,13 @@ std::string hub_fault(const model::Turbine& turbine, bool round) {
   if (std::hypot(hub.center(0), hub.center(2)) > symmetry_round_off * length)
     return "the hub's centre of mass is off the shaft";
   if (std::hypot(I(0, 1), I(1, 2)) > inertia)
-    return "the shaft is no principal axis of the hub's inertia";
+    return "the shaft is not a principal axis of the hub's inertia";
   if (round && (std::abs(I(0, 0) - I(2, 2)) > inertia || std::abs(I(0, 2)) > inertia))
     return "hub.inertia differs about h1 and h3";
   return "";
 }
 
-/// Asymmetry of the prescribed motions: the yaw must repeat from blade to blade, and half a turn
+/// Asymmetry of the prescribed motions. The yaw must repeat from blade to blade; half a revolution
 /// must reverse the teeter angle of two blades.
 std::string motion_fault(const model::Turbine& turbine) {
   const int blades = static_cast<int>(turbine.blades.size());
@@ -78,7 +78,8 @@ std::string find_symmetry_fault(const model::Turbine& turbine) {
   if (!turbine.identical_blades) return "the blades differ";
   if (blades > 2 && chain.teeter.free) return "the hub teeters";
   for (const auto& extension : turbine.extensions)
-    if (!extension->keeps_rotor_symmetry()) return "a component of the program differs by blade";
+    if (!extension->keeps_rotor_symmetry())
+      return "a component of the program differs from blade to blade";
   for (const std::string& fault :
        {hub_fault(turbine, blades > 2), motion_fault(turbine), load_fault(turbine)})
     if (!fault.empty()) return fault;

@@ -1,4 +1,4 @@
-// Whether a rotor looks the same from blade to blade.
+// Symmetry of a rotor from blade to blade.
 #pragma once
 
 #include <string>
@@ -7,8 +7,7 @@
 
 namespace samara::turbine {
 
-/// Why the rotor does not look the same after 1/B of a turn, B the number of its blades; empty
-/// where it does.
+/// Reason why the rotor does not repeat after 1/B of a revolution (B blades); empty if it does.
 std::string find_symmetry_fault(const model::Turbine& turbine);
 
 }  // namespace samara::turbine

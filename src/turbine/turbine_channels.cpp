@@ -20,8 +20,8 @@ namespace {
 
 using PointSum = std::vector<std::pair<int, double>>;
 
-/// Beam axes 1 2 3 (outward, leading edge, downwind) to x y z; those of the tower (up, side-side,
-/// downwind) the same way.
+/// Beam axes 1 2 3 to x y z. Blades: outward, leading edge, downwind; tower: up, side-side,
+/// downwind.
 template <class T>
 Vec3<T> along_beam(const Vec3<T>& v) {
   return Vec3<T>(v(2), -v(1), v(0));
@@ -47,15 +47,15 @@ Vec3<T> rotation_vector(const Vec3<T>& theta) {
   using std::atan;
   using std::sqrt;
   const T square = math::dot(theta, theta);
-  // 2 atan(x / 2) / x; its series where x is small.
+  // 2 atan(x / 2) / x; its series for small x.
   constexpr double small = 1e-4;
   if (std::abs(real_of(square)) < small * small) return theta * T(T(1.0) - square / 12.0);
   const T length = sqrt(square);
   return theta * T(2.0 * atan(length * 0.5) / length);
 }
 
-/// The polynomial of the element's points; of elements with one point the straight line through the
-/// two nearest.
+/// Weights of the polynomial through the element's points. For elements with one point: of the
+/// straight line through the two nearest points.
 PointSum interpolate(const model::Beam& beam, double fraction) {
   std::vector<int> points;
   if (beam.order == 1) {
@@ -119,7 +119,7 @@ TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStati
     for (const auto& one : known) words.push_back(one.first);
     throw InputError(
         (unknown.size() == 1 ? "unknown channel " : "unknown channels ") +
-        list_unknown(unknown, words, "; hint: docs/channels.md has those of a turbine"));
+        list_unknown(unknown, words, "; hint: docs/channels.md lists the channels of a turbine"));
   }
   place_sections(catalogue);
 }
@@ -166,7 +166,7 @@ class Quantities {
 
   const T& operator[](int slot) const { return values_[static_cast<std::size_t>(slot)]; }
 
-  /// First: blades ask for what it finds.
+  /// Must be called first: the blades need its pitch.
   void add_chain(double t, const std::vector<T>& z, const std::vector<T>& z_dot) {
     const components::BodiesReport<T> chain = equations_.report<T>(t, z, z_dot, inputs_);
     pitch_ = chain.pitch;
@@ -239,7 +239,7 @@ class Quantities {
     for (int i = 0; i < 3; ++i) put(slot + i, v(i));
   }
 
-  /// The rotation vector of a place in element e, whatever its rotations count from.
+  /// The rotation vector at a place in element e, from the undeformed state.
   Vec3<T> turned_by(const model::Beam& beam, int e, const Block<T>& state) const {
     const Vec3<T> theta = state.template segment<3>(3);
     const Matrix3& reference = beam.reference(e);
@@ -272,7 +272,7 @@ class Quantities {
             along_beam<T>(C_Ta * Vec3<T>(top.template segment<3>(15))));
   }
 
-  /// From the load in the axes p of the tower top, x y z.
+  /// Sets the loads of the tower top from the load in its axes p, x y z.
   void add_top(const components::BodiesReport<T>& chain, const Vec3<T>& force,
                const Vec3<T>& moment) {
     const Mat3<T> C_np = math::turn_about<T>(Vector3::UnitZ(), chain.yaw).transpose();
@@ -288,7 +288,7 @@ class Quantities {
   const model::Turbine& turbine_;
   const turbine::TurbineLayout& layout_;
   std::vector<T> values_;
-  std::vector<T> pitch_;  ///< of each blade
+  std::vector<T> pitch_;  ///< pitch of each blade
 };
 
 }  // namespace

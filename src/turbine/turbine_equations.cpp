@@ -18,8 +18,8 @@ using system::PartKind;
 constexpr int blade_rank = 0;
 constexpr int tower_rank = 1;
 constexpr int shared_rank = 2;
-/// Equations of hinges, whose balance is only a moment of the roots' reactions, of the states of
-/// controls, and of extensions.
+/// Rank of the hinges, whose balance contains only a moment of the roots' reactions, of the states
+/// of controls, and of extensions.
 constexpr int last_rank = extension_rank;
 
 BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
@@ -40,7 +40,8 @@ BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
   return blade;
 }
 
-/// The tower's b2 is side-side (n1), its b3 downwind (n2): bending about b2 moves it along b3.
+/// The tower's b2 is side-side (n1), its b3 downwind (n2). Bending about b2 moves the tower along
+/// b3.
 BeamSetting tower_setting(const model::Turbine& turbine) {
   BeamSetting tower;
   tower.mesh = &turbine.tower;
@@ -72,8 +73,8 @@ TurbineEquations::TurbineEquations(const model::Turbine& turbine,
 
 TurbineEquations::~TurbineEquations() = default;
 
-/// The controls come first, which provide pitch, then the bodies, which provide what the roots of
-/// the beams move with.
+/// Order: first the controls, which provide the pitch; then the bodies, which provide the motion of
+/// the beams' roots.
 void TurbineEquations::make_components() {
   components::BodiesSetting bodies;
   bodies.shared_rank = shared_rank;
@@ -122,7 +123,7 @@ components::Registry TurbineEquations::place() {
   return registry;
 }
 
-/// A controller acts on the pitch through the actuators, or without them by itself.
+/// Connects a controller to the pitch, through the actuators if there are any.
 void TurbineEquations::tie_controls() {
   components::ControllerTies ties;
   if (turbine_.has_tower) ties.tower_top = layout_.tower_tip();

@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
-/// Size of a complex step: no difference is taken, so no digits are lost.
+/// Size of a complex step. No difference is taken, therefore no digits are lost.
 constexpr double tiny = 1e-30;
 
 constexpr char pitch_name[] = "pitch";
@@ -24,13 +24,13 @@ const std::vector<std::string>& ground_ways() {
   return ways;
 }
 
-/// The number behind the stem of a name, 0 where the name is another.
+/// The number behind the stem of a name; 0 for other names.
 int number_of(const std::string& name, const std::string& stem) {
   if (!name.starts_with(stem) || name.size() == stem.size()) return 0;
   return std::stoi(name.substr(stem.size()));
 }
 
-/// A channel of one blade has its number where another blade's has another: B1N2MLx, RootMyb1.
+/// The signal of a channel. The number of the blade is removed from the family: B1N2MLx, RootMyb1.
 system::Signal signal_of(const Channel& channel) {
   system::Signal signal{channel.name, channel.unit, channel.frame, channel.description, "", 0,
                         false};
@@ -56,22 +56,24 @@ std::vector<system::Signal> TurbineInputOutput::available_inputs(const TurbineSy
   const model::Turbine& turbine = system.turbine();
   std::vector<system::Signal> signals;
   if (turbine.chain.generator.free)
-    signals.push_back({"generator_torque", "N m", "shaft",
-                       "of the nacelle on the generator, behind the gear, against its turning", "",
-                       0, false});
+    signals.push_back(
+        {"generator_torque", "N m", "shaft",
+         "torque of the nacelle on the generator, behind the gear, against its turning", "", 0,
+         false});
   if (turbine.chain.yaw.free)
     signals.push_back({"yaw_torque", "N m", "nacelle",
-                       "of the tower top on the nacelle, about y3 (up)", "", 0, false});
+                       "torque of the tower top on the nacelle, about y3 (up)", "", 0, false});
   if (turbine.has_tower)
     for (int i = 0; i < 3; ++i)
       signals.push_back({force_stem + std::to_string(i + 1), "N", "ground",
                          "force on the tower top, " + ground_ways()[static_cast<std::size_t>(i)],
                          "", 0, false});
   if (!turbine.blades.empty())
-    signals.push_back({pitch_name, "rad", "blades", "of all blades, toward feather", "", 0, true});
+    signals.push_back(
+        {pitch_name, "rad", "blades", "pitch of all blades, toward feather", "", 0, true});
   for (std::size_t k = 1; k <= turbine.blades.size(); ++k)
     signals.push_back({pitch_name + ("_" + std::to_string(k)), "rad", "blade " + std::to_string(k),
-                       "toward feather", pitch_name, static_cast<int>(k), true});
+                       "pitch toward feather", pitch_name, static_cast<int>(k), true});
   if (turbine.has_tower)
     for (int i = 0; i < 3; ++i)
       signals.push_back(

@@ -13,14 +13,14 @@ using Complex = std::complex<double>;
 using Vector3c = Eigen::Matrix<Complex, 3, 1>;
 using Vector6c = Eigen::Matrix<Complex, 6, 1>;
 
-/// Motions of the six directions of a section, or of a root, in its axes.
+/// Motions of the six directions of a section or of a root, in its axes.
 struct Directions {
   std::array<const char*, 4> names;
   std::array<int, 6> motion;
 
   const char* name(int i) const { return names[static_cast<std::size_t>(i)]; }
 };
-/// About b2 a beam bends along b3, and about b3 along b2.
+/// Bending about b2 moves the beam along b3; bending about b3 moves it along b2.
 constexpr std::array<int, 6> bending{0, 1, 2, 3, 2, 1};
 constexpr Directions blade_directions{{"axial", "lead-lag", "flap", "torsion"}, bending};
 /// The tower's b2 is side-side (n1), its b3 downwind (n2).
@@ -29,7 +29,7 @@ constexpr Directions root_directions{{"support", "pitch hinge", "flap hinge", "l
                                      {0, 0, 0, 1, 2, 3}};
 constexpr Directions foundation_directions{{"", "", "", ""}, {0, 0, 0, 0, 0, 0}};
 constexpr int motions_a_beam = 4;
-/// Whether motion i of the four motions of a beam is bending, in all lists of names.
+/// True if motion i of the four motions of a beam is bending; for all lists of names.
 constexpr bool bends(int i) { return i == 1 || i == 2; }
 
 /// Number of a hinge's motion among root_directions.
@@ -49,8 +49,8 @@ enum Joint { yaw, teeter, torsion, generator, joints };
 constexpr std::array<const char*, joints> joint_names{"yaw", "teeter", "shaft torsion",
                                                       "rotor rotation"};
 
-/// Where the motions of each part begin: of each blade its deformations and its root's, of the
-/// tower its own and the foundation, joints.
+/// Index of the first motion of each part: blades (deformations, then root), tower (deformations,
+/// then foundation), joints.
 struct Numbering {
   explicit Numbering(const model::Turbine& turbine)
       : tower(2 * motions_a_beam * static_cast<int>(turbine.blades.size())),
@@ -67,7 +67,7 @@ struct Numbering {
 
 Vector3c cross(const Vector3& a, const Vector3c& b) { return math::skew<double>(a) * b; }
 
-/// A small motion of a rigid body: of a point of it, and its rotation.
+/// A small motion of a rigid body: translation of one of its points, and rotation.
 struct Twist {
   Vector3c translation = Vector3c::Zero();
   Vector3c rotation = Vector3c::Zero();
@@ -87,14 +87,14 @@ struct Momentum {
   Vector3c linear = Vector3c::Zero();
   Vector3c angular = Vector3c::Zero();
 
-  /// About the point from which this one is at `arm`.
+  /// The same momentum about the point from which the present point is at `arm`.
   Momentum from(const Vector3& arm) const { return {linear, angular + cross(arm, linear)}; }
   Momentum& operator+=(const Momentum& other) {
     linear += other.linear;
     angular += other.angular;
     return *this;
   }
-  /// Along a real twist of the same point.
+  /// Component along a real twist of the same point.
   Complex along(const Twist& twist) const {
     return twist.translation.cwiseProduct(linear).sum() +
            twist.rotation.cwiseProduct(angular).sum();
@@ -105,7 +105,7 @@ double half_product(const Complex& q, const Complex& p) {
   return 0.5 * std::real(std::conj(q) * p);
 }
 
-/// q* p / 2 of each direction of a twist, in the axes of the columns of C.
+/// Adds q* p / 2 of each direction of a twist, in the axes of the columns of C.
 void add_products(const Twist& twist, const Momentum& momentum, const Matrix3& C,
                   const std::array<int, 6>& motion, int first, Eigen::VectorXd& energies) {
   const Vector3c d = C.transpose() * twist.translation;
@@ -122,7 +122,7 @@ void add_products(const Twist& twist, const Momentum& momentum, const Matrix3& C
 // ---- bodies
 // --------------------------------------------------------------------------------------
 
-/// A mass at a place, ground axes.
+/// A mass at a place, in ground axes.
 struct Mass {
   Vector3 place = Vector3::Zero();
   Matrix6 matrix = Matrix6::Zero();  ///< momenta from velocities, about the place
@@ -151,27 +151,28 @@ Mass mass_of(const Vector3& place, const Matrix3& C, const elements::RigidBody& 
   return mass_of(place, C, model::rigid_mass(body.mass, body.center, body.inertia));
 }
 
-/// Positions of a block about their steady values: components of the beam's root to the ground.
+/// Positions of a block about their steady values; converts them from the beam's root to the
+/// ground.
 struct Node {
   int first = 0;
-  Matrix3 C = Matrix3::Identity();  ///< of the root
-  Matrix3 turn = Matrix3::Zero();   ///< rotation, ground axes, of theta
+  Matrix3 C = Matrix3::Identity();  ///< axes of the root
+  Matrix3 turn = Matrix3::Zero();   ///< rotation per theta, ground axes
 
   Twist twist_of(const Eigen::Ref<const Eigen::VectorXcd>& z) const {
     return {C * z.segment<3>(first), turn * z.segment<3>(first + 3)};
   }
 };
 
-/// A mass that moves along axes of what carries it, in its steady state, ground axes.
+/// A mass that moves along axes of its carrier, in its steady state, ground axes.
 struct Rider {
   double mass = 0.0;
   Vector3 place = Vector3::Zero();
   std::vector<Vector3> axes;
   std::vector<int> displacements;  ///< unknowns
-  int motion = 0;                  ///< number of the first axis's
+  int motion = 0;                  ///< number of the first axis's motion
 
-  /// Momentum about the point `at` of what carries it, which moves with `carrier`. Adds the
-  /// energies of its own motions.
+  /// Momentum about the point `at` of the carrier, which moves with `carrier`. Adds the energies of
+  /// the mass's own motions.
   Momentum momentum_of(const Vector3& at, const Twist& carrier,
                        const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
                        const Eigen::Ref<const Eigen::VectorXcd>& z,
@@ -192,12 +193,12 @@ struct SteadyBeam {
   struct Point {
     Node node;
     Mass mass;
-    Matrix3 axes = Matrix3::Identity();       ///< of the section, undeformed on the root's support
-    Matrix3 node_axes = Matrix3::Identity();  ///< of its velocities, as columns
+    Matrix3 axes = Matrix3::Identity();  ///< section, undeformed relative to the displaced root
+    Matrix3 node_axes = Matrix3::Identity();  ///< axes of its velocities, as columns
     std::vector<Rider> riders{};
   };
   std::vector<Point> points;
-  int gauss_points = 0;  ///< the first of the points; mass nodes follow, then the end
+  int gauss_points = 0;  ///< number of Gauss points; they come first, then mass nodes, then the end
   bool has_support = false;
   Point support;
   Vector3 root = Vector3::Zero();
@@ -207,8 +208,8 @@ struct SteadyBeam {
 /// A free hinge of a blade's root in its steady state.
 struct SteadyHinge {
   int angle = 0;   ///< unknown
-  int motion = 0;  ///< of root_directions
-  Twist twist;     ///< of the root's place, by the angle
+  int motion = 0;  ///< index in root_directions
+  Twist twist;     ///< motion of the root's place per angle
 };
 
 SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const Matrix3& C,
@@ -217,7 +218,7 @@ SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const
   SteadyBeam placed;
   placed.root = root;
   placed.gauss_points = beam.point_count();
-  Matrix3 axes = C;  // of the root as it stands on its support
+  Matrix3 axes = C;  // axes of the root on its support
   if (beam.has_support)
     axes *= math::direction_cosines<double>(Vector3(steady.segment<3>(where.masses[0] + 3)))
                 .transpose();
@@ -241,7 +242,7 @@ SteadyBeam place(const components::PlacedBeam& where, const Vector3& root, const
   }
   for (std::size_t m = 0; m < beam.mass_nodes.size(); ++m) {
     const model::MassNode& node = beam.mass_nodes[m];
-    const auto next = static_cast<std::size_t>(node.end * beam.order);  // of the points
+    const auto next = static_cast<std::size_t>(node.end * beam.order);  // index of the next point
     placed.points.push_back(put(where.masses[m], node.x, beam.reference_before(node.end), node.mass,
                                 beam.points[next].C_ab));
     if (node.end != 0) continue;
@@ -271,7 +272,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     const TurbineLayout& layout = layout_;
     const std::vector<double> z(steady.begin(), steady.end());
     pitch_ = equations.report<double>(t, z, std::vector<double>(z.size()), {}).pitch;
-    Matrix3 C = Matrix3::Identity();  // of T
+    Matrix3 C = Matrix3::Identity();  // axes of T
     if (has_tower_) place_tower(steady, C);
     yaw_axis_ = C.col(2);
     C *= math::turn_about<double>(Vector3::UnitZ(), steady(layout.yaw()));
@@ -304,13 +305,13 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     const auto add_joint = [&](Joint joint, int coordinate, const Complex& p) {
       energies(numbering_.joints + joint) += half_product(z_dot(coordinate), p);
     };
-    // Outward: how each body moves.
+    // Outward: motion of each body.
     const Twist top = has_tower_ ? tower_.points.back().node.twist_of(z) : Twist{};
     const Twist nacelle{top.translation, top.rotation + yaw_axis_ * q_y};
     const Twist shaft{nacelle.at(bearing_ - top_).translation,
                       nacelle.rotation + shaft_axis_ * (q_g + q_s)};
     const Twist hub{shaft.at(pin_ - bearing_).translation, shaft.rotation + teeter_axis_ * q_h};
-    // Inward: momenta of all that a joint carries, about a point of its axis.
+    // Inward: momenta of all parts that a joint carries, about a point of its axis.
     Momentum carried = hub_.momentum_of(hub);
     for (std::size_t k = 0; k < blades_.size(); ++k) {
       const SteadyBeam& blade = blades_[k];
@@ -348,7 +349,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     return axis.cast<Complex>().cwiseProduct(vector).sum();
   }
 
-  /// A blade behind its hinges, at the apex of a hub with the axes C.
+  /// Places a blade behind its hinges, at the apex of a hub with the axes C.
   void place_blade(const model::Turbine& turbine, std::size_t k, double t, const Vector3& apex,
                    const Matrix3& C, const Eigen::VectorXd& steady) {
     const model::BladeRoot& root = turbine.roots[k];
@@ -381,8 +382,8 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
         angle += root.pitch_by_flap * angle_of(root.flap_hinge);
       axes = (axes * math::turn_about<double>(link.axis, angle)).eval();
     }
-    // Twists of the root's place: a hinge turns it about its point, the pitch link about the
-    // pitch's.
+    // Twists of the root's place: a hinge turns it about the hinge's point, the pitch link about
+    // the point of the pitch.
     for (std::size_t i = 0; i < hinges.size(); ++i)
       hinges[i].twist = hinges[i].twist.at(at - points[i]);
     if (root.flap_hinge >= 0 && root.pitch_by_flap != 0.0) {
@@ -395,7 +396,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     blades_.push_back(place(layout_.beams()[k], at, axes, steady));
   }
 
-  /// Their motions come behind all others, in the order in which they are declared.
+  /// Places mass dampers. Their motions come after all others, in the order of declaration.
   void place_riders(const TurbineEquations& equations, const Eigen::VectorXd& steady) {
     int motion = numbering_.size;
     for (std::size_t d = 0; d < equations.mass_dampers().size(); ++d) {
@@ -421,7 +422,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     }
   }
 
-  /// C becomes that of the tower top: ground components of t1 t2 t3.
+  /// Places the tower. C becomes the axes of the tower top: ground components of t1 t2 t3.
   void place_tower(const Eigen::VectorXd& steady, Matrix3& C) {
     Matrix3 upright;  // a = (n3, n1, n2)
     upright << 0, 1, 0, 0, 0, 1, 1, 0, 0;
@@ -431,8 +432,8 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     C = upright * math::direction_cosines<double>(theta).transpose() * upright.transpose();
   }
 
-  /// Adds the energies of a beam's motions and returns its momentum about its root. `base`: the
-  /// motion of the root's place; `carried`: the momentum of what the tip carries, about it.
+  /// Adds the energies of a beam's motions and returns its momentum about its root. `base`: motion
+  /// of the root's place; `carried`: momentum of the parts on the tip, about the tip.
   static Momentum momentum_of(const SteadyBeam& beam, const Twist& base,
                               const Directions& deformation, const Directions& root, int first,
                               const Momentum& carried,
@@ -457,7 +458,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
         momentum += rider.momentum_of(at, whole, z_dot, z, energies);
       if (i + 1 == beam.points.size()) momentum += carried;
       const Twist deformed = rate - given.at(at - foot);
-      // About its centre a mass has no momentum that a translation and a rotation share.
+      // About the centre of a mass, translation and rotation have no common momentum.
       const Vector3& center = point.mass.center;
       add_products(deformed.at(center), momentum.from(-center), point.axes, deformation.motion,
                    first, energies);
@@ -476,9 +477,9 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
   int size_;
   SteadyBeam tower_;
   std::vector<SteadyBeam> blades_;
-  std::vector<std::vector<SteadyHinge>> hinges_;  ///< of each blade
+  std::vector<std::vector<SteadyHinge>> hinges_;  ///< hinges of each blade
   Mass nacelle_, shaft_, hub_;
-  std::vector<double> pitch_;  ///< of each blade
+  std::vector<double> pitch_;  ///< pitch of each blade
   Matrix3 nacelle_axes_ = Matrix3::Identity();
   std::vector<Rider> nacelle_riders_;
   Vector3 top_ = Vector3::Zero();
@@ -489,8 +490,8 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
   Vector3 teeter_axis_ = Vector3::UnitX();
 };
 
-/// Positions of all masses of a blade that belong to a motion: what bends moves along b2 and b3,
-/// whatever the twist.
+/// Adds the positions of all masses of a blade that belong to a motion. Bending moves masses along
+/// b2 and b3 at any twist.
 void add_positions(const model::Beam& beam, const TurbineLayout& layout, int blade, int i,
                    system::Motion& motion) {
   const std::vector<int> positions =

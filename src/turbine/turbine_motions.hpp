@@ -1,4 +1,4 @@
-// Kinetic energy of a turbine by the motion that it belongs to (docs/theory.md, section 5.6).
+// Kinetic energy of a turbine by motion (docs/theory.md, section 5.6).
 #pragma once
 
 #include <memory>
@@ -10,10 +10,11 @@
 
 namespace samara::turbine {
 
-/// Deformations of blades and tower by direction, hinges of blades, foundation, joints.
+/// Motions: deformations of blades and tower by direction, hinges of blades, foundation, joints.
 std::vector<system::Motion> motions_of(const model::Turbine& turbine, const TurbineLayout& layout);
 
-/// About the state `steady` at t: those of motions_of, then those that components declare.
+/// Energies about the state `steady` at t: motions of motions_of, then those that components
+/// declare.
 std::unique_ptr<system::MotionEnergies> find_motion_energies(const TurbineEquations& equations,
                                                              double t,
                                                              const Eigen::VectorXd& steady);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int block = TurbineLayout::block;
 
-/// |theta| from which rotations count anew: 120 degrees. A coarse mesh depends a little on what
-/// they count from, so that is not done before it is needed.
+/// |theta| from which rotations get a new reference: 120 degrees. The result of a coarse mesh
+/// depends slightly on the reference, therefore it changes only where necessary.
 constexpr double large_rotation = 3.4641016151377544;
 
 }  // namespace
@@ -38,7 +38,7 @@ class TurbineSystem::Assembly {
   MPI_Comm comm;
   const components::TangentPlan& plan;
   std::vector<bool> differential;
-  std::vector<std::size_t> mass_offsets;  ///< of M's places into its blocks, row by row
+  std::vector<std::size_t> mass_offsets;  ///< positions in M's blocks of its entries, row by row
   PetscInt first_row = 0;
   PetscInt last_row = 0;
   mutable components::Tangents tangents;
@@ -53,7 +53,7 @@ class TurbineSystem::Assembly {
 
   // ---- the state -----------------------------------------------------------------------------
 
-  /// The whole vector, from all ranks.
+  /// The whole vector, gathered from all ranks.
   std::vector<double> gathered(Vec z) const {
     std::vector<double> values(static_cast<std::size_t>(layout.size()));
     if (!parallel()) {
@@ -69,7 +69,7 @@ class TurbineSystem::Assembly {
     return values;
   }
 
-  /// The rotations of the undeformed state.
+  /// Sets the rotations of the undeformed state.
   void undo_references(std::vector<double>& values) const {
     const auto put = [&values](int first, const Matrix3& reference) {
       Eigen::Map<Vector3>(values.data() + first + 3) = math::parameters_of(reference.transpose());
@@ -85,8 +85,8 @@ class TurbineSystem::Assembly {
     }
   }
 
-  /// Writes the own part of a state with its rotations counted as in `target`, or from the
-  /// undeformed state where that is null.
+  /// Writes the own part of a state. Its rotations count as in `target`, or from the undeformed
+  /// state if that is null.
   void recount(std::vector<double> values, const TurbineEquations* target, Vec z) const {
     const auto rewrite = [&values](int first, const Matrix3& from, const Matrix3& to) {
       if (from == to) return;
@@ -127,7 +127,7 @@ class TurbineSystem::Assembly {
     petsc::check(VecGetOwnershipRange(z.get(), &first_row, &last_row));
   }
 
-  /// Where M's places are in its blocks.
+  /// Finds the positions of M's entries in its blocks.
   void place_mass() {
     differential.assign(static_cast<std::size_t>(layout.size()), false);
     for (int row = 0; row < layout.size(); ++row)
@@ -290,9 +290,9 @@ std::vector<std::vector<PetscInt>> TurbineSystem::pattern() const {
   return columns;
 }
 
-/// With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): their negative is V. The row
-/// of a joint that is not free is its angle less the prescribed one; those of free joints ask for
-/// the same of their speeds as that of a beam does, one after the other from the tower outward.
+/// With u = theta = 0 the kinematic rows are V - (v_a + omega_a x x): V is their negative. The row
+/// of a joint that is not free is its angle minus the prescribed one. The kinematic rows of free
+/// joints give their speeds in the same way, joint by joint from the tower outward.
 void TurbineSystem::reference_state(double t, Vec z) const {
   const Assembly& assembly = *assembly_;
   const auto n = static_cast<std::size_t>(size());
@@ -379,7 +379,7 @@ void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacob
   std::vector<double>& K = assembly.tangents.K().values();
   const std::vector<double>& M = assembly.tangents.M().values();
   if (mass != nullptr && !assembly.parallel()) {
-    PetscScalar* values = nullptr;  // row after row, as the offsets
+    PetscScalar* values = nullptr;  // row by row, in the order of the offsets
     petsc::check(MatSeqAIJGetArrayWrite(mass, &values));
     for (std::size_t entry = 0; entry < assembly.mass_offsets.size(); ++entry)
       values[entry] = M[assembly.mass_offsets[entry]];

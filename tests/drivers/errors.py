@@ -132,7 +132,7 @@ class Physics(ProgramTest):
         self.refuse("check", "case.yaml", words=["reference_line", "turns back"])
         masses = "length: 10\n  point_masses: [{at: 0.5, mass: 1}, {at: 0.51, mass: 1}]"
         self.write("case.yaml", MINIMAL.replace("length: 10", masses))
-        self.refuse("check", "case.yaml", words=["point masses", "more elements"])
+        self.refuse("check", "case.yaml", words=["point masses", "increase elements"])
 
 
 # A blade for which the matrix of harmonic balance needs more room than MUMPS estimates.

@@ -197,7 +197,7 @@ class Refusals(ExportTest):
         self.refuse("export", "a.h5", words=["missing -o FILE", ".outb"])
         self.refuse("export", "a.h5", "-o", "b.txt", words=["b.txt", ".h5, .csv, .out or .outb"])
         self.refuse("export", "a.h5", "-o", "a.h5", words="is the result itself")
-        self.refuse("export", "a.h5", "b.h5", "-o", "b.csv", words="one a run")
+        self.refuse("export", "a.h5", "b.h5", "-o", "b.csv", words="one per run")
         self.refuse("export", "a.h5", "-o", "b.csv", "--set", "x=1", words="--set")
         self.refuse("export", "a.h5", "-o", "b.csv", "--csv", "c.csv", words="--csv")
         self.refuse("export", "a.h5", "-o", "b.csv", "--restart", "a.h5", words="--restart")

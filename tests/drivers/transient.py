@@ -60,7 +60,7 @@ class TimeSeries(ProgramTest):
         run = self.succeed("transient", BASELINE, *COARSE, "-o", "a.h5",
                            *block(duration=0.1, step=0.01), "-transient_ts_type", "beuler")
         self.assertIn("beuler", run.stdout)
-        self.assertNotIn("options that nothing", run.stderr)
+        self.assertNotIn("options that this run", run.stderr)
 
     def test_every_tenth_row_is_the_same_as_of_all(self):
         for name, output in (("all", 1), ("some", 10)):
@@ -659,7 +659,7 @@ class Refusals(ProgramTest):
                     words=["reaches to t = 1 s already"])
         self.refuse("transient", path, *longer, "-o", "b.h5", "--restart", "case.yaml",
                     words=["no result of samara"])
-        self.refuse("trim", path, "--restart", "a.h5", words=["samara transient has"])
+        self.refuse("trim", path, "--restart", "a.h5", words=["samara transient does"])
 
     def test_run_that_diverges_says_where_and_keeps_what_it_has(self):
         # A soft blade on which a load grows until it has turned by half a turn.

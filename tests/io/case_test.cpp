@@ -460,10 +460,11 @@ BOOST_AUTO_TEST_CASE(supports_are_words_or_springs) {
 BOOST_AUTO_TEST_CASE(supports_are_checked) {
   check_error(minimal + "  support: loose\n",
               "case.yaml:9:3: blades.support: expected clamped, pinned or springs, got \"loose\"");
-  check_error(minimal + "  support: pinned\n",
-              "case.yaml:9:3: blades.support: the root of a blade is free on hinges; hint: instead "
-              "of the support hinges: [{axis: flap, joint: free}], axis pitch for theta1, flap for "
-              "theta2, lag for theta3");
+  check_error(
+      minimal + "  support: pinned\n",
+      "case.yaml:9:3: blades.support: the root of a blade can be free only on hinges; hint: "
+      "replace the support by hinges: [{axis: flap, joint: free}], axis pitch for theta1, "
+      "flap for theta2, lag for theta3");
   check_error(minimal + "  end_support: pinned\n  hinges: [{axis: lag, joint: free}]\n",
               "case.yaml:9:3: blades.end_support: holds the end in axes that blades.hinges turn; "
               "hint: a beam between two supports has support: pinned or stiffness: {theta2: free, "

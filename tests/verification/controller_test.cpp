@@ -232,7 +232,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_with_its_place) {
   has(locked.replace(locked.find("joint: free"), 11, "joint: locked"), "the generator is locked");
   std::string flat = rotor("  pitch: {integral: 1}\n");
   has(flat.replace(flat.find(", torque_pitch_slope: -5.0e+7"), 29, ""),
-      "nothing makes the torque of the rotor depend on the pitch");
+      "the torque of the rotor does not depend on the pitch");
   has(rotor(loop, "  pitch_actuator: {frequency: 4}\n"), "missing key \"damping_ratio\"");
   has(rotor(loop, "  pitch_actuator: {frequency: 4, damping_ratio: 1, lowest_deg: 2}\n"),
       "is not within lowest_deg and highest_deg");
@@ -245,7 +245,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_with_its_place) {
     const std::vector<Fault> faults =
         simulation::validate(io::parse_case("test", text, {}), simulation::Analysis::transient);
     BOOST_TEST_REQUIRE(faults.size() == 1U);
-    BOOST_TEST(faults[0].text.starts_with("controller.pitch gives the pitch"));
+    BOOST_TEST(faults[0].text.starts_with("controller.pitch sets the pitch"));
   }
   BOOST_TEST(message_of(rotor("  set_point_rpm: 1100\n  torque: {proportional: 1}\n")) == "");
 }

@@ -1,7 +1,7 @@
-// The root of a blade on the hub: its pitch and its hinges, without mass of their own
-// (docs/theory.md, section 3.3). The motion of the root follows from the hub's, the load on the hub
-// from the root's; a free hinge has an angle q, its rate U and the balance of moments about its
-// axis.
+// The root of a blade on the hub: its pitch and its hinges, which have no mass (docs/theory.md,
+// section 3.3). The motion of the root follows from the motion of the hub; the load on the hub
+// follows from the load on the root. A free hinge has an angle q, its rate U and the balance of
+// moments about its axis.
 #pragma once
 
 #include <vector>
@@ -17,28 +17,28 @@ const char* hinge_name(model::HingeAxis axis);
 
 class BladeRoot {
  public:
-  /// `k`: number of the blade from 0. The turbine must live on.
+  /// `k`: number of the blade, from 0. The turbine must outlive the component.
   BladeRoot(const model::Turbine& turbine, std::size_t k);
 
   void place(Registry& registry, int rank);
-  /// `root`: first of the root's reactions; ports of the hub's motion, the load on it, and the
-  /// motion of the root.
+  /// `root`: first of the root's reactions. Ports: motion of the hub, load on the hub, motion of
+  /// the root.
   void describe(Registry& registry, int root, int hub_port, int load_port, int root_port);
   bool is_conservative() const;
 
   /// First of q, U of each free hinge.
   int first() const { return first_; }
   /// Port of the angle and rate that an actuator or a controller adds to the blade's own pitch; -1:
-  /// none does.
+  /// no port.
   int pitch_port() const { return pitch_port_; }
-  /// Pitch by all but a hinge and a pitch link [rad], after state_load.
+  /// Pitch without the angles of a hinge and a pitch link [rad]; valid after state_load.
   template <class T>
   T pitch(const Residual<T>& residual) const;
 
-  /// The load on the hub, and the rows of the hinges.
+  /// States the load on the hub and the rows of the hinges.
   template <class System>
   void state_load(System& system) const;
-  /// The motion of the root.
+  /// States the motion of the root.
   template <class System>
   void state_motion(System& system) const;
 
@@ -50,14 +50,14 @@ class BladeRoot {
   /// Motion of the hub; pitch and its rate; q, U.
   static constexpr int motion_arguments = 11 + 2 * most_hinges;
 
-  /// How the links turn.
+  /// Rotation of a link.
   template <class T>
   struct Turn {
     bool moves = false;
     T angle = T(0);
     T rate = T(0);
   };
-  /// Rotation of the pitch without hinge and pitch link: `added` by its port.
+  /// Rotation of the pitch without hinge and pitch link; `added`: values of the pitch port.
   template <class T, class System>
   Turn<T> pitch_turn(const System& system, const Eigen::Matrix<T, 2, 1>& added) const;
   /// `angles`: pitch and its rate from the port, q, then U.
@@ -77,7 +77,7 @@ class BladeRoot {
   Connections motion_;
 };
 
-/// As prescribed, as the blade is pitched, by a hinge, and by a pitch link together.
+/// Sum of the prescribed motion, the pitch, the hinge and the pitch link.
 template <class T, class System, class Angles>
 BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLink& link,
                                       const Angles& angles) const {
@@ -101,7 +101,7 @@ BladeRoot::Turn<T> BladeRoot::turn_of(const System& system, const model::RootLin
   return turn;
 }
 
-/// An actuator follows curves and inputs itself.
+/// An actuator includes curves and inputs in its own rows; they are not added here.
 template <class T, class System>
 BladeRoot::Turn<T> BladeRoot::pitch_turn(const System& system,
                                          const Eigen::Matrix<T, 2, 1>& added) const {
@@ -167,7 +167,7 @@ void BladeRoot::state_load(System& system) const {
     }
     y.template head<3>() = force;
     y.template segment<3>(3) = moment;
-    // The rotor's torque changes with the mean of all pitches.
+    // The torque of the rotor changes with the mean pitch of all blades.
     if (pitch_slope != 0.0) y(4) += (pitch + T(root().pitch - turbine_.pitch)) * pitch_slope;
     for (std::size_t i = 0; i < root().hinges.size(); ++i) {
       const model::RootHinge& hinge = root().hinges[i];

@@ -18,13 +18,13 @@ class BlockMatrix {
   const std::vector<std::vector<int>>& columns() const { return columns_; }
 
   /// Position in values() of the entry of a row and column of the whole matrix.
-  /// @throws InternalError where no block has it
+  /// @throws InternalError if no block contains the entry
   std::size_t place(int row, int column) const;
 
-  /// Writes the rows that `matrix` (BAIJ or MPIBAIJ, this pattern) owns.
+  /// Writes the rows that `matrix` owns (BAIJ or MPIBAIJ, with this pattern).
   void copy_to(Mat matrix) const;
 
-  /// All values, block after block, each column by column, as BAIJ has them.
+  /// All values, block after block, each column by column (the order of BAIJ).
   const std::vector<double>& values() const { return values_; }
   std::vector<double>& values() { return values_; }
   /// Position in values() of the first entry of block (i, columns()[i][n]).

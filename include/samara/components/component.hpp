@@ -1,6 +1,6 @@
-// The contract of every part of a turbine: its equations are functions of some unknowns, their
-// rates and the values of ports. Each function is stated once, as a template on its scalar; the
-// residual, the tangents and their pattern are made of it.
+// Interface of every part of a turbine. The equations of a part are functions of some unknowns,
+// their rates and the values of ports. Each function is stated once, as a template on its scalar;
+// the residual, the tangents and their pattern follow from it.
 #pragma once
 
 #include <complex>
@@ -19,14 +19,15 @@ class Component {
   Component& operator=(const Component&) = delete;
   virtual ~Component() = default;
 
-  /// Asks for unknowns and ports: twice, of a registry that counts and of one that places.
+  /// Requests unknowns and ports. It is called twice: with a registry that counts and with one that
+  /// places.
   virtual void place(Registry& registry) = 0;
-  /// When all have their places: what the unknowns and rows are, and how the functions are tied to
-  /// them.
+  /// Called when all places are known: describes the unknowns and rows, and connects the functions
+  /// to them.
   virtual void describe(Registry& registry) = 0;
-  /// True where it neither dissipates nor feeds energy (PeriodicSystem::is_conservative).
+  /// True if the component neither dissipates nor feeds energy (PeriodicSystem::is_conservative).
   virtual bool is_conservative() const = 0;
-  /// True where its constraint rows do not depend on time other than through the unknowns.
+  /// True if its constraint rows depend on time only through the unknowns.
   virtual bool has_autonomous_constraints() const { return true; }
 
   virtual void add_to(Residual<double>& residual) const = 0;
@@ -35,9 +36,9 @@ class Component {
   virtual void add_to(Tangents& tangents) const = 0;
 };
 
-/// Makes them from `template <class System> void Self::state(System& system) const`, which states
-/// the same functions in the same order at all times, to `system.add`. A component's header
-/// declares `extern template class Stated<Self>`, its source makes it.
+/// Implements add_to with `template <class System> void Self::state(System& system) const`, which
+/// passes the same functions in the same order to `system.add` at every call. The header of a
+/// component declares `extern template class Stated<Self>`; its source file instantiates it.
 template <class Self>
 class Stated : public Component {
  public:

@@ -12,14 +12,14 @@ namespace samara::components {
 /// The unknowns that the controller measures and the ports that it acts on.
 struct ControllerTies {
   int tower_top = -1;            ///< first unknown of the tower's end; -1: there is no tower
-  int yaw = 0;                   ///< its angle; its speed follows
-  int generator = 0;             ///< its angle; its speed follows
-  std::vector<int> pitch_ports;  ///< of angle and rate, or of the angle alone; empty: no pitch loop
+  int yaw = 0;                   ///< angle of the yaw joint; its speed follows
+  int generator = 0;             ///< angle of the generator joint; its speed follows
+  std::vector<int> pitch_ports;  ///< ports of angle and rate, or of the angle; empty: no pitch loop
 };
 
 class Controller final : public Stated<Controller> {
  public:
-  /// The turbine, which has a controller, must live on.
+  /// The turbine must have a controller and must outlive the component.
   Controller(const model::Turbine& turbine, int rank);
 
   void tie(const ControllerTies& ties) { ties_ = ties; }

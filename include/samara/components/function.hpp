@@ -1,6 +1,6 @@
-// How a function of a component is tied to the unknowns and rows of a system. Residual, tangents
-// and their pattern come from the same function, evaluated with other scalars (residual.hpp,
-// tangents.hpp, pattern.hpp).
+// Connections between a function of a component and the unknowns and rows of a system. Residual,
+// tangents and their pattern come from the same function, evaluated with other scalars
+// (residual.hpp, tangents.hpp, pattern.hpp).
 #pragma once
 
 #include <vector>
@@ -16,9 +16,9 @@ namespace samara::components {
 struct Argument {
   enum class Kind {
     unknowns,
-    rates,  ///< of unknowns
+    rates,  ///< rates of unknowns
     port,   ///< all values of a port
-    zeros,  ///< where there is nothing: constants
+    zeros,  ///< constants, where there is no unknown
   };
   Kind kind = Kind::zeros;
   int first = 0;  ///< unknown, or number of the port
@@ -30,7 +30,7 @@ inline Argument rates(int first, int count) { return {Argument::Kind::rates, fir
 inline Argument port_values(int port, int count) { return {Argument::Kind::port, port, count}; }
 inline Argument zeros(int count) { return {Argument::Kind::zeros, 0, count}; }
 
-/// Row `row` + i gets weight y(value + i) + other_weight y(other + i), y the values of the
+/// Row `row` + i receives weight y(value + i) + other_weight y(other + i); y: values of the
 /// function.
 struct Share {
   int row = 0;
@@ -41,7 +41,7 @@ struct Share {
   double other_weight = 0.0;
 };
 
-/// Row `row` + i gets weight z(column + i): a constant entry of K.
+/// Row `row` + i receives weight z(column + i): a constant entry of K.
 struct LinearShare {
   int row = 0;
   int column = 0;
@@ -49,21 +49,21 @@ struct LinearShare {
   double weight = 1.0;
 };
 
-/// Value i of the port gets y(value + i). A port is the sum of what is provided to it.
+/// Value i of the port receives y(value + i). A port is the sum of all its provisions.
 struct Provision {
   int port = 0;
   int value = 0;
 };
 
-/// Where a function stands in a system.
+/// Arguments, shares and provisions of a function in a system.
 struct Connections {
   std::vector<Argument> arguments;
   std::vector<Share> shares;
   std::vector<Provision> provisions;
 };
 
-/// @throws DomainError where three rotation parameters are beyond 170 degrees, with the words of
-/// `place()`
+/// @throws DomainError if three rotation parameters are beyond 170 degrees; `place()`: their place
+/// in the message
 template <class T, class Place>
 void require_rotation(const T* parameters, const Place& place) {
   Vector3 theta;
@@ -72,10 +72,10 @@ void require_rotation(const T* parameters, const Place& place) {
     throw DomainError(place() + ": rotation beyond 170 degrees");
 }
 
-/// Whether tangents may be kept as long as the arguments are the same.
+/// Condition for keeping tangents while the arguments are the same.
 enum class Memory {
   none,          ///< the function depends on time as well
-  of_arguments,  ///< it depends on its arguments alone
+  of_arguments,  ///< the function depends on its arguments alone
 };
 
 }  // namespace samara::components

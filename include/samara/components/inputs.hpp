@@ -11,17 +11,17 @@ namespace samara::components {
 /// Inputs of a turbine beside its loads (docs/theory.md, section 10).
 template <class T>
 struct TurbineInputs {
-  std::vector<T> pitch;       ///< of each blade beside its own, toward feather [rad]; empty: none
-  std::vector<T> pitch_rate;  ///< [rad/s], as many
-  T generator_torque = T(0);  ///< against the turning, on a free generator [N m]
-  T yaw_torque = T(0);        ///< of the tower top on a free nacelle, about y3 [N m]
+  std::vector<T> pitch;  ///< pitch of each blade beside its own, toward feather [rad]; empty: none
+  std::vector<T> pitch_rate;  ///< [rad/s], same size
+  T generator_torque = T(0);  ///< torque on a free generator, against its rotation [N m]
+  T yaw_torque = T(0);        ///< torque of the tower top on a free nacelle, about y3 [N m]
   Vec3<T> top_force = Vec3<T>::Zero();      ///< on the tower top along n1 n2 n3 [N]
-  Vec3<T> base_velocity = Vec3<T>::Zero();  ///< of the tower's foot along n1 n2 n3 [m/s]
-  Vec3<T> base_turn = Vec3<T>::Zero();      ///< of the tower's foot about n1 n2 n3, small [rad]
-  Vec3<T> base_rate = Vec3<T>::Zero();      ///< of these angles [rad/s]
+  Vec3<T> base_velocity = Vec3<T>::Zero();  ///< velocity of the tower's foot along n1 n2 n3 [m/s]
+  Vec3<T> base_turn = Vec3<T>::Zero();  ///< small rotation of the tower's foot about n1 n2 n3 [rad]
+  Vec3<T> base_rate = Vec3<T>::Zero();  ///< rates of these angles [rad/s]
 
-  /// Components in the axes of the tower's foot, in their order (n3, n1, n2), of what has the
-  /// components `ground` in them where the foot is not turned.
+  /// Components in the axes of the tower's foot, in their order (n3, n1, n2), of a vector;
+  /// `ground`: its components in these axes when the foot is not turned.
   Vec3<T> at_foot(const Vec3<T>& ground) const {
     return math::turn_about<T>(Vector3::UnitX(), base_turn(2)).transpose() *
            (math::turn_about<T>(Vector3::UnitZ(), base_turn(1)).transpose() *

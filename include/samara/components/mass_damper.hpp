@@ -1,5 +1,5 @@
-// A tuned mass damper: a point mass on a beam or on the nacelle that moves along one or two axes of
-// what carries it, on springs, dampers and stops (docs/theory.md, section 3.4).
+// A tuned mass damper: a point mass on a beam or on the nacelle. It moves along one or two axes of
+// its carrier, on springs, dampers and stops (docs/theory.md, section 3.4).
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace samara::components {
 
-/// Where a mass damper is in a system. All that it refers to must live on.
+/// Data of a mass damper in a system. The objects it points to must outlive the component.
 struct MassDamperSetting {
   const model::Turbine* turbine = nullptr;
   const model::MassDamper* damper = nullptr;
-  const Beam* beam = nullptr;  ///< that carries it, or the nacelle
-  int shared_rank = 0;         ///< of elimination
+  const Beam* beam = nullptr;  ///< beam that carries the damper or the nacelle
+  int shared_rank = 0;         ///< elimination rank
 };
 
 class MassDamper final : public Stated<MassDamper> {
@@ -24,17 +24,17 @@ class MassDamper final : public Stated<MassDamper> {
   explicit MassDamper(const MassDamperSetting& setting);
 
   void place(Registry& registry) override;
-  /// `yaw`: first of the yaw's angle and speed.
+  /// `yaw`: first unknown of the yaw joint (angle, speed).
   void set_yaw(int yaw) { yaw_ = yaw; }
   void describe(Registry& registry) override;
   bool is_conservative() const override;
 
-  /// q of axis i; U follows.
+  /// Index of q of axis i; U follows.
   int first(std::size_t i) const { return first_ + 2 * static_cast<int>(i); }
   const model::MassDamperDefinition& definition() const { return setting_.damper->definition; }
-  /// "nacelle mass damper", "blade mass damper (2)" of a blade
+  /// "nacelle mass damper", or "blade mass damper (2)" for a damper of a blade
   system::Owner owner() const;
-  /// "fore-aft", of axis i
+  /// Direction of axis i, for example "fore-aft"
   std::string direction(std::size_t i) const;
 
   template <class System>
@@ -56,7 +56,7 @@ class MassDamper final : public Stated<MassDamper> {
   static constexpr int yaw_row = node_moment + 3;
   static constexpr int values = yaw_row + 1;
 
-  /// At the tower's end, whose balance is that of the bodies on it.
+  /// True at the tower's end, whose balance is the balance of the bodies on it.
   bool is_on_bodies() const { return setting_.damper->blade < 0 && setting_.damper->node < 0; }
   std::size_t axis_count() const { return definition().axes.size(); }
   int node() const;

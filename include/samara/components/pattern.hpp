@@ -1,5 +1,5 @@
-// Where the tangents of the functions that components state have entries: found once, at no state
-// in particular, by the same functions with a scalar that knows what it depends on.
+// Places where the tangents of the components' functions have entries. They are found once,
+// independent of the state, by the same functions with a scalar that records its dependences.
 #pragma once
 
 #include <cstdint>
@@ -14,27 +14,27 @@
 
 namespace samara::components {
 
-/// Dependence of the values of a port.
+/// An unknown or a rate on which the values of a port depend.
 struct PortColumn {
   int unknown = 0;
   bool is_rate = false;
   bool operator==(const PortColumn&) const = default;
 };
 
-/// Places of all entries of K and M, and the way of each function's derivatives to them.
+/// Places of all entries of K and M, and the map from the derivatives of each function to them.
 struct TangentPlan {
   static constexpr int most_port_values = 16;
 
-  /// Consecutive entries of up to three rows: columns of the derivatives, or of those of a port, to
-  /// columns of a block.
+  /// Consecutive entries of up to three rows: maps columns of the derivatives of a function or of a
+  /// port to columns of a block.
   struct Entries {
     int from = 0;
     int count = 0;
     bool is_rate = false;
-    int unknown = 0;         ///< of the first column
-    std::size_t offset = 0;  ///< of the first entry in the values of K or M
+    int unknown = 0;         ///< unknown of the first column
+    std::size_t offset = 0;  ///< offset of the first entry in the values of K or M
   };
-  /// Part of a share that goes through a port.
+  /// Part of a share that passes through a port.
   struct Carried {
     int argument = 0;  ///< first of the port's values
     int port = 0;
@@ -44,7 +44,7 @@ struct TangentPlan {
     std::vector<Entries> entries;
     std::vector<Carried> carried;
   };
-  /// The columns of a port that a function's arguments are.
+  /// Map from the arguments of a function to the columns of a port.
   struct ProvisionPlan {
     struct Direct {
       int argument = 0;
@@ -53,7 +53,8 @@ struct TangentPlan {
     struct Through {
       int argument = 0;
       int port = 0;
-      std::vector<int> columns;  ///< of each column of the port that the argument is
+      std::vector<int> columns;  ///< number in the target port of each column of the port that the
+                                 ///< argument belongs to
     };
     std::vector<Direct> direct;
     std::vector<Through> through;
@@ -63,7 +64,7 @@ struct TangentPlan {
     int values = 0;
     std::vector<SharePlan> shares;
     std::vector<ProvisionPlan> provisions;
-    bool is_idle = true;  ///< without derivatives and without provisions
+    bool is_idle = true;  ///< true without derivatives and without provisions
   };
   /// A constant entry of K.
   struct Constant {
@@ -82,12 +83,12 @@ struct TangentPlan {
 
 class Pattern {
  public:
-  /// `size`: of the system.
+  /// `size`: number of unknowns of the system.
   Pattern(int size, const std::vector<int>& port_sizes);
 
   static constexpr bool has_inputs = false;  ///< they are zero
   static double time() { return 0.0; }
-  /// Any number: 0 at time() is no reason to leave out what it multiplies.
+  /// A NaN: a value that is 0 at time() must not remove the entries that it multiplies.
   static double varying(double) { return std::numeric_limits<double>::quiet_NaN(); }
   template <class Place>
   static void require_rotation(int, const Place&) {}
@@ -103,21 +104,21 @@ class Pattern {
     end(connections, m, y.data());
   }
 
-  /// The plan of all functions that have been stated. `at_least`: blocks that it has, whatever
-  /// else; null: its own.
+  /// The plan of all functions that have been stated. `at_least`: the plan includes its blocks;
+  /// null: no further blocks.
   TangentPlan finish(const TangentPlan* at_least = nullptr);
 
  private:
   struct Port {
-    /// Constants; those that depend on unknowns are told by their columns.
+    /// Constants. Dependences on unknowns are in `columns`.
     std::vector<math::Dependence> values;
-    std::vector<std::set<int>> columns;  ///< of each value: places in the plan's columns
+    std::vector<std::set<int>> columns;  ///< numbers in the plan's columns, for each value
   };
   /// Meaning of an argument of the present function.
   struct Source {
     Argument::Kind kind = Argument::Kind::zeros;
     int first = 0;  ///< unknown, or port
-    int index = 0;  ///< of the port's value
+    int index = 0;  ///< index of the value in the port
     int start = 0;  ///< first argument of the port's values
   };
 
@@ -132,9 +133,9 @@ class Pattern {
 
   TangentPlan plan_;
   std::vector<Port> ports_;
-  std::vector<Source> sources_;  ///< of the present function
+  std::vector<Source> sources_;  ///< arguments of the present function
   std::vector<LinearShare> linear_;
-  std::vector<std::vector<Share>> shares_;  ///< of each call
+  std::vector<std::vector<Share>> shares_;  ///< shares of each call
 };
 
 }  // namespace samara::components

@@ -1,4 +1,4 @@
-// The pitch actuator of a blade: second order, its angle and rate are first-order states
+// The pitch actuator of a blade: a second-order law whose angle and rate are first-order states
 // (docs/theory.md, section 3.5).
 #pragma once
 
@@ -9,10 +9,10 @@ namespace samara::components {
 
 class PitchActuator final : public Stated<PitchActuator> {
  public:
-  /// Actuator of blade `k` from 0. The turbine, which has actuators, must outlive it.
+  /// Actuator of blade `k`, from 0. The turbine must have actuators and must outlive the component.
   PitchActuator(const model::Turbine& turbine, std::size_t k, int rank);
 
-  /// Port of one value: a controller's pitch beside that of the blade [rad].
+  /// Port of one value: pitch of a controller beside that of the blade [rad].
   int command_port() const { return command_port_; }
   /// Sets the port of angle and rate that the actuator adds to the blade's own pitch [rad, rad/s].
   void set_pitch(int port) { pitch_port_ = port; }

@@ -1,4 +1,4 @@
-// Where the unknowns of components stand in a system, and what they are.
+// Places and descriptions of the unknowns of the components in a system.
 #pragma once
 
 #include <map>
@@ -9,10 +9,10 @@
 
 namespace samara::components {
 
-/// A quantity that users ask for by name and that is an unknown.
+/// An unknown of the system as a quantity that users request by name.
 struct Channel {
   std::string name;
-  std::string unit;  ///< OpenFAST's
+  std::string unit;  ///< unit of OpenFAST
   std::string frame;
   std::string description;
   int unknown = 0;
@@ -30,31 +30,33 @@ struct Declarations {
   std::vector<system::Motion> motions;
   std::vector<Channel> channels;
   std::vector<int> port_sizes;
-  /// Unknowns that nothing describes: they fill blocks, and stay zero.
+  /// Unknowns without a description. They fill blocks and stay zero.
   std::vector<int> padding;
 };
 
-/// Components ask for their places twice: a registry that counts, and one that knows from it where
-/// each unknown stands. To that one they describe themselves when all have their places.
+/// Places of unknowns. Components request their places twice: from a registry that counts, and from
+/// one that then knows the place of each unknown. When all places are known they describe
+/// themselves to the second one.
 class Registry {
  public:
-  /// One that counts.
+  /// Creates a registry that counts.
   Registry() = default;
-  /// One that places what `counted` has counted.
+  /// Creates a registry that places the unknowns that `counted` has counted.
   static Registry placing(const Registry& counted);
 
-  /// First unknown of a block of its own. Blocks of a lower rank are eliminated first, those of one
-  /// rank in the order in which they are added.
+  /// First unknown of a new block. Blocks of a lower rank are eliminated first; blocks of one rank
+  /// are eliminated in the order in which they are added.
   int add_block(int rank);
-  /// First of `count` unknowns, at most a block, in one that others share.
+  /// First of `count` unknowns (at most a block) in a block that several components share.
   int add_shared(int rank, int count);
-  /// Number of a port of so many values.
+  /// Number of a new port with this number of values.
   int add_port(int values);
 
   void describe(int unknown, const system::Unknown& what, system::RowRole row);
-  /// Changes what is described: a position that nothing holds, whose row is a balance of loads.
+  /// Changes the description: a free position, whose row is a balance of loads.
   void set_free(int unknown);
-  /// A coordinate that only loads and inertia restore, and the row of the load that would hold it.
+  /// Adds a coordinate that only loads and inertia restore, and the row of the load that would hold
+  /// it.
   void add_free(const system::UnconstrainedCoordinate& free);
   void set_row(int unknown, system::RowRole row);
   void add(const system::EnergyGroup& group);
@@ -62,20 +64,20 @@ class Registry {
   void add(const system::MeshError& error);
   void add(const system::Motion& motion);
   void add(const Channel& channel);
-  /// The unknown becomes its negative where the rotor turns from one blade to the next.
+  /// The unknown changes its sign when the rotor turns from one blade to the next.
   void reverse(int unknown);
 
-  /// All that has been declared to one that places.
+  /// All declarations; for a registry that places.
   Declarations finish();
-  /// Symmetry of a rotor whose blades are alike: the unknowns of each go to the next one's. Below
-  /// two blades every unknown is its own image.
+  /// Symmetry of a rotor with equal blades: the unknowns of each blade are mapped to those of the
+  /// next one. With fewer than two blades every unknown is mapped to itself.
   system::RotorSymmetry symmetry(int blades) const;
 
  private:
   struct Rank {
     int start = 0;  ///< first unknown
     int blocks = 0;
-    int free_slots = 0;  ///< of the last block, where it is shared
+    int free_slots = 0;  ///< free slots of the last block, if it is shared
   };
 
   std::map<int, Rank> ranks_;

@@ -1,5 +1,5 @@
-// The residual of the functions that components state, at doubles, or at complex numbers to
-// differentiate by a complex step.
+// The residual of the components' functions, with real numbers, or with complex numbers for
+// derivatives by a complex step.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ namespace samara::components {
 template <class T>
 class Residual {
  public:
-  /// r(t, z, z_dot, u) into `r`, which must be zero; all vectors of one size. `port_sizes`: number
-  /// of values of each port.
+  /// Computes r(t, z, z_dot, u) into `r`, which must be zero. All vectors have the same size.
+  /// `port_sizes`: number of values of each port.
   Residual(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
            const TurbineInputs<T>& inputs, const std::vector<int>& port_sizes, std::vector<T>& r)
       : t_(t), z_(z), z_dot_(z_dot), inputs_(inputs), r_(r) {
@@ -26,17 +26,17 @@ class Residual {
 
   static constexpr bool has_inputs = true;
   double time() const { return t_; }
-  /// A number that changes with time.
+  /// Marks a number that changes with time.
   static double varying(double value) { return value; }
   const TurbineInputs<T>& inputs() const { return inputs_; }
 
-  /// @throws DomainError beyond 170 degrees, with the words of `place()`
+  /// @throws DomainError beyond 170 degrees; `place()`: the place in the message
   template <class Place>
   void require_rotation(int first, const Place& place) const {
     components::require_rotation(z_.data() + first, place);
   }
 
-  /// The sum of what has been provided to a port.
+  /// The sum of all provisions to a port.
   const Eigen::Matrix<T, Eigen::Dynamic, 1>& port(int number) const { return ports_[at(number)]; }
 
   void add(const std::vector<LinearShare>& shares) {
@@ -45,7 +45,7 @@ class Residual {
         r_[at(share.row + i)] += z_[at(share.column + i)] * share.weight;
   }
 
-  /// `function`: of n arguments, m values.
+  /// `function`: has n arguments and m values.
   template <int n, int m, class Function>
   void add(const Connections& connections, const Function& function, Memory = Memory::none) {
     const Eigen::Matrix<T, m, 1> y = function(gather<n>(connections));

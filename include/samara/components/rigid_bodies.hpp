@@ -17,30 +17,33 @@ namespace samara::components {
 struct BodiesSetting {
   const Beam* tower = nullptr;  ///< null: the bodies stand on the ground
   std::vector<const Beam*> blades;
-  int shared_rank = 0;  ///< of elimination
-  int hinge_rank = 0;   ///< behind that of the roots' reactions: of the hinges of blades
+  int shared_rank = 0;  ///< elimination rank
+  int hinge_rank = 0;   ///< rank of the hinges of blades, behind that of the roots' reactions
 };
 
-/// Motions and loads of the bodies beside their rows. They exist only where torque tables reach.
+/// Motions and loads of the bodies beside their rows. They exist only within the range of torque
+/// tables.
 template <class T>
 struct BodiesReport {
-  T azimuth;         ///< of S against the bearing [rad]
-  T yaw, teeter;     ///< angles [rad]
-  T yaw_rate;        ///< [rad/s]
-  T generator_rate;  ///< of the generator against the nacelle, in the sense of its turning [rad/s]
-  T generator_torque;        ///< of the nacelle on it, against its turning, without the brake [N m]
-  T brake_torque;            ///< the same way [N m]
-  T shaft_rate;              ///< of S against the nacelle [rad/s]
-  T teeter_rate;             ///< [rad/s]
-  Vec6<T> rotor_load;        ///< of the hub on the shaft at the teeter pin, in S [N, N m]
-  Vec6<T> top_load;          ///< of the nacelle on T at the tower top, in t1 t2 t3 [N, N m]
-  Vec3<T> top_acceleration;  ///< of T, in t1 t2 t3 [m/s^2]
-  std::vector<T> pitch;      ///< of each blade, without hinges and pitch links [rad]
+  T azimuth;           ///< azimuth of S relative to the bearing [rad]
+  T yaw, teeter;       ///< angles [rad]
+  T yaw_rate;          ///< [rad/s]
+  T generator_rate;    ///< speed of the generator relative to the nacelle, positive in its sense of
+                       ///< rotation [rad/s]
+  T generator_torque;  ///< torque of the nacelle on the generator against its rotation, without the
+                       ///< brake [N m]
+  T brake_torque;      ///< with the same sign [N m]
+  T shaft_rate;        ///< speed of S relative to the nacelle [rad/s]
+  T teeter_rate;       ///< [rad/s]
+  Vec6<T> rotor_load;  ///< load of the hub on the shaft at the teeter pin, in S [N, N m]
+  Vec6<T> top_load;    ///< load of the nacelle on T at the tower top, in t1 t2 t3 [N, N m]
+  Vec3<T> top_acceleration;  ///< acceleration of T, in t1 t2 t3 [m/s^2]
+  std::vector<T> pitch;      ///< pitch of each blade, without hinges and pitch links [rad]
 };
 
 class RigidBodies final : public Stated<RigidBodies> {
  public:
-  /// Turbine and beams must live on.
+  /// Turbine and beams must outlive the component.
   RigidBodies(const model::Turbine& turbine, const BodiesSetting& setting);
 
   void place(Registry& registry) override;
@@ -51,8 +54,8 @@ class RigidBodies final : public Stated<RigidBodies> {
   /// First of q_y, U1, q_h, U2, q_s, U_s, q_g, U_g.
   int joints() const { return joints_; }
   const std::vector<BladeRoot>& roots() const { return roots_; }
-  /// The integral of a controller, whose evolution row then holds the mean of the generator's
-  /// angle; -1: none.
+  /// Sets the integral of a controller. Its evolution row then fixes the mean of the generator's
+  /// angle. -1: no integral.
   void set_integral(int integral) { integral_ = integral; }
 
   template <class System>
@@ -102,7 +105,7 @@ class RigidBodies final : public Stated<RigidBodies> {
   BodiesSetting setting_;
   int joints_ = 0;
   int integral_ = -1;
-  int hub_port_ = 0;   ///< of the motion of the apex and the gravity there, in H
+  int hub_port_ = 0;   ///< motion of the apex and gravity there, in H
   int load_port_ = 0;  ///< sum of the root loads: force and moment about the apex, in H
   elements::RigidTree tree_;
   Connections chain_;

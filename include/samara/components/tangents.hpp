@@ -1,4 +1,4 @@
-// The tangents K = dr/dz and M = dr/dz_dot of the functions that components state, by automatic
+// The tangents K = dr/dz and M = dr/dz_dot of the components' functions, by automatic
 // differentiation, at zero inputs.
 #pragma once
 
@@ -16,22 +16,22 @@
 
 namespace samara::components {
 
-/// The workspace of a caller; the plan is shared.
+/// The workspace of one caller; several may share the plan.
 class Tangents {
  public:
   explicit Tangents(std::shared_ptr<const TangentPlan> plan);
 
-  /// Before the functions are stated at (t, z, z_dot), which must stay until they are. K and M are
-  /// those of the constant entries.
+  /// Called before the functions are stated at (t, z, z_dot). The vectors must stay valid until
+  /// then. Sets K and M to their constant entries.
   void start(double t, const std::vector<double>& z, const std::vector<double>& z_dot);
 
   BlockMatrix& K() { return K_; }
   const BlockMatrix& M() const { return M_; }
 
-  static constexpr bool has_inputs = false;  ///< they are zero
+  static constexpr bool has_inputs = false;  ///< inputs are zero
   double time() const { return t_; }
   static double varying(double value) { return value; }
-  /// @throws DomainError beyond 170 degrees, with the words of `place()`
+  /// @throws DomainError beyond 170 degrees; `place()`: the place in the message
   template <class Place>
   void require_rotation(int first, const Place& place) const {
     components::require_rotation(z_->data() + first, place);
@@ -44,7 +44,7 @@ class Tangents {
     const TangentPlan::Call& call = plan_->calls.at(next_);
     Derivatives& at = derivatives_[next_++];
     if (call.arguments != n || call.values != m)
-      throw InternalError("functions are stated in another order than before");
+      throw InternalError("the order of the functions differs from that of the plan");
     if (call.is_idle) return;
     gather(connections, n);
     if (memory == Memory::none ||
@@ -82,10 +82,10 @@ class Tangents {
 
   std::shared_ptr<const TangentPlan> plan_;
   BlockMatrix K_;
-  BlockMatrix M_;                         ///< of the same blocks
-  std::vector<Derivatives> derivatives_;  ///< of each call
+  BlockMatrix M_;                         ///< with the same blocks as K
+  std::vector<Derivatives> derivatives_;  ///< derivatives of each call
   std::vector<Port> ports_;
-  std::vector<double> arguments_;  ///< of the present function
+  std::vector<double> arguments_;  ///< arguments of the present function
   Eigen::Matrix<double, 3, Eigen::Dynamic> through_;
   std::size_t next_ = 0;  ///< call
   double t_ = 0.0;

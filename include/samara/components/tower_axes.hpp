@@ -1,4 +1,4 @@
-// The axes of the tower's end: a beam has them in the order (t3, t1, t2), bodies as t1 t2 t3.
+// The axes of the tower's end: t3, t1, t2 in the order of a beam, t1 t2 t3 for bodies.
 #pragma once
 
 #include "samara/math/types.hpp"

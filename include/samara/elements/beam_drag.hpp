@@ -1,12 +1,12 @@
-// Damping of a beam in proportion to its mass, by its motion against the rigid frame of its own
-// root (docs/theory.md, section 2.9).
+// Mass-proportional damping of a beam: it acts on the motion relative to the rigid frame of the
+// beam's own root (docs/theory.md, section 2.9).
 #pragma once
 
 #include "samara/elements/beam_point.hpp"
 
 namespace samara::elements {
 
-/// The motion of a root that stands on springs, in a; zero for a clamped one.
+/// Motion of a root on springs, in a; zero for a clamped root.
 template <class T>
 struct RootMotion {
   Vec3<T> u = Vec3<T>::Zero();
@@ -15,16 +15,16 @@ struct RootMotion {
   Vec3<T> theta_dot = Vec3<T>::Zero();
 };
 
-/// Force on a section per unit length, components in a, and its moment about the root. The root has
-/// the opposite of both.
+/// Force on a section per unit length, components in a, and its moment about the root. The opposite
+/// force and moment act on the root.
 template <class T>
 struct DragTerms {
   Vec3<T> force;
   Vec3<T> moment;
 };
 
-/// `drag`: C_ab diag(alpha m) C_ba [kg/(m s)], in the axes of the root; `root`: null where the root
-/// is clamped.
+/// `drag`: C_ab diag(alpha m) C_ba [kg/(m s)], in the axes of the root; `root`: null for a clamped
+/// root.
 template <class T>
 DragTerms<T> beam_drag_terms(const Vector3& x, const Matrix3& drag, const Vec3<T>& u,
                              const Vec3<T>& u_dot, const RootMotion<T>* root) {

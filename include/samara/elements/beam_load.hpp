@@ -6,7 +6,8 @@
 
 namespace samara::elements {
 
-/// Components in a of a force and a moment given in B, of a section turned by theta: R = C^T C_ab.
+/// Components in a of a force and a moment that are given in B, the basis of a section turned by
+/// theta: R = C^T C_ab.
 template <class T>
 Vec6<T> follower_load(const Vec3<T>& theta, const Matrix3& C_ab, const Vector6& load) {
   const Mat3<T> C = math::direction_cosines(theta);

@@ -2,11 +2,11 @@
 // (docs/theory.md, section 2; Lee, Hodges & Patil (2002), eq. (1)-(7)).
 //
 // Unknowns of a point, in order: u(3), theta(3) in the attachment basis a; V(3), Omega(3), F(3),
-// M(3) in the deformed section basis B. The residual of an element is a sum over its points, so all
-// of the element's mathematics is this one function of one point; the nodes only add.
+// M(3) in the deformed section basis B. The residual of an element is a sum over its points. This
+// function of one point contains all mechanics of the element; the nodes only add.
 //
-// theta counts from a rotation of the element's own, so that a beam can turn any way: valid for
-// |theta| below 180 degrees and any strain that the linear law (4) allows.
+// theta counts from a reference rotation of the element. A beam can therefore turn by any angle.
+// Valid for |theta| below 180 degrees and any strain that the linear law (4) allows.
 #pragma once
 
 #include "samara/math/rotation.hpp"
@@ -27,7 +27,7 @@ struct BeamPoint {
   Matrix3 drag = Matrix3::Zero();           ///< C_ab diag(alpha m) C_ba [kg/(m s)]
 };
 
-/// The motion of the attachment frame and the gravity seen in it (components in a).
+/// The motion of the attachment frame, and gravity (components in a).
 template <class T>
 struct Attachment {
   Vec3<T> v = Vec3<T>::Zero();        ///< velocity of the beam's origin [m/s]
@@ -36,8 +36,9 @@ struct Attachment {
 };
 
 /// Contribution of a point to the balances of its element, components in a except the kinematic
-/// rows. A node with test function N_a adds w_j { N_a' flux + L N_a load } of force and moment, and
-/// w_j { -N_a' u - L N_a stretch }, w_j { -N_a' theta - L N_a turn } of strain and curvature.
+/// rows. For a node with test function N_a the point adds w_j { N_a' flux + L N_a load } to force
+/// and moment, and w_j { -N_a' u - L N_a stretch }, w_j { -N_a' theta - L N_a turn } to strain and
+/// curvature.
 template <class T>
 struct PointTerms {
   Vec3<T> force_flux;   ///< R F
@@ -51,7 +52,7 @@ struct PointTerms {
 };
 
 /// The two kinematic rows of a point or of a beam's tip (the last two lines of the element).
-/// `turned`: the basis that theta turns.
+/// `turned`: undeformed section basis, turned by the reference.
 template <class T>
 void kinematic_rows(const Vector3& x, const Matrix3& turned, const Vec6<T>& position,
                     const Vec6<T>& position_dot, const Vec6<T>& velocity, const Attachment<T>& a,
@@ -81,7 +82,7 @@ Vec6<T> section_strain(const BeamPoint& point, const Vec6<T>& FM) {
   return strain;
 }
 
-/// PointTerms::turn alone.
+/// PointTerms::turn only.
 template <class T>
 Vec3<T> beam_point_turn(const BeamPoint& point, const Vec3<T>& theta, const Vec6<T>& FM) {
   const Matrix3 turned = point.reference * point.C_ab;

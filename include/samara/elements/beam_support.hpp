@@ -8,18 +8,19 @@
 
 namespace samara::elements {
 
-/// The root stands on a rigid body of its own (a node in the order of a Gauss point), and that on
-/// springs. Order of directions: u1 u2 u3 theta1 theta2 theta3, root axes a.
+/// Support of the root. The root stands on a rigid body of its own (a node with the unknowns of a
+/// Gauss point), and the body stands on springs. Order of directions: u1 u2 u3 theta1 theta2
+/// theta3, root axes a.
 struct RootSupport {
-  Matrix6 compliance = Matrix6::Zero();  ///< of the springs; zero rows and columns where rigid
-  std::array<bool, 6> free{};            ///< directions that nothing holds
+  Matrix6 compliance = Matrix6::Zero();  ///< springs; zero rows and columns where rigid
+  std::array<bool, 6> free{};            ///< directions without a spring
   Vector6 damping = Vector6::Zero();     ///< mu [s]: load = F_hat + mu F_hat_dot, where elastic
   Matrix6 added_mass = Matrix6::Zero();  ///< inertia without weight, axes of the body [kg, kg m^2]
 
   bool is_elastic(int i) const { return compliance(i, i) > 0.0; }
 };
 
-/// Springs at the free end, in root axes a; a rigid direction does not move.
+/// Springs at the free end, in root axes a. A rigid direction does not move.
 struct EndSupport {
   Matrix6 stiffness = Matrix6::Zero();
   std::array<bool, 6> rigid{};
@@ -29,13 +30,14 @@ struct EndSupport {
 
 template <class T>
 struct RootSupportTerms {
-  Vec6<T> law;   ///< position less compliance times elastic load; the load where nothing holds
-  Vec6<T> load;  ///< of the node on its springs, in a
-  Vec6<T> root;  ///< the same on what carries the springs, moment about the undeformed root
+  Vec6<T> law;   ///< position less compliance times elastic load; in free directions the load
+  Vec6<T> load;  ///< load of the node on its springs, in a
+  Vec6<T> root;  ///< load on the part that carries the springs; moment about the undeformed root
 };
 
-/// z: u, theta; V, Omega; F_hat and m_hat, the elastic loads that work on u and theta. The moment
-/// that works on a rotation is M with M . omega = m . theta_dot, M = Q^-1 m.
+/// z: u, theta; V, Omega; F_hat and m_hat, the elastic loads that are work-conjugate to u and
+/// theta. The moment M that is work-conjugate to a rotation follows from M . omega = m . theta_dot:
+/// M = Q^-1 m.
 template <class T>
 RootSupportTerms<T> root_support_terms(const RootSupport& support,
                                        const Eigen::Matrix<T, point_size, 1>& z,
@@ -58,7 +60,7 @@ RootSupportTerms<T> root_support_terms(const RootSupport& support,
   return terms;
 }
 
-/// Force and moment that change the momenta of the water around the body, in a (Kirchhoff's
+/// Force and moment from the change of the momenta of the water around the body, in a (Kirchhoff's
 /// equations).
 template <class T>
 Vec6<T> added_mass_load(const RootSupport& support, const Eigen::Matrix<T, point_size, 1>& z,
@@ -71,9 +73,9 @@ Vec6<T> added_mass_load(const RootSupport& support, const Eigen::Matrix<T, point
   return in_a;
 }
 
-/// Rows of the end, from its `balance` of forces and moments in a: where springs hold, the load
-/// that works on a position, Q M for moments, with that of the springs; in rigid directions the
-/// position. `reference`: parameters of the rotation from which theta counts.
+/// Rows of the end from its `balance` of forces and moments in a. Elastic directions: the balance,
+/// work-conjugate to the position (Q M for moments), plus the load of the springs. Rigid
+/// directions: the position. `reference`: parameters of the rotation from which theta counts.
 template <class T>
 Vec6<T> end_support_rows(const EndSupport& support, const Vector3& reference, const Vec6<T>& end,
                          const Vec6<T>& balance) {

@@ -1,9 +1,9 @@
-// How a joint moves whose angle is a given function of time.
+// Prescribed motion of a joint.
 #pragma once
 
 namespace samara::elements {
 
-/// At one instant; all zero where a joint is locked.
+/// Motion at one instant; all values are zero for a locked joint.
 struct JointMotion {
   double angle = 0.0;         ///< [rad]
   double rate = 0.0;          ///< [rad/s]

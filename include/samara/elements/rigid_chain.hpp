@@ -1,8 +1,8 @@
 // The rigid bodies between tower and blades (docs/theory.md, section 3; Lee, Hodges & Patil (2002),
 // eq. (8), (9)): tower top T, yaw q_y about t3, nacelle Y, tilted shaft bearing, low-speed end L of
-// the generator's gear turned by psi + q_g about s2, shaft S turned by q_s more (torsion), teeter
-// q_h about the hinge axis e of S and H, hub H. psi is the azimuth at constant speed. The generator
-// turns n times as fast as L against the nacelle, n its gear ratio.
+// the generator's gear turned by psi + q_g about s2, shaft S turned by q_s relative to L (torsion),
+// teeter q_h about the hinge axis e of S and H, hub H. psi is the azimuth at constant speed.
+// Relative to the nacelle the generator turns n times as fast as L; n is its gear ratio.
 //
 // Generalized speeds: U1 = omega_Y.y3, U2 = omega_H.e, U3..5 = omega_T in t1 t2 t3, U6..8 = v_T in
 // t1 t2 t3, U_g = omega_L.s2, U_s = omega_S.s2.
@@ -17,7 +17,7 @@ struct Hinge {
   bool free = false;
   double stiffness = 0.0;  ///< [N m/rad]
   double damping = 0.0;    ///< [N m s/rad]
-  /// Stops: a second spring and damper from this angle on, both ways; 0: none [rad].
+  /// Stops: a second spring and damper beyond this angle in both senses; 0: no stops [rad].
   double stop_angle = 0.0;
   double stop_stiffness = 0.0;  ///< [N m/rad]
   double stop_damping = 0.0;    ///< [N m s/rad]
@@ -26,11 +26,12 @@ struct Hinge {
 struct RigidChain {
   double gravity = 0.0;  ///< along -n3 [m/s^2]
   Hinge yaw;
-  Hinge generator;              ///< of L, about psi
-  TorqueLine generator_torque;  ///< against the turning, by the generator's speed in the nacelle
-  double brake_torque = 0.0;    ///< on the generator against its turning, whichever way [N m]
-  double gear_ratio = 1.0;      ///< n: turns of the generator for one of L, < 0 the other way
-  TorqueLine rotor_torque;      ///< on H along h2, by omega_H . h2
+  Hinge generator;              ///< angle of L beside psi
+  TorqueLine generator_torque;  ///< against the rotation, over the generator's speed relative to
+                                ///< the nacelle
+  double brake_torque = 0.0;    ///< on the generator, against its rotation in either sense [N m]
+  double gear_ratio = 1.0;  ///< n: generator revolutions per revolution of L; < 0: opposite sense
+  TorqueLine rotor_torque;  ///< on H along h2, over omega_H . h2
   Hinge torsion;
   Hinge teeter;
   RigidBody tower_top;                     ///< reference point: tower top; axes t1 t2 t3
@@ -44,14 +45,15 @@ struct RigidChain {
   double undersling = 0.0;                 ///< teeter pin to apex along h2 [m]
   Vector3 teeter_axis = Vector3::UnitX();  ///< e, fixed in S and in H
 
-  /// Speed of the generator for one of L, in the sense of its turning, whichever way that is.
+  /// Speed of the generator per speed of L, in the generator's own sense of rotation: |n|.
   double gear() const;
 };
 
 /// Nodes of the tree of a chain: its base is the tower top.
 enum ChainNode { yaw_node, generator_node, torsion_node, teeter_node, chain_nodes };
 
-/// The joints of a chain with the bodies behind them: nacelle, low-speed end, shaft and hub.
+/// The tree of joints of a chain, with the bodies behind them: nacelle, low-speed end, shaft and
+/// hub.
 RigidTree tree_of(const RigidChain& chain);
 
 }  // namespace samara::elements

@@ -1,12 +1,12 @@
 // Rigid bodies on joints by Kane's method (docs/theory.md, section 3; Lee, Hodges & Patil (2002),
 // eq. (8), (9)): a tree of joints, each with the body behind it, on a base whose motion is given.
 //
-// The generalized speed of a free joint is the angular velocity of the body behind it about its
-// axis, in the inertial frame. That makes the partial velocities so sparse that Kane's sums are one
-// walk inward: a joint passes on the moment without its component about its own axis, and that
-// component, with the joint's spring and damper, is the joint's row.
+// The generalized speed of a free joint is the angular velocity, in the inertial frame, of the body
+// behind it about the joint's axis. The partial velocities are therefore so sparse that Kane's sums
+// need only one walk inward. A joint passes on the moment without the component about its own axis.
+// That component, with the joint's spring and damper, is the row of the joint.
 //
-// The full nonlinear equations, at any angles.
+// The equations are fully nonlinear and hold at any angles.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@
 
 namespace samara::elements {
 
-/// A rigid body; its frame is that of the body it belongs to.
+/// A rigid body. Its components are in the frame of the body that it belongs to.
 struct RigidBody {
   double mass = 0.0;                  ///< [kg]
   Vector3 center = Vector3::Zero();   ///< from the body's reference point [m]
@@ -47,12 +47,12 @@ class TorqueFunction {
   TorqueFunction& operator=(const TorqueFunction&) = delete;
   virtual ~TorqueFunction() = default;
 
-  /// Along the axis, on what is behind the joint. At arguments that are no numbers a slope is zero
-  /// only where it is so at all angles and rates.
+  /// Torque along the axis on the body behind the joint. With NaN arguments a slope is zero only if
+  /// it is zero at all angles and rates.
   virtual JointTorque at(double angle, double rate) const = 0;
 };
 
-/// The torque of a law at a scalar of any kind, with its first derivatives.
+/// The torque of a law for any scalar type, with its first derivatives.
 template <class T>
 T torque_of(const TorqueFunction& law, const T& angle, const T& rate) {
   const double angle_value = math::plain_value(angle);
@@ -64,28 +64,28 @@ T torque_of(const TorqueFunction& law, const T& angle, const T& rate) {
   return sum;
 }
 
-/// A joint and the body behind it. Its point is the reference point of the body.
+/// A joint and the body behind it. The joint's point is the reference point of the body.
 struct TreeNode {
   int parent = -1;                     ///< node that carries it; -1: the base
-  Vector3 place = Vector3::Zero();     ///< of its point, in the parent's axes [m]
-  Matrix3 axes = Matrix3::Identity();  ///< at angle zero, as columns in the parent's
+  Vector3 place = Vector3::Zero();     ///< position of its point, in the parent's axes [m]
+  Matrix3 axes = Matrix3::Identity();  ///< axes at angle zero, as columns in the parent's axes
   Vector3 axis = Vector3::UnitX();     ///< in its own axes
   bool free = false;                   ///< false: it moves as prescribed
   double stiffness = 0.0;              ///< [N m/rad]
   double damping = 0.0;                ///< [N m s/rad]
-  std::vector<std::shared_ptr<const TorqueFunction>> laws;  ///< by its angle and rate
-  /// The parts behind are the same at all angles: their axes do not turn, and the joint behind,
-  /// about the same axis, turns by both angles.
+  std::vector<std::shared_ptr<const TorqueFunction>> laws;  ///< torques over its angle and rate
+  /// The parts behind are equal at all angles. Their axes do not turn; the next joint has the same
+  /// axis and turns by the sum of both angles.
   bool is_round = false;
-  /// A rotor about the same axis that turns `gear_ratio` times as fast against what carries the
-  /// joint. The moment of what is behind goes to what carries the joint as a whole: on its way
-  /// through the gear it changes only by the rotor's inertia.
+  /// A rotor about the same axis that turns `gear_ratio` times as fast relative to the carrier of
+  /// the joint. The whole moment of the parts behind goes to the carrier; on its way through the
+  /// gear only the inertia of the rotor changes it.
   bool is_geared = false;
   double gear_ratio = 1.0;
   double rotor_inertia = 0.0;  ///< [kg m^2]
   RigidBody body;
   Vector3 spin_axis = Vector3::UnitY();
-  /// On the body along `spin_axis`, by its angular velocity about it; null: none.
+  /// Torque on the body along `spin_axis`, over its angular velocity about it; null: none.
   std::shared_ptr<const TorqueFunction> spin_law;
 };
 
@@ -93,9 +93,9 @@ struct TreeNode {
 template <class T>
 struct JointState {
   T angle, speed, angle_dot, speed_dot;
-  T torque = T(0);              ///< on what is behind a free joint, beside its laws [N m]
-  JointMotion prescribed = {};  ///< of a joint that is not free
-  JointMotion carried = {};     ///< a motion that its own adds to
+  T torque = T(0);              ///< on the body behind a free joint, beside its laws [N m]
+  JointMotion prescribed = {};  ///< motion of a joint that is not free
+  JointMotion carried = {};     ///< further motion, to which the joint's own motion adds
 };
 
 /// Velocity and acceleration of a frame and of a point of it, and gravity, components in the frame.
@@ -112,23 +112,22 @@ struct Wrench {
 
 template <class T>
 struct JointRows {
-  T kinematic;  ///< q_dot - (U - speed it is carried with); of a joint that is not free U - that
-                ///< speed - the prescribed rate
+  T kinematic;  ///< q_dot - (U - carried speed); not free: U - carried speed - prescribed rate
   T balance;    ///< Kane's row of U [N m]; unused where not free
-  T position;   ///< q - the prescribed angle, of a joint that is not free
+  T position;   ///< q - prescribed angle; only if not free
 };
 
-/// Result of a walk at a node.
+/// Result of a walk for one node.
 template <class T>
 struct NodeResult {
   JointRows<T> rows;
-  FrameMotion<T> motion;  ///< of the body, at the joint's point
-  FrameMotion<T> inner;   ///< of what carries it, in the same axes
+  FrameMotion<T> motion;  ///< motion of the body, at the joint's point
+  FrameMotion<T> inner;   ///< motion of the carrier, in the same axes
   Mat3<T> turn;           ///< components in its axes from those in its axes at angle zero
-  T angle;                ///< by which its axes have turned, or would have
-  T rate;                 ///< of the body against what carries it
-  T held;                 ///< of a geared joint: torque on the rotor against its turning [N m]
-  Wrench<T> passed;  ///< on what carries it, about the joint's point, in the axes at angle zero
+  T angle;                ///< angle of its axes (round joint: the angle that they would have)
+  T rate;                 ///< rate of the body relative to its carrier
+  T held;                 ///< geared joint: torque on the rotor against its rotation [N m]
+  Wrench<T> passed;  ///< load on the carrier, about the joint's point, in the axes at angle zero
 };
 
 class RigidTree {
@@ -141,7 +140,7 @@ class RigidTree {
   template <class T>
   using Results = std::array<NodeResult<T>, most_nodes>;
 
-  /// Returns its number. Parents come first.
+  /// Adds a node and returns its number. Parents must be added first.
   int add(const TreeNode& node) {
     const bool is_behind_round = node.parent >= 0 && this->node(node.parent).is_round;
     if (size() == most_nodes || node.parent >= size() || (node.is_round && !node.body.is_none()) ||
@@ -153,12 +152,13 @@ class RigidTree {
   int size() const { return static_cast<int>(nodes_.size()); }
   const TreeNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
-  /// Motions from the base outward.
+  /// Walks from the base outward: computes the motions.
   template <class T>
   void walk_outward(const FrameMotion<T>& base, const States<T>& states, Results<T>& results) const;
 
-  /// Loads and inertia inward: the rows, and the load of all bodies with the base's own, about the
-  /// base's point. `loads`: on each body from outside, about its joint's point.
+  /// Walks inward with loads and inertia: computes the rows. Returns the load of all bodies,
+  /// including the base's own, about the base's point. `loads`: external load on each body, about
+  /// its joint's point.
   template <class T>
   Wrench<T> walk_inward(const FrameMotion<T>& base, const States<T>& states, const Loads<T>& loads,
                         Results<T>& results) const;
@@ -172,13 +172,13 @@ class RigidTree {
 
 namespace detail {
 
-/// Components change from v to C v.
+/// Changes components from v to C v.
 template <class T>
 FrameMotion<T> seen_from(const Mat3<T>& C, const FrameMotion<T>& m) {
   return {C * m.omega, C * m.alpha, C * m.v, C * m.a, C * m.gravity};
 }
 
-/// The motion of the point at `r` of the same frame.
+/// The motion of another point of the same frame, at `r`.
 template <class T>
 FrameMotion<T> moved_to(const Vec3<T>& r, const FrameMotion<T>& m) {
   const Vec3<T> swept = math::cross(m.omega, r);
@@ -187,8 +187,8 @@ FrameMotion<T> moved_to(const Vec3<T>& r, const FrameMotion<T>& m) {
   return {m.omega, m.alpha, m.v + swept, m.a + turning + centripetal, m.gravity};
 }
 
-/// Part of a vector across a unit vector. If that is a base vector, the component along it is an
-/// exact zero without derivatives.
+/// Part of a vector normal to a unit vector. If the unit vector is a base vector, the component
+/// along it is an exact zero without derivatives.
 template <class T>
 Vec3<T> across(const Vec3<T>& axis, const Vec3<T>& v) {
   Mat3<T> projection;
@@ -197,8 +197,8 @@ Vec3<T> across(const Vec3<T>& axis, const Vec3<T>& v) {
   return projection * v;
 }
 
-/// The frame behind a joint that turns with the given relative rate, and its rate. `inner` is the
-/// motion of the joint's point, in the axes of what is behind.
+/// The frame behind a joint that turns with a given relative rate and acceleration. `inner`: motion
+/// of the joint's point, in the axes of the part behind.
 template <class T>
 FrameMotion<T> with_relative_rate(const Vec3<T>& axis, double rate, double acceleration,
                                   const FrameMotion<T>& inner) {
@@ -224,7 +224,8 @@ FrameMotion<T> with_outer_speed(const Vec3<T>& axis, const T& speed, const T& sp
   return outer;
 }
 
-/// R - m a and T - I alpha - omega x I omega of a body, about the reference point of `m`.
+/// Active and inertia loads R - m a and T - I alpha - omega x I omega of a body, about the
+/// reference point of `m`.
 template <class T>
 Wrench<T> active_and_inertia(const RigidBody& body, const FrameMotion<T>& m) {
   const Vec3<T> center = body.center.cast<T>();
@@ -238,8 +239,9 @@ Wrench<T> active_and_inertia(const RigidBody& body, const FrameMotion<T>& m) {
   return w;
 }
 
-/// The rotor's momentum J w along the axis, w = omega_inner + n times the joint's rate: the joint's
-/// row knows n times the torque that turns it, what carries it the whole rate of change.
+/// Adds the rotor's momentum J w along the axis, w = omega_inner + n times the joint's rate. The
+/// joint's row receives n times the torque that accelerates the rotor; the carrier receives the
+/// whole rate of change of the momentum.
 template <class T>
 void add_rotor(const TreeNode& node, const Vec3<T>& axis, NodeResult<T>& result, Wrench<T>& w) {
   using math::dot;
@@ -322,7 +324,7 @@ Wrench<T> RigidTree::walk_inward(const FrameMotion<T>& base, const States<T>& st
       if (!node.is_geared) w.moment = (detail::across<T>(axis, w.moment) - axis * torque).eval();
     }
     if (node.is_geared) detail::add_rotor(node, axis, result, w);
-    // At the joint's point of what carries it, in its axes.
+    // Load at the joint's point of the carrier, in the carrier's axes.
     result.passed = w;
     if (!node.is_round) {
       result.passed.force = result.turn.transpose() * w.force;

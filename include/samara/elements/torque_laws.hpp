@@ -9,7 +9,7 @@
 
 namespace samara::elements {
 
-/// Torque of a rotor's torque line, by the angular velocity of its hub.
+/// Torque of a rotor's torque line, over the angular velocity of its hub.
 class SpinTorque final : public TorqueFunction {
  public:
   explicit SpinTorque(TorqueLine line) : line_(std::move(line)) {}
@@ -22,7 +22,8 @@ class SpinTorque final : public TorqueFunction {
   TorqueLine line_;
 };
 
-/// Torque of a torque line against the rotation behind a gear, `gear` times as fast as the joint.
+/// Torque of a torque line against the rotation behind a gear, which is `gear` times as fast as the
+/// joint.
 class GearedTorque final : public TorqueFunction {
  public:
   GearedTorque(TorqueLine line, double gear) : line_(std::move(line)), gear_(gear) {}
@@ -36,11 +37,11 @@ class GearedTorque final : public TorqueFunction {
   double gear_;
 };
 
-/// Torque of a brake, against the rotation in either sense: below `brake_speed` it falls, to zero
-/// at rest.
+/// Torque of a brake, against the rotation in either sense. Below `brake_speed` it falls to zero at
+/// rest.
 class BrakeTorque final : public TorqueFunction {
  public:
-  static constexpr double brake_speed = 1e-2;  ///< of the joint [rad/s]
+  static constexpr double brake_speed = 1e-2;  ///< joint rate [rad/s]
 
   explicit BrakeTorque(double torque) : torque_(torque) {}
   JointTorque at(double, double rate) const override {

@@ -1,4 +1,4 @@
-// A torque that depends on a speed: a straight line, or a table of them.
+// A torque that depends on a speed: a straight line or a table.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,20 @@
 namespace samara::elements {
 
 struct TorqueLine {
-  double torque = 0.0;                           ///< at `speed` [N m]
-  double slope = 0.0;                            ///< by the speed [N m s/rad]
-  double speed = 0.0;                            ///< [rad/s]
-  std::vector<std::pair<double, double>> table;  ///< rising speed, torque; empty: the line
+  double torque = 0.0;  ///< torque at `speed` [N m]
+  double slope = 0.0;   ///< derivative with respect to the speed [N m s/rad]
+  double speed = 0.0;   ///< [rad/s]
+  std::vector<std::pair<double, double>> table;  ///< speed (ascending), torque; empty: the line
 
   bool is_zero() const { return torque == 0.0 && slope == 0.0 && table.empty(); }
 
-  /// @throws DomainError where the table does not reach to a speed
+  /// @throws DomainError if a speed is outside the table
   void require(double at_speed) const {
     if (table.empty() || (at_speed >= table.front().first && at_speed <= table.back().first))
       return;
     std::ostringstream text;
     text << "a torque table reaches from " << table.front().first << " to " << table.back().first
-         << " rad/s, the speed is " << at_speed << " rad/s; hint: more entries";
+         << " rad/s, but the speed is " << at_speed << " rad/s; hint: add entries";
     throw DomainError(text.str());
   }
 
@@ -34,9 +34,9 @@ struct TorqueLine {
     double slope = 0.0;
   };
 
-  /// Torque and slope at a speed; where that is an entry of the table, the mean of both slopes. A
-  /// table goes on beyond its ends, for the iterates of a solver on their way. At no number the
-  /// slope of a line is its own, of a table no number.
+  /// Torque and slope at a speed. At an inner entry of the table the slope is the mean of both
+  /// sides. The table is extrapolated beyond its ends, for the iterates of a solver. For a NaN
+  /// speed a line has its own slope and a table has a NaN slope.
   Value at(double at_speed) const {
     if (table.empty()) return {(at_speed - speed) * slope + torque, slope};
     if (at_speed != at_speed)

@@ -1,5 +1,5 @@
-// Small vibrations of a beam that is clamped at its root and carries nothing but its own masses:
-// what modal damping ratios are stated for (docs/theory.md, section 2.8).
+// Small vibrations of a beam that is clamped at its root and carries only its own masses. Modal
+// damping ratios refer to these vibrations (docs/theory.md, section 2.8).
 #pragma once
 
 #include <optional>
@@ -12,23 +12,23 @@ namespace samara::model {
 
 struct BeamMode {
   double frequency = 0.0;           ///< without damping [rad/s]
-  Vector6 share = Vector6::Zero();  ///< of the strain energy, by strain component
-  int direction = 0;                ///< with the largest share, in the order of ModalDamping
+  Vector6 share = Vector6::Zero();  ///< shares of the strain energy by strain component
+  int direction = 0;  ///< direction with the largest share, in the order of ModalDamping
 
   /// The damping ratio that mu [s] per strain component gives, to first order in it.
   double damping_ratio(const Vector6& mu) const { return 0.5 * frequency * mu.dot(share); }
 };
 
-/// All modes with the strains of the beam's points as coordinates, by rising frequency. Modes of
-/// one frequency (round beams) are separated by direction.
+/// All modes, with the strains of the beam's points as coordinates, by ascending frequency. Modes
+/// with equal frequencies (round beams) are separated by direction.
 std::vector<BeamMode> compute_beam_modes(const Beam& beam);
 
-/// The first and the second mode of each direction, as far as they exist.
+/// The first and the second mode of each direction, if they exist.
 std::array<std::vector<BeamMode>, 3> first_modes(const Beam& beam);
 
-/// mu per strain component with which the first mode of each direction has its ratio; a direction
-/// without ratio gets none. The mu of a bending is also that of its shear.
-/// @throws InputError where a direction has no mode, or no mu >= 0 gives these ratios.
+/// mu per strain component for which the first mode of each direction has its damping ratio; zero
+/// for a direction without a ratio. The mu of a bending strain is also the mu of its shear strain.
+/// @throws InputError if a direction has no mode, or if no mu >= 0 gives these ratios.
 Vector6 fit_damping(const Beam& beam, const ModalDamping& ratios);
 
 }  // namespace samara::model

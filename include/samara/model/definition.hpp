@@ -1,5 +1,5 @@
-// The turbine as its user states it: plain data, SI and radians, before any discretization.
-// Axes and signs are those of docs/case_file.md.
+// The turbine as defined by the user: plain data in SI and radians, before any discretization. Axes
+// and signs are those of docs/case_file.md.
 #pragma once
 
 #include <array>
@@ -48,11 +48,11 @@ struct PointMassDefinition {
 struct SupportDefinition {
   Matrix6 stiffness = Matrix6::Zero();  ///< [N/m, N, N m]; rigid and free rows, columns are 0
   std::array<bool, 6> rigid{true, true, true, true, true, true};  ///< directions that cannot move
-  std::array<bool, 6> free{};                                     ///< directions that nothing holds
-  double mass = 0.0;                  ///< of a rigid body between springs and beam [kg]
+  std::array<bool, 6> free{};                                     ///< directions without restraint
+  double mass = 0.0;                  ///< mass of a rigid body between springs and beam [kg]
   Vector3 center = Vector3::Zero();   ///< from the root, root axes [m]
   Vector3 inertia = Vector3::Zero();  ///< about its own centre, root axes [kg m^2]
-  /// Inertia without weight of the water around that body, along and about its axes [kg, kg m^2].
+  /// Inertia without weight of the water around this body, along and about its axes [kg, kg m^2].
   Vector6 added_mass = Vector6::Zero();
   Vector6 damping = Vector6::Zero();  ///< mu [s] of the springs, by direction
 
@@ -62,51 +62,50 @@ struct SupportDefinition {
   bool operator==(const SupportDefinition&) const = default;
 };
 
-/// Nothing at all.
+/// An end without support.
 SupportDefinition free_end();
 
 /// Damping ratios of a clamped beam's first modes: bending about b2, about b3, torsion.
 using ModalDamping = std::array<std::optional<double>, 3>;
 
 struct BeamDefinition {
-  double length = 0.0;                      ///< arc length [m], > 0
-  std::vector<Vector3> reference_line;      ///< points in axes a [m]; empty = straight along b1
-  int elements = 4;                         ///< >= 1, evenly spaced in arc length but for the
-                                            ///< ends that point masses draw to them
-  int order = 1;                            ///< Gauss points an element, 1 to 6
+  double length = 0.0;                  ///< arc length [m], > 0
+  std::vector<Vector3> reference_line;  ///< points in axes a [m]; empty = straight along b1
+  int elements = 4;  ///< >= 1, of equal arc length; point masses move the nearest ends
+  int order = 1;     ///< Gauss points an element, 1 to 6
   std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
-  Vector6 damping = Vector6::Zero();        ///< mu [s] per strain component; of `modal_damping`
-                                            ///< where that is given and this is zero
-  Vector3 mass_damping = Vector3::Zero();   ///< alpha [1/s] along b1, b2, b3 of the sections
-  ModalDamping modal_damping{};             ///< from which mu is found
-  double tip_mass = 0.0;                    ///< [kg], >= 0
+  Vector6 damping = Vector6::Zero();  ///< mu [s] per strain component; fitted if this is zero and
+                                      ///< modal_damping is given
+  Vector3 mass_damping = Vector3::Zero();         ///< alpha [1/s] along b1, b2, b3 of the sections
+  ModalDamping modal_damping{};                   ///< damping ratios that mu is fitted to
+  double tip_mass = 0.0;                          ///< [kg], >= 0
   std::vector<PointMassDefinition> point_masses;  ///< sorted by `at`
-  SupportDefinition support;                      ///< of the root
-  SupportDefinition end_support = free_end();     ///< of the end, without a mass
+  SupportDefinition support;                      ///< support of the root
+  SupportDefinition end_support = free_end();     ///< support of the end, without a mass
 
   bool operator==(const BeamDefinition&) const = default;
 };
 
-/// locked: at zero; prescribed: its angle is a given function of time.
+/// locked: at zero; prescribed: the angle is a given function of time.
 enum class JointKind { free, locked, prescribed };
 
 /// angle + amplitude cos(frequency t + phase).
 struct PrescribedMotion {
   double angle = 0.0;      ///< mean [rad]
   double amplitude = 0.0;  ///< [rad]
-  int per_rev = 0;         ///< the frequency as a multiple of the rotor speed; 0: `frequency` holds
+  int per_rev = 0;         ///< frequency as a multiple of the rotor speed; 0: `frequency` applies
   double frequency = 0.0;  ///< [rad/s]
   double phase = 0.0;      ///< [rad]
 
   bool is_constant() const { return amplitude == 0.0; }
 
-  /// At time t [s] where the rotor turns with `rotor_speed` [rad/s].
+  /// Motion at time t [s] at the given `rotor_speed` [rad/s].
   elements::JointMotion at(double t, double rotor_speed) const;
 
   bool operator==(const PrescribedMotion&) const = default;
 };
 
-/// A second spring and damper from an angle on, both ways.
+/// A second spring and damper beyond an angle, in both senses.
 struct StopDefinition {
   double angle = 0.0;      ///< [rad]; 0: no stops
   double stiffness = 0.0;  ///< [N m/rad]
@@ -119,25 +118,25 @@ struct JointDefinition {
   JointKind kind = JointKind::locked;
   double stiffness = 0.0;        ///< [N m/rad]
   double damping = 0.0;          ///< [N m s/rad]
-  PrescribedMotion motion = {};  ///< of a prescribed joint
+  PrescribedMotion motion = {};  ///< motion of a prescribed joint
 
   bool operator==(const JointDefinition&) const = default;
 };
 
-/// A torque over a speed: by its value and slope at the mean speed, or a table.
+/// A torque over a speed: value and slope at the mean speed, or a table.
 struct TorqueLaw {
   double torque = 0.0;                           ///< [N m]
   double slope = 0.0;                            ///< [N m s/rad]
-  std::vector<std::pair<double, double>> table;  ///< rising speed [rad/s], torque; empty: above
+  std::vector<std::pair<double, double>> table;  ///< ascending speed [rad/s], torque; empty: above
 
-  /// Whether a table reaches to a speed.
+  /// True if a table covers a speed.
   bool covers(double speed) const {
     return table.empty() || (speed >= table.front().first && speed <= table.back().first);
   }
-  /// Torque and slope at a speed; of a table linear between its entries, the slope at an entry the
-  /// mean of both sides. At rest a table that does not reach to 0 gives nothing.
+  /// Torque and slope at a speed. A table is linear between its entries; at an entry the slope is
+  /// the mean of both sides. At rest a table that does not cover speed 0 gives no torque.
   elements::TorqueLine at(double speed) const;
-  /// The whole law of a rotor with this mean speed; nothing where the table does not reach to it.
+  /// The whole law of a rotor with this mean speed; zero if the table does not cover it.
   elements::TorqueLine line_at(double mean_speed) const {
     if (!covers(mean_speed)) return {};
     return {torque, slope, mean_speed, table};
@@ -147,10 +146,9 @@ struct TorqueLaw {
 };
 
 struct GeneratorDefinition {
-  JointKind kind =
-      JointKind::locked;  ///< locked: the shaft turns at `speed`; free: its angle varies
-  double inertia = 0.0;   ///< about its own axis [kg m^2]
-  TorqueLaw law;          ///< against its turning, by its own speed
+  JointKind kind = JointKind::locked;  ///< locked: the shaft has `speed`; free: its angle varies
+  double inertia = 0.0;                ///< about its own axis [kg m^2]
+  TorqueLaw law;                       ///< torque against its rotation, over its own speed
 
   bool operator==(const GeneratorDefinition&) const = default;
 };
@@ -169,7 +167,7 @@ struct ShaftDefinition {
   double overhang = 0.0;            ///< yaw axis to teeter pin or apex, along s2 [m]
   double tilt = 0.0;                ///< > 0 raises the downwind end [rad]
   double height = 0.0;              ///< tower top to shaft axis along y3 [m]
-  double azimuth = 0.0;             ///< of blade 1 at t = 0 [rad]
+  double azimuth = 0.0;             ///< azimuth of blade 1 at t = 0 [rad]
   double mass = 0.0;                ///< [kg]
   double center_of_mass = 0.0;      ///< along s2 from the yaw axis [m]
   double inertia_axial = 0.0;       ///< [kg m^2]
@@ -177,11 +175,12 @@ struct ShaftDefinition {
   JointDefinition torsion;          ///< between generator and rotor
   GeneratorDefinition generator;
   double gear_ratio =
-      1.0;          ///< turns of the generator for one of the shaft, < 0 the other way; not 0
-  TorqueLaw rotor;  ///< on the hub about h2
-  double rotor_pitch_slope = 0.0;  ///< that torque by the mean pitch of the blades [N m/rad]
+      1.0;  ///< revolutions of the generator per shaft revolution; < 0: opposite sense; not 0
+  TorqueLaw rotor;                 ///< torque on the hub about h2
+  double rotor_pitch_slope = 0.0;  ///< that torque per mean pitch of the blades [N m/rad]
 
-  /// Mean speed of the generator against the nacelle, in the sense of its turning [rad/s].
+  /// Mean speed of the generator relative to the nacelle, positive in its sense of rotation
+  /// [rad/s].
   double generator_speed() const { return std::abs(gear_ratio) * speed; }
 
   bool operator==(const ShaftDefinition&) const = default;
@@ -211,15 +210,15 @@ struct HubDefinition {
   bool operator==(const HubDefinition&) const = default;
 };
 
-/// How a hinge turns what is outboard of it: flap downwind, lag against the rotor's turning, pitch
-/// toward feather.
+/// Positive rotation of the part outboard of a hinge: flap downwind, lag against the rotor's
+/// rotation, pitch toward feather.
 enum class HingeAxis { flap, lag, pitch };
 
 /// A hinge of a blade's root.
 struct HingeDefinition {
   HingeAxis axis = HingeAxis::flap;
   double offset = 0.0;  ///< along b1 from the shaft axis, or from the hinge inboard of it [m], >= 0
-  JointDefinition joint;  ///< a motion by `per_rev` is that of blade 1, others follow by azimuth
+  JointDefinition joint;  ///< a motion by `per_rev` is that of blade 1; others follow by azimuth
   /// Skew of a flap hinge: its axis is turned, so that flapping by a small angle beta pitches the
   /// blade by -tan(delta3) beta [rad].
   double delta3 = 0.0;
@@ -229,10 +228,10 @@ struct HingeDefinition {
 
 /// Pitch that follows its command as a second-order system.
 struct PitchActuatorDefinition {
-  double frequency = 0.0;      ///< undamped natural one [rad/s], > 0
+  double frequency = 0.0;      ///< undamped natural frequency [rad/s], > 0
   double damping_ratio = 0.0;  ///< > 0
   double rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s], > 0
-  double lowest = -std::numeric_limits<double>::infinity();     ///< of the pitch [rad]
+  double lowest = -std::numeric_limits<double>::infinity();     ///< limit of the pitch [rad]
   double highest = std::numeric_limits<double>::infinity();
 
   bool operator==(const PitchActuatorDefinition&) const = default;
@@ -260,7 +259,7 @@ struct BladesDefinition {
   int count = 1;
   double precone = 0.0;  ///< > 0 moves the tips toward +s2 [rad]
   double pitch = 0.0;    ///< > 0 toward feather [rad], at a pitch hinge, or at the root
-  std::vector<HingeDefinition> hinges;  ///< from the hub outward, one of each axis at the most
+  std::vector<HingeDefinition> hinges;  ///< from the hub outward, at most one of each axis
   std::optional<PitchActuatorDefinition> actuator;
   /// Pitch by -tan(pitch_link) times the flap angle: the geometry of a pitch link [rad].
   double pitch_link = 0.0;
@@ -270,12 +269,12 @@ struct BladesDefinition {
   bool operator==(const BladesDefinition&) const = default;
 };
 
-/// A spring and a damper between a mass and what carries it, along an axis of that.
+/// A spring and a damper between a mass and its carrier, along an axis of the carrier.
 struct MassDamperAxis {
-  int axis = 0;                 ///< 0 to 2: b1 b2 b3 of the section, or y1 y2 y3
-  double stiffness = 0.0;       ///< [N/m]
-  double damping = 0.0;         ///< [N s/m]
-  double stop = 0.0;            ///< displacement from which the stop holds, both ways [m]; 0: none
+  int axis = 0;            ///< 0 to 2: b1 b2 b3 of the section, or y1 y2 y3
+  double stiffness = 0.0;  ///< [N/m]
+  double damping = 0.0;    ///< [N s/m]
+  double stop = 0.0;       ///< displacement from which the stop acts, in both senses [m]; 0: none
   double stop_stiffness = 0.0;  ///< [N/m]
   double stop_damping = 0.0;    ///< [N s/m]
 
@@ -286,28 +285,28 @@ struct MassDamperAxis {
 struct MassDamperDefinition {
   enum class Carrier { tower, nacelle, blade };
   Carrier carrier = Carrier::nacelle;
-  int blade = 0;                       ///< from 1; 0: each of them has one
+  int blade = 0;                       ///< from 1; 0: one damper on each blade
   double at = 1.0;                     ///< fraction of the beam's length, above 0, to 1
-  Vector3 position = Vector3::Zero();  ///< of the mass where its springs are at rest, from the line
-                                       ///< in the section's axes, or the tower top in y1 y2 y3 [m]
+  Vector3 position = Vector3::Zero();  ///< mass at rest: from the line in the section's axes, or
+                                       ///< from the tower top in y1 y2 y3 [m]
   double mass = 0.0;                   ///< [kg], > 0
-  std::vector<MassDamperAxis> axes;    ///< one or two, each another
+  std::vector<MassDamperAxis> axes;    ///< one axis or two different ones
 
   bool operator==(const MassDamperDefinition&) const = default;
 };
 
-/// How a load changes with time: mean + amplitude cos(frequency t + phase), or a table.
+/// Variation of a load with time: mean + amplitude cos(frequency t + phase), or a table.
 struct LoadVariation {
   double mean = 1.0;
   double amplitude = 0.0;
-  int per_rev = 0;         ///< the frequency as a multiple of the rotor speed; 0: `frequency` holds
+  int per_rev = 0;         ///< frequency as a multiple of the rotor speed; 0: `frequency` applies
   double frequency = 0.0;  ///< [rad/s]
   double phase = 0.0;      ///< [rad]
   std::vector<std::pair<double, double>> table;  ///< t [s], factor; empty: the cosine
 
   bool is_constant() const { return amplitude == 0.0 && table.empty(); }
 
-  /// The factor at time t [s] where the rotor turns with `rotor_speed` [rad/s].
+  /// The factor at time t [s] at the given `rotor_speed` [rad/s].
   double factor(double t, double rotor_speed) const;
 
   bool operator==(const LoadVariation&) const = default;
@@ -316,12 +315,12 @@ struct LoadVariation {
 /// A prescribed load on a beam: at a point (from = to), or uniform along a part of it.
 struct LoadDefinition {
   bool on_tower = false;
-  int blade = 0;      ///< from 1; 0: all of them
+  int blade = 0;      ///< from 1; 0: all blades
   double from = 1.0;  ///< fraction of the arc length
   double to = 1.0;
-  Vector3 force = Vector3::Zero();   ///< [N], or [N/m] where from < to
+  Vector3 force = Vector3::Zero();   ///< [N], or [N/m] if from < to
   Vector3 moment = Vector3::Zero();  ///< [N m], or [N m/m]
-  bool follower = false;  ///< components in the deformed section; else in the axes of the root
+  bool follower = false;  ///< components in the deformed section; false: in the axes of the root
   LoadVariation variation;
 
   bool operator==(const LoadDefinition&) const = default;
@@ -329,19 +328,19 @@ struct LoadDefinition {
 
 /// Gains on the speed error and its integral.
 struct ControlLoop {
-  double proportional = 0.0;  ///< torque [N m s/rad] or pitch [s] by the speed error
-  double integral = 0.0;      ///< [N m/rad] or [1] by its integral
+  double proportional = 0.0;  ///< torque [N m s/rad] or pitch [s] per speed error
+  double integral = 0.0;      ///< torque [N m/rad] or pitch [1] per integral of the speed error
 
   bool operator==(const ControlLoop&) const = default;
 };
 
-/// Controller of the generator's speed; all values count on the generator's side of the gear.
+/// Controller of the generator's speed. All values are on the generator's side of the gear.
 struct ControllerDefinition {
   double filter = 0.0;  ///< corner of the first-order filter of the measured speed [rad/s], > 0
   std::optional<double> set_point;    ///< [rad/s]; none: the generator's mean speed
-  std::optional<ControlLoop> torque;  ///< against its turning
-  std::optional<ControlLoop> pitch;   ///< of all blades, toward feather
-  /// The gains of the pitch are divided by 1 + pitch/schedule [rad]; 0: they are constant.
+  std::optional<ControlLoop> torque;  ///< torque against the rotation
+  std::optional<ControlLoop> pitch;   ///< pitch of all blades, toward feather
+  /// The gains of the pitch are divided by 1 + pitch/schedule [rad]; 0: constant gains.
   double schedule = 0.0;
 
   bool has_integral() const {
@@ -370,26 +369,26 @@ struct TurbineDefinition {
   bool operator==(const TurbineDefinition&) const = default;
 };
 
-/// Returns what is wrong with a support, or an empty string: springs that are not symmetric, finite
-/// and positive definite.
+/// Returns the fault of a support, or an empty string. The springs must be symmetric, finite and
+/// positive definite.
 std::string find_support_fault(const SupportDefinition& support);
 
-/// Interpolates the section at `fraction` (0 to 1) of the length: stiffness, mass and twist are
-/// linear between stations, constant outside the first and the last.
+/// Interpolates the section at `fraction` (0 to 1) of the length. Stiffness, mass and twist are
+/// linear between stations and constant before the first and after the last one.
 SectionDefinition interpolate_section(const BeamDefinition& beam, double fraction);
 
-/// Returns what is wrong with a section, or an empty string: stiffness not symmetric, not finite or
-/// not positive definite on its elastic strains; mass not symmetric, not finite or not positive
+/// Returns the fault of a section, or an empty string. Faults: stiffness not symmetric, not finite
+/// or not positive definite on its elastic strains; mass not symmetric, not finite or not positive
 /// semi-definite, no mass per length, or a massless direction that an elastic strain can move.
 std::string find_section_fault(const SectionDefinition& section);
 
-/// Adds what follows from the rest: point masses in order along their beams, matrices without what
-/// print leaves of asymmetry, mu of damping ratios, the controller's set point. Returns faults:
-/// ratios that no mu >= 0 gives.
+/// Completes a definition: sorts point masses along their beams, makes matrices exactly symmetric,
+/// finds mu from damping ratios and the controller's set point. Returns faults: ratios that no mu
+/// >= 0 gives.
 std::vector<Fault> complete(TurbineDefinition& definition);
 
-/// Arc length [m] of the natural cubic spline through the points of a reference line, its parameter
-/// the chord length. 0 for fewer than two points, nan where two neighbours coincide.
+/// Arc length [m] of the natural cubic spline through the points of a reference line, with the
+/// chord length as its parameter. 0 for fewer than two points; nan if two neighbours coincide.
 double compute_arc_length(const std::vector<Vector3>& reference_line);
 
 }  // namespace samara::model

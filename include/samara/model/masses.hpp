@@ -1,5 +1,5 @@
-// Masses, centres and inertias of a turbine as its case states them, integrated over the beams by
-// Gauss quadrature from station to station (exact for properties that are linear between them).
+// Masses, centres and inertias of a turbine from its definition. Beams are integrated by Gauss
+// quadrature from station to station (exact for properties that are linear between stations).
 #pragma once
 
 #include <vector>
@@ -16,7 +16,8 @@ struct MassProperties {
   Matrix3 inertia = Matrix3::Zero();  ///< [kg m^2]
 
   Vector3 center() const { return mass > 0.0 ? Vector3(moment / mass) : Vector3::Zero(); }
-  /// In the axes that C maps to, about a point from which the origin is at r (in those axes).
+  /// The same in the axes that C maps to, about a point from which the origin is at r (in those
+  /// axes).
   MassProperties placed(const Matrix3& C, const Vector3& r) const;
   MassProperties& operator+=(const MassProperties& other);
 };
@@ -28,8 +29,8 @@ struct Masses {
   MassProperties hub;                  ///< h1 h2 h3, about the teeter pin
   std::vector<MassProperties> blades;  ///< b1 b2 b3 of the root, about the root
   MassProperties rotor;                ///< hub and blades, h1 h2 h3, about the teeter pin
-  MassProperties meshed_rotor;         ///< the same, each element's mass at its Gauss points
-  MassProperties whole;                ///< n1 n2 n3, about the foot, at rest
+  MassProperties meshed_rotor;  ///< the same, with the masses of elements at their Gauss points
+  MassProperties whole;         ///< n1 n2 n3, about the foot, at rest
 };
 
 Masses compute_masses(const TurbineDefinition& definition, const Turbine& turbine);

@@ -1,4 +1,4 @@
-// Actions on a turbine in time beside its steady operation.
+// Prescribed variations in time beside the steady operation of a turbine.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@
 namespace samara::model {
 
 struct Operation {
-  /// Turned by the generator since t = 0, its speed and acceleration; none: at constant speed.
+  /// Rotation of the generator since t = 0, its speed and acceleration; none: constant speed.
   std::optional<math::IntegratedCurve> turning;
-  /// Pitch of each blade [rad] instead of the definition's; empty, or none: constant.
+  /// Pitch of each blade [rad] instead of the definition's value; empty or none: constant.
   std::vector<std::optional<math::TimeCurve>> pitch;
-  /// Angle [rad] of a prescribed joint instead of the definition's.
+  /// Angle [rad] of a prescribed joint instead of the definition's motion.
   std::optional<math::TimeCurve> yaw;
   std::optional<math::TimeCurve> teeter;
-  /// The generator is lost: the controller gives no torque.
+  /// The generator has failed: the controller gives no torque.
   bool generator_off = false;
 };
 

@@ -1,4 +1,4 @@
-// Where a beam runs before it deforms: straight along b1 or a spline, by arc length.
+// Reference line of an undeformed beam: straight along b1, or a spline over arc length.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,14 @@ class ReferenceLine {
  public:
   struct Station {
     Vector3 x = Vector3::Zero();         ///< components in a [m]
-    Matrix3 C_ab = Matrix3::Identity();  ///< section basis: a turned the shortest way onto the
-                                         ///< tangent, then by the twist about it
+    Matrix3 C_ab = Matrix3::Identity();  ///< section basis: shortest rotation of a onto the
+                                         ///< tangent, then twist about it
   };
 
-  /// @throws InputError where the line turns back against b1 of its root.
+  /// @throws InputError if the line turns back against b1 of its root.
   ReferenceLine(const std::string& name, const BeamDefinition& definition);
 
-  /// At a fraction of the length, with a twist [rad] toward feather.
+  /// Station at a fraction of the length, with a twist [rad] toward feather.
   Station at(double fraction, double twist = 0.0) const;
 
  private:

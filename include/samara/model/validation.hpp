@@ -8,10 +8,10 @@
 
 namespace samara::model {
 
-/// All faults, fields by the keys of a case file (docs/case_file.md).
+/// All faults; fields are keys of a case file (docs/case_file.md).
 std::vector<Fault> find_faults(const TurbineDefinition& turbine);
 
-/// Values that are no fault, but have no effect.
+/// Values without effect that are not faults.
 std::vector<Fault> find_notes(const TurbineDefinition& turbine);
 
 }  // namespace samara::model

@@ -1,4 +1,4 @@
-// All that a run is made of: the turbine, what happens to it, and what is asked of the analyses.
+// Input of a run: the turbine, its operation and the options of the analyses.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,24 @@
 
 namespace samara::simulation {
 
-/// From where a transient starts.
+/// Initial state of a transient.
 enum class TransientOrigin {
   trim,        ///< on the periodic steady state
   undeformed,  ///< without strains, in its prescribed motion
-  result,      ///< where another run ended, or on its steady state
+  result,      ///< the end of another run, or its steady state
 };
 
-/// A transient. Without a duration none is asked for.
+/// A transient. Without a duration there is none.
 struct TransientSetup {
   analysis::TransientOptions options;
   double checkpoint = 60.0;  ///< time between checkpoints [s]; 0: none
   TransientOrigin start = TransientOrigin::trim;
-  std::string start_path;             ///< of the result that it starts from
-  long output_steps = 1;              ///< between rows of the time series
-  std::vector<std::string> channels;  ///< empty: all but those of stations
+  std::string start_path;             ///< path of the result that it starts from
+  long output_steps = 1;              ///< steps between rows of the time series
+  std::vector<std::string> channels;  ///< empty: all channels except those of stations
   turbine::ChannelStations stations;
-  std::optional<math::TimeCurve> speed;   ///< of the generator [rad/s]
-  std::optional<math::TimeCurve> pitch;   ///< of all blades [rad]
+  std::optional<math::TimeCurve> speed;   ///< speed of the generator [rad/s]
+  std::optional<math::TimeCurve> pitch;   ///< pitch of all blades [rad]
   std::optional<math::TimeCurve> yaw;     ///< [rad]
   std::optional<math::TimeCurve> teeter;  ///< [rad]
   std::vector<turbine::TurbineEvent> events;
@@ -39,12 +39,12 @@ struct TransientSetup {
 struct LinearizeSetup {
   linear::LinearizeOptions options;
   std::vector<std::string> inputs;   ///< empty: all
-  std::vector<std::string> outputs;  ///< channels; empty: all but those of stations
+  std::vector<std::string> outputs;  ///< channels; empty: all channels except those of stations
   turbine::ChannelStations stations;
-  std::string mat_path;  ///< of a MAT-file with the same matrices; empty: none is wanted
+  std::string mat_path;  ///< path of a MAT-file with the same matrices; empty: none
 };
 
-/// Fields are named by the keys of a case file (docs/case_file.md) in messages.
+/// The input of all analyses. Messages name fields by the keys of a case file (docs/case_file.md).
 struct Scenario {
   model::TurbineDefinition turbine;
   analysis::TrimOptions trim;
@@ -54,14 +54,14 @@ struct Scenario {
   LinearizeSetup linearize;
 };
 
-/// The highest harmonic of the rotor speed among loads and prescribed motions: a trim of fewer
-/// cannot follow them.
+/// The highest harmonic of the rotor speed among loads and prescribed motions. A trim with fewer
+/// harmonics cannot follow them.
 int highest_harmonic(const model::TurbineDefinition& turbine);
 
-/// The trim's options with what the turbine asks of them.
+/// The trim's options, with the harmonics that the turbine requires.
 analysis::TrimOptions trim_options(const Scenario& scenario);
 
-/// The turbine with the motions that the transient prescribes in time.
+/// The turbine with the prescribed motions of the transient.
 /// @throws InputError as model::build_turbine
 model::Turbine build_operated_turbine(const Scenario& scenario);
 

@@ -1,4 +1,4 @@
-// The keys of the analyses, and with them all keys of a case.
+// The keys of the analyses, and the list of all keys of a case.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace samara::simulation {
 
-/// All keys of a case but its version.
+/// All keys of a case except its version.
 void declare(fields::Visitor& fields, Scenario& scenario);
 
-/// Numbers of turbine and analyses that are out of their range.
+/// Faults of numbers of the turbine and the analyses that are out of their range.
 std::vector<Fault> find_range_faults(const Scenario& scenario);
 
 }  // namespace samara::simulation

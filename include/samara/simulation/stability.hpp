@@ -1,4 +1,4 @@
-// The verdict on stability: which modes are known well enough to count, and what they do.
+// The verdict on stability: modes that are known well enough to count, and their growth or decay.
 #pragma once
 
 #include <cstddef>
@@ -12,54 +12,54 @@ namespace samara::simulation {
 
 enum class Motion { rigid_body, undamped, growing, decaying };
 
-/// Stability of a mode by its exponent; rates below their error, and exponents below
+/// Motion of a mode by its exponent. Rates below their error, and exponents below
 /// analysis::zero_exponent, count as zero.
 Motion motion_of(const analysis::Mode& mode, double rotor_speed);
 
-/// Estimated errors of an exponent, relative to its modulus, beyond which a mode is marked, and
-/// beyond which it counts for no verdict.
+/// Limits of the estimated error of an exponent, relative to its modulus: above the first a mode is
+/// marked; above the second it does not count for a verdict.
 inline constexpr double marked_error = 0.01;
 inline constexpr double largest_error = 0.1;
 
-/// Whether too little is known of a mode to say whether it grows.
+/// True if the error of a mode is too large for the mode to count.
 bool is_rough(const analysis::Mode& mode);
 
 enum class Stability {
   stable,    ///< all modes decay
-  neutral,   ///< no mode grows, one or more neither grow nor decay by more than the error
+  neutral,   ///< no mode grows; one or more neither grow nor decay by more than the error
   unstable,  ///< a mode grows
-  unknown,   ///< there is no verdict: `StabilityAssessment::reason`
+  unknown,   ///< there is no verdict: `StabilityAssessment::doubt`
 };
 
-/// Why there is no verdict.
+/// Reason why there is no verdict.
 enum class Doubt {
   none,
   unresolved,     ///< the slowest modes are not all resolved
-  growing_alone,  ///< a mode of a conservative system grows and none decays with it: the mesh
+  growing_alone,  ///< a mode of a conservative system grows, none decays with it: error of the mesh
   rough,          ///< all modes have too large an error
 };
 
-/// Modes are given by their place in ModeSet::modes.
+/// Modes are given by their index in ModeSet::modes.
 struct StabilityAssessment {
   Stability stability = Stability::unknown;
   Doubt doubt = Doubt::none;
-  std::vector<Motion> motions;             ///< one a mode
-  std::vector<std::size_t> growing;        ///< the fastest growth first
-  std::vector<std::size_t> growing_alone;  ///< what the mesh makes of a conservative system
+  std::vector<Motion> motions;             ///< one per mode
+  std::vector<std::size_t> growing;        ///< fastest growth first
+  std::vector<std::size_t> growing_alone;  ///< in a conservative system: error of the mesh
   std::vector<std::size_t> decaying;
-  std::optional<std::size_t> least_damped;  ///< of those that decay
+  std::optional<std::size_t> least_damped;  ///< the least damped of the decaying modes
   int undamped = 0;
   int rigid_body = 0;
   int rough = 0;       ///< resolved by the step, with an error above `largest_error`
-  int unresolved = 0;  ///< left out
-  /// All modes below are resolved, but for those that are deflated [rad/s].
+  int unresolved = 0;  ///< not resolved, not counted
+  /// All modes below this are resolved, except those that are deflated [rad/s].
   double reach = std::numeric_limits<double>::infinity();
-  /// Those below have errors below `marked_error` [rad/s].
+  /// Modes below this have errors below `marked_error` [rad/s].
   double accurate_reach = std::numeric_limits<double>::infinity();
 };
 
-/// Only modes that are resolved and whose errors are small count. A verdict is given where the ten
-/// slowest modes are known, or all.
+/// Only resolved modes with small errors count. A verdict is given if the ten slowest modes, or all
+/// modes, are known.
 StabilityAssessment assess_stability(const analysis::ModeSet& set);
 
 }  // namespace samara::simulation

@@ -1,4 +1,4 @@
-// The periodic steady state of a scenario, and how accurate it is.
+// The periodic steady state of a scenario, and its accuracy.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace samara::simulation {
 
-/// As analysis::find_trim; `system`: of the scenario's turbine.
-/// @throws ConvergenceError as that; one that names the limit where a controller needs a pitch
-/// beyond the limits of its actuators
+/// Like analysis::find_trim; `system`: of the scenario's turbine.
+/// @throws ConvergenceError like find_trim; with the limit in the message if a controller needs a
+/// pitch beyond the limits of its actuators
 analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                           const analysis::TrimOptions& options, analysis::Observer& observer);
 
-/// The same with the scenario's options. Notes where the result is rough.
+/// The same with the scenario's options. Adds a note if the result is rough.
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                          analysis::Observer& observer);
 
-/// Note on a rough steady state, with the way to a better one; empty where it is not rough.
+/// Note on a rough steady state, with the way to a better one; empty if it is not rough.
 std::string roughness(const analysis::Trim& trim);
 
-/// Notes the same where there is something to note. `source`: where the steady state comes from.
+/// Passes this note to the observer. `source`: origin of the steady state.
 void note_roughness(const analysis::Trim& trim, analysis::Observer& observer,
                     const std::string& source = "trim");
 

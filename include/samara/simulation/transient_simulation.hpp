@@ -1,6 +1,6 @@
-// The time series of a scenario: its start, its events, its channels, and how it goes on.
+// The time series of a scenario: its start, events and channels, and its continuation.
 //
-// From event to event the turbine is the same, and the steps are those of
+// Between two events the turbine does not change, and the steps are those of
 // analysis::run_transient. A simulation is serial: every rank computes the same.
 #pragma once
 
@@ -19,19 +19,19 @@
 
 namespace samara::simulation {
 
-/// Time of an event that did not come yet.
+/// Time of an event that has not occurred.
 inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
 
-/// From where a simulation goes on.
+/// State from which a simulation continues.
 struct TransientState {
   analysis::TransientStart point;
-  std::vector<double> events;      ///< when each one of the scenario came [s], or `never`
-  double azimuth = 0.0;            ///< of blade 1 at t = 0 [rad]
+  std::vector<double> events;      ///< time of each event of the scenario [s], or `never`
+  double azimuth = 0.0;            ///< azimuth of blade 1 at t = 0 [rad]
   double brake_torque = 0.0;       ///< from t = 0 on [N m]
   bool is_generator_lost = false;  ///< from t = 0 on
 };
 
-/// Takes what a simulation gives, while it runs.
+/// Receives the output of a simulation while it runs.
 class TransientOutput : public analysis::Observer {
  public:
   /// Values of the channels, in their units, every `output_steps` steps.
@@ -39,13 +39,13 @@ class TransientOutput : public analysis::Observer {
     (void)t;
     (void)values;
   }
-  /// From `state` another simulation goes on as this one does.
+  /// Receives a checkpoint: from `state` another simulation continues like this one.
   virtual void checkpoint(const TransientState& state) { (void)state; }
-  /// After each step: false ends the simulation there.
+  /// Called after each step; false ends the simulation.
   virtual bool goes_on() { return true; }
 };
 
-/// The values of a channel, over the rows.
+/// Statistics of the values of a channel over the rows.
 struct ChannelRange {
   double least = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();
@@ -61,16 +61,17 @@ struct TransientSummary {
   analysis::TransientRun run;
   double began = 0.0;  ///< [s]
   TransientState end;
-  std::vector<ChannelRange> ranges;  ///< one for each channel
+  std::vector<ChannelRange> ranges;  ///< one per channel
 };
 
-/// The channels that the setup asks for; those of its events must exist, too. @throws InputError
+/// The requested channels of the setup. The channels of its events must also exist. @throws
+/// InputError
 std::vector<turbine::Channel> find_channels(const TransientSetup& transient,
                                             const turbine::TurbineSystem& system);
 
 class TransientSimulation {
  public:
-  /// @throws InputError where the turbine cannot be built, or has no such channel
+  /// @throws InputError if the turbine cannot be built, or has no such channel
   explicit TransientSimulation(Scenario scenario);
   ~TransientSimulation();
   TransientSimulation(TransientSimulation&&) noexcept;
@@ -80,23 +81,23 @@ class TransientSimulation {
   const std::vector<turbine::Channel>& channels() const { return channels_; }
   /// System of the turbine at t = 0 of the scenario, before any event.
   const turbine::TurbineSystem& system() const { return *system_; }
-  /// The turbine as it is at the start: at its azimuth, with what events before did to it.
+  /// The turbine at the start: at its azimuth, with the effects of earlier events.
   const model::Turbine& turbine() const { return turbine_; }
   const TransientState& state() const { return state_; }
 
-  /// Starts on the steady state or undeformed, as the scenario says.
-  /// @throws InputError where a prescribed motion does not begin on the steady state
+  /// Starts on the steady state or undeformed, as the scenario specifies.
+  /// @throws InputError if a prescribed motion does not begin on the steady state
   void start(analysis::Observer& observer);
 
-  /// Goes on with the simulation of `before` where `state` is a checkpoint of it.
-  /// @throws InputError where the scenario has other steps or events
+  /// Continues the simulation of `before` from its checkpoint `state`.
+  /// @throws InputError if the scenario has other steps or events
   void restart(const Scenario& before, TransientState state);
 
-  /// Starts at the end of the simulation of `before`, which is t = 0 here. Effects of events on the
-  /// drive train remain.
+  /// Starts at the end of the simulation of `before`; this is t = 0 of the new time series. Effects
+  /// of events on the drive train remain.
   /// A generator with another law, or one that counts as such (`is_new_law`), gives the torque of
   /// the law only: the torque that held the mean speed before is removed.
-  /// @throws InputError where motions do not go on from there
+  /// @throws InputError if motions do not continue from there
   void start_after(const Scenario& before, const TransientState& end, analysis::Observer& observer,
                    bool is_new_law = false);
 

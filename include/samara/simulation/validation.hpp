@@ -1,4 +1,4 @@
-// Faults of a scenario, for the analysis that it is meant for.
+// Faults of a scenario for the analysis that it is used for.
 #pragma once
 
 #include <string>
@@ -11,14 +11,15 @@ namespace samara::simulation {
 
 enum class Analysis { check, statics, modes, trim, floquet, transient, linearize };
 
-/// All faults: those of the turbine (model::find_faults) and what the analysis cannot take of it.
+/// All faults: faults of the turbine (model::find_faults) and settings that the analysis does not
+/// accept.
 std::vector<Fault> validate(const Scenario& scenario, Analysis analysis);
 
-/// Notes about a scenario without faults: kinks of prescribed motions, few steps a revolution.
+/// Notes about a scenario without faults: kinks of prescribed motions, few steps per revolution.
 std::vector<std::string> transient_notes(const Scenario& scenario);
 
-/// Steps a cycle with which a motion is followed well: the midpoint rule errs by 0.8 % in
-/// frequency, BDF2 by 3 %.
+/// Steps per cycle that follow a motion well: the error in frequency is 0.8 % for the midpoint rule
+/// and 3 % for BDF2.
 inline constexpr double steps_a_cycle = 20.0;
 
 }  // namespace samara::simulation

@@ -1,5 +1,5 @@
-// Inputs and outputs of a periodic system, as an analysis sees them
-// (docs/theory.md, section 10): r(t, z, z_dot, u, u_dot) = 0, y = y(t, z, z_dot, u).
+// Inputs and outputs of a periodic system for analyses (docs/theory.md, section 10):
+// r(t, z, z_dot, u, u_dot) = 0, y = y(t, z, z_dot, u).
 #pragma once
 
 #include <string>
@@ -17,15 +17,15 @@ struct Signal {
   std::string unit;
   std::string frame;
   std::string description;
-  std::string family;  ///< what the same signal of every blade is called; empty: of no blade
+  std::string family;  ///< common name of this signal of all blades; empty: not of a blade
   int blade = 0;       ///< from 1; 0 = no blade
-  /// An input that moves something: it acts with its value, its rate and its acceleration.
+  /// A prescribed motion as an input: it acts with its value, its rate and its acceleration.
   bool is_motion = false;
 };
 
 struct InputTangents {
   Eigen::MatrixXd by_value;  ///< dr/du, size x inputs
-  Eigen::MatrixXd by_rate;   ///< dr/du_dot, not zero only where an input is a motion
+  Eigen::MatrixXd by_rate;   ///< dr/du_dot, nonzero only for inputs that are motions
 };
 
 struct OutputTangents {
@@ -44,7 +44,7 @@ class InputOutput {
   virtual const std::vector<Signal>& inputs() const = 0;
   virtual const std::vector<Signal>& outputs() const = 0;
 
-  /// At a state where all inputs are zero. Inputs stand in no constraint row. Serial.
+  /// At a state where all inputs are zero. No constraint row contains inputs. Serial.
   virtual InputTangents input_tangents(double t, Vec z, Vec z_dot) const = 0;
   virtual OutputTangents output_tangents(double t, Vec z, Vec z_dot) const = 0;
   /// y at a state where all inputs are zero.

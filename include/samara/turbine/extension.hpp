@@ -9,8 +9,8 @@
 
 namespace samara::turbine {
 
-/// Makes a component of one's own, as often as equations are made of the turbine: of each leg of a
-/// transient, of each rank. It stands in `model::TurbineDefinition::extensions`.
+/// Makes an added component. It is called each time that equations are made of the turbine: for
+/// each leg of a transient and on each rank. Member of `model::TurbineDefinition::extensions`.
 class Extension {
  public:
   Extension() = default;
@@ -18,16 +18,16 @@ class Extension {
   Extension& operator=(const Extension&) = delete;
   virtual ~Extension() = default;
 
-  /// `turbine` and `layout` live as long as the component; the layout is known from describe() on.
+  /// `turbine` and `layout` outlive the component. The layout is complete from describe() on.
   virtual std::unique_ptr<components::Component> make(const model::Turbine& turbine,
                                                       const TurbineLayout& layout) const = 0;
 
-  /// Whether the turbine repeats itself as a blade comes to the place of the next one: where all
-  /// blades have the same of it, or where it does not turn with the rotor.
+  /// True if the turbine repeats when each blade moves to the place of the next one: all blades
+  /// have equal components, or the component does not rotate.
   virtual bool keeps_rotor_symmetry() const = 0;
 };
 
-/// For the unknowns of extensions: eliminated behind all others (Registry::add_shared).
+/// Rank for the unknowns of extensions: eliminated after all others (Registry::add_shared).
 inline constexpr int extension_rank = 3;
 
 }  // namespace samara::turbine

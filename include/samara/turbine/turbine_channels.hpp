@@ -1,7 +1,7 @@
 // Output channels of a turbine's state: motions and loads by the channel names of OpenFAST, in its
-// units and frames (docs/channels.md). Loads are those of the outer body on the inner one: of the
-// blade on the hub, of the rotor on the shaft, of the nacelle on the tower, of the tower on the
-// ground. Root and tower loads are unknowns of the formulation, not differences.
+// units and frames (docs/channels.md). A load is the load of the outer body on the inner one: blade
+// on hub, rotor on shaft, nacelle on tower, tower on ground. Root and tower loads are unknowns of
+// the formulation, not differences.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ namespace samara::turbine {
 
 struct Channel {
   std::string name;
-  std::string unit;   ///< OpenFAST's: kN, kN-m, m, deg, rpm
+  std::string unit;   ///< unit of OpenFAST: kN, kN-m, m, deg, rpm
   std::string frame;  ///< "blade root, pitched"
   std::string description;
 };
@@ -27,40 +27,41 @@ struct ChannelStations {
   std::vector<double> tower;  ///< 1, 2, ... of TwHt1MLxt
 };
 
-/// Where a channel's value stands among the quantities of a turbine, and its factor from SI.
+/// Place of a channel's value among the quantities of a turbine, and its factor from SI.
 struct ChannelPick {
   int slot = 0;
   double factor = 1.0;
-  int unknown = -1;  ///< that it is; -1: it is the quantity in the slot
+  int unknown = -1;  ///< the unknown that is the value; -1: the value is the quantity in the slot
 };
 
 class ChannelCatalogue;
 
 class TurbineChannels {
  public:
-  /// `names` empty: all but those of the stations. `system` must live on.
-  /// @throws InputError where a name is not one of this turbine's, with the nearest one
+  /// `names` empty: all channels except those of the stations. `system` must outlive the object.
+  /// @throws InputError for a name that this turbine does not have; the message has the nearest
+  /// name
   TurbineChannels(const TurbineSystem& system, const ChannelStations& stations,
                   const std::vector<std::string>& names);
 
   const std::vector<Channel>& channels() const { return channels_; }
 
-  /// All that this turbine has, in the order of the documentation.
+  /// All channels of this turbine, in the order of the documentation.
   static std::vector<Channel> available(const TurbineSystem& system,
                                         const ChannelStations& stations);
 
   /// Values in the units of the channels, at a state where the equations hold.
   void evaluate(double t, Vec z, Vec z_dot, std::span<double> values) const;
 
-  /// The same of plain arrays, under inputs; T: double, or std::complex<double> to differentiate.
+  /// The same for plain arrays, under inputs. T: double, or std::complex<double> to differentiate.
   template <class T>
   void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot, std::span<T> values,
                 const TurbineInputs<T>& inputs = {}) const;
 
  private:
-  /// A station that is asked for.
+  /// A requested station.
   struct Section {
-    int beam = 0;  ///< of TurbineEquations::beams()
+    int beam = 0;  ///< index in TurbineEquations::beams()
     int slot = 0;
     std::vector<std::pair<int, double>> place;  ///< Gauss points and their factors
   };

@@ -1,4 +1,5 @@
-// The equations of a whole turbine: its components in their places, and what is made of them.
+// The equations of a whole turbine: its components with their places, the residual and the
+// tangents.
 #pragma once
 
 #include <complex>
@@ -22,7 +23,7 @@ using TurbineInputs = components::TurbineInputs<T>;
 
 class TurbineEquations {
  public:
-  /// `at_least`: blocks that the plan has, whatever else; null: its own.
+  /// `at_least`: the plan includes its blocks; null: no further blocks.
   explicit TurbineEquations(const model::Turbine& turbine,
                             const components::TangentPlan* at_least = nullptr);
   ~TurbineEquations();
@@ -40,8 +41,8 @@ class TurbineEquations {
     return mass_dampers_;
   }
 
-  /// r(t, z, z_dot, u, u_dot), all of layout().size(). T: double, or std::complex<double> to
-  /// differentiate by a complex step. @throws DomainError where a rotation is out of range.
+  /// r(t, z, z_dot, u, u_dot); all vectors have layout().size(). T: double, or std::complex<double>
+  /// to differentiate by a complex step. @throws DomainError if a rotation is out of range.
   template <class T>
   void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
                 const TurbineInputs<T>& inputs, std::vector<T>& r) const;
@@ -54,7 +55,7 @@ class TurbineEquations {
 
   /// Places of the entries of K and M.
   std::shared_ptr<const components::TangentPlan> plan() const { return plan_; }
-  /// K and M, in a workspace made of plan().
+  /// K and M, in a workspace made from plan().
   void evaluate(double t, const std::vector<double>& z, const std::vector<double>& z_dot,
                 components::Tangents& tangents) const;
 
@@ -70,11 +71,11 @@ class TurbineEquations {
   void describe(components::Registry& registry);
 
   model::Turbine turbine_;
-  std::vector<std::unique_ptr<components::Beam>> beams_;  ///< of the blades, then of the tower
-  /// Extensions of the calling program, behind all others.
+  std::vector<std::unique_ptr<components::Beam>> beams_;  ///< blades, then tower
+  /// Extensions of the calling program, after all others.
   std::vector<std::unique_ptr<components::Component>> extensions_;
   std::unique_ptr<components::Controller> controller_;                 ///< null: none
-  std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< of each blade, if any
+  std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< one per blade, if any
   std::unique_ptr<components::RigidBodies> bodies_;
   std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
   std::vector<components::Component*> components_;  ///< in the order of their equations

@@ -1,4 +1,4 @@
-// Events of a turbine at an instant: protection, failures.
+// Events of a turbine: protection and failures.
 #pragma once
 
 #include <optional>
@@ -9,27 +9,27 @@
 
 namespace samara::turbine {
 
-/// At a time, or at the first instant at which a channel is beyond a level.
+/// Triggers at a time, or at the first instant at which a channel is beyond a level.
 struct EventTrigger {
   std::optional<double> time;  ///< [s]
-  std::string channel;         ///< of turbine_channels.hpp
+  std::string channel;         ///< name, as in turbine_channels.hpp
   bool above = true;           ///< false: below
   double level = 0.0;          ///< in the channel's unit
 
   bool holds(double value) const { return above ? value >= level : value <= level; }
 };
 
-/// Turns blades to another pitch, by half a cosine in time.
+/// Changes the pitch of blades, by half a cosine in time.
 struct PitchAction {
-  int blade = 0;      ///< from 1; 0: all
+  int blade = 0;      ///< from 1; 0: all blades
   double to = 0.0;    ///< [rad]
-  double rate = 0.0;  ///< the largest, > 0 [rad/s]
+  double rate = 0.0;  ///< largest rate, > 0 [rad/s]
 };
 
 struct TurbineEvent {
   EventTrigger trigger;
   std::optional<PitchAction> pitch;
-  bool generator_off = false;  ///< its torque is gone
+  bool generator_off = false;  ///< the generator has no torque from then on
   double brake = 0.0;          ///< torque of a brake on the generator, behind the gear [N m]
 };
 

@@ -14,13 +14,14 @@ namespace samara::turbine {
 
 class TurbineInputOutput final : public system::InputOutput {
  public:
-  /// `inputs` empty: all that the turbine has; `channels` empty: all but those of the stations.
-  /// `system` must live on.
-  /// @throws InputError where a name is not one of this turbine's, with the nearest one
+  /// `inputs` empty: all inputs of the turbine; `channels` empty: all channels except those of the
+  /// stations. `system` must outlive the object.
+  /// @throws InputError for a name that this turbine does not have; the message has the nearest
+  /// name
   TurbineInputOutput(const TurbineSystem& system, const std::vector<std::string>& inputs,
                      const ChannelStations& stations, const std::vector<std::string>& channels);
 
-  /// All inputs that this turbine has.
+  /// All inputs of this turbine.
   static std::vector<system::Signal> available_inputs(const TurbineSystem& system);
 
   const std::vector<system::Signal>& inputs() const override { return inputs_; }
@@ -29,7 +30,7 @@ class TurbineInputOutput final : public system::InputOutput {
   system::OutputTangents output_tangents(double t, Vec z, Vec z_dot) const override;
   Eigen::VectorXd output_values(double t, Vec z, Vec z_dot) const override;
 
-  /// Values of the turbine's inputs where those of inputs() are `values` and `rates`.
+  /// The turbine's inputs; `values` and `rates` are those of inputs().
   template <class T>
   TurbineInputs<T> collect(const Eigen::Matrix<T, Eigen::Dynamic, 1>& values,
                            const Eigen::Matrix<T, Eigen::Dynamic, 1>& rates) const;

@@ -1,4 +1,4 @@
-// The turbine as a periodic system: assembles beams and rigid bodies into Vec and Mat.
+// The turbine as a periodic system. It assembles beams and rigid bodies into Vec and Mat.
 #pragma once
 
 #include <memory>
@@ -11,15 +11,15 @@ namespace samara::turbine {
 
 class TurbineSystem final : public system::PeriodicSystem {
  public:
-  /// Assembles on any communicator: each rank holds a copy of the turbine and writes its own rows.
-  /// `at_least`: blocks that its tangents have, whatever else; null: its own.
+  /// Assembles on any communicator. Each rank has a copy of the turbine and writes its own rows.
+  /// `at_least`: the tangents include its blocks; null: no further blocks.
   TurbineSystem(const model::Turbine& turbine, MPI_Comm comm,
                 const components::TangentPlan* at_least = nullptr);
   ~TurbineSystem() override;
 
   const model::Turbine& turbine() const;
   const turbine::TurbineLayout& layout() const;
-  /// The equations behind residual(), also at complex states.
+  /// The equations behind residual(), also for complex states.
   const TurbineEquations& equations() const;
 
   MPI_Comm comm() const override;
@@ -43,7 +43,8 @@ class TurbineSystem final : public system::PeriodicSystem {
   petsc::Handle<Mat> make_mass() const override;
   std::vector<std::vector<PetscInt>> pattern() const override;
   std::unique_ptr<system::PeriodicSystem> unloaded() const override;
-  /// Counts rotations of the blades anew; the rotation of the tower top stays below 170 degrees.
+  /// Gives large rotations of the blades a new reference; the rotation of the tower top stays below
+  /// 170 degrees.
   std::unique_ptr<system::PeriodicSystem> counted_from(Vec z) const override;
   void count_from_undeformed(Vec z) const override;
   void residual(double t, Vec z, Vec z_dot, Vec r) const override;
