@@ -23,6 +23,18 @@ constexpr double vanished = 1e-13;
 /// Relative: what scaling there and back does to a vector.
 constexpr double same = 1e-14;
 
+/// Newton's method: line search and number of steps.
+struct NewtonLimits {
+  const char* line_search = SNESLINESEARCHBT;
+  int most_steps = 50;
+};
+
+/// The path of `release`. The change of a controller's pitch needs full steps: each raises the
+/// residual of the rotations first, and a line search would cut it down.
+constexpr NewtonLimits full_steps{SNESLINESEARCHBASIC, 15};
+/// Smallest part of the loads of free coordinates that one step takes away.
+constexpr double least_release = 1.0 / 64.0;
+
 int sample_count(int harmonics) { return 4 * harmonics + 2; }
 
 /// Fourier weights of a sample at t: mean, then 2/N cos, 2/N sin.
@@ -35,13 +47,22 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
 
 using Coordinates = std::vector<system::UnconstrainedCoordinate>;
 
+/// A constant load in a row.
+struct RowLoad {
+  PetscInt row = 0;
+  double load = 0.0;
+};
+
 /// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i and has number
 /// i (2 H + 1) + c; the mean of a held coordinate gives its place to the load that holds it.
 class Balance {
  public:
-  Balance(const system::PeriodicSystem& system, const Coordinates& held, int harmonics)
+  /// `given`: constant loads that act besides.
+  Balance(const system::PeriodicSystem& system, const Coordinates& held,
+          const std::vector<RowLoad>& given, int harmonics)
       : system_(system),
         held_(held),
+        given_(given),
         harmonics_(harmonics),
         width_(2 * harmonics + 1),
         size_(static_cast<Eigen::Index>(system.size())),
@@ -82,6 +103,7 @@ class Balance {
       result += projection(t) * r.transpose();
     }
     for (std::size_t n = 0; n < held_.size(); ++n) result(0, held_[n].row) += held[n];
+    for (const RowLoad& given : given_) result(0, given.row) += given.load;
   }
 
   /// Entry (i, j) becomes the block sum_k w(t_k) [K_ij(t_k) b(t_k) + M_ij(t_k) b_dot(t_k)]^T: for
@@ -217,6 +239,7 @@ class Balance {
 
   const system::PeriodicSystem& system_;
   const Coordinates& held_;
+  const std::vector<RowLoad>& given_;
   int harmonics_;
   int width_;
   Eigen::Index size_;
@@ -404,9 +427,10 @@ double residual_at(const Eigen::VectorXd& h, SolverContext& context) {
 
 /// From `start`, or the undeformed system, to whose residual `tolerance` is relative; without
 /// residuals and load level.
-Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int harmonics,
-           double tolerance, const PeriodicSolution* start) {
-  Balance balance(system, held, harmonics);
+Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
+           const std::vector<RowLoad>& given, int harmonics, double tolerance,
+           const PeriodicSolution* start, const NewtonLimits& limits = {}) {
+  Balance balance(system, held, given, harmonics);
   const petsc::Handle<Mat> matrix = balance.make_matrix();
   const petsc::Handle<Vec> x =
       petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
@@ -440,7 +464,10 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
     if (residual_at(h, context) > vanished)
       petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
   }
-  petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, 50, 10000));
+  petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, limits.most_steps, 10000));
+  SNESLineSearch search = nullptr;
+  petsc::check(SNESGetLineSearch(solver.get(), &search));
+  petsc::check(SNESLineSearchSetType(search, limits.line_search));
   KSP linear = nullptr;
   PC preconditioner = nullptr;
   petsc::check(SNESGetKSP(solver.get(), &linear));
@@ -479,21 +506,57 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held, int ha
   return trim;
 }
 
-/// Where coordinates are free, with their means held at zero: what restores a hinge, the
-/// centrifugal force or the weight, acts through loads that the undeformed system does not carry
-/// yet, and Newton's method could go anywhere from there. None where nothing is free or a beam
-/// would be held twice.
-std::optional<Trim> hold_free(const system::PeriodicSystem& system, int harmonics,
-                              double tolerance) {
+/// The start of a trim with free coordinates, whose means are held at zero.
+struct HeldStart {
+  PeriodicSolution solution;
+  std::vector<RowLoad> loads;  ///< that hold the free coordinates
+};
+
+/// The forces that restore a hinge (centrifugal force, weight) act through loads that the
+/// undeformed system does not carry yet, and the integral of a controller finds its value through
+/// motions that it does not have yet: Newton's method diverges from there. None without free
+/// coordinates, or where this start is not found.
+std::optional<HeldStart> hold_free(const system::PeriodicSystem& system, int harmonics,
+                                   double tolerance) {
   const Coordinates free = system.free_coordinates();
   if (free.empty()) return std::nullopt;
   Coordinates held = system.unconstrained_coordinates();
+  const std::size_t first = held.size();
   held.insert(held.end(), free.begin(), free.end());
   try {
-    return solve(system, held, harmonics, tolerance, nullptr);
+    const Trim trim = solve(system, held, {}, harmonics, tolerance, nullptr);
+    HeldStart start{trim.solution, {}};
+    for (std::size_t n = first; n < held.size(); ++n)
+      start.loads.push_back({held[n].row, trim.held[n].load});
+    return start;
   } catch (const ConvergenceError&) {
     return std::nullopt;
   }
+}
+
+/// Homotopy: takes the loads that hold the free coordinates away in parts, all at once if that
+/// converges.
+Trim release(const system::PeriodicSystem& system, int harmonics, double tolerance,
+             const HeldStart& start) {
+  const Coordinates& held = system.unconstrained_coordinates();
+  PeriodicSolution last = start.solution;
+  double left = 1.0;  // part of the loads
+  double step = 1.0;
+  while (step >= least_release) {
+    const double next = std::max(left - step, 0.0);
+    std::vector<RowLoad> loads = start.loads;
+    for (RowLoad& load : loads) load.load *= next;
+    try {
+      Trim trim = solve(system, held, loads, harmonics, tolerance, &last, full_steps);
+      if (next == 0.0) return trim;
+      last = trim.solution;
+      left = next;
+      step *= 2.0;
+    } catch (const ConvergenceError&) {
+      step *= 0.5;
+    }
+  }
+  return solve(system, held, {}, harmonics, tolerance, &start.solution);
 }
 
 }  // namespace
@@ -606,9 +669,10 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
   if (harmonics > 0 && system.period() == 0.0)
     throw InternalError("harmonics of a system without a period");
   const Coordinates& unconstrained = system.unconstrained_coordinates();
-  const std::optional<Trim> held =
+  const std::optional<HeldStart> held =
       start == nullptr ? hold_free(system, harmonics, tolerance) : std::nullopt;
-  Trim trim = solve(system, unconstrained, harmonics, tolerance, held ? &held->solution : start);
+  Trim trim = held ? release(system, harmonics, tolerance, *held)
+                   : solve(system, unconstrained, {}, harmonics, tolerance, start);
   finish_trim(system, trim);
   trim.harmonic_residual = harmonic_residual(system, trim);
   trim.attempts = {{harmonics, trim.residual_between}};

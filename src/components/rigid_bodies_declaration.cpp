@@ -52,10 +52,11 @@ void RigidBodies::describe(Registry& registry) {
   if (chain.yaw.free && chain.yaw.stiffness == 0.0) add_unconstrained("yaw", yaw);
   if (chain.teeter.free && chain.teeter.stiffness == 0.0 && turbine_.speed == 0.0)
     add_unconstrained("teeter", teeter);
-  if (integral_ >= 0)
+  if (integral_ >= 0) {
     registry.add(
         system::UnconstrainedCoordinate{"generator", joint(generator), integral_, "rad/s"});
-  else if (chain.generator.free)
+    registry.add_free({"controller integral", integral_, joint(generator) + 1, "N m"});
+  } else if (chain.generator.free)
     add_unconstrained("generator", generator);
   // The hinge axis turns with the shaft: half a revolution reverses it.
   if (setting_.blades.size() == 2)

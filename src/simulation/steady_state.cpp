@@ -35,30 +35,60 @@ double mean_pitch(const turbine::TurbineSystem& system, const analysis::Trim& tr
   return sum / instants;
 }
 
-/// Message on the limit of the actuators that the controller's pitch exceeds. It is found by a trim
-/// without limits. Empty: no limit is exceeded, or that trim fails as well.
+/// Range of the pitch of the blades [rad], and the key that sets each bound.
+struct PitchRange {
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  std::string lowest_key;
+  std::string highest_key;
+};
+
+PitchRange pitch_range(const model::TurbineDefinition& turbine, int blade) {
+  PitchRange range;
+  if (turbine.blades.actuator) {
+    range = {turbine.blades.actuator->lowest, turbine.blades.actuator->highest,
+             "blades.pitch_actuator.lowest_deg is ", "blades.pitch_actuator.highest_deg is "};
+  }
+  // The pitch of the schedule is ((4 schedule u + s^2)^(1/2) - s)/2 with s = schedule + own pitch;
+  // its least value is -s/2.
+  const auto found = turbine.blades.each.find(blade);
+  const double difference = found == turbine.blades.each.end() ? 0.0 : found->second.pitch;
+  const double schedule = turbine.controller->schedule;
+  const double least = 0.5 * (turbine.blades.pitch - schedule) + difference;
+  if (schedule > 0.0 && least > range.lowest) {
+    range.lowest = least;
+    range.lowest_key = "controller.pitch.gain_schedule_deg allows none below ";
+  }
+  return range;
+}
+
+/// Message on the bound of the pitch that the controller exceeds. It is found by a trim without
+/// bounds. Empty: no bound is exceeded, or that trim fails as well.
 std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& options) {
   const model::TurbineDefinition& turbine = scenario.turbine;
-  const auto& actuator = turbine.blades.actuator;
-  if (!turbine.controller || !turbine.controller->pitch || !actuator) return "";
+  if (!turbine.controller || !turbine.controller->pitch) return "";
+  if (!turbine.blades.actuator && turbine.controller->schedule == 0.0) return "";
   const double infinity = std::numeric_limits<double>::infinity();
   model::TurbineDefinition free = turbine;
-  free.blades.actuator->lowest = -infinity;
-  free.blades.actuator->highest = infinity;
+  free.controller->schedule = 0.0;
+  if (free.blades.actuator) {
+    free.blades.actuator->lowest = -infinity;
+    free.blades.actuator->highest = infinity;
+  }
   try {
     const turbine::TurbineSystem system(model::build_turbine(free), PETSC_COMM_SELF);
     analysis::Observer silent;
     const analysis::Trim trim = analysis::find_trim(system, options, silent);
     for (int k = 1; k <= turbine.blades.count; ++k) {
+      const PitchRange range = pitch_range(turbine, k);
       const double pitch = mean_pitch(system, trim, k);
-      const bool is_high = pitch > actuator->highest;
-      if (!is_high && !(pitch < actuator->lowest)) continue;
-      return "the controller needs a pitch of " + general(pitch / degree, 4) +
-             " deg, but blades.pitch_actuator." + (is_high ? "highest_deg" : "lowest_deg") +
-             " is " + general((is_high ? actuator->highest : actuator->lowest) / degree, 4) +
+      const bool is_high = pitch > range.highest;
+      if (!is_high && !(pitch < range.lowest)) continue;
+      return "the controller needs a pitch of " + general(pitch / degree, 4) + " deg, but " +
+             (is_high ? range.highest_key : range.lowest_key) +
+             general((is_high ? range.highest : range.lowest) / degree, 4) +
              ": it cannot hold the speed at this limit; hint: other limits, or torques that "
-             "balance at "
-             "shaft.speed within them";
+             "balance at shaft.speed within them";
     }
   } catch (const ConvergenceError&) {
     return "";

@@ -60,4 +60,21 @@ BOOST_AUTO_TEST_CASE(a_limit_that_the_controller_cannot_pass_is_named) {
   }
 }
 
+// The pitch needed is -4.297 degrees; a gain schedule of K allows -K/2.
+BOOST_AUTO_TEST_CASE(a_pitch_out_of_reach_of_the_gain_schedule_is_named) {
+  Scenario scenario = controlled(90.0 * degree);
+  scenario.turbine.shaft.rotor_pitch_slope = 400.0;
+  scenario.turbine.controller->pitch = model::ControlLoop{-0.01, -0.002};
+  scenario.turbine.controller->schedule = 10.0 * degree;
+  BOOST_CHECK_NO_THROW(trim_of(scenario, analysis::TrimMethod::harmonic_balance));
+  scenario.turbine.controller->schedule = 8.0 * degree;
+  BOOST_CHECK_EXCEPTION(trim_of(scenario, analysis::TrimMethod::harmonic_balance), ConvergenceError,
+                        [](const ConvergenceError& error) {
+                          const std::string text = error.what();
+                          BOOST_TEST_MESSAGE(text);
+                          return text.find("needs a pitch of -4.297 deg") != std::string::npos &&
+                                 text.find("allows none below -4:") != std::string::npos;
+                        });
+}
+
 BOOST_AUTO_TEST_SUITE_END()

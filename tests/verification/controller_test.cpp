@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
+#include "samara/base/format.hpp"
 #include "samara/linear/linear_model.hpp"
 #include "samara/simulation/validation.hpp"
 #include "samara/turbine/turbine_channels.hpp"
@@ -170,6 +171,59 @@ BOOST_AUTO_TEST_CASE(an_integral_holds_its_set_point) {
   for (int i = 0; i < 16; ++i)
     mean += uneven.channels({"GenSpeed"}, uneven.system.period() * i / 16)[0] / 16.0;
   BOOST_TEST(mean == 1.2 * gear * 30.0 / pi, tolerance(1e-9));
+}
+
+// A teetering rotor with flexible blades under its weight whose controller must pitch the blades by
+// about 30 degrees. The state is that of blades mounted at this pitch, without a controller.
+BOOST_AUTO_TEST_CASE(a_large_pitch_of_a_teetering_rotor_is_found) {
+  constexpr double by_pitch = 4e6;
+  const double generator_torque = 20000.0;
+  const auto rotor_of = [&](double pitch_deg, double torque) {
+    return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/two_bladed/teetering.yaml",
+                         {"blades.pitch_deg=" + general(pitch_deg, 17), "trim={harmonics: 4}",
+                          "shaft.generator={joint: free, own_inertia: 534.116, torque: " +
+                              general(generator_torque, 17) + "}",
+                          "shaft.rotor={torque: " + general(torque, 17) + ", torque_slope: -4e5, " +
+                              "torque_pitch_slope: " + general(-by_pitch, 17) + "}"});
+  };
+  const std::vector<std::string> names{"TipDxb1",  "TipDyb1",  "RootMyc1",
+                                       "TeetDefl", "TwrBsMyt", "BldPitch1"};
+  struct State {
+    std::vector<double> values;
+    double held = 0.0;
+  };
+  const auto solve = [&](const io::Case& input) {
+    const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+    analysis::Observer observer;
+    const analysis::Trim trim = analysis::find_trim(system, input.trim, observer);
+    const turbine::TurbineChannels channels(system, {}, names);
+    const petsc::Handle<Vec> z = system.make_state();
+    const petsc::Handle<Vec> z_dot = system.make_state();
+    State state;
+    std::vector<double> values(names.size());
+    for (const double t : {0.0, 1.1, 2.9}) {
+      trim.solution.evaluate(t, z.get(), z_dot.get());
+      channels.evaluate(t, z.get(), z_dot.get(), values);
+      state.values.insert(state.values.end(), values.begin(), values.end());
+    }
+    for (const analysis::HeldCoordinate& held : trim.held)
+      if (held.name == "generator") state.held = held.load;
+    return state;
+  };
+  const double driving = generator_torque * gear + by_pitch * 30.0 * pi / 180.0;
+  io::Case controlled = rotor_of(0.0, driving);
+  controlled.turbine.controller.emplace();
+  controlled.turbine.controller->filter = 0.02;
+  controlled.turbine.controller->pitch = model::ControlLoop{0.06, 0.03};
+  const State found = solve(controlled);
+  // The dampers of teeter and yaw take a part of the power.
+  const double pitch_deg = found.values.back();
+  BOOST_TEST(pitch_deg == 30.0, tolerance(3e-4));
+  const State mounted = solve(rotor_of(pitch_deg, driving - by_pitch * pitch_deg * pi / 180.0));
+  BOOST_TEST(std::abs(mounted.held) < 1e-4 * driving);
+  // The filter leaves an oscillation of 5e-4 degrees of the pitch.
+  for (std::size_t i = 0; i < found.values.size(); ++i)
+    BOOST_TEST(found.values[i] == mounted.values[i], tolerance(1e-3) << names[i % names.size()]);
 }
 
 BOOST_AUTO_TEST_CASE(gains_fall_with_the_pitch) {

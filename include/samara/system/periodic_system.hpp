@@ -58,8 +58,9 @@ class PeriodicSystem {
   virtual const RotorSymmetry& symmetry() const = 0;
   virtual const std::vector<EnergyGroup>& energy_groups() const = 0;
   virtual const std::vector<UnconstrainedCoordinate>& unconstrained_coordinates() const = 0;
-  /// Coordinates of hinges and free supports that only loads and inertia restore, each with the row
-  /// of the load that would hold it.
+  /// Coordinates whose means the start of a trim holds at zero, each with the row of the load that
+  /// would hold it: hinges and free supports that only loads and inertia restore, the integral of a
+  /// controller.
   virtual std::vector<UnconstrainedCoordinate> free_coordinates() const { return {}; }
   /// The motions of the system; empty if they are not defined.
   virtual std::vector<Motion> motions() const { return {}; }
