@@ -19,10 +19,10 @@ constexpr int most_degree = 6;
 /// Relative to the length of the line through the key points.
 constexpr double longest_line = 1.5;
 
-/// A line is straight where it stays this close to its axis, of its length.
+/// Largest distance of a straight line from its axis [of its length].
 constexpr double straight_tolerance = 1e-9;
 
-/// Between the polynomials and the spline of the case, of the length.
+/// Largest distance between the polynomials and the spline of the case [of the length].
 constexpr double line_tolerance = 1e-7;
 
 /// The same in the quarter of a member beside a kink, which the spline rounds off.
@@ -30,7 +30,7 @@ constexpr double kink_tolerance = 1e-5;
 constexpr int least_intervals = 8;
 constexpr int most_intervals = 128;
 
-/// Between the twist and the straight line from station to station [deg].
+/// Largest difference between the twist and the straight line from station to station [deg].
 constexpr double twist_tolerance = 2e-3;
 constexpr int most_halvings = 8;
 
@@ -144,7 +144,7 @@ BeamdynLine::BeamdynLine(const std::vector<KeyPoint>& points, const std::vector<
   case_line_.emplace("blades", definition);
 }
 
-/// Fills the points; whether their spline is the line.
+/// Fills the points; true where their spline follows the line.
 bool BeamdynLine::sample(int count) {
   points_ = {Vector3::Zero()};
   const std::vector<double> nodes = math::lobatto_nodes(count);
@@ -168,7 +168,7 @@ bool BeamdynLine::sample(int count) {
 }
 
 /// BeamDyn's x axis has no component along y of the root before the twist turns it about the
-/// tangent; that of a case comes from the root by the smallest turn.
+/// tangent; that of a case follows from the root's by the smallest rotation.
 double BeamdynLine::case_twist(const Member& member, double xi, double arc) const {
   const double twist = member.value(xi)(3);
   if (is_straight_) return twist;
@@ -188,7 +188,7 @@ BeamdynLine::Place BeamdynLine::place(const Member& member, double xi) const {
   return result;
 }
 
-/// Adds what is needed behind the last place, at xi, and before `end`.
+/// Adds the places needed between the last place, at xi, and `end`.
 void BeamdynLine::refine(const Member& member, double xi, const Place& end, double xi_end,
                          int depth, std::vector<Place>& places) const {
   if (depth == 0) return;

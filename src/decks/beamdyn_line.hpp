@@ -1,5 +1,5 @@
-// The reference line and the twist that BeamDyn (OpenFAST 3 and later) makes of key points: in each
-// member a polynomial over z, fitted by least squares, that meets both ends.
+// The reference line and the twist that BeamDyn (OpenFAST 3 and later) makes of key points: a
+// polynomial over z in each member, fitted by least squares and exact at both ends.
 #pragma once
 
 #include <optional>
@@ -19,14 +19,14 @@ struct KeyPoint {
 
 class BeamdynLine {
  public:
-  /// `members`: numbers of key points, neighbours share one; z rises from point to point. `order`
-  /// is BeamDyn's of an element: the degree is min(order, key points - 1, 6).
+  /// `members`: numbers of key points; neighbouring members share one. z rises from point to point.
+  /// `order` is that of BeamDyn's elements; the degree is min(order, key points - 1, 6).
   BeamdynLine(const std::vector<KeyPoint>& points, const std::vector<int>& members, int order);
 
   bool is_straight() const { return is_straight_; }
   double length() const { return length_; }  ///< of the arc [m]
-  /// The line is far longer than the way through the key points: there is no blade of this shape,
-  /// and nothing else but the length is known.
+  /// The line is far longer than the path through the key points: no blade has this shape, and only
+  /// the length is known.
   bool swings_out() const { return swings_out_; }
 
   /// Points of a natural spline that follows the line, in b1 b2 b3 of the root; two for a straight
@@ -41,7 +41,7 @@ class BeamdynLine {
     bool jumps = false;      ///< behind a kink between members, where the twist jumps
   };
 
-  /// The stations, the ends of members, and as many places between them as make the twist linear.
+  /// The stations, the ends of members, and enough places between them to make the twist linear.
   std::vector<Place> places(const std::vector<double>& stations) const;
 
  private:

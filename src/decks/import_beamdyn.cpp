@@ -131,8 +131,8 @@ class Reader {
     if (static_cast<int>(members.size()) != count || sum != points)
       import_.errors.add(deck.place_of("member_total"),
                          "member_total: behind the line of kp_total " + std::to_string(count) +
-                             " lines state the members and their numbers of key points, which "
-                             "share their ends and make kp_total");
+                             " lines state the members and their numbers of key points; members "
+                             "share their ends and have kp_total points together");
     return members;
   }
 

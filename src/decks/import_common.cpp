@@ -17,13 +17,13 @@ namespace {
 /// Distance of the two stations of a jump, relative to the length.
 constexpr double jump_width = 1e-12;
 
-/// Places closer than this are one [of the length].
+/// Places closer than this are the same [of the length].
 constexpr double same_place = 1e-9;
 
-/// Entries of a symmetric matrix that should be the same [of the diagonal].
+/// Largest difference of entries of a symmetric matrix that should be equal [of the diagonal].
 constexpr double round_off = 1e-6;
 
-/// A coupling that is none [of the diagonal].
+/// Couplings up to this size are round-off [of the diagonal].
 constexpr double no_coupling = 1e-14;
 
 constexpr std::array<Eigen::Index, 3> source_axis = {2, 1, 0};
@@ -70,7 +70,7 @@ std::vector<Station> merge_grids(const std::vector<const std::vector<double>*>& 
 double interpolate(const Curve& curve, const Station& station) {
   const std::vector<double>& x = curve.grid;
   const std::vector<double>& y = curve.values;
-  // The points of the grid that are the station itself.
+  // The points of the grid that coincide with the station.
   std::size_t first = 0;
   while (first < x.size() && x[first] < station.place - same_place) ++first;
   std::size_t last = first;

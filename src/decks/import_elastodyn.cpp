@@ -26,7 +26,7 @@ constexpr int most_rows = 100000;
 /// A damping ratio is met within this.
 constexpr double met_ratio = 1e-9;
 
-/// A direction in which a beam of ElastoDyn bends: what the deck calls its keys.
+/// A direction in which a beam of ElastoDyn bends, with the names of its keys in the deck.
 struct Direction {
   std::string stiffness;            ///< column
   std::string factor;               ///< of this column
@@ -37,7 +37,7 @@ struct Direction {
   bool bends = true;
 };
 
-/// A beam of ElastoDyn: the words of its file and of the case.
+/// A beam of ElastoDyn, with the names in its file and in the case.
 struct BeamWords {
   std::string block;  ///< of the case
   std::string count;
@@ -113,8 +113,8 @@ struct DampingPair {
   }
 };
 
-/// The pair that meets the ratios of one or two modes; where that asks for a negative constant, the
-/// constant of the one kind that is nearest to both ratios by least squares.
+/// The pair that meets the ratios of one or two modes. Where this pair has a negative constant,
+/// only the one of the two constants that is nearer to both ratios by least squares.
 DampingPair fit_pair(const std::vector<AssumedMode>& modes) {
   Eigen::MatrixX2d by_constant(static_cast<Eigen::Index>(modes.size()), 2);
   Eigen::VectorXd ratios(by_constant.rows());
@@ -141,8 +141,8 @@ DampingPair fit_pair(const std::vector<AssumedMode>& modes) {
   return {0.0, nearest(1)};
 }
 
-/// Damping of a direction by the ratios of its modes, at rest and without masses at the end, as
-/// ElastoDyn has them.
+/// Damping of a direction by the ratios of its modes, at rest and without masses at the end, as in
+/// ElastoDyn.
 DampingPair fit_damping(OpenfastImport& import, Deck& deck, const BeamWords& words,
                         const Direction& direction, const Curve& mass, const Curve& stiffness,
                         const Curve& twist, double length) {
@@ -162,7 +162,7 @@ DampingPair fit_damping(OpenfastImport& import, Deck& deck, const BeamWords& wor
     if (mode == 0) first_tuner = tuner;
     if (!import.errors.empty()) continue;
     AssumedMode found = assumed_mode(coefficients, mass, stiffness, twist, length);
-    found.frequency *= std::sqrt(tuner / first_tuner);  // `stiffness` holds the first already
+    found.frequency *= std::sqrt(tuner / first_tuner);  // `stiffness` contains the first already
     found.ratio = ratio;
     found.key = key;
     modes.push_back(found);

@@ -8,7 +8,7 @@
 
 namespace samara::decks {
 
-/// Whether any of the modes of a direction is on; says what becomes of it.
+/// True where any mode of a direction is on; reports the effect.
 bool is_flexible(OpenfastImport& import, Deck& deck, const std::vector<std::string>& keys,
                  const std::string& target);
 

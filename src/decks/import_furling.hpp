@@ -1,4 +1,4 @@
-// Furling of OpenFAST's ElastoDyn, which a case has locked: its masses move with the nacelle.
+// Furling of OpenFAST's ElastoDyn. It is locked in a case: its masses move with the nacelle.
 #pragma once
 
 #include "openfast_import.hpp"

@@ -17,16 +17,16 @@
 namespace samara::decks {
 namespace {
 
-/// Differences of blades beyond this are real.
+/// Relative difference up to which blades are equal.
 constexpr double same_blade = 1e-12;
 
-/// One blade, from whichever module describes it.
+/// One blade, from the module that describes it.
 struct BladeData {
   model::BeamDefinition beam;
   std::string path;
 };
 
-/// A module that a main file can switch on, and what is lost without it.
+/// A module that a main file can switch on, and the effects that are lost without it.
 struct LeftOut {
   const char* key;
   std::vector<const char*> names;  ///< by the value of the key, from 1
@@ -222,9 +222,9 @@ class Importer {
     import_.note("nacelle.yaw", "YawDOF; YawSpr, YawDamp of ServoDyn");
   }
 
-  // ---- what a case does not have
+  // ---- parts that a case does not have
 
-  /// A platform that moves is not clamped without a word.
+  /// Warns where a moving platform or effects of the water are left out.
   void warn_of_platform() {
     Deck& deck = *elastodyn_;
     std::string moves;
@@ -244,8 +244,8 @@ class Importer {
                      rounded(deck.number("TowerBsHt")) + " m" +
                      (import_.options.tower_only
                           ? std::string()
-                          : "; hint: --tower-only says that this is meant; tower.support of the "
-                            "case can state stiffness, mass and inertia of what carries it"));
+                          : "; hint: --tower-only confirms this; tower.support of the case can "
+                            "state stiffness, mass and inertia of the structure below it"));
   }
 
   void warn_of_modules() {
@@ -292,7 +292,7 @@ class Importer {
                       "a case has one precone for all blades, blade 1 has " + rounded(precone));
       const std::string pitch = "BlPitch(" + std::to_string(k) + ")";
       const double angle = import_.derive(
-          deck, pitch, k == 1 ? "blades.pitch_deg" : "blades.each: what differs from blade 1");
+          deck, pitch, k == 1 ? "blades.pitch_deg" : "blades.each: the difference from blade 1");
       if (k == 1)
         blade_pitch = angle;
       else if (angle != blade_pitch)
@@ -365,7 +365,7 @@ class Importer {
       import_.say(deck, "HubIner", Fate::taken, "hub.inertia about h2 (the shaft)");
       import_.note("hub.inertia", "HubIner about the shaft");
       import_.require(inertia >= 0.0, deck, "HubIner", "expected a number >= 0");
-      import_.ignore(deck, "HubIner_Teeter", "of two-bladed rotors only");
+      import_.ignore(deck, "HubIner_Teeter", "for two-bladed rotors only");
       return;
     }
     // OpenFAST measures UndSling from the teeter pin to the apex upwind, HubCM from the apex
@@ -404,7 +404,7 @@ class Importer {
     if (blades_ != 2) {
       for (const char* key : {"TeetDOF", "UndSling", "Delta3", "TeetMod", "TeetDmpP", "TeetDmp",
                               "TeetCDmp", "TeetSStP", "TeetHStP", "TeetSSSp", "TeetHSSp"})
-        import_.ignore(deck, key, "of two-bladed rotors only");
+        import_.ignore(deck, key, "for two-bladed rotors only");
       return;
     }
     model::HubDefinition& hub = import_.turbine.hub;
@@ -451,7 +451,7 @@ class Importer {
     at_rest("TeetSStP", "TeetSSSp", hub.teeter.stiffness, "stiffness");
     import_.ignore(deck, "TeetCDmp", "dry friction is not linear");
     for (const char* key : {"TeetDmpP", "TeetSStP"})
-      import_.ignore(deck, key, "the edge of the above");
+      import_.ignore(deck, key, "the angle beyond which the damper or the spring acts");
     for (const char* key : {"TeetHStP", "TeetHSSp"})
       import_.ignore(deck, key, "the hard stop is out of reach of small motions");
   }
@@ -603,7 +603,7 @@ class Importer {
                                   "; damping is that of blade 1"});
   }
 
-  // ---- what is left
+  // ---- masses in the head of the case
 
   void report_masses() {
     const BeamMass tower = integrate_mass(import_.turbine.tower, import_.turbine.tower.length);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double straight_tolerance = 1e-9;
 
-/// Coordinates that are round-off [of the length].
+/// Coordinates up to this size are round-off [of the length].
 constexpr double no_distance = 1e-14;
 
 /// More mass per length [kg/m] than any tower or monopile of steel has.
@@ -87,7 +87,7 @@ class Importer {
       for (const auto& [key, numbers] : options_.stated)
         errors_.add(path_, key +
                                ": the deck has no blade, the case is a tower without anything on "
-                               "it; hint: leave out what the command line states");
+                               "it; hint: leave out the quantities that the command line states");
     }
     if (has_rotor || find("components.tower") != nullptr) read_tower();
     if (has_rotor) read_blade();
@@ -148,7 +148,7 @@ class Importer {
     errors_.add(node == nullptr ? path_ : place(*node), path + ": " + what);
   }
 
-  /// The first spelling that is there; none is an error that names the last one.
+  /// The first spelling that is there. If there is none, an error names all of them.
   std::string require(const Paths& paths) {
     std::string path = choose(paths);
     if (path.empty()) {
@@ -169,7 +169,7 @@ class Importer {
 
   void note(const std::string& key, const std::string& words) { comments_.keys[key] = words; }
 
-  /// A key given twice would be read once, whichever was meant.
+  /// Refuses keys that are given twice: only one of the values would be read.
   void refuse_duplicates(const io::YamlNode& node, const std::string& path) {
     for (const io::YamlNode& child : node.children) {
       const std::string below =
@@ -209,7 +209,7 @@ class Importer {
       value = found->second[0];
     else
       value = Eigen::Map<const Value>(found->second.data());
-    note(comment_place(key), "of the command line");
+    note(comment_place(key), "from the command line");
   }
   bool is_stated(const std::string& key) const { return options_.stated.contains(key); }
 
@@ -264,8 +264,8 @@ class Importer {
       if (result.grid[i] < 0.0 || result.grid[i] > 1.0 ||
           (i > 0 && result.grid[i] < result.grid[i - 1])) {
         errors_.add(place(*grid), path +
-                                      ".grid: expected places from 0 to 1, none before the "
-                                      "one in front of it, got " +
+                                      ".grid: expected places from 0 to 1 that do not "
+                                      "decrease, got " +
                                       rounded(result.grid[i]));
         return {{0.0, 1.0}, {0.0, 0.0}};
       }
@@ -274,7 +274,7 @@ class Importer {
 
   // ---- the top
 
-  /// Before all else: nothing else of such a deck can be mended.
+  /// Comes first: other corrections of such a deck would not help.
   void refuse_layups() {
     const io::YamlNode* blade = find("components.blade");
     if (blade == nullptr || !choose(blade_matrices()).empty()) return;
@@ -343,7 +343,7 @@ class Importer {
     }
   }
 
-  /// Words about a mass per length that no foundation has, or none.
+  /// Text about a mass per length that no foundation has; empty if there is no such mass.
   std::string implausible(const std::string& path) {
     const std::string inertia = choose({path + ".structure.elastic_properties.inertia_matrix.mass",
                                         path + ".elastic_properties.inertia_matrix.mass"});
@@ -351,9 +351,8 @@ class Importer {
     double most = 0.0;
     for (const io::YamlNode& value : find(inertia)->children)
       most = std::max(most, std::abs(parse_number(value).value_or(0.0)));
-    return most > most_mass
-               ? " (its mass of up to " + rounded(most) + " kg/m is implausible besides)"
-               : "";
+    return most > most_mass ? " (its mass of up to " + rounded(most) + " kg/m is implausible, too)"
+                            : "";
   }
 
   // ---- bodies
@@ -469,7 +468,7 @@ class Importer {
     return point;
   }
 
-  /// The path of a key of a block by either of its names; empty where the block is.
+  /// The path of a key of a block by either of its names; empty where `block` is empty.
   std::string choose_in(const std::string& block, const char* key, const char* other) {
     return block.empty() ? std::string() : choose({block + key, block + other});
   }
@@ -676,7 +675,7 @@ class Importer {
     beam.length = model::compute_arc_length(line);
   }
 
-  /// Whether the deck's matrices have a shear stiffness.
+  /// True where the deck's matrices have a shear stiffness.
   bool states_shear(const std::string& elastic) const {
     const auto is_positive = [](const io::YamlNode& value) {
       return parse_number(value).value_or(0.0) > 0.0;
@@ -828,7 +827,7 @@ class Importer {
          "outfitting_factor");
   }
 
-  /// The deck states the height of the hub twice; what the parts add up to counts.
+  /// The deck states the height of the hub twice; the sum of the parts counts.
   void compare_height(double top) {
     const std::string path = choose({"assembly.hub_height"});
     if (path.empty()) return;
@@ -836,7 +835,7 @@ class Importer {
     const double hub =
         top + turbine_.shaft.height + turbine_.shaft.overhang * std::sin(turbine_.shaft.tilt);
     say(path, Fate::ignored,
-        "the parts put the hub at " + rounded(hub) + " m" +
+        "the parts give a hub height of " + rounded(hub) + " m" +
             (std::abs(hub - stated) > height_tolerance
                  ? ", which differs by " + rounded(hub - stated, 3) + " m"
                  : ", as stated"));
@@ -924,7 +923,7 @@ class Importer {
     inertia += material.density * second;
   }
 
-  /// The deck may state sections as well; how far are they from the rings?
+  /// Reports the difference between the rings and the sections that the deck may state as well.
   void compare_tower(const std::string& elastic) {
     const std::string inertia = elastic + ".inertia_matrix";
     if (find(inertia + ".mass") == nullptr || !errors_.empty()) return;
@@ -946,7 +945,7 @@ class Importer {
     say(elastic + ".stiffness_matrix", Fate::ignored, "the sections follow from the layers");
   }
 
-  /// Where a deck states the blade's matrices.
+  /// Keys under which a deck may state the blade's matrices.
   static Paths blade_matrices() {
     const std::string blade = "components.blade";
     return {blade + ".structure.elastic_properties", blade + ".elastic_properties",
@@ -1038,8 +1037,8 @@ class Importer {
     check_sections(turbine_.blades.beam, "blade", places, errors_);
   }
 
-  /// windIO 2.0: a list for each entry. A matrix that stops at the diagonal is diagonal; K11 and
-  /// K22 may be missing, which means that shear is rigid.
+  /// windIO 2.0: a list for each entry. A matrix without entries off the diagonal is diagonal; K11
+  /// and K22 may be missing, which means that shear is rigid.
   Entries read_entries(const std::string& path) {
     Entries entries;
     const io::YamlNode& node = *find(path);
@@ -1185,9 +1184,9 @@ class Importer {
     return entries;
   }
 
-  // ---- what is left
+  // ---- keys that are left out
 
-  /// By name, on standard error.
+  /// Warns of the parts that are left out, by name.
   void warn_of_left_out() {
     std::string names;
     const auto add = [&](const char* path, const char* words) {
@@ -1207,7 +1206,7 @@ class Importer {
         path.find(".cd") != std::string::npos || path.find("drag") != std::string::npos)
       return "aerodynamics";
     if (starts("control")) return "a controller is no part of a case";
-    if (starts("materials")) return "of another component, whose matrices the deck states";
+    if (starts("materials")) return "belongs to another component, whose matrices the deck states";
     if (starts("environment") || starts("assembly") || starts("bos") || starts("costs"))
       return "a statement about the site or the machine, no part of the structure";
     if (path.find("webs") != std::string::npos || path.find("layers") != std::string::npos ||
@@ -1223,7 +1222,7 @@ class Importer {
 
   bool is_used(const std::string& path) const { return used_.contains(path); }
 
-  /// Names what nothing has read, as high in the tree as it can.
+  /// Reports the keys that nothing has read, at the highest possible level of the tree.
   void report_rest(const io::YamlNode& node, const std::string& path) {
     if (node.kind != io::YamlNode::Kind::map) return;
     for (const io::YamlNode& child : node.children) {

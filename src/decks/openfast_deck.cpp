@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_megabytes = 64;
 
-/// Errors of a deck that are told.
+/// Largest number of errors of a deck that are shown.
 constexpr std::size_t most_shown = 100;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-/// The name of a key as it is compared: no case, no parentheses.
+/// The name of a key as it is compared: lower case, without parentheses.
 std::string fold(const std::string& key) {
   std::string folded;
   for (const char c : key)
@@ -38,7 +38,7 @@ bool is_key(const std::string& word) {
   });
 }
 
-/// Words that cannot be keys.
+/// The flag that a word states; such words cannot be keys.
 std::optional<bool> parse_flag(const std::string& word) {
   const std::string folded = fold(word);
   if (folded == "true" || folded == "t" || folded == ".true.") return true;
@@ -46,7 +46,7 @@ std::optional<bool> parse_flag(const std::string& word) {
   return {};
 }
 
-/// As Fortran reads a flag: T or F, perhaps behind a point, and whatever follows.
+/// A flag as Fortran reads it: T or F, perhaps behind a point; further letters have no effect.
 std::optional<bool> parse_fortran_flag(const std::string& word) {
   const std::size_t first = word.starts_with('.') ? 1 : 0;
   if (word.size() == first) return {};
@@ -222,7 +222,7 @@ void Deck::parse_line(int number) {
                            c != '{' && c != '[' && c != ':' && c != '=';
     }
     if (entry.is_free_text && !starts_with_value) return;
-  } else {  // perhaps a key that has lost its name
+  } else {  // perhaps a value without the name of its key
     if (!starts_with_value || entry.values.size() != 1) return;
     entry.is_free_text = true;
   }
@@ -460,7 +460,7 @@ DeckTable Deck::table(const std::vector<std::string>& names, int count,
     if (words.empty()) continue;
     if (is_heading(words[0].text)) break;
     const bool is_complete = static_cast<int>(table.lines.size()) >= count;
-    // A number and the name of its key: the table is over.
+    // A number and the name of its key: the table has ended.
     if (words.size() > 1 && is_key(words[1].text) && !parse_deck_number(words[1].text)) break;
     if (is_complete && !parse_deck_number(words[0].text)) break;
     const int line = static_cast<int>(i + 1);
@@ -491,7 +491,7 @@ DeckTable Deck::table(const std::vector<std::string>& names, int count,
   }
   if (count >= 0 && static_cast<int>(table.lines.size()) != count)
     errors_.add(place(table.line), "the table has " + std::to_string(table.lines.size()) +
-                                       " rows, " + count_key + " says " + std::to_string(count));
+                                       " rows, " + count_key + " states " + std::to_string(count));
   return table;
 }
 

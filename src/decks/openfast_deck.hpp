@@ -1,6 +1,6 @@
 // The text files of OpenFAST: a value, then the name of its key, then a description; tables with a
-// line of column names. Everything is found by its name; OpenFAST itself goes by the order of the
-// lines, so a name that is spelled in another way is found between its neighbours.
+// line of column names. Everything is found by its name. OpenFAST itself goes by the order of the
+// lines; a key with another spelling is therefore found between its neighbours.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace samara::decks {
 class DeckErrors {
  public:
   void add(const std::string& place, const std::string& what);
-  /// A whole line.
+  /// Adds a complete message.
   void add_message(const std::string& message);
   bool empty() const { return messages_.empty(); }
   std::size_t size() const { return messages_.size(); }
@@ -27,7 +27,7 @@ class DeckErrors {
 
  private:
   std::vector<std::string> messages_;
-  std::unordered_set<std::string> known_;  ///< the same
+  std::unordered_set<std::string> known_;  ///< the same messages
 };
 
 struct DeckWord {
@@ -41,14 +41,14 @@ struct DeckEntry {
   std::vector<DeckWord> values;
   int line = 0;
   bool used = false;
-  bool is_free_text = false;  ///< nothing sets the key off from the words behind it
+  bool is_free_text = false;  ///< nothing separates the key from the words behind it
 };
 
 /// Rows of numbers under a line of names.
 struct DeckTable {
   int line = 0;                              ///< of the names
   std::vector<std::string> names;            ///< as written
-  std::vector<std::vector<double>> columns;  ///< those that were asked for, in that order
+  std::vector<std::vector<double>> columns;  ///< the requested ones, in the requested order
   std::vector<int> lines;                    ///< of the rows
 };
 
@@ -58,7 +58,7 @@ struct DeckRow {
   std::vector<double> numbers;
 };
 
-/// Reads "1.5", "-2.D+03", ".5e1"; nothing where the word is not a finite number.
+/// Reads "1.5", "-2.D+03", ".5e1"; no value where the word is not a finite number.
 std::optional<double> parse_deck_number(const std::string& word);
 
 class Deck {
@@ -78,7 +78,7 @@ class Deck {
   bool has(const std::string& key) const;
   /// Counts the line of the key as read.
   void mark_used(const std::string& key);
-  /// Keys found by their place: the name that was asked for, and the line.
+  /// Keys found by their place: the requested name, and the line.
   struct FoundByPlace {
     std::string key;
     const DeckEntry* entry = nullptr;
@@ -99,15 +99,16 @@ class Deck {
   /// Three numbers, of one key, or of three with x, y and z before the `ending` of their names.
   Vector3 point(const std::string& key, const std::string& ending);
 
-  /// The table that has the column `names[0]`; `count` rows, which the key `count_key` has said.
+  /// The table whose heading has most of `names`; it has `count` rows, as the key `count_key`
+  /// states.
   DeckTable table(const std::vector<std::string>& names, int count, const std::string& count_key);
   /// The heading (a line of dashes) that has this word, without case; 0 where there is none.
   int find_heading(const std::string& word) const;
-  /// Whether the file ends inside its last line, and that is `line`: it may be cut off in a number.
+  /// True where `line` is the last line and the file ends inside it: a number may be cut off.
   bool ends_inside(int line) const {
     return !ends_with_line_ && line == static_cast<int>(lines_.size());
   }
-  /// The leading numbers of the next `count` lines behind a key that are no headings.
+  /// The leading numbers of the next `count` lines behind a key, headings skipped.
   std::vector<std::vector<double>> rows_behind(const std::string& key, int count) const;
   /// Rows of one or six numbers behind a line, to the end of the file.
   std::vector<DeckRow> rows_after(int line);
@@ -132,7 +133,7 @@ class Deck {
   Index index_;                     ///< of entries, by name
   Index free_text_;                 ///< the same of those in free text
   std::vector<std::string> order_;  ///< of keys, without case
-  mutable Index by_place_;          ///< what was found between neighbours; empty: nothing
+  mutable Index by_place_;          ///< entries found between neighbours; empty: none
   bool ends_with_line_ = true;
 };
 

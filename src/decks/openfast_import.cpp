@@ -8,7 +8,7 @@
 namespace samara::decks {
 namespace {
 
-/// Why a key is of no use.
+/// The reason why a key is ignored.
 std::string reason(const std::string& key) {
   const auto starts = [&](const char* word) { return key.starts_with(word); };
   const auto is = [&](std::initializer_list<const char*> words) {
@@ -24,12 +24,12 @@ std::string reason(const std::string& key) {
           "sig_v2", "OmgCut"}))
     return "friction of the yaw bearing is no part of a case";
   if (starts("NcIMU") || is({"ShftGagL"})) return "the place of a sensor";
-  if (is({"BldNodes", "TwrNodes", "quadrature", "refine"})) return "the mesh of a case is its own";
+  if (is({"BldNodes", "TwrNodes", "quadrature", "refine"})) return "a case has a mesh of its own";
   if (is({"PreCone(3)", "BlPitch(3)", "TipMass(3)", "BldFile(3)", "PreCone(2)", "BlPitch(2)",
           "TipMass(2)", "BldFile(2)", "BDBldFile(1)", "BDBldFile(2)", "BDBldFile(3)"}))
     return "this rotor does not use it";
   if (starts("Comp") || (key.ends_with("File") && key != "OutFile"))
-    return "of a module that describes no structure of a case";
+    return "belongs to a module that describes no structure of a case";
   return "a setting of the simulation or its output, no part of the structure";
 }
 

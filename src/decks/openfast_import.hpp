@@ -32,7 +32,7 @@ struct OpenfastImport {
   }
   /// The comment behind a key of the case.
   void note(const std::string& key, const std::string& words) { comments.keys[key] = words; }
-  /// Says on standard error what the user would not expect of the case.
+  /// Adds a warning on standard error about a fact that the user would not expect.
   void warn(const std::string& place, const std::string& words) {
     warnings.push_back(place + ": " + words);
   }
@@ -41,12 +41,12 @@ struct OpenfastImport {
   double take(Deck& deck, const std::string& key, const std::string& target);
   double derive(Deck& deck, const std::string& key, const std::string& words);
   void ignore(Deck& deck, const std::string& key, const std::string& why);
-  /// An error where the key is there and does not hold.
+  /// An error where the key is there and the condition `holds` is false.
   void require(bool holds, Deck& deck, const std::string& key, const std::string& what);
-  /// Names what nothing has read.
+  /// Reports the keys that nothing has read.
   void report_unused(Deck& deck);
 
-  /// Opens another file; nothing where it cannot be read, which is an error.
+  /// Opens another file; null, with an error, where it cannot be read.
   std::unique_ptr<Deck> open(const std::string& path);
 };
 

@@ -10,7 +10,8 @@
 namespace samara::linear {
 namespace {
 
-/// Where the series is compared, as fractions of the azimuths: midway between two of them.
+/// Places of the comparison, as fractions of a revolution; each is moved midway between two
+/// azimuths.
 constexpr std::array<double, 4> places{0.05, 0.33, 0.58, 0.81};
 
 void add(StateSpace& sum, double factor, const StateSpace& form) {
@@ -27,7 +28,7 @@ constexpr double least_row = 1e-6;
 /// round-off.
 constexpr double round_off = 1e-12;
 
-/// The largest size of every entry at any azimuth.
+/// Largest modulus of each entry over all azimuths.
 StateSpace largest_of(const std::vector<StateSpace>& samples) {
   StateSpace largest = samples.front();
   for (const auto& [name, matrix, row, column] : state_space_parts) {
@@ -38,9 +39,10 @@ StateSpace largest_of(const std::vector<StateSpace>& samples) {
   return largest;
 }
 
-/// The difference of two forms: each entry relative to the geometric mean of the largest ones of
-/// its row and of its column at any azimuth, whatever the units are. The direct effect of inputs
-/// (D) is counted from the round-off of what they do by way of the states.
+/// Largest difference of two forms. The difference of an entry is relative to the geometric mean of
+/// the largest entries of its row and of its column at any azimuth, so that units have no effect.
+/// Entries of D (direct effect of inputs) count only above the round-off of the effect through the
+/// states.
 double compare(const StateSpace& found, const StateSpace& wanted, const StateSpace& largest) {
   double worst = 0.0;
   const double rate = std::sqrt(std::max(1.0, largest.A.size() > 0 ? largest.A.maxCoeff() : 0.0));
@@ -69,7 +71,7 @@ double compare(const StateSpace& found, const StateSpace& wanted, const StateSpa
 AzimuthSeries::AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths,
                              int harmonics) {
   if (harmonics < 0 || azimuths < 2 * harmonics + 1)
-    throw InternalError("a series of more harmonics than its azimuths tell apart");
+    throw InternalError("a series has more harmonics than its azimuths resolve");
   constexpr double turn = 2.0 * std::numbers::pi;
   for (int i = 0; i < azimuths; ++i) {
     azimuths_.push_back(turn * i / azimuths);

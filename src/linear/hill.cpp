@@ -5,8 +5,8 @@
 namespace samara::linear {
 namespace {
 
-/// The product of the functions 1, cos psi, sin psi, cos 2 psi, ... number `factor` and `column` as
-/// a sum of at most two of them: number, weight.
+/// A term of the product of two of the functions 1, cos psi, sin psi, cos 2 psi, ... The product is
+/// a sum of at most two of these functions, each with its number and its weight.
 struct Term {
   int function;
   double weight;
@@ -55,7 +55,7 @@ Eigen::MatrixXd hill_matrix(const AzimuthSeries& series, double rotor_speed, int
   Eigen::MatrixXd A = lift(series, &StateSpace::A, harmonics);
   const Eigen::Index n = series.mean().A.rows();
   for (int j = 1; j <= harmonics; ++j) {
-    // x_dot has xc_dot + j Omega xs with the cosine, xs_dot - j Omega xc with the sine.
+    // Coefficients of x_dot: xc_dot + j Omega xs of the cosine, xs_dot - j Omega xc of the sine.
     const Eigen::Index cosine = (2 * j - 1) * n;
     const Eigen::Index sine = cosine + n;
     A.block(cosine, sine, n, n).diagonal().array() -= j * rotor_speed;

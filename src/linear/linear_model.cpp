@@ -27,8 +27,8 @@ using Dense = Eigen::MatrixXd;
 constexpr std::array<double, 4> first_weights{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
 constexpr double second_middle = -205.0 / 72.0;
 constexpr std::array<double, 4> second_weights{8.0 / 5.0, -1.0 / 5.0, 8.0 / 315.0, -1.0 / 560.0};
-/// Steps of these differences a revolution, and for each harmonic of the steady state: what is
-/// lost is (k Omega h)^8/630 of a harmonic k, and round-off over (Omega h)^2.
+/// Least number of steps of these differences in a revolution, and for each harmonic of the steady
+/// state. The error is (k Omega h)^8/630 of a harmonic k, and round-off over (Omega h)^2.
 constexpr int least_steps = 256;
 constexpr int steps_a_harmonic = 32;
 
@@ -62,7 +62,7 @@ Dense solve_scaled(const Dense& matrix, const Dense& right) {
 
 }  // namespace
 
-/// Columns of what is linear in (eta, eta_dot, eta_ddot, xi, xi_dot, u, u_dot, u_ddot).
+/// Columns of quantities that are linear in (eta, eta_dot, eta_ddot, xi, xi_dot, u, u_dot, u_ddot).
 struct LinearModel::Columns {
   Eigen::Index d, n_1, inputs;
 
@@ -77,7 +77,7 @@ struct LinearModel::Tangents {
   Dense R, R_rate;
 };
 
-/// By Columns: all of z and z_dot but reactions and auxiliaries.
+/// z and z_dot without reactions and auxiliaries, in the columns of Columns; and the tangents.
 struct LinearModel::Motion {
   Dense z, z_dot;
   Sparse K, M;
@@ -154,10 +154,10 @@ Eigen::VectorXd LinearModel::operating_outputs(double t) const {
   return input_output_.output_values(t, z.get(), z_dot.get());
 }
 
-/// Positions from the constraint rows, velocities from the kinematic rows, and their rates from
-/// these rows differentiated in time: no difference of a solution is ever taken. Rates of
-/// first-order states are columns beside the states; of those in constraint rows the second rates
-/// come from their evolution rows, differentiated.
+/// Positions follow from the constraint rows, velocities from the kinematic rows, and their rates
+/// from the time derivatives of these rows. No solution is differenced. Rates of first-order states
+/// have columns of their own beside the states. Where these states are in constraint rows, their
+/// second rates follow from their differentiated evolution rows.
 LinearModel::Motion LinearModel::motion_at(double t) const {
   const Tangents now = tangents_at(t);
   Jet<Sparse> K{now.K, 0.0 * now.K, 0.0 * now.K};
@@ -225,7 +225,7 @@ LinearModel::Motion LinearModel::motion_at(double t) const {
   z_ddot.middleCols(at.xi_dot(), n_1) = 2.0 * Z.first.rightCols(n_1);
   const std::vector<PetscInt>& driving = subspace_.driving();
   if (!driving.empty()) {
-    // E x_ddot + E_dot x_dot + (K z)' + (R u)' = 0, where K has positions and states alone.
+    // E x_ddot + E_dot x_dot + (K z)' + (R u)' = 0; K has entries for positions and states only.
     Dense right = rows_of(M_first, driving) * z_dot + rows_of(K.first, driving) * z +
                   rows_of(K.value, driving) * z_dot;
     right.middleCols(at.u(), m) += R_first(driving, Eigen::all);
@@ -262,8 +262,8 @@ StateSpace LinearModel::state_space(double t) const {
   const Eigen::Index m = motion.R.cols();
   const Columns at{d, n_1, m};
 
-  // The rows with rates and those of auxiliaries: square in accelerations of eta, what has no
-  // memory, and rates of xi.
+  // Balances, evolutions and definitions: a square system for the accelerations of eta, the
+  // algebraic unknowns and the rates of xi.
   Dense known = rows_of(motion.K, dynamic_) * motion.z + rows_of(motion.M, dynamic_) * motion.z_dot;
   known.middleCols(at.u(), m) += motion.R(dynamic_, Eigen::all);
   known.middleCols(at.u() + m, m) += motion.R_rate(dynamic_, Eigen::all);

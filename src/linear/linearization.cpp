@@ -13,7 +13,7 @@
 namespace samara::linear {
 namespace {
 
-/// Changes with the azimuth below it, relative, are round-off.
+/// Relative; smaller changes with the azimuth are round-off.
 constexpr double constant_tolerance = 1e-9;
 
 std::vector<std::string> function_names(int harmonics) {
@@ -58,7 +58,7 @@ NamedForm average_of(const NamedForm& form) {
   return average;
 }
 
-/// Its states are combinations of all.
+/// The states of the result are combinations of all states of `form`.
 NamedForm reduced_of(const NamedForm& form, const LinearizeOptions& options,
                      analysis::Observer& observer) {
   if (options.order >= form.series.mean().A.rows())
@@ -97,7 +97,7 @@ class Remembered {
   std::map<double, StateSpace> known_;
 };
 
-/// Makes the forms that are asked for from those of one linear model.
+/// Makes the requested forms from those of one linear model.
 class Linearizer {
  public:
   Linearizer(const LinearModel& model, double start_azimuth, const LinearizeOptions& options,
@@ -146,7 +146,7 @@ class Linearizer {
 
   bool has_own_azimuths() const { return has_period_ && !options_.at.empty(); }
 
-  /// At which matrices are given beside the series.
+  /// Azimuths at which matrices are given beside the series.
   std::vector<double> azimuths() const {
     if (has_own_azimuths()) return options_.at;
     return has_period_ ? periodic_.series.azimuths() : std::vector<double>{start_azimuth_};
@@ -189,10 +189,9 @@ class Linearizer {
   void add_average() {
     if (has_period_ && !result_.is_constant)
       observer_.note(
-          "note: the average of rotating coordinates loses what couples the blades to what stands; "
-          "hint: "
-          "linearize.forms with multiblade and average for three and more blades, with hill or "
-          "lyapunov_floquet for less");
+          "note: the average of rotating coordinates loses the coupling of the blades to the parts "
+          "that do not rotate; hint: linearize.forms with multiblade and average for three and "
+          "more blades, with hill or lyapunov_floquet for fewer");
     result_.forms.push_back(average_of(periodic_));
   }
 
@@ -259,8 +258,8 @@ Linearization linearize(const system::PeriodicSystem& system,
                         const LinearizeOptions& options, analysis::Observer& observer) {
   if (!(system.period() > 0.0) && (options.hill || options.lyapunov_floquet))
     throw InputError(
-        "linearize.forms: nothing repeats where the rotor stands still; hint: state_space is "
-        "constant there, without hill and lyapunov_floquet");
+        "linearize.forms: hill and lyapunov_floquet have no period where the rotor stands still; "
+        "hint: state_space is constant there");
   const LinearModel model(system, input_output, solution);
   if (model.states().empty())
     throw InputError("linearize: nothing can move, all strains and joints are rigid");

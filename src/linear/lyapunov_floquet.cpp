@@ -30,20 +30,21 @@ using Eigen::MatrixXd;
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr Complex imaginary{0.0, 1.0};
 
-/// A mode that decays to less in a revolution is beyond the digits of the monodromy matrix.
+/// Least multiplier. The monodromy matrix has too few digits for modes that decay to less.
 constexpr double least_multiplier = 1e-4;
-/// Below it differences are round-off.
+/// Relative; smaller differences are round-off.
 constexpr double round_off = 1e-9;
-/// Multipliers that are this close, relative, are parted no further.
+/// Relative difference below which two multipliers stay in one block.
 constexpr double same_multiplier = 1e-6;
-/// Nor are those that are this close and whose modes are the same but for a part of the third: a
-/// double multiplier that round-off has parted.
+/// The same for multipliers whose modes differ by less than different_mode: round-off has split a
+/// double multiplier.
 constexpr double close_multiplier = 1e-3;
 constexpr double different_mode = 0.03;
-/// Multipliers this close to one are of motions that nothing restores, several of which round-off
-/// parts by more than that: they stay together.
+/// Multipliers this close to one belong to motions that nothing restores. Round-off splits several
+/// of them by more than same_multiplier; they stay in one block.
 constexpr double neutral_multiplier = 1e-3;
-/// Largest change of an exponent by half the steps, relative to it or to the rotor speed.
+/// Largest change of an exponent by half the steps, relative to the larger of exponent and rotor
+/// speed.
 constexpr double resolved = 1e-4;
 
 MatrixXcd small_exponential(const MatrixXcd& matrix) {
@@ -77,7 +78,7 @@ bool are_one(const Schur& whole, Complex a, Complex b) {
   return std::abs(schur.T(1, 1) - schur.T(0, 0)) < different_mode * std::abs(schur.T(0, 1));
 }
 
-/// Groups of multipliers of which each belongs to another one of the group.
+/// Groups of multipliers that belong together, directly or through others of the group.
 std::vector<std::vector<Complex>> group(const Schur& whole) {
   std::vector<std::vector<Complex>> groups;
   for (const Complex value : whole.T.diagonal()) {
@@ -110,7 +111,8 @@ LyapunovFloquet::LyapunovFloquet(const AzimuthSeries& series, double rotor_speed
       steps_(2 * ((steps / 2 + intervals_ - 1) / intervals_)),
       positions_((series.mean().A.rows() - first_order) / 2),
       scale_(series.mean().A.rows()) {
-  // Rates are those of the positions: in these units none is much faster than one.
+  // Rates of positions are divided by about the highest frequency: none is then much larger than
+  // one.
   const double rate =
       std::sqrt(series.mean().A.block(positions_, 0, positions_, positions_).norm());
   scale_ << Eigen::VectorXd::Ones(positions_),
@@ -166,7 +168,7 @@ void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coa
     Complex mean = 0.0;
     for (const Complex value : values) mean += value / static_cast<double>(values.size());
     const bool is_real = std::abs(mean.imag()) < 0.5 * same_multiplier * std::abs(mean);
-    if (!is_real && mean.imag() < 0.0) continue;  // its conjugate comes, too
+    if (!is_real && mean.imag() < 0.0) continue;  // contained in the block of its conjugate
     Schur schur = whole;
     const Index count = bring_forward(schur, [&values](Complex value) {
       return std::ranges::any_of(values,
@@ -201,7 +203,7 @@ void LyapunovFloquet::find_blocks(const MatrixXd& monodromy, const MatrixXd& coa
   std::ranges::stable_sort(blocks_, {}, &Block::modulus);
 }
 
-/// Carries V forward and W backward over the revolution: neither grows but by round-off.
+/// Integrates V forward and W backward over the revolution; both grow by round-off only.
 void LyapunovFloquet::follow(Block& block) const {
   const MatrixXcd back = small_exponential(-turn / speed_ / intervals_ * block.exponent);
   for (const MatrixXd& phi : propagators_) block.V.push_back(phi * block.V.back() * back);
@@ -211,8 +213,8 @@ void LyapunovFloquet::follow(Block& block) const {
     block.W[i] = back * block.W[i + 1] * propagators_[i];
 }
 
-/// Exponents are known but for multiples of i Omega. Taken is the one next to the mean frequency of
-/// the motion: P then changes least.
+/// Exponents are known up to multiples of i Omega. The one nearest to the mean frequency of the
+/// motion is taken: P then changes least.
 void LyapunovFloquet::choose_branch(Block& block) const {
   double turning = 0.0;
   double size = 0.0;
@@ -226,7 +228,7 @@ void LyapunovFloquet::choose_branch(Block& block) const {
     size += V.topRows(positions_).squaredNorm();
     states += V.bottomRows(V.rows() - 2 * positions_).squaredNorm();
   }
-  // First-order states alone have no motion whose frequency could decide.
+  // First-order states alone have no motion with a mean frequency.
   const double shift = size > no_motion * states
                            ? std::round((turning / size - mean_of(block.exponent).imag()) / speed_)
                            : 0.0;
@@ -242,7 +244,7 @@ void LyapunovFloquet::choose_branch(Block& block) const {
   for (MatrixXcd& W : block.W) W = W.conjugate().eval();
 }
 
-/// The largest entry of V over the revolution, of those that are no rates, becomes one.
+/// Scales V so that its largest entry over the revolution is one; rates do not count.
 void LyapunovFloquet::choose_scale(Block& block) const {
   Complex largest = 0.0;
   for (const MatrixXcd& V : block.V)
@@ -256,13 +258,13 @@ void LyapunovFloquet::choose_scale(Block& block) const {
   for (MatrixXcd& W : block.W) W *= largest;
 }
 
-/// The slowest of those that are resolved.
+/// Keeps the slowest of the resolved blocks.
 void LyapunovFloquet::select(int states) {
   std::vector<Block> kept;
   int count = 0;
   int unresolved = 0;
-  const Block* first = nullptr;  // of those
-  const Block* next = nullptr;   // that has no room
+  const Block* first = nullptr;  // the slowest of these
+  const Block* next = nullptr;   // the slowest that exceeds `states`
   for (const Block& block : blocks_) {
     if (states > 0 && count + block.states() > states) {
       next = &block;
@@ -279,13 +281,14 @@ void LyapunovFloquet::select(int states) {
   std::ostringstream text;
   text << "lyapunov_floquet has " << count << " of " << scale_.size() << " states";
   if (first != nullptr)
-    text << "; " << unresolved << " are not resolved, the slowest of them at " << first->modulus()
-         << " rad/s to " << first->error << " of its exponent; hint: more "
+    text << "; " << unresolved << " are not resolved, the slowest of them, at " << first->modulus()
+         << " rad/s, has an error of " << first->error << " of its exponent; hint: more "
          << "linearize.lyapunov_floquet_steps";
   if (next == nullptr && count + unresolved < scale_.size())
     text << "; modes that decay to less than " << least_multiplier
          << " in a revolution are left out";
-  if (count == 0 && next != nullptr) text << "; hint: the slowest motion has " << next->states();
+  if (count == 0 && next != nullptr)
+    text << "; hint: the slowest motion has " << next->states() << " states";
   const bool is_short = next == nullptr && count + 1 < states;
   if (count == 0 || is_short) throw InputError("linearize.lyapunov_floquet_states: " + text.str());
   if (first != nullptr || (states == 0 && count < scale_.size())) remark_ = text.str();
@@ -358,7 +361,7 @@ LyapunovFloquet::Frame LyapunovFloquet::frame_at(double psi) const {
   return frame;
 }
 
-/// Makes W V = 1 of all blocks together, which the steps keep up to their error.
+/// Makes W V = 1 exact for all blocks together; the steps keep it up to their error only.
 void LyapunovFloquet::orthogonalize(const std::vector<MatrixXcd>& V,
                                     std::vector<MatrixXcd>& W) const {
   Index count = 0;

@@ -47,13 +47,13 @@ MatrixXd gramian(const MatrixXd& A, const MatrixXd& F) {
   return 0.5 * (found + found.transpose());
 }
 
-/// L with L L^T = the matrix, what round-off made negative left out.
+/// L with L L^T = the matrix, without the eigenvalues that round-off made negative.
 MatrixXd root_of(const MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-/// The form in coordinates whose first `first` states do not feel the others, nor they them.
+/// The form in coordinates in which the first `first` states and the others are decoupled.
 struct Parted {
   StateSpace form;
   Index first = 0;
@@ -83,7 +83,7 @@ ReducedForm reduce_modal(const StateSpace& form, int order, int kept,
     if (is_stable(exponent)) moduli.push_back(std::abs(exponent));
   std::sort(moduli.begin(), moduli.end());
   auto count = static_cast<std::size_t>(order - kept);
-  // Moduli of a pair are alike.
+  // Moduli of a pair are equal.
   constexpr double same = 1e-9;
   if (count > 0 && count < moduli.size() && moduli[count] < moduli[count - 1] * (1.0 + same))
     --count;

@@ -70,8 +70,8 @@ void Multiblade::find_state_families() {
   add_state_families(subspace.states(), 2 * d, 0);
 }
 
-/// Families of the states from `first` on, and of their rates where these stand `rates` places
-/// behind them.
+/// Families of the states from `first` on, and of their rates, which stand `rates` places behind
+/// them (0: there are none).
 void Multiblade::add_state_families(const std::vector<PetscInt>& unknowns, int first, int rates) {
   using Key = std::pair<std::string, std::string>;  // part and family
   std::vector<Key> families;                        // in the order of the states
@@ -96,8 +96,8 @@ void Multiblade::add_state_families(const std::vector<PetscInt>& unknowns, int f
     if (static_cast<int>(family.members.size()) != blades_)
       throw InputError(
           "linearize.forms: multiblade coordinates are for blades with the same "
-          "states, \"" +
-          name + "\" is not one of all");
+          "states, not all blades have \"" +
+          name + "\"");
     for (int derivative = 0; derivative < (rates > 0 ? 2 : 1); ++derivative) {
       family.derivative = derivative;
       family.first = static_cast<int>(state_families_.size()) - derivative;
@@ -114,7 +114,7 @@ void Multiblade::add_state_families(const std::vector<PetscInt>& unknowns, int f
   }
 }
 
-/// Signals that are given for all blades; `keys`: what each is of and which derivative of it.
+/// Signals that are given for all blades; `keys`: family and order of the derivative of each.
 void Multiblade::find_signal_families(const std::vector<SignalKey>& keys,
                                       std::vector<system::Signal>& signals,
                                       std::vector<Family>& families) const {

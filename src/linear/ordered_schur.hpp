@@ -1,4 +1,4 @@
-// Schur forms whose eigenvalues stand in an order of one's choice, and what their two parts are.
+// Schur forms with eigenvalues in a chosen order, and the separation of their two parts.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ Schur schur_of(const Eigen::MatrixXd& matrix);
 /// Exchanges the eigenvalues k and k + 1 of the diagonal.
 void exchange(Schur& schur, Eigen::Index k);
 
-/// Brings the eigenvalues that are to stay to the front, in their order, and counts them.
+/// Moves the eigenvalues for which `stays` is true to the front, in their order, and counts them.
 template <class Stays>
 Eigen::Index bring_forward(Schur& schur, const Stays& stays) {
   Eigen::Index count = 0;
@@ -28,10 +28,10 @@ Eigen::Index bring_forward(Schur& schur, const Stays& stays) {
   return count;
 }
 
-/// X of T11 X - X T22 = -T12, T11 with `first` rows: (1 X; 0 1) parts the two.
+/// X of T11 X - X T22 = -T12, T11 with `first` rows: (1 X; 0 1) makes T block diagonal.
 Eigen::MatrixXcd parting(const Eigen::MatrixXcd& T, Eigen::Index first);
 
-/// A real basis of the space of complex columns that is its own conjugate.
+/// A real basis of the space of complex columns; this space must be its own conjugate.
 Eigen::MatrixXd real_basis(const Eigen::MatrixXcd& columns);
 
 }  // namespace samara::linear

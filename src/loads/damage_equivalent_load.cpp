@@ -29,13 +29,14 @@ void check_options(const DamageOptions& options) {
     }
 }
 
-/// Cycles that count n times as often as they say.
+/// Cycles whose counts are multiplied by `times`.
 struct WeightedCycles {
   std::vector<Cycle> cycles;
   double times = 1.0;
 };
 
-/// (sum n R^m / N_eq)^(1/m); by the largest range, whose power alone may be too large for a number.
+/// (sum n R^m / N_eq)^(1/m); ranges are divided by the largest one, whose power may be too large
+/// for a number.
 double equivalent_load(const std::vector<WeightedCycles>& all, double exponent,
                        double equivalent_cycles) {
   double largest = 0.0;

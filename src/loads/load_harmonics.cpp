@@ -13,8 +13,7 @@ namespace {
 
 constexpr double revolution = 360.0;  // [deg], as azimuths are
 constexpr double degree = std::numbers::pi / 180.0;
-/// Relative to a revolution: closer azimuths are the same, and so small a gap counts as a whole
-/// revolution.
+/// Relative to a revolution: closer azimuths are equal, and a whole revolution may lack this much.
 constexpr double same_azimuth = 1e-9;
 /// Relative to the largest pivot: below it the rows do not separate the harmonics.
 constexpr double least_pivot = 1e-8;
@@ -27,13 +26,13 @@ void check_azimuth(const LoadSeries& series, const Eigen::VectorXd& azimuth_deg)
       throw InputError("azimuth: row " + std::to_string(i + 1) + " is not a finite number");
 }
 
-/// Without the jumps of an azimuth that is kept within a revolution.
+/// The azimuth without its jumps, if it is kept within a revolution.
 Eigen::VectorXd unwrap(Eigen::VectorXd azimuth) {
   if (azimuth.maxCoeff() - azimuth.minCoeff() > revolution * (1.0 + same_azimuth)) return azimuth;
   double turns = 0.0;
   double before = azimuth(0);
   for (Eigen::Index i = 1; i < azimuth.size(); ++i) {
-    // Half a revolution is one forward.
+    // A step of half a revolution counts as a step forward.
     turns -= std::ceil((azimuth(i) - before) / revolution - 0.5);
     before = azimuth(i);
     azimuth(i) += turns * revolution;
@@ -41,7 +40,7 @@ Eigen::VectorXd unwrap(Eigen::VectorXd azimuth) {
   return azimuth;
 }
 
-/// The first of the rows at the end over which the azimuth grows.
+/// First row of the last part in which the azimuth grows.
 Eigen::Index first_growing_row(const Eigen::VectorXd& azimuth) {
   Eigen::Index first = azimuth.size() - 1;
   while (first > 0 && azimuth(first - 1) < azimuth(first)) --first;
@@ -53,7 +52,8 @@ struct Window {
   int revolutions = 1;
 };
 
-/// The last whole revolutions; the row of their beginning is that of their end again, and left out.
+/// The last whole revolutions. The row at their beginning repeats that at their end and is left
+/// out.
 Window find_window(const Eigen::VectorXd& azimuth) {
   const double end = azimuth(azimuth.size() - 1);
   Window window;
@@ -64,7 +64,7 @@ Window find_window(const Eigen::VectorXd& azimuth) {
     std::ostringstream text;
     text << "azimuth: it grows by " << turns * revolution
          << " deg until the end of the time series, harmonics need a whole revolution; hint: "
-            "where the rotor stops, `until` a time before";
+            "where the rotor stops, an earlier `until`";
     throw InputError(text.str());
   }
   const double begin = end - window.revolutions * revolution;
@@ -90,7 +90,7 @@ Eigen::MatrixXd fourier_columns(const Eigen::VectorXd& psi, Eigen::Index harmoni
   return columns;
 }
 
-/// Columns of coefficients 1, cos, sin ... of the columns of `values`.
+/// Coefficients of 1, cos, sin ..., a column for each column of `values`.
 Eigen::MatrixXd fit(const Eigen::VectorXd& psi, const Eigen::VectorXd& weights,
                     const Eigen::MatrixXd& values, int harmonics) {
   const Eigen::VectorXd roots = weights.cwiseSqrt();
@@ -99,9 +99,9 @@ Eigen::MatrixXd fit(const Eigen::VectorXd& psi, const Eigen::VectorXd& weights,
   factors.setThreshold(least_pivot);
   factors.compute(columns);
   if (factors.rank() < columns.cols())
-    throw InputError("azimuth: " + std::to_string(psi.size()) + " rows do not tell " +
+    throw InputError("azimuth: " + std::to_string(psi.size()) + " rows do not separate " +
                      std::to_string(harmonics) +
-                     " harmonics apart; hint: more rows a revolution, or fewer harmonics");
+                     " harmonics; hint: more rows in a revolution, or fewer harmonics");
   return factors.solve(roots.asDiagonal() * values);
 }
 

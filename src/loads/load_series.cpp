@@ -24,7 +24,7 @@ class Faults {
   std::ostringstream text_;
 };
 
-/// The first row that is not finite, or their number.
+/// The first row that is not finite; if there is none, the number of rows.
 Eigen::Index first_bad_row(const Eigen::Ref<const Eigen::VectorXd>& values) {
   for (Eigen::Index i = 0; i < values.size(); ++i)
     if (!std::isfinite(values(i))) return i;
@@ -47,7 +47,7 @@ void check_times(const LoadSeries& series, Faults& faults) {
   if (series.is_periodic() && !(times(last) - times(0) < series.period))
     faults.add() << "time: the rows last " << times(last) - times(0)
                  << " s, no less than the period of " << series.period
-                 << " s; the first row must not come again at the end";
+                 << " s; the first row must not be repeated at the end";
 }
 
 void check_values(const LoadSeries& series, Faults& faults) {

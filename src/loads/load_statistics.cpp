@@ -17,7 +17,7 @@ std::vector<ChannelStatistics> compute_statistics(const LoadSeries& series) {
     one.range = one.maximum - one.minimum;
     one.time_of_minimum = series.times(one.row_of_minimum);
     one.time_of_maximum = series.times(one.row_of_maximum);
-    // About the first value: a large mean must not take the digits of small swings.
+    // Relative to the first value, so that a large mean does not cost digits of small variations.
     const Eigen::ArrayXd swings = values.array() - values(0);
     const double mean_swing = weights.dot(swings.matrix());
     one.mean = values(0) + mean_swing;

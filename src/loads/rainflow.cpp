@@ -84,7 +84,7 @@ std::vector<Cycle> count_cycles(const Eigen::Ref<const Eigen::VectorXd>& values,
         count_closed(points, cycles);
         continue;
       }
-      // Y has the starting point (rule 5).
+      // Y contains the starting point (rule 5).
       cycles.push_back(cycle_between(points[0], points[1], 0.5));
       points.erase(points.begin());
     }

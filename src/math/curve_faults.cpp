@@ -8,13 +8,13 @@ namespace samara::math {
 namespace {
 
 constexpr double most_parts = 50000.0;
-/// Places in a part where the curve is looked at: no regular ones, which an oscillation might meet
-/// at equal phases.
+/// Places in a part at which the curve is evaluated. They are irregular, so that an oscillation
+/// does not have the same phase at all of them.
 constexpr std::array<double, 4> places{0.0, 0.27, 0.51, 0.78};
 /// Halvings that narrow down a jump or a kink. A smooth change shrinks with the interval.
 constexpr int jump_halvings = 24;
 constexpr int kink_halvings = 12;
-/// A jump keeps at least this part of the change before.
+/// Least part of the change that remains after the halvings, at a jump and at a kink.
 constexpr double kept_jump = 1e-3;
 constexpr double kept_kink = 0.5;
 /// Relative to the largest change, or rate: smaller ones are not examined.
@@ -22,7 +22,7 @@ constexpr double least_change = 1e-3;
 constexpr double least_kink = 1e-2;
 /// Relative to the size of the values: smaller differences are round-off.
 constexpr double round_off = 1e-12;
-/// Least part of a change that the neighbours do not explain.
+/// Least part of a change that deviates from the change expected from the neighbours.
 constexpr double least_surprise = 0.1;
 /// Relative to the range: the steps do not resolve a motion that deviates more from the line.
 constexpr double largest_deviation = 0.1;
@@ -60,7 +60,7 @@ Samples sample(const TimeCurve& curve, double until, double step) {
   return samples;
 }
 
-/// Where the change from a to b is, if some of it is left in an interval that short.
+/// The place of the jump between a and b; none where the change vanishes as the interval is halved.
 std::optional<double> narrow_jump(const TimeCurve& curve, double a, double b) {
   double from = curve.at(a).value;
   double to = curve.at(b).value;
@@ -77,7 +77,7 @@ std::optional<double> narrow_jump(const TimeCurve& curve, double a, double b) {
   return b;
 }
 
-/// The change of the rate between a and b, in the end over an interval that short.
+/// The kink between a and b: place, and change of the rate over the shortest interval.
 CurveFault narrow_kink(const TimeCurve& curve, double a, double b) {
   for (int i = 0; i < kink_halvings; ++i) {
     const double part = 0.25 * (b - a);

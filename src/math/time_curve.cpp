@@ -31,8 +31,8 @@ std::size_t interval_of(const std::vector<Point>& points, double t) {
   return std::min(std::max<std::size_t>(i, 1), points.size() - 1) - 1;
 }
 
-/// Slopes at the points: level at the ends and where the rise turns, else a harmonic mean of the
-/// neighbours' (Fritsch & Butland 1984).
+/// Slopes at the points: zero at the ends and where the direction changes, otherwise a harmonic
+/// mean of the slopes of the neighbouring intervals (Fritsch & Butland 1984).
 std::vector<double> monotone_slopes(const std::vector<Point>& points) {
   std::vector<double> slopes(points.size(), 0.0);
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -103,7 +103,7 @@ TimeCurve TimeCurve::formula(const std::string& text) {
   }
   return TimeCurve([parsed](double t) -> Value {
     constexpr double h = difference_step;
-    // No formula is asked for what is before the start: by one-sided differences there.
+    // A formula is not evaluated before t = 0: differences are one-sided near it.
     const double f = parsed->at(std::max(t, 0.0));
     if (t < 2.0 * h) {
       const double at = std::max(t, 0.0);

@@ -17,12 +17,12 @@ namespace {
 
 /// Time that a failed rank waits for the others, which may be in the middle of a computation [s].
 constexpr double patience = 5.0;
-/// For so long a rank that waits looks without a pause [s].
+/// Time during which a waiting rank polls without a pause [s].
 constexpr double spinning = 1e-3;
 
-/// A reader that leaves (samara ... | head) is no crash: signals stay with the system. And no file
-/// of options but that of the home folder: PETSc would read `.petscrc` and `petscrc` of the current
-/// folder, too, which may be anybody's and can load code (-dll_prepend).
+/// PETSc does not handle signals: a reader that ends early (samara ... | head) is not a crash. The
+/// only file of options is that of the home folder: PETSc would also read `.petscrc` and `petscrc`
+/// of the current folder, which may belong to anybody and can load code (-dll_prepend).
 constexpr std::array<const char*, 2> own_options{"-no_signal_handler", "-skip_petscrc"};
 
 /// Puts the options of the home folder's `.petscrc` in front of those of the environment.
@@ -37,15 +37,15 @@ void take_home_options() {
   setenv("PETSC_OPTIONS", all.c_str(), 1);
 }
 
-/// A number of the environment that one of the launchers sets, or `otherwise`.
+/// A number that one of the launchers sets in the environment, or `otherwise`.
 int launcher_number(std::initializer_list<const char*> names, int otherwise) {
   for (const char* name : names)
     if (const char* value = std::getenv(name)) return std::atoi(value);
   return otherwise;
 }
 
-/// Open MPI looks for networks that a single machine does not need; that takes longer than many a
-/// run (0.38 s against 0.07 s). Settings of the user in the environment have priority.
+/// Open MPI looks for networks that a single machine does not need; this takes longer than many
+/// runs (0.38 s against 0.07 s). Settings of the user in the environment have priority.
 void prepare_transport() {
   const auto set = [](const char* name, const char* value) { setenv(name, value, 0); };
   const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
@@ -58,10 +58,10 @@ void prepare_transport() {
   }
   if (std::getenv("PMIX_RANK") != nullptr || std::getenv("PMI_RANK") != nullptr) return;
   set("OMPI_MCA_ess_singleton_isolated", "1");
-  set("OMPI_MCA_orte_create_session_dirs", "0");  // or runs at the same time share one folder
+  set("OMPI_MCA_orte_create_session_dirs", "0");  // otherwise simultaneous runs share a folder
   set("OMPI_MCA_pml", "ob1");
   set("OMPI_MCA_btl", "self");
-  set("OMPI_MCA_sharedfp", "^sm");  // it asks for the folder that is not made
+  set("OMPI_MCA_sharedfp", "^sm");  // it needs the folder that is not made
 }
 
 }  // namespace
@@ -77,8 +77,8 @@ Session::Session(const std::vector<std::string>& options) {
   MPI_Finalized(&has_ended);
   if (has_ended != 0)
     throw InternalError(
-        "MPI has ended in this process, and cannot start again; hint: one Session "
-        "for the life of the program");
+        "MPI has ended in this process, and cannot start again; hint: use one "
+        "Session for the whole program");
   int has_mpi = 0;
   MPI_Initialized(&has_mpi);
   if (has_mpi == 0) prepare_transport();
@@ -99,7 +99,7 @@ Session::Session(const std::vector<std::string>& options) {
   if (size() > 1) MPI_Comm_dup(PETSC_COMM_WORLD, &agreement_);
 }
 
-/// PETSc runs: its options are added to, and what is not started here is not ended here.
+/// Adds to the options of a PETSc that runs already. Libraries not started here are not ended here.
 void Session::adopt(const std::vector<std::string>& options) {
   std::string text;
   for (const std::string& word : options) text += (text.empty() ? "" : " ") + word;
@@ -117,7 +117,7 @@ void Session::adopt(const std::vector<std::string>& options) {
 Session::~Session() {
   if (agreement_ != MPI_COMM_NULL) MPI_Comm_free(&agreement_);
   PetscPopErrorHandler();
-  if (has_slepc_) SlepcFinalize();  // which ends PETSc where it began it, and PETSc so with MPI
+  if (has_slepc_) SlepcFinalize();  // ends PETSc if it started it; likewise PETSc ends MPI
 }
 
 int Session::rank() {
@@ -150,7 +150,7 @@ int Session::agree(int code, const std::string& message) const {
     MPI_Iallreduce(own.data(), all.data(), 2, MPI_INT, MPI_MAX, agreement_, &request);
     const auto start = std::chrono::steady_clock::now();
     int done = 0;
-    // A rank that waits sleeps: MPI would turn in a circle and take time from the one that works.
+    // A waiting rank sleeps: MPI's busy waiting would take processor time from the working rank.
     while (done == 0) {
       MPI_Test(&request, &done, MPI_STATUS_IGNORE);
       const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;

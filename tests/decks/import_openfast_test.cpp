@@ -553,10 +553,10 @@ BOOST_AUTO_TEST_CASE(a_table_with_a_wrong_number_of_rows_is_refused) {
   const DeckFolder folder("three");
   folder.replace("Tower.dat", "3.5000000E-01  1.0400000E+03  1.6000000E+10  1.7000000E+10\n", "");
   BOOST_TEST(
-      holds(message_of([&] { import_main(folder); }), "the table has 3 rows, NTwInpSt says 4"));
+      holds(message_of([&] { import_main(folder); }), "the table has 3 rows, NTwInpSt states 4"));
   const DeckFolder more("three");
   more.replace("Tower.dat", "          4   NTwInpSt", "          3   NTwInpSt");
-  BOOST_TEST(holds(message_of([&] { import_main(more); }), "NTwInpSt says 3"));
+  BOOST_TEST(holds(message_of([&] { import_main(more); }), "NTwInpSt states 3"));
 }
 
 BOOST_AUTO_TEST_CASE(a_table_with_a_bad_row_is_refused) {

@@ -228,7 +228,7 @@ class Turbines(ProgramTest):
         text, _ = self.case("--nacelle-mass", "12345", "--nacelle-center=-1,2,3", "--hub-inertia",
                             "1,2,3")
         for words in ("mass: 12345 ", "center_of_mass: [-1, 2, 3]", "inertia: [1, 2, 3]",
-                      "of the command line"):
+                      "from the command line"):
             self.assertIn(words, text)
         self.refuse("import", "windio", "deck.yaml", "-o", "c.yaml", "--tower-only", "--hub-mass",
                     "-5", words="hub.mass: expected a number >= 0")

@@ -307,7 +307,7 @@ class Refusals(ProgramTest):
             ("exponents=[]", "expected a list of numbers"),
             ("equivalent_frequency=0", "expected a number > 0"),
             ("harmonics=1.5", "expected an integer"),
-            ("harmonics=150", "harmonics apart"),
+            ("harmonics=150", "do not separate 150 harmonics"),
             ("bins=0", "expected an integer"),
             ("bins=[1, 2, 3]", "a list of 2 integers"),
             ("goodman.RootMxb1={fixed_mean: 1}", 'missing key "ultimate_load"'),

@@ -175,11 +175,11 @@ BOOST_AUTO_TEST_CASE(what_has_no_harmonics_is_refused) {
   const Eigen::VectorXd turn = one_revolution(36);
   refuse(series_of(turn), turn, 2, "grows by 350 deg");
   refuse(series_of(turn), turn, -1, "must be >= 0, not -1");
-  refuse(periodic_series(turn), turn, 18, "36 rows do not tell 18 harmonics apart");
-  refuse(periodic_series(turn), turn, 20, "36 rows do not tell 20 harmonics apart");
+  refuse(periodic_series(turn), turn, 18, "36 rows do not separate 18 harmonics");
+  refuse(periodic_series(turn), turn, 20, "36 rows do not separate 20 harmonics");
   // Many rows at the same few azimuths tell no more.
   const Eigen::VectorXd coarse = Eigen::VectorXd::LinSpaced(101, 0.0, 9000.0);
-  refuse(series_of(coarse), coarse, 2, "do not tell 2 harmonics apart");
+  refuse(series_of(coarse), coarse, 2, "do not separate 2 harmonics");
   refuse(series_of(turn), Eigen::VectorXd::Zero(36), 1, "grows by 0 deg");
   refuse(series_of(turn), -turn, 1, "grows by 0 deg");
   refuse(periodic_series(turn), -turn, 1, "must grow");

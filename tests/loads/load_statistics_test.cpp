@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(a_series_without_channels_is_refused) {
 BOOST_AUTO_TEST_CASE(a_period_must_not_repeat_its_first_row) {
   LoadSeries series = one_period(4);
   series.period = series.times(3);
-  check_refused([&] { loads::check(series); }, "must not come again");
+  check_refused([&] { loads::check(series); }, "must not be repeated");
   series.period = not_a_number;
   check_refused([&] { loads::check(series); }, "the period must be");
 }

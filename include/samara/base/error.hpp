@@ -1,4 +1,5 @@
-// Errors that say where and what to do. The class of an error is the exit code of the program.
+// Errors whose messages name the place and a remedy. The class of an error determines the exit code
+// of the program.
 #pragma once
 
 #include <stdexcept>
@@ -24,7 +25,7 @@ class DomainError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The user ended the run (exit code 130, that of a program which Ctrl-C ends).
+/// The user ended the run (exit code 130, as of any program that Ctrl-C ends).
 class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -34,7 +35,7 @@ class InternalError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Does `work`; what it refuses gets the place in front.
+/// Runs `work` and puts the place in front of the message of an input error.
 template <class Work>
 auto at_place(const std::string& place, const Work& work) {
   try {

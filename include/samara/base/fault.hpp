@@ -8,12 +8,12 @@ namespace samara {
 
 struct Fault {
   std::string field;  ///< its path in a case file: "blades.hinges[0].offset"
-  std::string text;   ///< what is wrong, and a hint
-  /// Other fields that are at odds with it; whoever reads a file blames the one given last.
+  std::string text;   ///< the fault and a hint
+  /// Other fields that contradict it. The reader of a file reports the fault at the one given last.
   std::vector<std::string> others = {};
 };
 
-/// Whether a field is that of `outer` or stands below it.
+/// True where a field is `outer` or lies below it.
 bool is_within(const std::string& field, const std::string& outer);
 
 /// @throws InputError of all faults, one a line: "source: field: text"

@@ -1,11 +1,11 @@
-// Numbers in words, as people read them.
+// Numbers as text for the user.
 #pragma once
 
 #include <string>
 
 namespace samara {
 
-/// "12.300"; what rounds to zero has no sign.
+/// "12.300"; a value that rounds to zero has no sign.
 std::string fixed(double value, int digits);
 
 /// "1.23e-04" with the given digits behind the point.

@@ -17,8 +17,8 @@ std::string find_similar(std::string_view word, const std::vector<std::string>& 
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates,
                     const std::string& otherwise = {});
 
-/// `"a", "b" (did you mean "c"?)` of words that are none of the candidates, some twenty of them at
-/// the most, and `otherwise` behind them where one resembles nothing.
+/// `"a", "b" (did you mean "c"?)` of words that are not among the candidates, twenty of them at
+/// most. `otherwise` follows where a shown word resembles no candidate.
 std::string list_unknown(const std::vector<std::string>& words,
                          const std::vector<std::string>& candidates,
                          const std::string& otherwise = {});

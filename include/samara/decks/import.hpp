@@ -10,16 +10,16 @@ namespace samara::decks {
 
 /// Fate of a key of the deck.
 enum class Fate {
-  taken,    ///< the value stands in the case as it is, or in another unit or axis
-  derived,  ///< the case holds what follows from it
-  ignored   ///< the case holds nothing of it
+  taken,    ///< the case has the value as it is, or in another unit or axis
+  derived,  ///< the case has values that follow from it
+  ignored   ///< the case has nothing of it
 };
 
 struct ImportLine {
   std::string place;  ///< file, and line where there is one
   std::string key;    ///< as the deck names it
   Fate fate = Fate::taken;
-  std::string words;  ///< where it went, or why it did not
+  std::string words;  ///< where the case has it, or why the case does not have it
 };
 
 /// A quantity that a deck may lack and an option of the command line can state.
@@ -30,15 +30,15 @@ struct StatedQuantity {
 };
 std::span<const StatedQuantity> stated_quantities();
 
-/// The order of six structural damping coefficients mu of windIO.
+/// Order of the six structural damping coefficients mu of windIO.
 enum class MuOrder {
-  automatic,  ///< as the deck's matrices, but for the pattern that tells the other
+  automatic,  ///< as the deck's matrices, unless the pattern of the numbers is HAWC2's
   beamdyn,    ///< shear x, shear y, axial, bending x, bending y, torsion
   hawc2       ///< HAWC2's Kx (bending about y), Ky (about x), Kz (torsion), three zeros
 };
 
 struct ImportOptions {
-  bool tower_only = false;  ///< leave out what carries the tower, which is clamped at its foot
+  bool tower_only = false;  ///< leave out the structure below the tower and clamp its foot
   MuOrder mu_order = MuOrder::automatic;
   std::map<std::string, std::vector<double>> stated{};  ///< quantities of the case, by their keys
 };
@@ -46,19 +46,19 @@ struct ImportOptions {
 struct Import {
   std::string text;  ///< a complete, commented case file
   std::vector<ImportLine> report;
-  std::vector<std::string> warnings;  ///< what the user would not expect, `place: words`
+  std::vector<std::string> warnings;  ///< facts that the user would not expect, `place: words`
 };
 
 /// Reads the main file of OpenFAST (8.16 to 5.0) and the files of ElastoDyn and BeamDyn it names.
-/// @throws InputError with every error found, one a line, `file:line: key: what`.
+/// @throws InputError with every error found, one a line, `file:line: key: fault`.
 Import import_openfast(const std::string& path, const ImportOptions& options);
 
 /// Reads a turbine of windIO 1.0 or 2.0.
 /// @throws InputError as above
 Import import_windio(const std::string& path, const ImportOptions& options);
 
-/// @throws InputError where a case cannot be written at `path`: no such folder, no permission, or
-/// something there that is no case file of this program.
+/// @throws InputError where a case cannot be written at `path`: no such folder, no permission, or a
+/// file there that is no case file of this program.
 void require_case_path(const std::string& path);
 
 /// Writes the case as a whole or not at all.

@@ -10,11 +10,12 @@
 
 namespace samara::linear {
 
-/// A0 + sum_k Ac_k cos(k psi) + As_k sin(k psi), and so B, C, D, y0.
+/// A0 + sum_k Ac_k cos(k psi) + As_k sin(k psi), and likewise B, C, D.
 class AzimuthSeries {
  public:
-  /// Samples `form` at `azimuths` >= 2 `harmonics` + 1 places psi_i = 2 pi i / azimuths, and beside
-  /// them to know the residual. harmonics 0: a form that does not change is sampled once.
+  /// Samples `form` at `azimuths` >= 2 `harmonics` + 1 places psi_i = 2 pi i / azimuths, and midway
+  /// between some of them for the residual. For a form that does not change, 1 azimuth and 0
+  /// harmonics are enough.
   AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths, int harmonics);
 
   /// Series of given coefficients, A0 Ac_1 As_1 Ac_2 ..., with the residual of their fit.

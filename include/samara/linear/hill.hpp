@@ -7,9 +7,9 @@
 
 namespace samara::linear {
 
-/// With x = x0 + sum_j xc_j cos(j psi) + xs_j sin(j psi), j = 1 ... `harmonics`, whose coefficients
-/// change in time, and u and y alike: the constant form of (x0, xc_1, xs_1, ...). Products beyond
-/// the last harmonic are left out.
+/// x = x0 + sum_j xc_j cos(j psi) + xs_j sin(j psi), j = 1 ... `harmonics`, with coefficients that
+/// change in time, and likewise u and y. The result is the constant form of (x0, xc_1, xs_1, ...).
+/// Products beyond the last harmonic are left out.
 StateSpace hill_form(const AzimuthSeries& series, double rotor_speed, int harmonics);
 
 /// Its A alone.

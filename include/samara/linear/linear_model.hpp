@@ -1,9 +1,9 @@
-// The linear model about a steady state, one instant at a time (docs/theory.md, section 10; Lee,
-// Hodges & Patil (2002), eq. (16), (17)).
+// The linear model about a steady state, at one instant (docs/theory.md, section 10; Lee, Hodges &
+// Patil (2002), eq. (16), (17)).
 //
 // Descriptor form: all unknowns, M dz_dot + K dz + R du + R' du_dot = 0. State-space form: the
-// states (eta, eta_dot) that the system really has, of a pair eta, eta_dot two for each degree of
-// freedom, constraints and reactions eliminated without a step in time.
+// independent states (eta, eta_dot), two for each degree of freedom. Constraints and reactions are
+// eliminated without a step in time.
 #pragma once
 
 #include <array>
@@ -53,19 +53,19 @@ struct InputColumn {
   int derivative = 0;
 };
 
-/// Behind the name of a coordinate whose rate is a state.
+/// Stands behind the name of a coordinate in the name of its rate.
 inline constexpr char rate_word[] = " rate";
 
 /// A state: unknown = scale times state.
 struct ModelState {
-  std::string name;  ///< of the unknown, with rate_word behind it where it is the rate
+  std::string name;  ///< of the unknown, with rate_word behind it for its rate
   std::string unit;  ///< of the unknown
   double scale = 1.0;
 };
 
 class LinearModel {
  public:
-  /// All arguments must live on.
+  /// All arguments must outlive the model.
   LinearModel(const system::PeriodicSystem& system, const system::InputOutput& input_output,
               const analysis::PeriodicSolution& solution);
 

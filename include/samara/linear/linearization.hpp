@@ -1,4 +1,4 @@
-// All forms of the linear model that are asked for (docs/theory.md, section 10).
+// All requested forms of the linear model (docs/theory.md, section 10).
 #pragma once
 
 #include <string>
@@ -19,18 +19,19 @@ struct LinearizeOptions {
   bool state_space = true;
   bool multiblade = false;
   bool average =
-      false;  ///< mean over the azimuth, of multiblade coordinates where they are asked for
+      false;  ///< mean over the azimuth, of multiblade coordinates where these are requested
   bool hill = false;
   int hill_harmonics = 4;
   bool lyapunov_floquet = false;
-  int lyapunov_floquet_steps = LyapunovFloquet::default_steps;  ///< a revolution, at the least
+  int lyapunov_floquet_steps = LyapunovFloquet::default_steps;  ///< in a revolution, at least
   int lyapunov_floquet_states = 0;  ///< of the slowest modes; 0: all that are resolved
-  std::vector<double> at;  ///< at which the matrices themselves are given [rad]; none: all of them
-  int order = 0;           ///< of constant forms, reduced; 0: none
+  std::vector<double> at;           ///< azimuths at which matrices are given [rad]; none: all
+  int order = 0;                    ///< of reduced constant forms; 0: none
   ReductionMethod reduction = ReductionMethod::balanced;
 };
 
-/// A form with the names of what it maps. One coefficient: it does not change with the azimuth.
+/// A form with the names of its states, inputs and outputs. If the series has one coefficient, the
+/// form does not change with the azimuth.
 struct NamedForm {
   std::string name;  ///< "state_space"
   std::string description;
@@ -45,10 +46,10 @@ struct NamedForm {
 struct Linearization {
   std::vector<NamedForm> forms;
   std::vector<double> azimuths;             ///< at which matrices are given [rad]
-  std::vector<DescriptorForm> descriptors;  ///< at the azimuths, where they are asked for
+  std::vector<DescriptorForm> descriptors;  ///< at the azimuths, if requested
   Eigen::MatrixXd outputs;                  ///< on the steady state, azimuths x outputs
   double rotor_speed = 0.0;                 ///< [rad/s]
-  int series_azimuths = 0;                  ///< from which the series are made
+  int series_azimuths = 0;                  ///< number of azimuths of the series
   bool is_constant = false;                 ///< nothing changes with the azimuth
 };
 

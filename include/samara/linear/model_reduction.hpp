@@ -10,7 +10,7 @@ namespace samara::linear {
 
 enum class ReductionMethod {
   balanced,  ///< balanced truncation of the stable part
-  modal,     ///< the slowest modes, and the static answer of the others
+  modal,     ///< the slowest modes, and the static response of the others
 };
 
 struct ReducedForm {
@@ -22,8 +22,8 @@ struct ReducedForm {
   double error_bound = 0.0;
 };
 
-/// `order`: states wanted; a pair of modes is not parted, so there may be one less.
-/// @throws InputError where neutral and unstable states alone are more
+/// `order`: number of states. A pair of modes is not split, so that the result may have one less.
+/// @throws InputError where neutral and unstable states alone are more than `order`
 ReducedForm reduce(const StateSpace& form, int order, ReductionMethod method);
 
 }  // namespace samara::linear

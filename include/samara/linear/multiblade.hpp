@@ -16,8 +16,8 @@ namespace samara::linear {
 
 class Multiblade {
  public:
-  /// `model` must live on.
-  /// @throws InputError for fewer than three blades, or blades that have not the same states
+  /// `model` must outlive this object.
+  /// @throws InputError for fewer than three blades, or blades that do not have the same states
   explicit Multiblade(const LinearModel& model);
 
   /// `form` at the azimuth psi of the first blade, in multiblade coordinates.
@@ -28,16 +28,15 @@ class Multiblade {
   const std::vector<system::Signal>& outputs() const { return outputs_; }
 
  private:
-  /// The same quantity of all blades, in the order in which they pass; `derivative` of it.
+  /// One quantity of all blades, in the order of their numbers, or its `derivative` in time.
   struct Family {
     std::vector<int> members;
     std::vector<double> scales;
     int derivative = 0;
-    int first =
-        -1;  ///< family of the quantity that this is a derivative of, itself where it is none
+    int first = -1;  ///< family of the quantity itself, of which this is a derivative
   };
 
-  using SignalKey = std::pair<std::string, int>;  ///< family, empty: of none; derivative
+  using SignalKey = std::pair<std::string, int>;  ///< family (empty: none), derivative
 
   void find_state_families();
   void add_state_families(const std::vector<PetscInt>& unknowns, int first, int rates);
@@ -58,7 +57,7 @@ class Multiblade {
   std::vector<system::Signal> inputs_, outputs_;
 };
 
-/// Inputs of the state-space form: a motion is three, with its rate and its acceleration.
+/// Inputs of the state-space form: a motion gives three, with its rate and its acceleration.
 std::vector<system::Signal> column_signals(const LinearModel& model);
 
 }  // namespace samara::linear

@@ -1,6 +1,6 @@
-// Damage-equivalent loads: the range of N_eq equal cycles that do the damage of those counted, by
-// Palmgren and Miner's sum with a straight S-N curve (docs/theory.md, section 8.4; G. J. Hayman,
-// "MLife Theory Manual for Version 1.00", NREL, 2012).
+// Damage-equivalent loads: the range of N_eq equal cycles that cause the damage of the counted
+// ones, by Palmgren and Miner's sum with a straight S-N curve (docs/theory.md, section 8.4; G. J.
+// Hayman, "MLife Theory Manual for Version 1.00", NREL, 2012).
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ namespace samara::loads {
 
 /// Straight Goodman lines from the ultimate load: brings cycles of all means to one mean.
 struct GoodmanCorrection {
-  double ultimate_load = 0.0;  ///< L_ult > 0, in the unit of the channel, alike in both directions
-  double fixed_mean = 0.0;     ///< L_MF, of which the size counts
+  double ultimate_load = 0.0;  ///< L_ult > 0, in the unit of the channel, equal in both directions
+  double fixed_mean = 0.0;     ///< L_MF; only its absolute value counts
 };
 
 /// The same cycles with the ranges R (L_ult - |L_MF|)/(L_ult - |mean|) and the mean L_MF.
@@ -24,7 +24,7 @@ std::vector<Cycle> correct_means(const std::vector<Cycle>& cycles,
 struct DamageOptions {
   std::vector<double> exponents = {4.0, 10.0};  ///< m of Woehler's curve: steel, glass fibre
   double frequency = 1.0;                       ///< f_eq [Hz]: N_eq = f_eq T
-  std::optional<GoodmanCorrection> goodman;     ///< none: means do not count
+  std::optional<GoodmanCorrection> goodman;     ///< none: means have no effect
 };
 
 /// (sum n R^m / (f_eq T))^(1/m) for each exponent, in the unit of the channel, of cycles counted in
@@ -36,12 +36,12 @@ std::vector<double> compute_damage_equivalent_loads(const std::vector<Cycle>& cy
 /// A time series that stands for `hours` of the lifetime.
 struct LoadCase {
   std::vector<Cycle> cycles;
-  double duration = 0.0;  ///< [s] in which they were counted
+  double duration = 0.0;  ///< [s] of the counted time series
   double hours = 0.0;     ///< [h] of the lifetime, >= 0
 };
 
-/// The same over all cases, each repeated 3600 hours / duration times. N_eq is f_eq times the time
-/// of all cases, or `equivalent_cycles` of the lifetime, e.g. 1e7.
+/// The same over all load cases, each repeated 3600 hours / duration times. N_eq is f_eq times the
+/// time of all cases, or `equivalent_cycles` of the lifetime, e.g. 1e7.
 /// @throws InputError where there is no case or no time; otherwise as for one time series.
 std::vector<double> compute_lifetime_loads(const std::vector<LoadCase>& cases,
                                            const DamageOptions& options,

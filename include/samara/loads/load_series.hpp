@@ -10,7 +10,7 @@
 namespace samara::loads {
 
 struct LoadSeries {
-  std::vector<std::string> names;  ///< of the channels, as errors call them
+  std::vector<std::string> names;  ///< of the channels, as error messages name them
   Eigen::VectorXd times;           ///< [s], growing, in steps that may vary
   Eigen::MatrixXd values;          ///< row an instant, column a channel, each in its own unit
   /// [s] of a periodic steady state, whose rows are one period and do not repeat the first; 0 for
@@ -20,9 +20,9 @@ struct LoadSeries {
   bool is_periodic() const { return period > 0.0; }
 };
 
-/// Refuses what has no statistics.
-/// @throws InputError, one error a line, where there is no channel, less than two rows (one if
-/// periodic), a time that does not grow or a number that is none.
+/// Refuses a time series that has no statistics.
+/// @throws InputError, one error a line, where there is no channel, fewer than two rows (one if
+/// periodic), a time that does not grow or a number that is not finite.
 /// @throws InternalError where names, times and values differ in size.
 void check(const LoadSeries& series);
 

@@ -21,12 +21,12 @@ struct ChannelStatistics {
   Eigen::Index row_of_maximum = 0;
 };
 
-/// One a channel.
+/// One entry for each channel.
 /// @throws as `check` of the time series.
 std::vector<ChannelStatistics> compute_statistics(const LoadSeries& series);
 
-/// A channel is at its largest or smallest value; `series.values.row(row)` is what the others have
-/// at the same time.
+/// A channel is at its largest or smallest value; `series.values.row(row)` holds the values of the
+/// others at the same time.
 struct ExtremeEvent {
   Eigen::Index channel = 0;
   bool is_maximum = false;

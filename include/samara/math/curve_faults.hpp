@@ -1,4 +1,4 @@
-// Where a motion given in time is none that steps can follow.
+// Faults of a motion given in time that steps cannot follow: jumps, fast changes, kinks.
 #pragma once
 
 #include <optional>
@@ -11,18 +11,18 @@ namespace samara::math {
 struct CurveFault {
   enum class Kind {
     jump,  ///< of the value, within less than a millionth of a step
-    fast,  ///< between the ends of a step the value goes elsewhere
+    fast,  ///< between the ends of a step the value leaves the straight line
     kink,  ///< a jump of the rate
   };
   Kind kind = Kind::jump;
   double time = 0.0;  ///< [s]; fast: the start of the step
-  double size = 0.0;  ///< change in the part of a step with the jump, or of the rate in the kink;
-                      ///< fast: how far from the straight line over the step
+  double size = 0.0;  ///< jump: change in its part of a step; kink: change of the rate;
+                      ///< fast: distance from the straight line over the step
 };
 
-/// The first jump of the curve from 0 to `until` [s], or else the first step in which it is fast:
-/// more than a tenth of its range off the straight line. With more than 50000 steps the curve is
-/// searched in as many parts, for jumps alone.
+/// The first jump of the curve from 0 to `until` [s], or otherwise the first step in which it is
+/// fast: more than a tenth of its range away from the straight line. With more than 50000 steps the
+/// curve is searched in 50000 parts, for jumps only.
 std::optional<CurveFault> find_jump(const TimeCurve& curve, double until, double step);
 
 /// The largest jump of the rate of a curve without jumps.

@@ -1,5 +1,5 @@
-// A scalar that knows what it depends on instead of its value: functions that are templates on the
-// scalar tell with it which of their derivatives may differ from zero.
+// A scalar that holds the quantities on which it depends instead of its value. With it, functions
+// that are templates on the scalar give those of their derivatives that may differ from zero.
 #pragma once
 
 #include <cmath>
@@ -10,16 +10,16 @@
 
 namespace samara::math {
 
-/// A set of up to 64 independent quantities. Constants keep their value, so that factors of zero
-/// take away what they multiply. Terms that cancel are not seen: the set may be too large, never
-/// too small.
+/// A set of up to 64 independent quantities. Constants keep their value, so that a factor of zero
+/// removes the quantities that it multiplies. Terms that cancel are not detected: the set may be
+/// too large, never too small.
 class Dependence {
  public:
   static constexpr int most_quantities = 64;
 
   /// The constant zero.
   Dependence() = default;
-  /// A constant; one that is no number may have any value.
+  /// A constant; not-a-number stands for any value.
   Dependence(double value) : value_(value) {}  // NOLINT(google-explicit-constructor): a scalar
 
   /// The independent quantity number `index`.
@@ -63,7 +63,7 @@ class Dependence {
   }
 
   std::uint64_t quantities_ = 0;
-  double value_ = 0.0;  ///< not a number where it is no constant
+  double value_ = 0.0;  ///< not-a-number unless it is a constant
 };
 
 }  // namespace samara::math

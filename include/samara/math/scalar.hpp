@@ -15,7 +15,7 @@ template <class Derivatives>
 double plain_value(const Eigen::AutoDiffScalar<Derivatives>& value) {
   return value.value();
 }
-/// None: every comparison with it is false.
+/// Not-a-number: every comparison with it is false.
 inline double plain_value(const Dependence&) { return std::numeric_limits<double>::quiet_NaN(); }
 
 }  // namespace samara::math

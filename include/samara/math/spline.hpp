@@ -1,5 +1,5 @@
-// The natural cubic spline through points in space, with the chord length as parameter, by its arc
-// length.
+// The natural cubic spline through points in space. Its parameter is the chord length; places on it
+// are given by the arc length.
 #pragma once
 
 #include <vector>
@@ -20,8 +20,8 @@ class NaturalSpline {
 
   double length() const { return arc_.back(); }
 
-  /// The place after `arc` of the length; before the first and behind the last point the curve goes
-  /// on as it does there.
+  /// The place at the arc length `arc`. The polynomials of the end intervals continue before the
+  /// first and behind the last point.
   Place at(double arc) const;
 
  private:

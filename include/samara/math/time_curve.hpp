@@ -17,22 +17,23 @@ class TimeCurve {
   };
   using Point = std::pair<double, double>;  ///< t [s], value
 
-  /// Zero for ever.
+  /// Zero at all times.
   TimeCurve() = default;
 
   /// The monotone cubic through points of rising t (Fritsch & Butland 1984: no overshoot, the rate
-  /// is continuous); outside constant, which it joins without a jump of the rate.
+  /// is continuous); constant outside, without a jump of the rate.
   static TimeCurve through(const std::vector<Point>& points);
 
   /// Straight lines between points of rising t, constant outside: the rate jumps.
   static TimeCurve along(const std::vector<Point>& points);
 
   /// A formula of t, e.g. "0.1*sin(2*_pi*t)" in the language of muParser. Rates by differences of
-  /// fourth order, near t = 0 from what is behind it; before it a straight line.
+  /// fourth order; near t = 0 one-sided, the second of third order. Before t = 0 a straight line.
   /// @throws InputError with the place in the formula
   static TimeCurve formula(const std::string& text);
 
-  /// From one value to another at the start, by half a cosine whose largest rate is `rate` > 0.
+  /// From one value to another, beginning at the time `start`, by half a cosine whose largest rate
+  /// is `rate` > 0.
   static TimeCurve ramp(double start, double from, double to, double rate);
 
   Value at(double t) const { return function_ ? function_(t) : Value{}; }
@@ -43,8 +44,8 @@ class TimeCurve {
   std::function<Value(double)> function_;
 };
 
-/// The integral of a curve from 0, e.g. an azimuth from a speed: value the integral, rate the
-/// curve's value, acceleration its rate.
+/// The integral of a curve from 0, e.g. an azimuth from a speed. Its value is the integral, its
+/// rate the curve's value, its acceleration the curve's rate.
 class IntegratedCurve {
  public:
   /// Exact to round-off for t from 0 to `until` [s] where the curve is a polynomial of degree 9

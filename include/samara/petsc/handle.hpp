@@ -1,4 +1,5 @@
-// Owners of PETSc and SLEPc objects, and the check of their calls. The only place that destroys.
+// Owners of PETSc and SLEPc objects, and the check of their calls. Only the code of this file
+// destroys them.
 #pragma once
 
 #include <type_traits>
@@ -13,8 +14,8 @@
 
 namespace samara::petsc {
 
-/// Throws an InternalError with place and PETSc's words where `code` is not zero.
-/// (`file` and `line` are the caller's; clang 14 has no std::source_location.)
+/// Throws an InternalError with place and PETSc's message where `code` is not zero. (`file` and
+/// `line` are the caller's; clang 14 has no std::source_location.)
 void check(PetscErrorCode code, const char* file = __builtin_FILE(), int line = __builtin_LINE());
 
 /// Sole owner of a PETSc object (Vec, Mat, KSP, SNES, TS, EPS, FN, IS); moves, never copies.
@@ -35,7 +36,7 @@ class Handle {
   Object get() const { return object_; }
   explicit operator bool() const { return object_ != nullptr; }
 
-  /// For PETSc's create calls: destroys what is held and gives the place to fill.
+  /// For PETSc's create calls: destroys the held object and returns the address to fill.
   Object* fill() {
     destroy();
     return &object_;

@@ -8,8 +8,8 @@
 
 namespace samara::petsc {
 
-/// Starts MPI, PETSc and SLEPc where they do not run, and ends what it started; others that live at
-/// the same time, and callers that have started them, keep them. Takes the arguments that belong to
+/// Starts MPI, PETSc and SLEPc where they do not run yet, and ends only those that it started:
+/// other sessions, and callers that have started them, keep them. `options` are arguments for
 /// PETSc's options database.
 class Session {
  public:
@@ -21,18 +21,18 @@ class Session {
   static int rank();
   static int size();
 
-  /// True where a launcher (mpirun, srun) started this process as one of several; known before a
-  /// session starts, as is the rank that the process will have (0 without a launcher).
+  /// True where a launcher (mpirun, srun) started this process as one of several. This is known
+  /// before a session starts, and so is the rank that the process will have (0 without a launcher).
   static bool is_launched();
   static int launch_rank();
 
-  /// Common exit code of all ranks: the largest of theirs. Every rank calls it at the same
-  /// points of its work; the first one that failed prints its message, whole lines, to stderr.
-  /// Where the others do not come within some seconds (they wait for this rank in a collective
-  /// call), the rank that failed prints its message and ends them all.
+  /// Common exit code of all ranks: the largest of theirs. Every rank calls it at the same points
+  /// of its work; the first one that failed prints its message to stderr in whole lines. If the
+  /// others do not call it within some seconds (they wait for this rank in a collective call), the
+  /// failed rank prints its message and ends them all.
   int agree(int code, const std::string& message) const;
 
-  /// Options that no object asked for, in words; empty if none.
+  /// Options that no object has read, as text; empty if there are none.
   static std::string unused_options();
 
   /// All options in force: of the command line, of PETSC_OPTIONS and of .petscrc.
@@ -41,8 +41,8 @@ class Session {
  private:
   void adopt(const std::vector<std::string>& options);
 
-  bool has_slepc_ = false;              ///< it started SLEPc
-  MPI_Comm agreement_ = MPI_COMM_NULL;  ///< apart from all communication of the analyses
+  bool has_slepc_ = false;              ///< this session started SLEPc
+  MPI_Comm agreement_ = MPI_COMM_NULL;  ///< separate from all communication of the analyses
 };
 
 /// A stage of the work in the table of PETSc's `-log_view`, for the length of a scope.
@@ -54,7 +54,7 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 };
 
-/// Versions of PETSc, SLEPc and MPI in words.
+/// Versions of PETSc, SLEPc and MPI as text.
 std::string library_versions();
 
 }  // namespace samara::petsc
