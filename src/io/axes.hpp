@@ -11,10 +11,10 @@ inline constexpr char mode_axis[] = "mode";
 inline constexpr char unknown_axis[] = "unknown";
 inline constexpr char channel_axis[] = "channel_name";
 
-/// Words for the entries of an axis that has the same ones everywhere; none: they have numbers.
+/// Names of the entries of an axis that has the same ones everywhere; empty: they have numbers.
 std::vector<std::string> words_of_axis(const std::string& axis);
 
-/// mean, cos 1, sin 1, ... of a Fourier series of real coefficients.
+/// Names of the coefficients of a real Fourier series: mean, cos 1, sin 1, ...
 std::vector<std::string> harmonic_names(int harmonics);
 
 }  // namespace samara::io

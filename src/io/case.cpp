@@ -31,8 +31,8 @@ void read_scenario(const YamlNode& root, Case& result, ErrorList& errors) {
   if (errors.size() == 0) errors.add(model::complete(result.turbine), root);
 }
 
-/// Adds an error where `samara` is not the version this program reads. False: a newer version, of
-/// which no other error would mean anything.
+/// Adds an error if `samara` is not the version that this program reads. Returns false for a newer
+/// version: other errors would then be meaningless.
 bool check_version(const YamlNode& root, ErrorList& errors) {
   if (root.kind != YamlNode::Kind::map) return true;
   const YamlNode* version = root.find("samara");
@@ -103,7 +103,7 @@ Case parse_case(const std::string& path, const std::string& text,
 
 void require_valid(const Case& input, const std::vector<Fault>& faults) {
   if (faults.empty()) return;
-  // The text has the settings in lines of their own in front.
+  // The text begins with the settings, one per line.
   std::size_t begin = 0;
   for (const std::string& setting : input.settings) begin += setting_line(setting).size();
   ErrorList errors(input.path, input.settings);

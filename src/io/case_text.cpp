@@ -33,8 +33,8 @@ std::string quote(const std::string& text) {
   return quoted + "\"";
 }
 
-/// The shortest decimal in `unit` that reads back as the value in SI; where round-off leaves none,
-/// the nearest one.
+/// The shortest decimal in `unit` that reads back as the value in SI; if there is none because of
+/// round-off, the nearest one.
 std::string exact_in(const Unit& unit, double value) {
   const double converted = unit.from_si(value);
   if (unit.factor == unit.divisor) return exact(converted);
@@ -73,8 +73,8 @@ bool has_comments(const Entry& entry) {
   return !entry.comment.empty() || std::ranges::any_of(entry.entries, has_comments);
 }
 
-/// The entry in one line; empty: it needs several. A mapping of values may be long, one of
-/// mappings may not.
+/// The entry in one line; empty: it needs several lines. A mapping of values may be longer than a
+/// mapping of mappings.
 std::string in_one_line(const Entry& entry) {
   constexpr std::size_t most_of_values = 200;
   if (entry.entries.empty() && entry.rows.empty()) return entry.value;
@@ -119,7 +119,7 @@ void print(const Entry& entry, std::size_t indent, const std::string& bullet, st
   if (!is_item) text += line + "\n";
   for (const std::string& row : entry.rows) text += std::string(inner, ' ') + "- " + row + "\n";
   for (std::size_t i = 0; i < entry.entries.size(); ++i) {
-    if (is_item)  // the bullet stands before its first entry
+    if (is_item)  // the bullet comes before its first entry
       print(entry.entries[i], i == 0 ? indent : indent + bullet.size(), i == 0 ? bullet : "", text);
     else
       print(entry.entries[i], inner, entry.is_list ? "- " : "", text);
@@ -305,10 +305,10 @@ class CaseWriter : public fields::Description {
   }
 
   const CaseComments& comments_;
-  std::optional<std::map<std::string, std::string>> defaults_;  ///< while they are gathered
+  std::optional<std::map<std::string, std::string>> defaults_;  ///< while they are collected
   std::map<std::string, std::string> known_;                    ///< defaults by path
   std::string where_;
-  bool is_item_ = false;  ///< of a list
+  bool is_item_ = false;  ///< inside an item of a list
   std::vector<Entry> entries_;
 };
 

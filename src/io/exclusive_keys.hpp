@@ -1,4 +1,4 @@
-// Keys of which a mapping has one or the other.
+// Keys that exclude each other in a mapping.
 #pragma once
 
 #include <set>
@@ -9,7 +9,7 @@ namespace samara::io {
 
 using ExclusiveKeys = std::set<std::pair<std::string, std::string>>;
 
-/// Both ways round, of all mappings of a case.
+/// The pairs of all mappings of a case, each in both orders.
 ExclusiveKeys find_exclusive_keys();
 
 }  // namespace samara::io

@@ -7,7 +7,7 @@
 
 namespace samara::io {
 
-/// Errors go to those of the mapping, with the place of what is wrong.
+/// Adds errors to those of the mapping, each with its place.
 class FieldReader : public fields::Visitor {
  public:
   explicit FieldReader(MapReader& top) : map_(&top) {}
@@ -51,14 +51,14 @@ class FieldReader : public fields::Visitor {
   void expected(std::string_view key, const std::string& words) override;
 
  private:
-  /// The entry of a field, or null where it is left out; asks for one that is compulsory.
+  /// The entry of a field, or null if it is left out. A missing compulsory one becomes an error.
   const YamlNode* find(const fields::Field& field);
   void read_entries(const YamlNode& node, const std::string& where,
                     const std::function<void()>& inside);
 
-  MapReader* map_;                         ///< that is read now
-  std::vector<std::string_view> refused_;  ///< keys of it beside which another one stands
-  const char* mapping_words_ = nullptr;    ///< where the value that is read now may be a mapping
+  MapReader* map_;                         ///< mapping that is being read
+  std::vector<std::string_view> refused_;  ///< its keys that another given key excludes
+  const char* mapping_words_ = nullptr;    ///< names a mapping that may be given instead
 };
 
 }  // namespace samara::io

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name that is too long with its ending gets a short one of its own.
+/// Name of the lock file; a short one if the usual name would be too long.
 std::string lock_name(const fs::path& target) {
   const std::string name = target.filename().string();
   const std::string plain = "." + name + ".lock";
@@ -60,8 +60,9 @@ FileLock::FileLock(const std::string& path) {
   for (;;) {
     file_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file_ < 0)
-      throw InputError(lock_path_ + ": cannot be made: " + std::generic_category().message(errno) +
-                       "; hint: it locks " + path);
+      throw InputError(lock_path_ +
+                       ": cannot be created: " + std::generic_category().message(errno) +
+                       "; hint: it is the lock file of " + path);
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
       if (error == EINTR) {
@@ -76,18 +77,18 @@ FileLock::FileLock(const std::string& path) {
                        "; hint: -o gives this run's result another name");
     }
     if (is_at(file_, lock_path_)) break;
-    ::close(file_);  // its last holder has just taken it away
+    ::close(file_);  // its last holder has just removed it
   }
   const std::string words = this_process() + "\n";
   if (::ftruncate(file_, 0) == 0) {
-    // Only for the message of others.
+    // Only for the message of other processes.
     [[maybe_unused]] const ssize_t written = ::pwrite(file_, words.data(), words.size(), 0);
   }
 }
 
 FileLock::~FileLock() {
   if (file_ < 0) return;
-  ::unlink(lock_path_.c_str());  // while nobody else can hold it
+  ::unlink(lock_path_.c_str());  // while no other process can hold it
   ::close(file_);
 }
 

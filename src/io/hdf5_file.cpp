@@ -13,7 +13,7 @@
 namespace samara::io {
 namespace {
 
-/// Memory that the file grows by.
+/// Increment by which the memory of the file grows [bytes].
 constexpr std::size_t memory_increment = std::size_t{1} << 20;
 
 /// The innermost record of HDF5's error stack: nearest to the cause.
@@ -40,7 +40,7 @@ Hdf5Id memory_access() {
   return access;
 }
 
-/// The scale of an axis does not name this dataset any more.
+/// Detaches the scale of an axis from this dataset.
 void detach_axis(const Hdf5Id& dataset, unsigned axis) {
   if (check(H5DSget_num_scales(dataset.get(), axis)) == 0) return;
   Hdf5Id scale;
@@ -53,7 +53,7 @@ void detach_axis(const Hdf5Id& dataset, unsigned axis) {
   check(H5DSdetach_scale(dataset.get(), scale.get(), axis));
 }
 
-/// The description, and the axes where there are several.
+/// The description, with the axes if there are several.
 std::string describe(const Meaning& meaning) {
   if (meaning.axes.size() < 2) return meaning.description;
   std::string axes;
@@ -74,9 +74,9 @@ Hdf5File::Hdf5File() {
 Hdf5File::Hdf5File(const std::vector<char>& image) {
   silence_hdf5();
   const Hdf5Id access = memory_access();
-  std::vector<char> copy = image;  // HDF5 asks for what it may write to, and copies it
+  std::vector<char> copy = image;  // HDF5 requires a writable image, and copies it
   check(H5Pset_file_image(access.get(), copy.data(), copy.size()));
-  // With an image HDF5 refuses a name that is there; none is below a device.
+  // With an image HDF5 refuses the name of an existing file; no file is below a device.
   file_ = {check(H5Fopen("/dev/null/samara", H5F_ACC_RDWR, access.get())), H5Fclose};
   make_types();
 }
@@ -98,7 +98,7 @@ Hdf5Id Hdf5File::make_dataset(const std::string& name, hid_t type, const Shape& 
                  H5Sclose};
   const hid_t space = shape.empty() ? scalar_space_.get() : own_space.get();
   if (H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0)
-    throw InternalError(name + ": written twice, or after what has it as its axis");
+    throw InternalError(name + ": written twice, or after a dataset that has it as its axis");
   Hdf5Id dataset(
       check(H5Dcreate2(file_.get(), name.c_str(), type, space, link_.get(), creation, H5P_DEFAULT)),
       H5Dclose);
@@ -125,8 +125,8 @@ void Hdf5File::attach_axes(const Hdf5Id& dataset, const std::string& name, const
   }
 }
 
-/// The axis of dataset `name`, from its group or one above; a new one in its group where there is
-/// none.
+/// The axis of dataset `name`, from its group or a group above; if there is none, a new one in its
+/// group.
 Hdf5Id Hdf5File::find_axis(const std::string& name, const std::string& axis, hsize_t length) {
   for (std::string group = name; !group.empty();) {
     group.resize(group.rfind('/'));
@@ -134,7 +134,7 @@ Hdf5Id Hdf5File::find_axis(const std::string& name, const std::string& axis, hsi
     if (H5Lexists(file_.get(), place.c_str(), H5P_DEFAULT) > 0) {
       Hdf5Id scale(check(H5Oopen(file_.get(), place.c_str(), H5P_DEFAULT)), H5Oclose);
       if (H5Iget_type(scale.get()) == H5I_GROUP) continue;
-      if (H5DSis_scale(scale.get()) == 0)  // of a version that wrote none
+      if (H5DSis_scale(scale.get()) == 0)  // written by a version without scales
         check(H5DSset_scale(scale.get(), axis.c_str()));
       const Hdf5Id space(check(H5Dget_space(scale.get())), H5Sclose);
       if (static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space.get()))) == length)

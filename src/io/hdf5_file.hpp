@@ -1,7 +1,7 @@
-// A new HDF5 file: the C API behind an owner, and as much of it as results need.
+// A new HDF5 file: a wrapper of the part of the C API that results need.
 //
-// The file is built in memory and given away as bytes: HDF5 does not survive a disk that is full
-// (H5Fclose fails, and the library crashes when MPI ends).
+// The file is built in memory and returned as bytes, because HDF5 fails on a full disk (H5Fclose
+// fails, and the library crashes when MPI ends).
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,8 @@ class Hdf5Id {
   Close close_ = nullptr;
 };
 
-/// Errors come back as codes and not as pages on stderr. Call it before any other HDF5 function.
+/// Makes HDF5 return error codes and print nothing on stderr. Call it before any other HDF5
+/// function.
 void silence_hdf5();
 
 class Hdf5File {
@@ -53,7 +54,7 @@ class Hdf5File {
 
   /// @throws InternalError as all members do
   Hdf5File();
-  /// Goes on with the content of a file that is there; the file itself does not change.
+  /// Starts with the content of an existing file; the file itself does not change.
   explicit Hdf5File(const std::vector<char>& image);
 
   void write(const std::string& name, std::span<const double> values, const Shape& shape,
@@ -63,26 +64,27 @@ class Hdf5File {
              const Meaning& meaning);
   void write(const std::string& name, const std::string& text, const Meaning& meaning);
 
-  /// Makes a dataset of single precision, to be filled slice by slice along its first axis. What
-  /// is never written takes no room and reads as not-a-number.
+  /// Makes a dataset of single precision, to be filled slice by slice along its first axis. Slices
+  /// that are never written take no space and read as not-a-number.
   Hdf5Id make_slices(const std::string& name, const Shape& shape, const Meaning& meaning);
   void write_slice(const Hdf5Id& dataset, hsize_t slice, std::span<const float> values);
 
-  /// Makes a dataset to be filled some entries of its first axis at a time.
+  /// Makes a dataset to be filled in blocks of entries of its first axis.
   Hdf5Id make_rows(const std::string& name, const Shape& shape, const Meaning& meaning);
   void write_rows(const Hdf5Id& dataset, hsize_t first, hsize_t count,
                   std::span<const double> values);
 
-  /// Takes a group or dataset out: what has an axis before the axis.
+  /// Removes a group or dataset. A dataset must be removed before its axes.
   void remove(const std::string& name);
 
   /// Makes a dataset that shows the datasets `name` of other files one after the other along the
-  /// first axis: `shape` of the whole, `rows` of each file, paths relative to this file's folder.
+  /// first axis. `shape` is that of the whole; `rows` are the rows of each file; paths are relative
+  /// to this file's folder.
   void write_joined(const std::string& name, const std::vector<std::string>& files,
                     const std::vector<std::size_t>& rows, const Shape& shape,
                     const Meaning& meaning);
 
-  /// Attributes of a group or dataset that exists ("/" is the root).
+  /// Sets an attribute of an existing group or dataset ("/" is the root).
   void set_attribute(const std::string& object, const std::string& name, const std::string& text);
   void set_attribute(const std::string& object, const std::string& name, double value);
   void set_attribute(const std::string& object, const std::string& name, int value);
@@ -107,7 +109,7 @@ class Hdf5File {
   Hdf5Id file_;
   Hdf5Id text_type_;  ///< of any length
   Hdf5Id scalar_space_;
-  Hdf5Id link_;  ///< makes the groups of a name
+  Hdf5Id link_;  ///< properties that create the missing groups of a name
 };
 
 }  // namespace samara::io

@@ -11,12 +11,13 @@
 namespace samara::io {
 namespace {
 
-/// Values of a dataset that stores none: all are its fill value, and cost memory and time alone.
+/// Most values of a dataset that stores none: all equal its fill value, and reading them only costs
+/// memory and time.
 constexpr std::size_t most_unstored = 1000000;
 
-/// Bytes of one read at the most (2 GB): larger data are read slice by slice.
+/// Most bytes of one read (2 GB); larger data are read slice by slice.
 constexpr std::size_t most_bytes = std::size_t{1} << 31;
-/// Limit of texts, which are smaller than numbers in all results.
+/// Most bytes of texts, which are smaller than numbers in all results.
 constexpr std::size_t most_text_bytes = std::size_t{64} << 20;
 
 constexpr unsigned most_rank = 32;
@@ -52,7 +53,7 @@ hid_t Hdf5Reader::check(hid_t id, const std::string& place) const {
 }
 
 bool Hdf5Reader::has(const std::string& name) const {
-  // Every group on the way must be there before the last link may be asked for.
+  // All groups of the path must exist before the last link may be checked.
   for (std::size_t end = name.find('/', 1); end != std::string::npos; end = name.find('/', end + 1))
     if (H5Lexists(file_.get(), name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
   return H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0;
@@ -90,7 +91,7 @@ std::vector<hsize_t> Hdf5Reader::extents_of(const Item& item) const {
   return extents;
 }
 
-/// Entries, as long as they can be read at once.
+/// Number of entries; refuses more than can be read at once.
 std::size_t Hdf5Reader::size_of(const Item& item, const std::vector<hsize_t>& extents) const {
   hsize_t count = 1;
   for (const hsize_t extent : extents) {
@@ -203,7 +204,7 @@ std::vector<double> Hdf5Reader::table(const std::string& name, hsize_t& rows,
 
 std::size_t Hdf5Reader::to_count(double value, const std::string& place) const {
   if (!(value >= 0.0) || value > 9e15 || value != std::floor(value))
-    refuse(place, "is no number of entries");
+    refuse(place, "is not a valid number of entries");
   return static_cast<std::size_t>(value);
 }
 
@@ -247,7 +248,7 @@ std::vector<double> Hdf5Reader::read_slice(const std::string& name, std::vector<
   const Item item = open(name);
   require_numbers(item);
   if (first > extents[0] || count > extents[0] - first)
-    refuse(name, "has " + words_of(extents) + ", fewer than are asked for");
+    refuse(name, "has " + words_of(extents) + ", fewer than requested");
   std::vector<hsize_t> start(extents.size(), 0);
   start[0] = first;
   extents[0] = count;

@@ -1,7 +1,7 @@
-// Reads an HDF5 file: as much of the C API as results need.
+// Reads an HDF5 file: a wrapper of the part of the C API that results need.
 //
-// A file may have been changed by other programs: class, rank and size of what stands there are
-// compared with what is expected before anything is read.
+// A file may have been changed by other programs. So class, rank and size of a dataset or attribute
+// are compared with the expected ones before it is read.
 #pragma once
 
 #include <memory>
@@ -29,17 +29,18 @@ class Hdf5Reader {
   double number(const std::string& name) const;
   /// Numbers in `rows` and `columns`, row by row.
   std::vector<double> table(const std::string& name, hsize_t& rows, hsize_t& columns) const;
-  /// Numbers that count something, as a list.
+  /// A list of counts.
   std::vector<std::size_t> counts(const std::string& name) const;
   /// A list of texts, of fixed or variable length.
   std::vector<std::string> texts(const std::string& name) const;
   /// The only text of a dataset.
   std::string text(const std::string& name) const;
 
-  /// The files that a dataset shows the content of; none: it has its own.
+  /// The files whose content a dataset shows; empty: it has its own content.
   std::vector<std::string> sources(const std::string& name) const;
 
-  /// Entries first to first + count along the first axis, of a list or of rows of `width` numbers.
+  /// Reads `count` entries of the first axis from entry `first` on, of a list or of rows of `width`
+  /// numbers.
   std::vector<double> slice(const std::string& name, std::size_t first, std::size_t count) const;
   std::vector<double> slice(const std::string& name, std::size_t first, std::size_t count,
                             std::size_t width) const;
@@ -54,8 +55,8 @@ class Hdf5Reader {
   struct Item {
     Hdf5Id id;
     bool is_attribute = false;
-    std::string place;       ///< for messages
-    std::string text_place;  ///< in Hdf5Trial::texts
+    std::string place;       ///< name for messages
+    std::string text_place;  ///< key in Hdf5Trial::texts
   };
 
   Item open(const std::string& name) const;
@@ -75,7 +76,7 @@ class Hdf5Reader {
   std::string path_;
   Hdf5Id file_;
   std::shared_ptr<const Hdf5Trial> trial_;
-  Hdf5Id access_;  ///< to datasets: where segments are
+  Hdf5Id access_;  ///< access to datasets, with the folder of the segments
 };
 
 }  // namespace samara::io

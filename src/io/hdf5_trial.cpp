@@ -22,14 +22,14 @@ namespace {
 /// Limit of one dataset or attribute that is read at once.
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-/// Processor time of the child [s]; a whole file takes some hundredths of it. A damaged one may
-/// keep the library busy without end.
+/// Limit of the child's processor time [s]; an undamaged file takes some hundredths of it. With a
+/// damaged file the library may never end.
 std::size_t most_seconds(std::size_t file_size) {
   return 1 + std::min<std::size_t>(file_size / 5'000'000, 120);
 }
 
-/// Memory of the child: metadata have no more bytes than their file, whatever they say of their
-/// size.
+/// Limit of the child's memory: metadata have no more bytes than their file, whatever size they
+/// state.
 std::size_t most_memory(std::size_t file_size) {
   return 3 * most_bytes + 8 * std::min(file_size, 2 * most_bytes);
 }
@@ -58,8 +58,8 @@ std::size_t bytes_of(const Hdf5Id& space, const Hdf5Id& type) {
   return static_cast<std::size_t>(count) * width;
 }
 
-/// Message of the child: for each text its place, the number of entries and these, each with its
-/// length before it; a number at the end that tells that all is there.
+/// Message of the child: for each text its place, the number of entries and the entries, each after
+/// its length. A number at the end shows that the message is complete.
 class Report {
  public:
   void add(const std::string& place, const std::vector<char*>& words) {
@@ -73,7 +73,7 @@ class Report {
     return write_all(file, bytes_);
   }
 
-  /// False where it is not whole.
+  /// Returns false if the message is incomplete.
   static bool parse(std::string_view bytes, Hdf5Trial& trial) {
     std::uint64_t length = 0;
     std::uint64_t count = 0;
@@ -119,12 +119,12 @@ class Report {
   std::string bytes_;
 };
 
-/// One object after the other of a file, of which is told what texts it has.
+/// Visits the objects of a file one after the other and reports their texts.
 class Visitor {
  public:
   Visitor(const Hdf5Id& file, Report& report) : file_(file), report_(report) {}
 
-  /// False where something cannot be read that results are read for.
+  /// Returns false if data that the program needs from a result cannot be read.
   bool visit() {
     const Hdf5Id root(H5Oopen(file_.get(), "/", H5P_DEFAULT), H5Oclose);
     return root && try_object(root, true) &&
@@ -132,7 +132,7 @@ class Visitor {
   }
 
  private:
-  /// Whatever a name leads to; a soft link may lead nowhere.
+  /// Tries the object that a name leads to. A soft link may lead to no object.
   static herr_t try_link(hid_t file, const char* name, const H5L_info_t* link, void* target) {
     const std::string_view top = std::string_view(name).substr(0, std::strcspn(name, "/"));
     const bool is_read = top == "case" || top == "model" || top == "trim" || top == "transient";
@@ -169,16 +169,16 @@ class Visitor {
     });
   }
 
-  /// Numbers that lie in one piece are bytes whatever they are, and those of other files have their
-  /// own trial.
+  /// True for numbers that need no trial: contiguous ones are valid for any bytes, and those of
+  /// other files have their own trial.
   static bool is_plain(const Hdf5Id& dataset) {
     const Hdf5Id creation(H5Dget_create_plist(dataset.get()), H5Pclose);
     const H5D_layout_t layout = H5Pget_layout(creation.get());
     return layout == H5D_CONTIGUOUS || layout == H5D_VIRTUAL;
   }
 
-  /// Reads by `read` what has this type and space; of other classes than numbers and texts nothing,
-  /// and nothing that is too large, for nobody reads them.
+  /// Reads values of this type and space by `read`. Values that are neither numbers nor texts, or
+  /// too large, are skipped, because the program never reads them.
   template <class Read>
   bool read_all(const Hdf5Id& type, const Hdf5Id& space, const std::string& attribute,
                 const Read& read) {
@@ -200,10 +200,11 @@ class Visitor {
 
   const Hdf5Id& file_;
   Report& report_;
-  hid_t object_ = H5I_INVALID_HID;  ///< of which attributes and values are read
+  hid_t object_ = H5I_INVALID_HID;  ///< its attributes and values are read
 };
 
-/// By the driver of stdio: the usual one looks for the file at the path behind a symbolic link.
+/// Opens with the stdio driver: the default driver looks for the file at the path behind a symbolic
+/// link.
 Hdf5Id open_descriptor(const std::string& name) {
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_stdio(access.get());
@@ -270,7 +271,7 @@ OpenHdf5 open_for_reading(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat info {};
   if (descriptor >= 0 && ::fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode)) {
-    // By this name child and parent open one file, whatever takes its place at the path meanwhile.
+    // By this name child and parent open the same file, even if another replaces it at the path.
     const std::string name = "/proc/self/fd/" + std::to_string(descriptor);
     open.trial = try_file(name, info);
     if (open.trial->is_passed) open.file = open_descriptor(name);
@@ -281,7 +282,7 @@ OpenHdf5 open_for_reading(const std::string& path) {
 
 std::vector<bool> find_whole(const std::vector<ExpectedFile>& files) {
   std::vector<bool> whole;
-  while (whole.size() < files.size()) {  // again behind the file that ended the child
+  while (whole.size() < files.size()) {  // restarts after the file that ended the child
     std::size_t largest = 0;
     for (std::size_t i = whole.size(); i < files.size(); ++i)
       largest = std::max(largest, size_of(files[i].path));

@@ -24,7 +24,7 @@ void write_held_loads(Hdf5File& file, const std::string& group,
   file.write(group + loads, values, {values.size()},
              {unit,
               "about the joint",
-              "constant load on each of held_name, of a generator at the shaft's end of its gear",
+              "constant load on each of held_name; for a generator, at the shaft's end of its gear",
               {"held_name"}});
 }
 

@@ -1,4 +1,4 @@
-// Constant loads that hold coordinates which nothing restores, in a result.
+// Constant loads that hold unconstrained coordinates, in a result.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace samara::io {
 
-/// Writes `group`/held_name, described so, and `group`/held_load.
+/// Writes `group`/held_name, with this description, and `group`/held_load.
 void write_held_loads(Hdf5File& file, const std::string& group,
                       const std::vector<analysis::HeldCoordinate>& held,
                       const std::string& description);
 
-/// @throws InputError where `group` has none
+/// @throws InputError if `group` has none
 std::vector<analysis::HeldCoordinate> read_held_loads(const Hdf5Reader& file,
                                                       const std::string& group);
 

@@ -10,15 +10,15 @@ namespace {
 using linear::NamedForm;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr char signal_frame[] = "of the states, inputs and outputs";
+constexpr char signal_frame[] = "frames of the states, inputs and outputs";
 
 std::vector<double> row_major(const Eigen::MatrixXd& matrix) {
   const Matrix rows = matrix;
   return {rows.data(), rows.data() + rows.size()};
 }
 
-/// Matrices of one size behind each other; of a single one [row, column]: the first of the axes
-/// that `meaning` names is left out.
+/// Writes matrices of the same size one after the other. A single one is written as [row, column]:
+/// the first of the axes in `meaning` is left out.
 void write_stack(Hdf5File& file, const std::string& name, std::size_t count,
                  const std::function<Eigen::MatrixXd(std::size_t)>& item, bool is_single,
                  Meaning meaning) {
@@ -39,7 +39,7 @@ void write_stack(Hdf5File& file, const std::string& name, std::size_t count,
   file.write(name, values, shape, meaning);
 }
 
-/// `axis`: one of the signals, `what`: all of them.
+/// `axis` is the name of one of the signals ("input"), `what` that of all of them ("inputs").
 void write_signals(Hdf5File& file, const std::string& group, const std::string& axis,
                    const std::string& what, const std::vector<system::Signal>& signals) {
   std::vector<std::string> names, units, frames, descriptions;
@@ -66,7 +66,7 @@ void write_form(Hdf5File& file, const NamedForm& form) {
   const bool is_single = coefficients.size() == 1;
   if (!is_single)
     file.write(group + "/coefficient", harmonic_names(form.series.harmonics()),
-               {"", "none", "of the Fourier series in the azimuth", {"coefficient"}});
+               {"", "none", "coefficients of the Fourier series in the azimuth", {"coefficient"}});
   for (const linear::StateSpacePart& part : linear::state_space_parts)
     write_stack(file, group + "/" + part.name, coefficients.size(),
                 [&](std::size_t i) { return coefficients[i].*(part.matrix); }, is_single,
@@ -89,9 +89,11 @@ void write_form(Hdf5File& file, const NamedForm& form) {
     units.push_back(state.unit);
     scales.push_back(state.scale);
   }
-  file.write(
-      group + "/states/name", names,
-      {"", "none", "unknowns whose small changes are the states, over their scale", {"state"}});
+  file.write(group + "/states/name", names,
+             {"",
+              "none",
+              "unknowns; a state is the small change of its unknown over the scale",
+              {"state"}});
   file.write(group + "/states/unit", units, {"", "none", "units of these unknowns", {"state"}});
   file.write(group + "/states/scale", scales, {scales.size()},
              {"1", "none", "unknown = scale times state", {"state"}});
@@ -103,7 +105,10 @@ void write_form(Hdf5File& file, const NamedForm& form) {
         group + "/hankel_singular_values",
         std::span<const double>(form.hankel.data(), static_cast<std::size_t>(form.hankel.size())),
         {static_cast<hsize_t>(form.hankel.size())},
-        {"outputs over inputs", "none", "of the stable part, falling", {"hankel_singular_values"}});
+        {"outputs over inputs",
+         "none",
+         "Hankel singular values of the stable part, in descending order",
+         {"hankel_singular_values"}});
     file.set_attribute(group, "error_bound", form.error_bound);
   }
   file.set_attribute(group, "harmonics", form.series.harmonics());
@@ -117,7 +122,7 @@ void write_descriptors(Hdf5File& file, const std::vector<linear::DescriptorForm>
     write_stack(file, "/linearize/descriptor/" + name, forms.size(),
                 [&](std::size_t i) { return Eigen::MatrixXd(forms[i].*member); }, false,
                 {"SI, outputs in their units",
-                 "of the unknowns (/model/unknowns), inputs and outputs",
+                 "frames of the unknowns (/model/unknowns), inputs and outputs",
                  "M z_dot + K z + R u + R_rate u_dot = 0, y = C z + C_rate z_dot + D u",
                  {"azimuth", row, column}});
   };
@@ -136,13 +141,13 @@ void write_linear_groups(Hdf5File& file, const linear::Linearization& linear) {
   file.write("/linearize/azimuth", linear.azimuths, {linear.azimuths.size()},
              {"rad",
               "shaft",
-              "of blade 1, of the groups at_azimuths, descriptor and operating_outputs",
+              "azimuth of blade 1, in at_azimuths, descriptor and operating_outputs",
               {"azimuth"}});
   file.write(
       "/linearize/operating_outputs", row_major(linear.outputs),
       {static_cast<hsize_t>(linear.outputs.rows()), static_cast<hsize_t>(linear.outputs.cols())},
       {"units of the outputs",
-       "of the outputs",
+       "frames of the outputs",
        "outputs on the steady state",
        {"azimuth", "output"}});
   file.set_attribute("/linearize", "rotor_speed", linear.rotor_speed);

@@ -13,13 +13,13 @@ namespace {
 using loads::ChannelStatistics;
 
 constexpr char no_frame[] = "none";
-constexpr char unit_of_channel[] = "of channel_unit";
-constexpr char frame_of_channel[] = "of channel_frame";
+constexpr char unit_of_channel[] = "see channel_unit";
+constexpr char frame_of_channel[] = "see channel_frame";
 constexpr char event_axis[] = "event";
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Row by row.
+/// The entries row by row.
 std::vector<double> flat(const RowMajor& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
@@ -43,18 +43,18 @@ void write_statistics(ResultFile& file, const std::string& group, const LoadRepo
     file.write_values(group + "/" + name, collect(report, member),
                       {unit_of_channel, frame_of_channel, description, {channel_axis}});
   };
-  write("mean", &ChannelStatistics::mean, "over time");
+  write("mean", &ChannelStatistics::mean, "mean over time");
   write("standard_deviation", &ChannelStatistics::standard_deviation,
-        "over time, of the time series");
+        "standard deviation over time, of the time series");
   write("minimum", &ChannelStatistics::minimum, "smallest value");
   write("maximum", &ChannelStatistics::maximum, "largest value");
   write("range", &ChannelStatistics::range, "maximum - minimum");
   file.write_values(group + "/time_of_minimum",
                     collect(report, &ChannelStatistics::time_of_minimum),
-                    {"s", no_frame, "of the first row with it", {channel_axis}});
+                    {"s", no_frame, "time of the first row with the minimum", {channel_axis}});
   file.write_values(group + "/time_of_maximum",
                     collect(report, &ChannelStatistics::time_of_maximum),
-                    {"s", no_frame, "of the first row with it", {channel_axis}});
+                    {"s", no_frame, "time of the first row with the maximum", {channel_axis}});
 }
 
 void write_events(ResultFile& file, const std::string& group, const LoadReport& report) {
@@ -70,14 +70,15 @@ void write_events(ResultFile& file, const std::string& group, const LoadReport& 
     times.push_back(event.time);
   }
   file.write_texts(group + "/event/channel", names,
-                   {"", no_frame, "whose extreme value it is", {event_axis}});
+                   {"", no_frame, "channel of the extreme value", {event_axis}});
   file.write_texts(group + "/event/kind", kinds,
                    {"", no_frame, "minimum or maximum", {event_axis}});
-  file.write_values(group + "/event/time", times, {"s", no_frame, "of each event", {event_axis}});
+  file.write_values(group + "/event/time", times,
+                    {"s", no_frame, "time of each event", {event_axis}});
   file.write_array(group + "/event/values", flat(values), {names.size(), report.channels.size()},
                    {unit_of_channel,
                     frame_of_channel,
-                    "of all channels at that time",
+                    "values of all channels at the time of the event",
                     {event_axis, channel_axis}});
 }
 
@@ -89,15 +90,17 @@ void write_harmonics(ResultFile& file, const std::string& group, const LoadRepor
   std::vector<double> orders(shape.front());
   std::iota(orders.begin(), orders.end(), 0.0);
   file.write_values(group + "/harmonics/harmonic", orders,
-                    {"1", no_frame, "k, of the rotor speed", {"harmonic"}});
+                    {"1", no_frame, "harmonic k of the rotor speed", {"harmonic"}});
   file.write_array(group + "/harmonics/amplitude", flat(harmonics.amplitudes), shape,
                    {unit_of_channel,
                     frame_of_channel,
                     "y = sum of amplitude k * cos(k azimuth + phase k), the mean at k = 0",
                     {"harmonic", channel_axis}});
-  file.write_array(
-      group + "/harmonics/phase", flat(harmonics.phases), shape,
-      {"rad", no_frame, "from -pi to pi, against the azimuth", {"harmonic", channel_axis}});
+  file.write_array(group + "/harmonics/phase", flat(harmonics.phases), shape,
+                   {"rad",
+                    no_frame,
+                    "phase from -pi to pi, relative to the azimuth",
+                    {"harmonic", channel_axis}});
   file.set_attribute(group + "/harmonics", "revolutions",
                      static_cast<double>(harmonics.revolutions));
 }
@@ -115,15 +118,20 @@ void write_rainflow(ResultFile& file, const std::string& group, const LoadReport
   const std::size_t channels = report.channels.size();
   const std::size_t range_bins = ranges.size() / channels - 1;
   const std::size_t mean_bins = means.size() / channels - 1;
-  file.write_array(
-      group + "/rainflow/range_edges", ranges, {channels, range_bins + 1},
-      {unit_of_channel, frame_of_channel, "of the bins", {channel_axis, "range_edge"}});
+  file.write_array(group + "/rainflow/range_edges", ranges, {channels, range_bins + 1},
+                   {unit_of_channel,
+                    frame_of_channel,
+                    "edges of the bins of ranges",
+                    {channel_axis, "range_edge"}});
   file.write_array(group + "/rainflow/mean_edges", means, {channels, mean_bins + 1},
-                   {unit_of_channel, frame_of_channel, "of the bins", {channel_axis, "mean_edge"}});
+                   {unit_of_channel,
+                    frame_of_channel,
+                    "edges of the bins of means",
+                    {channel_axis, "mean_edge"}});
   file.write_array(group + "/rainflow/counts", counts, {channels, range_bins, mean_bins},
                    {"1",
                     no_frame,
-                    "cycles, half ones as 0.5, without Goodman's correction",
+                    "number of cycles, a half cycle as 0.5, without Goodman's correction",
                     {channel_axis, "range_bin", "mean_bin"}});
 }
 
@@ -146,8 +154,8 @@ void write_report(ResultFile& file, const std::string& group, const LoadReport& 
   write_harmonics(file, group, report);
   write_rainflow(file, group, report);
   write_damage(file, group + "/damage", report.evaluation.damage, report.channels.size(), options,
-               "range of equal cycles, equivalent_frequency [Hz] times the duration of them, that "
-               "do the same damage");
+               "range of equal cycles that cause the same damage; their number is "
+               "equivalent_frequency [Hz] times the duration");
   const loads::LoadSeries& series = report.series;
   file.set_attribute(group, "source", report.source);
   file.set_attribute(group, "rows", static_cast<double>(series.times.size()));
@@ -175,10 +183,11 @@ void write_loads(ResultFile& file, const std::vector<LoadReport>& reports,
   const std::string group = top + "/lifetime";
   const std::vector<turbine::Channel>& channels = reports.front().channels;
   file.write_channels(group, channels);
-  file.write_values(group + "/hours", lifetime.hours,
-                    {"h", no_frame, "that each result stands for", {"result"}});
+  file.write_values(
+      group + "/hours", lifetime.hours,
+      {"h", no_frame, "hours of the lifetime that each result represents", {"result"}});
   write_damage(file, group, lifetime.damage, channels.size(), options,
-               "range of equal cycles that do the damage of the lifetime");
+               "range of equal cycles that cause the damage of the lifetime");
   if (options.equivalent_cycles)
     file.set_attribute(group, "equivalent_cycles", *options.equivalent_cycles);
 }

@@ -53,7 +53,7 @@ class Writer {
     std::copy(header_text, header_text + sizeof(header_text) - 1, bytes_.begin());
     bytes_.resize(header_size + 8, 0);  // no subsystem data
     const std::array<std::uint16_t, 2> version{0x0100,
-                                               0x4d49};  // "MI" in the order of this machine
+                                               0x4d49};  // "MI" in the byte order of this machine
     append(bytes_, version.data(), version.size());
   }
 
@@ -64,7 +64,7 @@ class Writer {
               [&values](Bytes& bytes) { append_element(bytes, mi_double, values); });
   }
 
-  /// One row a text.
+  /// One row per text.
   void add(const std::string& name, const std::vector<std::string>& texts) {
     std::size_t width = 1;
     for (const std::string& text : texts) width = std::max(width, text.size());

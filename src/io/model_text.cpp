@@ -10,11 +10,11 @@
 namespace samara::io {
 namespace {
 
-/// Keys of a case that change no model.
+/// Keys of a case that do not change the model.
 constexpr std::array<const char*, 7> other_keys{"samara", "title",     "trim",     "floquet",
                                                 "static", "transient", "linearize"};
 
-/// One spelling of every number.
+/// The text of a value; equal numbers get the same text.
 std::string canonical(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::scalar || node.quoted) return node.text;
   std::istringstream stream(node.text);

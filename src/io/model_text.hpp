@@ -1,4 +1,4 @@
-// The part of a case that makes the model, as text.
+// The part of a case that defines the model, as text.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace samara::io {
 
-/// The keys that make the model, one a line in the order of their names: `blades.length: 8.42`.
-/// Numbers are spelled one way, comments and the keys of the analyses are not in it.
+/// The keys that define the model, one per line in the order of their names: `blades.length: 8.42`.
+/// Equal numbers have the same text. Comments and the keys of the analyses are left out.
 std::string model_text_of(const YamlNode& root);
 
 }  // namespace samara::io

@@ -42,11 +42,11 @@ constexpr std::string_view static_table_start = "factor,newton_steps,";
 constexpr std::array<std::string_view, 5> table_starts{
     mode_table_start, trim_table_start, static_table_start, series_table_start, load_table_start};
 
-/// Harmonics of the participation are kept as far as one mode has this share there.
+/// Harmonics of the participation are kept up to the last ones in which a mode has this share.
 constexpr double smallest_share = 1e-9;
 
 constexpr char no_frame[] = "none";
-constexpr char mode_frame[] = "each part in its own: tower, nacelle fixed; blades, hub rotating";
+constexpr char mode_frame[] = "frame of each part: tower, nacelle fixed; blades, hub rotating";
 constexpr char unknown_frame[] =
     "u, theta: axes of the beam's root; V, Omega, F, M: deformed section; root F, M: axes of the "
     "root; tower top V, Omega: axes of the top; joints: about their axis";
@@ -64,7 +64,7 @@ double per_rev(const Mode& mode, double rotor_speed) { return mode.exponent.imag
 
 double hertz(const Mode& mode) { return mode.exponent.imag() / (2.0 * std::numbers::pi); }
 
-/// Whether the frequency in the fixed frame is another than that in the rotor's, and known.
+/// True if the frequency in the fixed frame is known and differs from that in the rotor's frame.
 bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.instances > 2; }
 
 double fixed_frame_hertz(const Mode& mode) {
@@ -99,7 +99,7 @@ std::vector<std::string> part_names(const ModeSet& set) {
   return names;
 }
 
-/// Writes what Floquet modes and constant modes have in common below `group`.
+/// Writes the data that Floquet modes and constant modes have in common below `group`.
 void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set) {
   const hsize_t count = set.modes.size();
   file.write(group + "/exponents", collect_complex(set, [](const Mode& m) { return m.exponent; }),
@@ -111,16 +111,17 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
   file.write(group + "/error", collect(set, [](const Mode& m) { return total_error(m); }), {count},
              {"1",
               mode_frame,
-              "estimated error of the exponent, relative to its modulus: the sum of those below",
+              "estimated error of the exponent, relative to its modulus: the sum of error_step, "
+              "error_mesh and error_round_off",
               {mode_axis}});
   file.write(group + "/error_step", collect(set, [](const Mode& m) { return m.step_error; }),
-             {count}, {"1", mode_frame, "of the time step", {mode_axis}});
+             {count}, {"1", mode_frame, "error from the time step", {mode_axis}});
   file.write(group + "/error_mesh", collect(set, [](const Mode& m) { return m.mesh_error; }),
              {count},
-             {"1", mode_frame, "of the elements; 0 where the mode is not resolved", {mode_axis}});
+             {"1", mode_frame, "error from the mesh; 0 if the mode is not resolved", {mode_axis}});
   file.write(group + "/error_round_off",
              collect(set, [](const Mode& m) { return m.round_off_error; }), {count},
-             {"1", mode_frame, "of round-off", {mode_axis}});
+             {"1", mode_frame, "error from round-off", {mode_axis}});
   file.write(group + "/error_growth", collect(set, [](const Mode& m) { return m.growth_error; }),
              {count},
              {"1/s", mode_frame, "estimated error of the real part of the exponent", {mode_axis}});
@@ -135,16 +136,14 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
     file.write(group + "/fixed_frame_frequency_hz", collect(set, fixed_frame_hertz), {count},
                {"Hz",
                 "fixed",
-                "frequency as the ground sees it; not-a-number where that is not one",
+                "frequency in the fixed frame; not-a-number if it is not a single one",
                 {mode_axis}});
-  file.write(group + "/damping_ratio", collect(set, [](const Mode& m) { return m.damping_ratio; }),
-             {count},
-             {"1",
-              no_frame,
-              "- re / abs of the exponent; 0 where the exponent counts as zero",
-              {mode_axis}});
+  file.write(
+      group + "/damping_ratio", collect(set, [](const Mode& m) { return m.damping_ratio; }),
+      {count},
+      {"1", no_frame, "- re / abs of the exponent; 0 if the exponent counts as zero", {mode_axis}});
   file.write(group + "/residual", collect(set, [](const Mode& m) { return m.residual; }), {count},
-             {"1", no_frame, "how well the mode closes: a relative norm", {mode_axis}});
+             {"1", no_frame, "relative norm of the error with which the mode closes", {mode_axis}});
   std::vector<std::string> labels;
   std::vector<int> resolved;
   for (const Mode& mode : set.modes) {
@@ -152,7 +151,7 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
     resolved.push_back(mode.resolved ? 1 : 0);
   }
   file.write(group + "/label", labels,
-             {"", no_frame, "the mode in words; (unresolved): not to be trusted", {mode_axis}});
+             {"", no_frame, "name of the mode; (unresolved): not reliable", {mode_axis}});
   file.write(
       group + "/resolved", resolved,
       {"1", no_frame, "1: resolved by the time step, with a small residual; 0: not", {mode_axis}});
@@ -163,7 +162,7 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
       shares[m * parts.size() +
              static_cast<std::size_t>(std::find(parts.begin(), parts.end(), part.part) -
                                       parts.begin())] = part.share;
-  file.write(group + "/part", parts, {"", no_frame, "the parts of part_share", {"part"}});
+  file.write(group + "/part", parts, {"", no_frame, "names of the parts in part_share", {"part"}});
   file.write(group + "/part_share", shares, {count, parts.size()},
              {"1", mode_frame, "share of the mean kinetic energy", {mode_axis, "part"}});
   file.set_attribute(group, "degrees_of_freedom", set.degrees_of_freedom);
@@ -185,10 +184,10 @@ void write_shapes(Hdf5File& file, const std::string& group, const ModeSet& set) 
              {"s", no_frame, "times of the samples of modes", {"mode_times"}});
   const Hdf5Id dataset = file.make_slices(
       group + "/modes", {set.shapes.size(), samples, size, 2},
-      {"of /model/unknowns/unit",
+      {"see /model/unknowns/unit",
        unknown_frame,
-       "periodic mode shapes Z(t) exp(-lambda t), lambda without the harmonic, the largest "
-       "position 1, not-a-number where the mode is not resolved",
+       "periodic mode shapes Z(t) exp(-lambda t), lambda without the harmonic; the largest "
+       "position is 1; not-a-number if the mode is not resolved",
        {mode_axis, "mode_times", unknown_axis, complex_axis}});
   std::vector<float> slice(samples * size * 2);
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
@@ -219,7 +218,7 @@ void write_participation(Hdf5File& file, const std::string& group, const ModeSet
   file.write(group + "/participation_harmonic", harmonics,
              {"1",
               no_frame,
-              "k of the columns of participation, in the count of harmonic",
+              "harmonics k of the columns of participation, counted as in /floquet/harmonic",
               {"participation_harmonic"}});
   file.write(group + "/participation",
              std::span<const double>(kept.data(), static_cast<std::size_t>(kept.size())),
@@ -239,7 +238,7 @@ bool has_hdf5_signature(const std::string& path) {
   return stream && std::string_view(start.data(), start.size()) == signature;
 }
 
-/// The schema of a result; -1: an HDF5 file of someone else, -2: one that cannot be opened.
+/// The schema of a result; -1: an HDF5 file of another program, -2: a file that cannot be opened.
 int read_schema(const std::string& path) {
   const Hdf5Id file = open_for_reading(path).file;
   if (!file) return -2;
@@ -256,13 +255,13 @@ int read_schema(const std::string& path) {
   return schema;
 }
 
-/// Why a file did not pass its trial, behind a colon; nothing where that is not known.
+/// The reason why a file did not pass its trial, after a colon; empty if it is not known.
 std::string why_not(const std::string& path) {
   const std::string ending = open_for_reading(path).trial->ending;
   return ending.empty() ? ending : ": " + ending;
 }
 
-/// All digits of a double.
+/// A stream that writes all digits of a double.
 std::ostringstream exact_text() {
   std::ostringstream text;
   text.precision(17);
@@ -291,7 +290,7 @@ ResultFile::ResultFile(const std::string& path, const Case& input, const RunReco
   file.set_attribute("/", "ranks", record.ranks);
   file.set_attribute("/", "time", now_in_utc());
   file.write("/case", input.text,
-             {"", no_frame, "the case as run; what --set changed in comments on top"});
+             {"", no_frame, "the case as run; comments at its top list the --set arguments"});
   file.set_attribute("/case", "settings", static_cast<int>(input.settings.size()));
 }
 
@@ -345,9 +344,9 @@ void ResultFile::write_model(const turbine::TurbineSystem& system) {
               {unknown_axis}});
   write_value("/model/rotor_speed", system.turbine().speed, {"rad/s", "about +s2", "Omega"});
   write_value("/model/azimuth", system.turbine().azimuth,
-              {"rad", "about +s2", "of blade 1 at t = 0"});
+              {"rad", "about +s2", "azimuth of blade 1 at t = 0"});
   write_value("/model/period", system.period(),
-              {"s", no_frame, "of one revolution; 0 where the rotor stands still"});
+              {"s", no_frame, "period of one revolution; 0 if the rotor stands still"});
   file.set_attribute("/model", "degrees_of_freedom", system.turbine().degrees_of_freedom);
   file.set_attribute("/model", "unknowns", static_cast<int>(names.size()));
   file.set_attribute("/model", "blades", static_cast<int>(system.turbine().blades.size()));
@@ -359,26 +358,27 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coefficients =
       trim.solution.coefficients();
   file.write("/trim/harmonic_name", harmonic_names(trim.solution.harmonics()),
-             {"", no_frame, "the columns of harmonics", {"harmonic_name"}});
+             {"", no_frame, "names of the columns of harmonics", {"harmonic_name"}});
   file.write(
       "/trim/harmonics",
       std::span<const double>(coefficients.data(), static_cast<std::size_t>(coefficients.size())),
       {static_cast<hsize_t>(coefficients.rows()), static_cast<hsize_t>(coefficients.cols())},
-      {"of /model/unknowns/unit",
+      {"see /model/unknowns/unit",
        unknown_frame,
        "z(t) = mean + sum of cos k * cos(k Omega t) + sin k * sin(k Omega t)",
        {unknown_axis, "harmonic_name"}});
   write_texts("/trim/residual_place", {"at the samples of the trim", "between them"},
-              {"", no_frame, "the entries of residual", {"residual_place"}});
+              {"", no_frame, "places of the entries of residual", {"residual_place"}});
   write_values(
       "/trim/residual", {trim.residual, trim.residual_between},
       {"N, N m", no_frame, "largest entry of the force and moment balances", {"residual_place"}});
   write_value("/trim/load_level", trim.load_level,
               {"N, N m", no_frame, "largest internal load, to compare the residual with"});
-  write_value("/trim/harmonic_residual", trim.harmonic_residual,
-              {"N, N m", no_frame,
-               "largest harmonic of the force and moment balances that is to vanish; the residual "
-               "beyond it is of harmonics that were left out"});
+  write_value(
+      "/trim/harmonic_residual", trim.harmonic_residual,
+      {"N, N m", no_frame,
+       "largest harmonic of the force and moment balances among those that must vanish; the "
+       "rest of the residual comes from harmonics that were left out"});
   write_value("/trim/state_residual", trim.state_residual,
               {"1", no_frame, "largest residual of the first-order states, relative to its terms"});
   write_value("/trim/imbalance", trim.imbalance(),
@@ -386,7 +386,7 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
                "the larger residual relative to the largest internal load; a steady state is rough "
                "beyond 1e-4"});
   write_held_loads(file, "/trim", trim.held,
-                   "coordinates that nothing restores: their mean is set to zero");
+                   "unconstrained coordinates: their mean is set to zero");
   file.set_attribute(
       "/trim", "method",
       std::string(trim.method == analysis::TrimMethod::shooting ? "shooting" : "harmonic_balance"));
@@ -408,17 +408,20 @@ void ResultFile::write_static(const analysis::StaticPath& path) {
     states.insert(states.end(), state.z.data(), state.z.data() + state.z.size());
   }
   const hsize_t count = path.states.size();
-  write_values(
-      "/static/factor", factors,
-      {"1", no_frame, "of gravity and the prescribed loads, in the order of the path", {"state"}});
+  write_values("/static/factor", factors,
+               {"1",
+                no_frame,
+                "factor of gravity and prescribed loads, in the order of the path",
+                {"state"}});
   file.write("/static/states", states, {count, states.size() / count},
-             {"of /model/unknowns/unit",
+             {"see /model/unknowns/unit",
               unknown_frame,
               "equilibrium at each factor",
               {"state", unknown_axis}});
   write_values("/static/residual", residuals,
                {"N, N m", no_frame, "largest entry of the force and moment balances", {"state"}});
-  file.write("/static/newton_steps", newton_steps, {"1", no_frame, "of each state", {"state"}});
+  file.write("/static/newton_steps", newton_steps,
+             {"1", no_frame, "Newton steps of each state", {"state"}});
   write_values(
       "/static/limit_points", path.limit_points,
       {"1", no_frame, "factors of the states next to which the factor turned", {"limit_points"}});
@@ -444,7 +447,7 @@ void ResultFile::write_channels(const std::string& group,
   write("name", &turbine::Channel::name, "the channels, by OpenFAST's names");
   write("unit", &turbine::Channel::unit, "unit of each channel");
   write("frame", &turbine::Channel::frame, "axes of each channel");
-  write("description", &turbine::Channel::description, "each channel in words");
+  write("description", &turbine::Channel::description, "description of each channel");
 }
 
 void ResultFile::write_series(const TimeSeriesContent& series) {
@@ -471,7 +474,7 @@ void ResultFile::write_series(const TimeSeriesContent& series) {
   file.write(series_segment_file, files, meaning_of_segment_file());
   file.write(series_segment_rows, counts, meaning_of_segment_rows());
   file.write("/transient/model", series.model,
-             {"", no_frame, "the keys of the case that make the model"});
+             {"", no_frame, "the keys of the case that define the model"});
   file.set_attribute("/transient", "status", series.status);
   if (series.azimuth) file.set_attribute("/transient", "azimuth", *series.azimuth);
   file.set_attribute("/transient", "brake_torque", series.brake_torque);
@@ -486,17 +489,20 @@ void write_checkpoints(Hdf5File& file, const std::vector<TimeSeriesCheckpoint>& 
     const TimeSeriesCheckpoint& checkpoint = checkpoints[checkpoints.size() - 1 - i];
     const analysis::TransientStart& point = checkpoint.point;
     const std::span<const double> state(point.z.data(), static_cast<std::size_t>(point.z.size()));
-    file.write(
-        group + "/state", state, {state.size()},
-        {"of /model/unknowns/unit", unknown_frame, "from which the run can go on", {unknown_axis}});
+    file.write(group + "/state", state, {state.size()},
+               {"see /model/unknowns/unit",
+                unknown_frame,
+                "state from which the run can be restarted",
+                {unknown_axis}});
     const std::span<const double> rate(point.z_dot.data(),
                                        static_cast<std::size_t>(point.z_dot.size()));
     if (!rate.empty())
-      file.write(group + "/rate", rate, {rate.size()},
-                 {"of /model/unknowns/unit, /s", unknown_frame, "of the state", {unknown_axis}});
+      file.write(
+          group + "/rate", rate, {rate.size()},
+          {"see /model/unknowns/unit, per s", unknown_frame, "rate of the state", {unknown_axis}});
     file.write(
         group + "/event_time", checkpoint.events, {checkpoint.events.size()},
-        {"s", no_frame, "when each of transient.events came; not-a-number: not yet", {"event"}});
+        {"s", no_frame, "time of each of transient.events; not-a-number: not yet", {"event"}});
     write_held_loads(file, group, point.held, "coordinates on which a constant load acts");
     file.set_attribute(group, "time", point.time);
     file.set_attribute(group, "origin", point.origin);
@@ -508,19 +514,20 @@ void write_checkpoints(Hdf5File& file, const std::vector<TimeSeriesCheckpoint>& 
 void ResultFile::write_floquet(const analysis::Floquet& floquet) {
   Hdf5File& file = storage_->file;
   const ModeSet& set = floquet.set;
-  file.write("/floquet/multipliers",
-             collect_complex(set, [](const Mode& m) { return m.multiplier; }),
-             {set.modes.size(), 2},
-             {"1",
-              no_frame,
-              "over one revolution; im >= 0 before it is raised to the number of sectors",
-              {mode_axis, complex_axis}});
+  file.write(
+      "/floquet/multipliers", collect_complex(set, [](const Mode& m) { return m.multiplier; }),
+      {set.modes.size(), 2},
+      {"1",
+       no_frame,
+       "multipliers over one revolution; im >= 0 before they are raised to the number of sectors",
+       {mode_axis, complex_axis}});
   file.write("/floquet/step_exponents",
              collect_complex(set, [](const Mode& m) { return m.step_exponent; }),
              {set.modes.size(), 2},
              {"rad/s",
               mode_frame,
-              "of the sequence of steps, before (2/dt) tanh(. dt/2) maps it to exponents",
+              "exponents of the sequence of steps, before (2/dt) tanh(. dt/2) maps them to "
+              "/floquet/exponents",
               {mode_axis, complex_axis}});
   std::vector<int> harmonics;
   for (const Mode& mode : set.modes) harmonics.push_back(mode.harmonic);
@@ -555,15 +562,16 @@ bool is_result(const std::string& path) {
 std::string require_result(const std::string& path) {
   require_readable(path, "result of samara");
   if (!has_hdf5_signature(path))
-    throw InputError(path + ": is no result of samara; hint: expected what -o wrote, RESULT.h5");
+    throw InputError(path +
+                     ": is no result of samara; hint: expected a file that -o wrote, RESULT.h5");
   const int schema = read_schema(path);
   if (schema == -2)
     throw InputError(path + ": cannot be opened as HDF5" + why_not(path) +
-                     "; hint: damaged, or in use");
+                     "; hint: it is damaged or in use");
   if (schema < 1)
     throw InputError(
         path +
-        ": is an HDF5 file of another program, no result of samara; hint: expected what "
+        ": is an HDF5 file of another program, no result of samara; hint: expected a file that "
         "-o wrote, RESULT.h5");
   if (schema > result_schema)
     throw InputError(path + ": is the result of a newer samara (schema " + std::to_string(schema) +

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::string_view setting_start = "# --set ";
 
-/// Takes the settings off the top of a case's text, `count` of them or, if it is negative, all.
+/// Removes `count` settings from the top of a case's text (all if `count` is negative) and returns
+/// them.
 std::vector<std::string> take_settings(std::string& text, long count) {
   std::vector<std::string> settings;
   while (text.starts_with(setting_start) && static_cast<long>(settings.size()) != count) {
@@ -38,7 +39,7 @@ ResultKind find_result_kind(const std::string& path) {
 Case read_result_case(const std::string& path) {
   const Hdf5Reader file = Hdf5Reader(require_result(path));
   std::string text = file.text("/case");
-  // A case may begin with such a comment of its own: the number of settings stands beside it.
+  // A case may begin with such a comment of its own, so the result also has the number of settings.
   long count = -1;
   if (file.has_attribute("/case", "settings"))
     count = static_cast<long>(file.count_attribute("/case", "settings"));
@@ -64,11 +65,11 @@ analysis::Trim read_result_trim(const std::string& path) {
   analysis::Trim trim{{coefficients, period}};
   trim.held = read_held_loads(file, "/trim");
   const std::vector<double> residual = file.numbers("/trim/residual");
-  if (residual.size() != 2) throw InputError(path + ": /trim/residual has not two values");
+  if (residual.size() != 2) throw InputError(path + ": /trim/residual does not have two values");
   trim.residual = residual[0];
   trim.residual_between = residual[1];
   trim.load_level = file.number("/trim/load_level");
-  // Older results have neither.
+  // Older results lack both values.
   const auto number_or = [&file](const char* name, double otherwise) {
     return file.has(name) ? file.number(name) : otherwise;
   };

@@ -18,7 +18,7 @@
 namespace samara::io {
 namespace {
 
-/// More is not taken from a child.
+/// Most bytes that are received from a child.
 constexpr std::size_t most_bytes = std::size_t{1} << 30;
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -33,7 +33,7 @@ constexpr bool limits_memory = true;
 constexpr bool limits_memory = true;
 #endif
 
-/// Lowers a limit, which may stand lower already.
+/// Sets a limit to `value`, or to the hard limit if that is lower.
 void limit(int resource, rlim_t value) {
   rlimit both{};
   ::getrlimit(static_cast<__rlimit_resource>(resource), &both);
@@ -51,7 +51,7 @@ rlim_t own_memory() {
              : 0;
 }
 
-/// The child ends with its parent and not by signals of the terminal, which the parent answers.
+/// The child ends with its parent. It ignores signals of the terminal; the parent handles them.
 [[noreturn]] void run_child(std::size_t memory, std::size_t seconds,
                             const std::function<bool(int)>& work, int output,
                             const sigset_t& signals) {
@@ -69,12 +69,12 @@ rlim_t own_memory() {
   bool is_well = false;
   try {
     is_well = work(output);
-  } catch (...) {  // only its parent may go on
+  } catch (...) {  // only the parent may continue
   }
   ::_exit(is_well ? 0 : 1);
 }
 
-/// All that comes from the child until it ends.
+/// All bytes from the child until it ends.
 std::string receive(int file) {
   std::string bytes;
   std::array<char, 65536> piece{};
@@ -87,9 +87,10 @@ std::string receive(int file) {
 }
 
 std::string words_of(int status) {
-  if (!WIFSIGNALED(status)) return "it cannot be read to its end";
+  if (!WIFSIGNALED(status)) return "it cannot be read completely";
   if (WTERMSIG(status) == SIGXCPU) return "reading it took too long";
-  return std::string("reading it ended a process (") + ::strsignal(WTERMSIG(status)) + ")";
+  return std::string("the process that read it was ended by a signal (") +
+         ::strsignal(WTERMSIG(status)) + ")";
 }
 
 }  // namespace
@@ -97,7 +98,7 @@ std::string words_of(int status) {
 Apart run_apart(std::size_t memory, std::size_t seconds, const std::function<bool(int)>& work) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw InternalError(std::string("no pipe can be made: ") + std::strerror(errno));
+    throw InternalError(std::string("no pipe can be created: ") + std::strerror(errno));
   sigset_t all;
   sigset_t before;
   ::sigfillset(&all);

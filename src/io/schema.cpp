@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 Json number_schema(const Range& range) {
   Json schema{{"type", "number"}};
-  // The least number above 0 stands for an open limit.
+  // The smallest number above 0 stands for the open limit 0.
   const bool is_above_zero = range.low == std::numeric_limits<double>::min();
   if (std::isfinite(range.low))
     schema[range.open || is_above_zero ? "exclusiveMinimum" : "minimum"] =
@@ -62,7 +62,7 @@ Json value_of(const std::string& word) {
   return word;
 }
 
-/// Whole numbers without a point.
+/// Whole numbers have no decimal point.
 Json value_of(double value) {
   constexpr double largest_exact = 1e15;
   if (value == std::round(value) && std::abs(value) < largest_exact)
@@ -240,7 +240,7 @@ class SchemaWriter : public fields::Description {
     return mapping;
   }
 
-  /// At most one of two groups is given; where keys of a group are compulsory, exactly one.
+  /// Allows at most one of the groups; exactly one if keys of a group are compulsory.
   void add_exclusive(const std::vector<std::vector<std::string>>& groups, Json& rules) {
     Json ways = Json::array();
     bool is_needed = false;

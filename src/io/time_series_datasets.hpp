@@ -24,18 +24,18 @@ inline constexpr std::array<const char*, kept_checkpoints> series_checkpoints{
 /// `checkpoints` in the order of time.
 void write_checkpoints(Hdf5File& file, const std::vector<TimeSeriesCheckpoint>& checkpoints);
 
-inline Meaning meaning_of_series_time() { return {"s", "none", "of each row", {"time"}}; }
+inline Meaning meaning_of_series_time() { return {"s", "none", "time of each row", {"time"}}; }
 inline Meaning meaning_of_series_values() {
-  return {"of channel_unit", "of channel_frame", "the rows", {"time", channel_axis}};
+  return {"see channel_unit", "see channel_frame", "the rows", {"time", channel_axis}};
 }
 inline Meaning meaning_of_segment_file() {
   return {"",
           "none",
-          "files that hold the rows, in the folder of this one; none: all here",
+          "files with the rows, relative to the folder of this one; empty: all rows are here",
           {"segment_file"}};
 }
 inline Meaning meaning_of_segment_rows() {
-  return {"1", "none", "rows of each segment", {"segment_file"}};
+  return {"1", "none", "number of rows of each segment", {"segment_file"}};
 }
 
 }  // namespace samara::io

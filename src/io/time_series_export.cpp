@@ -24,21 +24,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Numbers that are in memory at a time (8 MB).
+/// Number of values in memory at once (8 MB).
 constexpr std::size_t slice_values = std::size_t{1} << 20;
 
-/// Relative to a step: times that deviate less are equally spaced.
+/// Limit relative to a step: times that deviate less count as equally spaced.
 constexpr double same_step = 1e-6;
 
-// OpenFAST's binary output of kind 4, which it writes itself, as ReadFASTbinary.m of its
-// matlab-toolbox and fast_output_file.py of openfast_toolbox read it: whole numbers of 16 bits,
-// value = (number - offset) / scale with a scale and an offset of single precision for each
-// channel.
+// OpenFAST's binary output of kind 4, which OpenFAST itself writes, in the layout that
+// ReadFASTbinary.m of its matlab-toolbox and fast_output_file.py of openfast_toolbox read: integers
+// of 16 bits, value = (number - offset) / scale with a scale and an offset of single precision for
+// each channel.
 constexpr std::int16_t packed_with_name_width = 4;
 constexpr std::size_t least_name_width = 10;
-/// A few numbers short of all, for what rounding of scale and offset shifts.
+/// Slightly less than all 16-bit integers, because round-off of scale and offset shifts the values.
 constexpr double packed_span = 65500.0;
-/// Whole numbers that single precision holds exactly.
+/// Single precision represents integers exactly up to this one.
 constexpr double exact_in_single = 16777216.0;
 
 /// Second line of a .out and start of the description in a .outb.
@@ -79,7 +79,7 @@ void for_each_slice(const TimeSeriesReader& series, const Take& take) {
   }
 }
 
-/// The shortest words that give the same number back.
+/// Appends the shortest text that reads back as the same number.
 void append_number(std::string& text, double value) {
   std::array<char, 32> word{};
   const auto [end, error] = std::to_chars(word.data(), word.data() + word.size(), value);
@@ -126,7 +126,7 @@ void write_openfast_text(const Origin& origin, const TimeSeriesReader& series, W
   write_lines(series, '\t', file);
 }
 
-/// From row to row [s]. @throws InputError where it is not always the same
+/// Time from row to row [s]. @throws InputError if it is not constant
 double find_step(const TimeSeriesReader& series) {
   const std::size_t rows = series.rows();
   if (rows < 2) return 0.0;
@@ -138,7 +138,7 @@ double find_step(const TimeSeriesReader& series) {
       if (std::abs(times[i] - start - static_cast<double>(first + i) * step) > same_step * step) {
         std::ostringstream text;
         text << "the rows are not equally spaced (t = " << times[i]
-             << " s), as an .outb wants them; hint: .out and .csv hold the times";
+             << " s), which an .outb requires; hint: .out and .csv hold the times";
         throw InputError(text.str());
       }
   });
@@ -161,7 +161,7 @@ class Bytes {
   std::string bytes_;
 };
 
-/// How the values of a channel are packed.
+/// Packing of the values of a channel.
 struct Packing {
   float scale = 1.0F;
   float offset = 0.0F;
@@ -175,7 +175,7 @@ struct Packing {
   }
 };
 
-/// Over the range of a channel, as far as single precision tells numbers of its size apart.
+/// Packing over the range of a channel, limited by the resolution of single precision at its size.
 Packing find_packing(double least, double largest) {
   constexpr double largest_single = std::numeric_limits<float>::max();
   constexpr double least_single = std::numeric_limits<float>::min();
@@ -190,7 +190,7 @@ Packing find_packing(double least, double largest) {
   return {single, static_cast<float>(-middle * static_cast<double>(single))};
 }
 
-/// Packing of each channel. @throws InputError where a value is no number
+/// Packing of each channel. @throws InputError if a value is not a finite number
 std::vector<Packing> find_packings(const TimeSeriesReader& series) {
   const std::vector<turbine::Channel>& channels = series.content().channels;
   const std::size_t width = channels.size();
@@ -256,8 +256,8 @@ void write_openfast_binary(const Bytes& head, const std::vector<Packing>& packin
   });
 }
 
-/// Whether a .outb has the signature where its description begins: of kind 4, or of kind 3, which
-/// earlier versions wrote.
+/// True if a .outb has the signature at the start of its description. It may be of kind 4, or of
+/// kind 3, which earlier versions wrote.
 bool is_own_binary(std::ifstream& stream) {
   std::int16_t kind = 0;
   std::int32_t channels = 0;
@@ -282,7 +282,7 @@ std::vector<char> read_bytes(const std::string& path) {
   return bytes;
 }
 
-/// The result with the rows of its segments in it.
+/// The result including the rows of its segments.
 std::vector<char> joined_result(const std::string& source, const TimeSeriesReader& series) {
   std::vector<char> bytes = read_bytes(source);
   if (series.content().segments.empty()) return bytes;
@@ -300,7 +300,7 @@ std::vector<char> joined_result(const std::string& source, const TimeSeriesReade
   });
   file.write(series_segment_file, std::vector<std::string>{}, meaning_of_segment_file());
   file.write(series_segment_rows, std::vector<int>{}, meaning_of_segment_rows());
-  if (!series.damage().empty()) {  // checkpoints that the rows do not reach go
+  if (!series.damage().empty()) {  // removes checkpoints that the rows do not reach
     const Hdf5Reader before(source);
     for (const std::string group : series_checkpoints)
       if (before.has(group)) file.remove(group);
@@ -329,7 +329,7 @@ void require_export_path(const std::string& path, const std::string& source) {
   if (!require_writable(path) || (format == TimeSeriesFormat::table && is_table(path))) return;
   std::ifstream stream(path, std::ios::binary);
   bool is_own = false;
-  if (format == TimeSeriesFormat::openfast_text) {  // in its second line
+  if (format == TimeSeriesFormat::openfast_text) {  // signature in its second line
     std::string start(1 + signature.size(), '\0');
     stream.read(start.data(), static_cast<std::streamsize>(start.size()));
     is_own = start.compare(1, signature.size(), signature) == 0;
@@ -350,7 +350,7 @@ void export_series(const std::string& source, const TimeSeriesReader& series,
   const Origin origin = read_origin(source);
   std::vector<Packing> packings;
   Bytes head;
-  if (format == TimeSeriesFormat::openfast_binary) {  // before there is a file: it may refuse
+  if (format == TimeSeriesFormat::openfast_binary) {  // before the file is created: it may refuse
     packings = find_packings(series);
     head = openfast_binary_head(origin, series, packings);
   }

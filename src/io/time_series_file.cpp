@@ -24,16 +24,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows are lost for no longer than this.
+/// Longest time for which rows are only in memory.
 constexpr std::chrono::seconds segment_time{2};
-/// Values that are gathered at the most (64 MB).
+/// Most values that are collected in memory (64 MB).
 constexpr std::size_t segment_values = std::size_t{8} << 20;
 
 /// Ending of the file that reserves disk space, behind the run's name.
 constexpr const char* room_ending = ".room";
 constexpr std::uintmax_t least_room = std::uintmax_t{1} << 20;
 
-/// RUN-000001.h5, RUN of eight hexadecimal digits.
+/// True for RUN-000001.h5, with RUN of eight hexadecimal digits.
 bool is_segment_name(std::string_view name) {
   constexpr std::string_view hexadecimal = "0123456789abcdef";
   constexpr std::string_view ending = ".h5";
@@ -68,8 +68,8 @@ TimeSeriesFile::TimeSeriesFile(const std::string& path, const Case& input, RunRe
   const std::size_t longest = longest_name_in(folder_of(path_));
   if (folder_name().size() > longest)
     throw InputError(path_ + ": the name of its folder " + folder_name() + " would have " +
-                     std::to_string(folder_name().size()) + " bytes of " + std::to_string(longest) +
-                     "; hint: -o gives the result a shorter name");
+                     std::to_string(folder_name().size()) + " bytes, the limit is " +
+                     std::to_string(longest) + "; hint: -o gives the result a shorter name");
   note_replaced();
 }
 
@@ -155,7 +155,7 @@ void TimeSeriesFile::close_segment() {
   if (content_.time.empty()) return;
   std::error_code error;
   fs::create_directory(folder(), error);
-  if (error) throw InternalError(folder().string() + ": cannot be made: " + error.message());
+  if (error) throw InternalError(folder().string() + ": cannot be created: " + error.message());
   std::array<char, 32> number{};
   std::snprintf(number.data(), number.size(), "-%06d.h5", next_segment_++);
   const std::string name = run_ + number.data();
@@ -179,7 +179,7 @@ void TimeSeriesFile::publish() {
   remove_replaced();
 }
 
-/// Runs of which the result that stands at the path now has segments.
+/// Notes the runs whose segments the existing result at the path has.
 void TimeSeriesFile::note_replaced() {
   if (!is_result(path_)) return;
   try {
@@ -190,12 +190,12 @@ void TimeSeriesFile::note_replaced() {
           name.parent_path() == folder_name() && is_segment_name(name.filename().string()))
         replaced_.insert(name.filename().string().substr(0, run_.size()));
   } catch (const InputError&) {
-    // A damaged result has no segments that could be told from others.
+    // The segments of a damaged result cannot be told from others.
   }
 }
 
-/// Segments that this result does not name any more, of runs that the result at its path named
-/// before. Nothing else in the folder is touched.
+/// Removes the segments that this result no longer names, of runs that the previous result at its
+/// path named. Nothing else in the folder is changed.
 void TimeSeriesFile::remove_replaced() {
   if (replaced_.empty()) return;
   std::error_code error;
@@ -213,7 +213,7 @@ void TimeSeriesFile::remove_replaced() {
   fs::remove(folder(), error);  // only where it is empty
 }
 
-/// Keeps room on the disk for a last version of the result, which says how the run ended.
+/// Reserves disk space for the last version of the result, which states how the run ended.
 void TimeSeriesFile::keep_room() {
   if (content_.segments.empty()) return;
   std::error_code error;
@@ -263,16 +263,16 @@ TimeSeriesReader::TimeSeriesReader(const std::string& path) : path_(path) {
   read_checkpoints();
 }
 
-/// Segments before the last ones that are missing or damaged, as a machine that goes
-/// down may leave them.
+/// Reads the segments before the last ones that are missing or damaged. A crash of the machine may
+/// cause that.
 void TimeSeriesReader::read_segments() {
   const std::string& path = path_;
   const Hdf5Reader& file = storage_->file;
   const std::vector<hsize_t> times = file.shape(series_time);
   if (times.size() != 1 ||
       file.shape(series_values) != std::vector<hsize_t>{times[0], content_.channels.size()})
-    throw InputError(path + ": " + series_values + " has not a row for each of " + series_time +
-                     " with a value of each channel");
+    throw InputError(path + ": " + series_values + " does not have a row for each of " +
+                     series_time + " with a value of each channel");
   rows_ = times[0];
   const std::vector<std::string> segments = file.texts(series_segment_file);
   const std::vector<std::size_t> counts = file.counts(series_segment_rows);
@@ -283,7 +283,7 @@ void TimeSeriesReader::read_segments() {
     for (const std::string& source : file.sources(name))
       if (std::ranges::find(segments, source) == segments.end())
         throw InputError(path + ": " + name + " shows " + source +
-                         ", which is none of its segments");
+                         ", which is not one of its segments");
   if (segments.empty()) return;
   const std::size_t all = rows_;
   const fs::path folder = fs::path(resolved_path(path)).parent_path();
@@ -309,14 +309,14 @@ void TimeSeriesReader::read_segments() {
     if (!damage_.empty() && rows_ == 0)
       throw InputError(damage_ + "; hint: the folder " +
                        fs::path(segments[i]).parent_path().string() +
-                       " belongs to the file, samara export makes one of both");
+                       " belongs to the file; samara export joins both in one file");
   }
-  if (rows_ > all) throw InputError(path + ": its segments have more rows than it has itself");
+  if (rows_ > all) throw InputError(path + ": its segments have more rows than the result itself");
   if (!damage_.empty())
     damage_ += ": " + std::to_string(rows_) + " of " + std::to_string(all) + " rows are left";
 }
 
-/// Those that the rows reach, the oldest first.
+/// Reads the checkpoints that the rows reach, the oldest first.
 void TimeSeriesReader::read_checkpoints() {
   const Hdf5Reader& file = storage_->file;
   for (const std::string group : series_checkpoints) {
@@ -337,7 +337,7 @@ void TimeSeriesReader::read_checkpoints() {
     if (!point.z.allFinite() || !point.z_dot.allFinite() || !std::isfinite(point.time) ||
         !std::isfinite(point.origin) ||
         (point.z_dot.size() > 0 && point.z_dot.size() != point.z.size()))
-      throw InputError(path_ + ": " + group + " is no state to go on from");
+      throw InputError(path_ + ": " + group + " is not a valid state for a restart");
     point.held = read_held_loads(file, group);
     checkpoint.events = file.numbers(group + "/event_time");
     checkpoint.rows = file.count_attribute(group, "rows");

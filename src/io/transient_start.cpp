@@ -12,8 +12,8 @@
 namespace samara::io {
 namespace {
 
-/// Keys in which a transient may differ from the result that it starts from: what acts on the
-/// turbine, and motions, which are compared as they are at that instant.
+/// Keys in which a transient may differ from the result that it starts from: loads on the turbine,
+/// and motions. Motions are compared at the instant of the start.
 constexpr std::array<std::string_view, 8> acting_keys{
     "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator.torque",
     "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each.*.pitch_deg"};
@@ -25,7 +25,8 @@ simulation::TransientState last_state(const std::string& path, const TimeSeriesR
   if (content.checkpoints.empty())
     throw InputError(series.damage().empty()
                          ? path +
-                               ": has no checkpoint; hint: transient.checkpoint sets their distance"
+                               ": has no checkpoint; hint: transient.checkpoint sets the time "
+                               "between checkpoints"
                          : series.damage() + ", and no checkpoint");
   if (!series.damage().empty()) observer.note(series.damage());
   simulation::TransientState state;
@@ -58,13 +59,13 @@ void start_from(const std::string& path, const Case& input,
                 simulation::TransientSimulation& simulation, analysis::Observer& observer) {
   const Case before = read_result_case(path);
   require_same_model(path, before.model_text, input.model_text, acting_keys);
-  // A torque that is stated, 0 too, is all that the generator gives.
+  // A given torque, including 0, is the whole torque of the generator.
   const bool is_new_law =
       !states_alike(before.model_text, input.model_text, "shaft.generator.torque");
   const ResultKind kind = find_result_kind(path);
   if (kind == ResultKind::other)
     throw InputError(
-        path + ": has no state to start from; hint: results of transient, trim and floquet have");
+        path + ": has no state to start from; hint: use a result of transient, trim or floquet");
   if (kind == ResultKind::time_series) {
     const TimeSeriesReader series(path);
     const simulation::TransientState end =

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// No longer than others: the file itself may have as long a name as names can be.
+/// A short name of its own: the name of the file itself may already be as long as possible.
 std::string temporary_name() {
   std::random_device random;
   std::array<char, 32> name{};
@@ -32,11 +32,11 @@ constexpr int most_attempts = 8;
 /// Permissions of a new file, before the mask of the process removes some.
 constexpr mode_t readable_by_all = 0666;
 
-/// Waits until what was written is on the disk. Some file systems cannot, and say so.
+/// Waits until the written data are on the disk. File systems without support are accepted.
 bool synchronize(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
 
-/// The same of the names in a folder: without it a crash of the machine may take a new name back,
-/// which loses nothing that was there before.
+/// The same for the names in a folder. Without it a crash of the machine may undo a new name; older
+/// files are not lost.
 void synchronize_folder(const fs::path& folder) {
   const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (opened < 0) return;
@@ -65,8 +65,8 @@ std::string resolved_path(const std::string& path) {
 
 WholeFile::WholeFile(const std::string& path) : path_(path), target_(resolved_path(path)) {
   const fs::path folder = folder_of(target_);
-  // Without a name, so that nothing is left of it whatever ends the process.
-  if (::access("/proc/self/fd", X_OK) == 0)  // where it will get its name from
+  // Without a name, so that no file is left behind, however the process ends.
+  if (::access("/proc/self/fd", X_OK) == 0)  // needed to name the file later
     file_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, readable_by_all);
   for (int attempt = 0; file_ < 0; ++attempt) {
     temporary_ = folder / temporary_name();
@@ -139,12 +139,12 @@ bool require_writable(const std::string& path) {
   const std::size_t longest = longest_name_in(folder);
   const std::size_t length = fs::path(path).filename().string().size();
   if (length > longest)
-    throw InputError(path + ": the name has " + std::to_string(length) + " bytes, and " +
-                     folder.string() + " takes " + std::to_string(longest) +
-                     "; hint: a shorter name");
+    throw InputError(path + ": the name has " + std::to_string(length) + " bytes, but " +
+                     folder.string() + " allows only " + std::to_string(longest) +
+                     "; hint: give a shorter name");
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status))
-    throw InputError(path + ": a folder; hint: give the name of a file in it");
+    throw InputError(path + ": is a folder; hint: give the name of a file in it");
   if (!fs::exists(status)) return false;
   if (!fs::is_regular_file(status)) throw InputError(path + ": not a plain file");
   if (::access(path.c_str(), W_OK) != 0)

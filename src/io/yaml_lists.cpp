@@ -19,7 +19,7 @@ void read_words(MapReader& map, std::string_view key, std::vector<std::string>& 
     if (entry.kind != YamlNode::Kind::scalar)
       map.refuse(entry, key, "expected a name, " + describe(entry));
     else if (std::ranges::find(words, entry.text) != words.end())
-      map.refuse(entry, key, "\"" + entry.text + "\" stands there twice");
+      map.refuse(entry, key, "\"" + entry.text + "\" is given twice");
     words.push_back(entry.text);
   }
 }

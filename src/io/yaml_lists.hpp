@@ -9,10 +9,10 @@
 
 namespace samara::io {
 
-/// A list, and what its items are in words; null where the key is left out or something else.
+/// Finds a list; `items` names its items in messages. Null if the key is left out or no list.
 const YamlNode* find_list(MapReader& map, std::string_view key, const std::string& items);
 
-/// Reads names, none of them twice.
+/// Reads names; each may be given only once.
 void read_words(MapReader& map, std::string_view key, std::vector<std::string>& words);
 
 void read_numbers(MapReader& map, std::string_view key, const Range& range,

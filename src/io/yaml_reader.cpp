@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t max_errors_shown = 100;
 constexpr std::size_t max_text_shown = 40;
 
-/// Quotes a text of the user: shortened, and without line breaks that would break our lines.
+/// Quotes a text of the user, shortened and without line breaks.
 std::string quote(std::string_view text) {
   std::string shown = "\"";
   for (const char c : text.substr(0, max_text_shown)) shown += c == '\n' || c == '\r' ? ' ' : c;
@@ -34,7 +34,7 @@ std::string quote(std::string_view text) {
   return shown + "\"";
 }
 
-/// A number as YAML 1.2 writes it; its own words for infinity and nan too, to refuse them by name.
+/// Parses a number of YAML 1.2; also its words for infinity and nan, to refuse them by name.
 std::optional<double> parse_number(std::string_view text) {
   std::string_view digits = text;
   bool negative = false;
@@ -66,7 +66,7 @@ std::optional<double> parse_number(const YamlNode& node) {
   return parse_number(node.text);
 }
 
-/// Says how to write the number that a text was meant to be, or nothing.
+/// Suggests the number that a text was probably meant to be; empty: no suggestion.
 std::string suggest_number(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::scalar) return {};
   if (node.quoted && parse_number(node.text)) return " in quotes; leave the quotes out";
@@ -98,10 +98,13 @@ std::string to_setting_path(const std::string& where) {
   return path;
 }
 
-/// The last --set argument in a field, or its place; of one that is left out, that of the innermost
-/// field around it.
-Place find_place(const YamlNode& root, const std::string& field) {
-  if (field.empty()) return {};
+/// The node of a field, or the innermost one around a field that is left out.
+struct FieldNode {
+  const YamlNode* node;
+  bool is_given;
+};
+
+FieldNode find_node(const YamlNode& root, const std::string& field) {
   const YamlNode* node = &root;
   std::istringstream keys(to_setting_path(field));
   for (std::string key; std::getline(keys, key, '.');) {
@@ -113,10 +116,26 @@ Place find_place(const YamlNode& root, const std::string& field) {
     } else {
       next = node->find(key);
     }
-    if (next == nullptr) return node->place;
+    if (next == nullptr) return {node, false};
     node = next;
   }
-  return find_blame(*node);
+  return {node, true};
+}
+
+/// The place of the last --set argument in a field, else that of the field. For a field that is
+/// left out: the place of the innermost field around it.
+Place find_place(const YamlNode& root, const std::string& field) {
+  if (field.empty()) return {};
+  const FieldNode found = find_node(root, field);
+  return found.is_given ? find_blame(*found.node) : found.node->place;
+}
+
+/// The field of a fault by the key that is given: `speed_rpm` instead of `speed`.
+std::string given_key(const YamlNode& root, const Fault& fault) {
+  if (fault.field.empty() || find_node(root, fault.field).is_given) return fault.field;
+  for (const std::string& other : fault.others)
+    if (other.starts_with(fault.field + "_") && find_node(root, other).is_given) return other;
+  return fault.field;
 }
 
 }  // namespace
@@ -158,10 +177,11 @@ void ErrorList::add(const std::vector<Fault>& faults, const YamlNode& root) {
     fields.push_back(fault.field);
     if (std::ranges::any_of(fields, [this](const auto& field) { return has_error_at(field); }))
       continue;
-    Place blame = find_place(root, fault.field);
+    const std::string field = given_key(root, fault);
+    Place blame = find_place(root, field);
     for (const std::string& other : fault.others)
       if (const Place place = find_place(root, other); place.setting > blame.setting) blame = place;
-    found.push_back({blame, fault.field, compose(blame, fault.field, fault.text)});
+    found.push_back({blame, field, compose(blame, field, fault.text)});
   }
   errors_.insert(errors_.end(), found.begin(), found.end());
 }
@@ -321,7 +341,7 @@ std::string MapReader::report_unknown(const YamlNode& entry) const {
   } else {
     what += "; known keys: " + list_words(known_, ", ");
   }
-  // One that is like no other key has been meant for none.
+  // A key that is similar to no known key is not meant for one of them.
   errors_.add(entry.place, "", what, similar.empty() ? where(entry.key) : where_);
   return similar;
 }

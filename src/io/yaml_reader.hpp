@@ -1,4 +1,4 @@
-// Reads checked values out of a YAML tree and gathers everything that is wrong with it.
+// Reads checked values from a YAML tree and collects all its errors.
 #pragma once
 
 #include <array>
@@ -23,21 +23,21 @@ class ErrorList {
   ErrorList(std::string path, std::vector<std::string> settings)
       : path_(std::move(path)), settings_(std::move(settings)) {}
 
-  /// `where` is the path of the key (`shaft.speed`); empty where `what` says it all.
+  /// `where` is the path of the key (`shaft.speed`); empty if `what` is complete.
   void add(const Place& place, const std::string& where, const std::string& what) {
     add(place, where, what, where);
   }
-  /// `mapping`: the path of what was read with this error.
+  /// `mapping`: path of the key or mapping that was read with this error.
   void add(const Place& place, const std::string& where, const std::string& what,
            const std::string& mapping);
-  /// Faults of fields, at their places in `root`; what was read with errors has enough of them.
+  /// Adds faults of fields, at their places in `root`; fields that were read with errors get none.
   void add(const std::vector<Fault>& faults, const YamlNode& root);
-  /// Fields that are no errors, but have not the effect that they seem to have.
+  /// Adds notes on fields that are no errors, but lack their apparent effect.
   void note(const std::vector<Fault>& notes, const YamlNode& root);
   const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return errors_.size(); }
 
-  /// @throws InputError with one error a line, if there are any.
+  /// @throws InputError with one error per line, if there are any.
   void throw_if_any() const;
 
  private:
@@ -58,23 +58,23 @@ class ErrorList {
 using fields::join_path;
 using fields::Range;
 
-/// Says what was given, for the end of a message: `got "fast"`.
+/// Describes the given value, for the end of a message: `got "fast"`.
 std::string describe(const YamlNode& node);
 
-/// The place to blame for a value made of several: the last --set argument in it, else its own.
+/// Place of an error in a value made of several: the last --set argument in it, else its own place.
 Place find_blame(const YamlNode& node);
 
-/// These leave `value` alone and add an error where the node is not what the rule asks for.
+/// These leave `value` unchanged and add an error if the node does not follow the rule.
 bool read_number(const YamlNode& node, const std::string& where, const Range& range, double& value,
                  ErrorList& errors);
-/// `others`: words that are accepted, too, as the message says: " or auto".
+/// `others`: other accepted words, in the form of the message: " or auto".
 bool read_integer(const YamlNode& node, const std::string& where, int low, int high,
                   const std::string& others, int& value, ErrorList& errors);
 bool read_numbers(const YamlNode& node, const std::string& where, const Range& range,
                   std::span<double> values, ErrorList& errors);
 
-/// Reads the entries of one mapping. The keys that are asked for are the keys that are known, so
-/// every key must be asked for whatever the others say; finish() then reports the rest.
+/// Reads the entries of one mapping. The requested keys are the known keys, so every key must be
+/// requested, whatever the values of the others; finish() then reports the unknown keys.
 class MapReader {
  public:
   MapReader(const YamlNode& node, std::string where, ErrorList& errors);
@@ -84,17 +84,17 @@ class MapReader {
   std::string where(std::string_view key) const { return join_path(where_, key); }
   ErrorList& errors() const { return errors_; }
 
-  /// The entry, or null where it is left out.
+  /// The entry, or null if it is left out.
   const YamlNode* find(std::string_view key);
-  /// The same for a compulsory key; `hint` is added to the message where it is missing.
+  /// The same for a compulsory key; `hint` is added to the message if it is missing.
   const YamlNode* require(std::string_view key, std::string_view hint = {});
 
-  /// Whether no compulsory key was missing so far; finish() reports those that are.
+  /// True if no compulsory key was missing so far; finish() reports missing keys.
   bool is_complete() const { return missing_.empty(); }
 
   /// Adds an error about the value of an entry.
   void refuse(const YamlNode& entry, std::string_view key, const std::string& what) const;
-  /// The same of a value that is none of the words.
+  /// The same for a value that is not one of the words.
   void refuse_word(const YamlNode& entry, std::string_view key,
                    const std::vector<std::string>& words) const;
 
@@ -116,7 +116,7 @@ class MapReader {
   std::vector<Missing> missing_;
 };
 
-/// Reads [[x, y], ...] with rising x, of which `names` are the words.
+/// Reads [[x, y], ...] with rising x; `names` are the names of x and y in messages.
 void read_pairs(MapReader& map, std::string_view key, const YamlNode& node,
                 const std::array<const char*, 2>& names,
                 std::vector<std::pair<double, double>>& pairs);

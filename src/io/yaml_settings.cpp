@@ -33,7 +33,7 @@ void remove_other_spellings(YamlNode& map, std::string_view key) {
   });
 }
 
-/// Returns the child to go on with, made where it is not there; null after an error.
+/// Returns the child `key`, and creates it if it is missing; null after an error.
 YamlNode* enter(YamlNode& node, const std::string& key, const std::string& where,
                 const Place& place, ErrorList& errors) {
   if (node.kind == YamlNode::Kind::list) {

@@ -10,8 +10,8 @@
 
 namespace samara::io {
 
-/// Replaces or adds keys in the tree, in the order given. The path is dotted, items of lists are
-/// numbered from 0; another spelling of the key goes (`speed_rpm` replaces `speed`).
+/// Replaces or adds keys in the tree, in the order given. Paths have dots; items of lists are
+/// numbered from 0. Keys that exclude the new key are removed (`speed_rpm` replaces `speed`).
 void apply_settings(const std::vector<std::string>& settings, YamlNode& root, ErrorList& errors);
 
 }  // namespace samara::io

@@ -19,8 +19,8 @@ namespace samara::io {
 namespace {
 
 constexpr std::size_t max_depth = 64;
-/// Values that aliases add, that anchors keep for them, and of a whole file: 16 MB can hold values
-/// that would fill gigabytes.
+/// Most values that aliases add, that anchors keep for them, and of a whole file: 16 MB of text can
+/// expand to gigabytes.
 constexpr std::size_t max_alias_nodes = 200000;
 constexpr std::size_t max_anchor_nodes = 1000000;
 constexpr std::size_t max_nodes = 4000000;
@@ -36,7 +36,7 @@ std::size_t count_nodes(const YamlNode& node) {
   return count;
 }
 
-/// Takes the entries of the merge key `<<` into the map, where the map does not have them itself.
+/// Adds the entries of the merge key `<<` to the map, except those that the map itself has.
 void resolve_merge_key(YamlNode& map) {
   const auto merge = std::find_if(map.children.begin(), map.children.end(),
                                   [](const YamlNode& child) { return child.key == "<<"; });
@@ -155,7 +155,7 @@ class TreeBuilder final : public YAML::EventHandler {
     finish(std::move(frame.node), frame.anchor);
   }
 
-  /// Hands a complete node to what encloses it.
+  /// Passes a complete node to the enclosing node.
   void finish(YamlNode node, YAML::anchor_t anchor) {
     if (++nodes_ > max_nodes) throw YamlError(node.place, "more than 4 million values");
     if (anchor != YAML::NullAnchor) {
@@ -193,7 +193,7 @@ class TreeBuilder final : public YAML::EventHandler {
   std::size_t nodes_ = 0;
 };
 
-/// Puts the parser's words into the user's.
+/// Adds a hint to a message of the parser.
 std::string explain(const std::string& message) {
   const std::pair<const char*, const char*> hints[] = {
       {YAML::ErrorMsg::MAP_VALUE,

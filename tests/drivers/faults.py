@@ -131,7 +131,7 @@ class Folders(FaultTest):
         name = "a" * 252 + ".h5"
         self.succeed("trim", "case.yaml", "-o", name)
         self.assertEqual(self.names(), sorted([name, "case.yaml"]))
-        self.refuse("trim", "case.yaml", "-o", "a" + name, words=["256 bytes", "takes 255"])
+        self.refuse("trim", "case.yaml", "-o", "a" + name, words=["256 bytes", "allows only 255"])
         self.refuse("transient", "case.yaml", "-o", name, *block(1), words=["shorter name"])
         self.succeed("transient", "case.yaml", "-o", name[6:], *block(1))
 

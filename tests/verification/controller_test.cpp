@@ -278,7 +278,8 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_with_its_place) {
     BOOST_TEST((message.find(words) != std::string::npos), message);
   };
   const std::string loop = "  torque: {integral: 100}\n";
-  has(rotor("  set_point_rpm: 1100\n" + loop), "the integral holds the generator at 115.192 rad/s");
+  has(rotor("  set_point_rpm: 1100\n" + loop),
+      "controller.set_point_rpm: the integral holds the generator at 115.192 rad/s");
   has(rotor(loop + "  pitch: {integral: 1}\n"), "cannot both have an integral");
   has(rotor(""), "expected torque, pitch or both");
   has(rotor("  torque: {}\n"), "missing key \"proportional\"");

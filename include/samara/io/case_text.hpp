@@ -10,11 +10,11 @@
 namespace samara::io {
 
 struct CaseComments {
-  std::vector<std::string> head;            ///< lines on top
-  std::map<std::string, std::string> keys;  ///< behind keys, by their path: "shaft.overhang"
+  std::vector<std::string> head;            ///< lines at the top of the file
+  std::map<std::string, std::string> keys;  ///< by path of the key: "shaft.overhang"
 };
 
-/// The keys that have a comment, are compulsory or have another value than by default. Numbers read
+/// Writes the keys that have a comment, are compulsory or differ from their default. Numbers read
 /// back as the same doubles.
 std::string write_case_text(const model::TurbineDefinition& turbine, const CaseComments& comments);
 

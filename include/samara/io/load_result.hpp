@@ -17,22 +17,22 @@ namespace samara::io {
 /// The keys of `samara loads`.
 struct LoadOptions {
   std::vector<std::string> channels;  ///< empty: all
-  std::optional<double> from;         ///< [s] of a time series; none: its first row
-  std::optional<double> until;        ///< [s]
-  int azimuths = 720;                 ///< of a steady state, a revolution
-  std::vector<double> hours;          ///< [h] of the lifetime, one a result; empty: no lifetime
-  std::optional<double> equivalent_cycles;  ///< of the lifetime; none: by frequency and hours
+  std::optional<double> from;         ///< first time of a time series [s]; none: its first row
+  std::optional<double> until;        ///< last time [s]; none: its last row
+  int azimuths = 720;                 ///< instants per revolution of a steady state
+  std::vector<double> hours;          ///< hours per result in the lifetime; empty: no lifetime
+  std::optional<double> equivalent_cycles;  ///< cycles of the lifetime; none: frequency times hours
   std::map<std::string, loads::GoodmanCorrection> goodman;  ///< by channel
-  loads::LoadEvaluationOptions evaluation;  ///< without `goodman`, which is by name here
+  loads::LoadEvaluationOptions evaluation;  ///< except `goodman`, given by name above
 };
 
-/// The keys of --set of `samara loads`.
+/// Declares the keys of `samara loads --set`.
 void declare(fields::Visitor& fields, LoadOptions& options);
 
-/// Reads `key=value` pairs. @throws InputError with every error found, one a line
+/// Reads `key=value` pairs. @throws InputError with all errors, one per line
 LoadOptions read_load_options(const std::vector<std::string>& settings);
 
-/// One result that was evaluated.
+/// Evaluation of one result.
 struct LoadReport {
   std::string source;  ///< path of the result
   std::vector<turbine::Channel> channels;
@@ -43,19 +43,19 @@ struct LoadReport {
 /// Equivalent loads of all results together.
 struct LifetimeReport {
   std::vector<double> hours;
-  std::vector<std::vector<double>> damage;  ///< [channel][exponent]; empty: none was asked for
+  std::vector<std::vector<double>> damage;  ///< [channel][exponent]; empty: no lifetime
 };
 
-/// Writes /loads; of several results /loads/1, /loads/2 ..., and /loads/lifetime where there is
-/// one.
+/// Writes /loads; for several results /loads/1, /loads/2 ..., and /loads/lifetime if there is a
+/// lifetime.
 void write_loads(ResultFile& file, const std::vector<LoadReport>& reports,
                  const LifetimeReport& lifetime, const LoadOptions& options);
 
-/// The first line of the table begins so.
+/// Start of the first line of the table.
 inline constexpr std::string_view load_table_start = "result,channel,unit,mean,";
 
-/// One line a result and channel: statistics and equivalent loads, all digits; those of a lifetime
-/// in lines whose result is `lifetime`.
+/// Writes one line per result and channel: statistics and equivalent loads, with all digits. Lines
+/// with the result `lifetime` have the equivalent loads of the lifetime.
 void write_load_table(const std::string& path, const std::vector<LoadReport>& reports,
                       const LifetimeReport& lifetime, const LoadOptions& options);
 

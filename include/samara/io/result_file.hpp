@@ -1,6 +1,6 @@
 // Results of a run in one HDF5 file, and its tables as comma-separated values. The names are those
-// of docs/case_file.md, "Results". Nothing is on the disk before all is complete: a run that fails
-// leaves what was there before.
+// of docs/case_file.md, "Results". A file appears on the disk only when it is complete: a run that
+// fails leaves the previous file unchanged.
 //
 // Serial: one rank writes.
 #pragma once
@@ -19,13 +19,13 @@
 
 namespace samara::io {
 
-/// Version of the names and shapes below, the attribute `samara_schema` of the root.
+/// Version of the names and shapes below; it is the attribute `samara_schema` of the root.
 inline constexpr int result_schema = 1;
 
 /// Meaning of a dataset for its readers: its attributes, and a name for each of its axes. An axis
-/// is an HDF5 dimension scale: the dataset of that name in the same group or one above, which lists
-/// its entries; numbers from 1 are written where there is none. A list with its own name as its
-/// axis becomes such a scale.
+/// is an HDF5 dimension scale: the dataset of that name in the same group or a group above, which
+/// lists the entries of the axis. If there is none, one with numbers from 1 is written. A list with
+/// its own name as its axis becomes such a scale.
 struct Meaning {
   std::string unit;  ///< "1" for a pure number
   std::string frame;
@@ -33,7 +33,7 @@ struct Meaning {
   std::vector<std::string> axes{};
 };
 
-/// How a result came about: attributes of the root.
+/// Origin of a result: attributes of the root.
 struct RunRecord {
   std::string command_line;
   std::string petsc_options;
@@ -61,29 +61,29 @@ class ResultFile {
   void write_series(const TimeSeriesContent& series);
   /// /floquet
   void write_floquet(const analysis::Floquet& floquet);
-  /// /modes: what /floquet has, without what belongs to a period.
+  /// /modes: the datasets of /floquet, except those that belong to a period.
   void write_modes(const analysis::ModeSet& set);
 
   /// /linearize
   void write_linearization(const linear::Linearization& linearization);
 
-  /// One number or a list of them; the groups of `name` are made.
+  /// Writes one number or a list of numbers. Missing groups of `name` are created.
   void write_value(const std::string& name, double value, const Meaning& meaning);
   void write_values(const std::string& name, const std::vector<double>& values,
                     const Meaning& meaning);
-  /// Numbers of several axes, the last one running fastest; its groups are made.
+  /// Writes numbers with several axes; the last axis runs fastest. Missing groups are created.
   void write_array(const std::string& name, const std::vector<double>& values,
                    const std::vector<std::size_t>& shape, const Meaning& meaning);
-  /// `group`/channel_name, channel_unit, channel_frame, channel_description.
+  /// Writes `group`/channel_name, channel_unit, channel_frame, channel_description.
   void write_channels(const std::string& group, const std::vector<turbine::Channel>& channels);
   void write_texts(const std::string& name, const std::vector<std::string>& texts,
                    const Meaning& meaning);
-  /// Attributes of a group or dataset that exists.
+  /// Sets an attribute of an existing group or dataset.
   void set_attribute(const std::string& object, const std::string& name, const std::string& text);
   void set_attribute(const std::string& object, const std::string& name, double value);
 
   /// Writes the file. Call it last.
-  /// @throws InternalError where the environment fails, e.g. the disk is full
+  /// @throws InternalError if the file cannot be written, e.g. because the disk is full
   void publish();
 
  private:
@@ -91,8 +91,8 @@ class ResultFile {
   std::unique_ptr<Storage> storage_;
 };
 
-/// @throws InputError where a result cannot be written at `path`: no such folder, no permission, or
-/// something there that is not a result of this program.
+/// @throws InputError if a result cannot be written at `path`: no such folder, no permission, or a
+/// file there that is not a result of this program.
 void require_result_path(const std::string& path);
 
 /// The same for a table.
@@ -101,20 +101,20 @@ void require_table_path(const std::string& path);
 /// True for a file that begins like a table of this program.
 bool is_table(const std::string& path);
 
-/// `path` itself. @throws InputError where no result stands there that this version reads
+/// Returns `path`. @throws InputError if it has no result that this version reads
 std::string require_result(const std::string& path);
 
 /// True for an HDF5 file that has the schema attribute of a result.
 bool is_result(const std::string& path);
 
-/// One line a mode, all digits; the columns have the names and units of /floquet.
+/// Writes one line per mode, with all digits; the columns have the names and units of /floquet.
 void write_mode_table(const std::string& path, const analysis::ModeSet& set);
 
-/// One line an unknown: name, unit, mean, cos 1, sin 1, ...
+/// Writes one line per unknown: name, unit, mean, cos 1, sin 1, ...
 void write_trim_table(const std::string& path, const system::PeriodicSystem& system,
                       const analysis::Trim& trim);
 
-/// One line a state: factor, Newton steps, residual and all unknowns by name.
+/// Writes one line per state: factor, Newton steps, residual and all unknowns by name.
 void write_static_table(const std::string& path, const system::PeriodicSystem& system,
                         const analysis::StaticPath& states);
 

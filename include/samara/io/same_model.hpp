@@ -1,4 +1,4 @@
-// Whether two results are of one turbine.
+// Compares the models of two results.
 #pragma once
 
 #include <map>
@@ -12,13 +12,13 @@ namespace samara::io {
 using ModelKeys = std::map<std::string, std::string>;
 ModelKeys model_keys(const std::string& text);
 
-/// Refuses a result whose model, `there`, differs from the one `here` in another key than the
-/// `free` ones and those below them; a `*` stands for any name in between.
+/// Refuses a result if its model `there` differs from the model `here` in any key except the `free`
+/// keys and the keys below them. A `*` in a `free` key stands for any name.
 /// @throws InputError
 void require_same_model(const std::string& path, const std::string& there, const std::string& here,
                         std::span<const std::string_view> free = {});
 
-/// Whether two models state the keys that begin with `start` alike.
+/// True if the keys that begin with `start` have the same values in both models.
 bool states_alike(const std::string& there, const std::string& here, std::string_view start);
 
 }  // namespace samara::io

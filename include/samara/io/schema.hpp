@@ -6,8 +6,8 @@
 namespace samara::io {
 
 /// The JSON Schema (draft 7) of a case file: every key with its type, range, default and meaning.
-/// Beside the schema's own words a key has "x-unit", "x-range" (its range in words) and, where no
-/// value tells the default, "x-default".
+/// Beside the standard keywords a key has "x-unit", "x-range" (its range in words) and "x-default"
+/// if words describe the default instead of a value.
 std::string case_schema();
 
 }  // namespace samara::io

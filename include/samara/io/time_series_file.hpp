@@ -1,13 +1,13 @@
-// Time series on disk while they grow.
+// Writes a time series to the disk while it grows, and reads it.
 //
-// Rows are gathered and every few seconds closed away as a segment, a complete HDF5 file of its own
-// in the folder RESULT.h5.parts beside RESULT.h5. The result is then written anew: it names the
-// segments and shows them as one (virtual) dataset, so that at any moment, whatever happens to the
-// run, it is a complete file of all rows but the last seconds'. A run that is over before the first
-// segment is due leaves one file.
+// Rows are collected in memory. Every few seconds they are written as a segment: a complete HDF5
+// file of its own in the folder RESULT.h5.parts beside RESULT.h5. The result is then written anew:
+// it names the segments and shows them as one (virtual) dataset. So it is a complete file at any
+// moment, whatever happens to the run; only the rows of the last seconds are missing. A run that
+// ends before the first segment is due leaves one file.
 //
-// Segments and results are on the disk (fsync) before anything names them. Only
-// segments of runs that the result named before are removed from the folder.
+// Segments and results are on the disk (fsync) before anything refers to them. Segments are removed
+// from the folder only if they belong to runs that the result named before.
 //
 // Serial: one rank writes, and holds a FileLock on the result.
 #pragma once
@@ -35,56 +35,56 @@ struct TimeSeriesSegment {
   std::size_t rows = 0;
 };
 
-/// A result that has lost its last rows can still go on from the one before.
+/// Number of checkpoints in a result: one that has lost its last rows can restart from the other.
 inline constexpr std::size_t kept_checkpoints = 2;
 
-/// From where a time series can go on.
+/// Point from which a time series can be restarted.
 struct TimeSeriesCheckpoint {
   analysis::TransientStart point;
-  std::size_t rows = 0;        ///< of the time series up to it
-  std::vector<double> events;  ///< when each event came [s]; not-a-number: not yet
+  std::size_t rows = 0;        ///< number of rows up to this point
+  std::vector<double> events;  ///< time of each event [s]; not-a-number: not yet
 };
 
 /// Description of a time series in a result.
 struct TimeSeriesContent {
   std::vector<turbine::Channel> channels;
   std::vector<TimeSeriesSegment> segments;
-  std::vector<double> time;    ///< of rows that are in no segment; empty where there are segments
-  std::vector<double> values;  ///< row by row
-  std::string model;           ///< Case::model_text
-  std::optional<double> azimuth;   ///< of blade 1 at t = 0 [rad]; none: that of the case
-  double brake_torque = 0.0;       ///< that acts from the start [N m]
-  bool is_generator_lost = false;  ///< from the start
-  std::vector<TimeSeriesCheckpoint> checkpoints;  ///< the last ones, `kept_checkpoints` at the most
+  std::vector<double> time;        ///< times of rows in no segment; empty if there are segments
+  std::vector<double> values;      ///< values of these rows, row by row
+  std::string model;               ///< Case::model_text
+  std::optional<double> azimuth;   ///< azimuth of blade 1 at t = 0 [rad]; none: as in the case
+  double brake_torque = 0.0;       ///< brake torque at the start [N m]
+  bool is_generator_lost = false;  ///< generator lost at the start
+  std::vector<TimeSeriesCheckpoint> checkpoints;  ///< the last ones, at most `kept_checkpoints`
   std::string status;  ///< "running", "complete", "interrupted", "failed: ..."
 };
 
 class TimeSeriesFile {
  public:
-  /// `content`: channels, and how the drive train is at the start; `write_rest` adds to each
-  /// version of the result what else belongs in it.
+  /// `content`: channels, and the state of the drive train at the start. `write_rest` adds the
+  /// other groups to each version of the result.
   TimeSeriesFile(const std::string& path, const Case& input, RunRecord record,
                  TimeSeriesContent content, std::function<void(ResultFile&)> write_rest);
   ~TimeSeriesFile();
   TimeSeriesFile(const TimeSeriesFile&) = delete;
   TimeSeriesFile& operator=(const TimeSeriesFile&) = delete;
 
-  /// Goes on with the time series that is in the result already, up to its checkpoint.
+  /// Continues the time series of the existing result; keeps its rows up to the last checkpoint.
   void resume();
 
   void append(double t, std::span<const double> values);
 
-  /// All rows so far and the point to go on from are on the disk when it returns.
+  /// When it returns, all rows so far and the checkpoint are on the disk.
   void write_checkpoint(const analysis::TransientStart& point);
 
-  /// When the events came, for the checkpoints from now on.
+  /// Sets the times of the events, for all later checkpoints.
   void note_events(const std::vector<double>& times) { events_ = times; }
 
-  /// Writes what is left. `end`: from which the time series can go on, where there is such a point.
+  /// Writes the remaining rows. `end`: point from which the time series can be restarted, or null.
   void finish(const std::string& status, const analysis::TransientStart* end);
 
-  /// The same after a failure, which may be that nothing can be written any more: first the status,
-  /// in room that was kept for it, then the rows. Returns whether all is written.
+  /// The same after a failure, such as a full disk. The status is written first, in disk space that
+  /// was reserved for it, then the rows. Returns true if everything is written.
   bool finish_failed(const std::string& status) noexcept;
 
  private:
@@ -105,19 +105,18 @@ class TimeSeriesFile {
   TimeSeriesContent content_;
   std::size_t rows_ = 0;
   std::vector<double> events_;
-  std::string run_;  ///< starts the names of the segments of this run
-  std::set<std::string>
-      replaced_;  ///< the same of runs whose result this one has taken the place of
+  std::string run_;                 ///< first part of the names of this run's segments
+  std::set<std::string> replaced_;  ///< the same for runs whose result this one replaces
   int next_segment_ = 1;
   std::chrono::steady_clock::time_point due_;
-  std::int64_t room_ = 0;  ///< bytes that are kept on the disk for the end
+  std::int64_t room_ = 0;  ///< bytes reserved on the disk for the last version of the result
 };
 
-/// Reads the time series of a result: where a segment is missing or damaged, up to that one, and
-/// with the checkpoints that its rows reach.
+/// Reads the time series of a result. If a segment is missing or damaged, only the rows before it
+/// are read, and the checkpoints within these rows.
 class TimeSeriesReader {
  public:
-  /// @throws InputError where there is none
+  /// @throws InputError if the result has no time series
   explicit TimeSeriesReader(const std::string& path);
   ~TimeSeriesReader();
   TimeSeriesReader(const TimeSeriesReader&) = delete;
@@ -125,9 +124,9 @@ class TimeSeriesReader {
 
   const TimeSeriesContent& content() const { return content_; }
   std::size_t rows() const { return rows_; }
-  /// Missing parts, in words for a note; empty where the time series is complete.
+  /// Description of the missing parts, for a note; empty if the time series is complete.
   const std::string& damage() const { return damage_; }
-  /// Rows first to first + count of the times, and of the values row by row.
+  /// Times of `count` rows from row `first` on, and their values row by row.
   std::vector<double> read_time(std::size_t first, std::size_t count) const;
   std::vector<double> read_values(std::size_t first, std::size_t count) const;
 

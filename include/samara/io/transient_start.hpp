@@ -1,4 +1,4 @@
-// Starts of a transient from the result of another run.
+// Starts a transient from the result of another run.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace samara::io {
 
-/// Goes on from the last checkpoint of the result in `path`.
-/// @throws InputError where the result has none, or is of another model, other steps or events
+/// Continues from the last checkpoint of the result in `path`.
+/// @throws InputError if the result has none, or has another model, other steps or other events
 void restart_from(const std::string& path, const Case& input,
                   simulation::TransientSimulation& simulation, analysis::Observer& observer);
 
-/// Starts where a transient ended, or on the steady state of another analysis.
-/// @throws InputError where the result has no state, or is of another model, but for what acts on
-/// the turbine
+/// Starts from the end of a transient, or from the steady state of another analysis.
+/// @throws InputError if the result has no state, or has another model; only the loads and motions
+/// that act on the turbine may differ
 void start_from(const std::string& path, const Case& input,
                 simulation::TransientSimulation& simulation, analysis::Observer& observer);
 

@@ -1,5 +1,5 @@
-// A YAML document as a tree that remembers where everything stands. Built from the parser's events,
-// since the node tree of yaml-cpp drops duplicate keys and the places of keys.
+// A YAML document as a tree with the places of all nodes. It is built from the parser's events,
+// because the node tree of yaml-cpp drops duplicate keys and the places of keys.
 #pragma once
 
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace samara::io {
 
-/// Where something was given: in the file, or by the --set argument of that number.
+/// Place of a value: in the file, or in a --set argument.
 struct Place {
   int line = 0;      ///< from 1; 0 = no line
   int column = 0;    ///< from 1
@@ -20,10 +20,10 @@ struct YamlNode {
   enum class Kind { empty, scalar, list, map };
 
   Kind kind = Kind::empty;
-  Place place;          ///< of the key where the node is the value of one, else of the node
+  Place place;          ///< place of the key if the node is the value of one, else of the node
   std::string key;      ///< empty for the items of a list
-  std::string text;     ///< of a scalar
-  bool quoted = false;  ///< a scalar in quotes is a text, whatever it looks like
+  std::string text;     ///< text of a scalar
+  bool quoted = false;  ///< a scalar in quotes is a text, even if it looks like a number
   std::vector<YamlNode> children;  ///< items or entries, duplicate keys included
 
   /// First entry with this key, or null.
@@ -31,7 +31,7 @@ struct YamlNode {
   YamlNode* find(std::string_view wanted);
 };
 
-/// The text is not one YAML document that a case file can be.
+/// The text is not a single YAML document that is valid for a case file.
 class YamlError : public std::runtime_error {
  public:
   YamlError(const Place& error_place, const std::string& what)
@@ -43,7 +43,7 @@ class YamlError : public std::runtime_error {
 /// empty node. @throws YamlError
 YamlNode parse_yaml(const std::string& text);
 
-/// States in all nodes that they came from the --set argument `setting`.
+/// Sets the place of all nodes to the --set argument `setting`.
 void mark_as_setting(YamlNode& node, int setting);
 
 }  // namespace samara::io
