@@ -10,8 +10,8 @@
 namespace samara::analysis {
 namespace {
 
-/// Relative to a step: interval over which constraints that change with time are differenced, to
-/// both sides.
+/// Step of the central difference quotient for constraints that change with time, relative to a
+/// time step.
 constexpr double difference_fraction = 0.01;
 
 using system::RowRole;
@@ -34,8 +34,8 @@ AdmissibleVelocities::AdmissibleVelocities(const system::PeriodicSystem& system,
   classify(0.0, z.get());
 }
 
-/// Loads of elastic strains stand in constraint rows, reactions do not. Degrees of freedom are the
-/// loads of elastic strains and the positions that constraints leave.
+/// Constraint rows contain the loads of elastic strains, but no reactions. The number of degrees of
+/// freedom is that of the positions and the loads of elastic strains, less that of the constraints.
 void AdmissibleVelocities::classify(double t, Vec z) {
   const std::size_t n = system_.unknowns().size();
   system_.tangents(t, z, rates_.get(), 0.0, matrix_.get(), nullptr);
@@ -61,8 +61,8 @@ void AdmissibleVelocities::classify(double t, Vec z) {
   is_restricted_ = velocities > freedom;
 }
 
-/// From K and M, in the columns rates of positions and of elastic loads, velocities, impulses,
-/// rates of states, and auxiliaries, which are not asked for:
+/// The matrix from K and M. Columns: rates of positions, rates of elastic loads, velocities,
+/// impulses, rates of states, auxiliaries (not used):
 ///     constraint   K_p   K_e    0     0   K_x    0
 ///     kinematic    M_p    0    K_v    0    0     0
 ///     balance       0     0    M_v   K_r   0     0

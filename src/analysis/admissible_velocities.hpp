@@ -11,25 +11,26 @@
 
 namespace samara::analysis {
 
-/// Jumps of the velocities with the impulses that make them: n x columns, with velocities in the
-/// places of velocities and impulses in those of reactions. Other places have no meaning.
+/// Jumps of the velocities with the impulses that cause them: n x columns, with velocities in the
+/// rows of velocities and impulses in the rows of reactions. Other rows have no meaning.
 using Jumps = Eigen::MatrixXd;
 
 class AdmissibleVelocities {
  public:
-  /// `dt` [s]: length of the steps; over a part of it changes of the constraints are differenced.
+  /// `dt` [s]: length of the steps; a fraction of it is the step of the difference quotient for
+  /// changes of the constraints.
   AdmissibleVelocities(const system::PeriodicSystem& system, double dt);
 
   /// False where every velocity is admissible.
   bool is_restricted() const { return is_restricted_; }
 
-  /// A load that no strain gives.
+  /// True for an internal load that no elastic strain determines.
   bool is_reaction(Eigen::Index unknown) const {
     return columns_[static_cast<std::size_t>(unknown)] == Column::reaction;
   }
 
-  /// Two jumps at time t in the state z, whose positions are consistent: the one that makes the
-  /// velocities of z admissible, and the one that does so with `jump`, a change of velocities.
+  /// Two jumps at time t in the state z, whose positions are consistent: the first makes the
+  /// velocities of z admissible, the second makes `jump`, a change of velocities, admissible.
   /// @throws ConvergenceError where a motion has no inertia
   Jumps correct(double t, Vec z, const Eigen::VectorXd& jump);
 
@@ -49,7 +50,7 @@ class AdmissibleVelocities {
   double interval_;
   bool is_restricted_ = false;
   std::vector<Column> columns_;
-  petsc::Handle<Vec> rates_;  ///< none
+  petsc::Handle<Vec> rates_;  ///< zero
   petsc::Handle<Vec> r_;
   petsc::Handle<Vec> jump_;
   petsc::Handle<Mat> matrix_;

@@ -13,7 +13,7 @@
 namespace samara::analysis {
 namespace {
 
-/// Below it a strain does not let a held end give way.
+/// Smallest pivot: below it no strain yields in a direction in which a beam is held twice.
 constexpr double least_pivot = 1e-9;
 
 }  // namespace
@@ -70,7 +70,7 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
   fixed_constraints_ = solution.is_constant() && system.constraints_are_autonomous();
 }
 
-/// A state's evolution row stands in its place. Definition rows have no rates.
+/// The evolution row of a state has the number of the state. Definition rows have no rates.
 void ConsistentSubspace::find_states(const SparseTangents& at_start) {
   for (std::size_t i = 0; i < system_.rows().size(); ++i) {
     if (system_.rows()[i] != system::RowRole::evolution) continue;
@@ -94,7 +94,8 @@ void ConsistentSubspace::find_states(const SparseTangents& at_start) {
       require_no_rates(tangents_on(system_, solution_, turn * system_.period()).M);
 }
 
-/// Checks constraint and definition rows, and states in kinematic rows.
+/// Checks that constraint and definition rows contain no rates, and kinematic rows no rates of
+/// states.
 void ConsistentSubspace::require_no_rates(const Eigen::SparseMatrix<double>& M) const {
   for (Eigen::Index j = 0; j < M.outerSize(); ++j)
     for (Sparse::InnerIterator it(M, j); it; ++it) {
@@ -111,9 +112,9 @@ void ConsistentSubspace::require_no_rates(const Eigen::SparseMatrix<double>& M) 
     }
 }
 
-/// Rates of xi, of states that are the columns of z: of those that constraint rows contain, the
-/// others are zero here. From their own evolution rows, which are free of velocities and loads
-/// (require_roles), so that they are known before the velocities are.
+/// Rates of xi in the states that are the columns of z: only those of states that constraint rows
+/// contain, the others are zero here. They come from their own evolution rows, which contain no
+/// velocities or loads (require_roles). They are therefore known before the velocities.
 Eigen::MatrixXd ConsistentSubspace::driving_rates(const Eigen::SparseMatrix<double>& K,
                                                   const Eigen::SparseMatrix<double>& M,
                                                   const Eigen::MatrixXd& z) const {
@@ -143,7 +144,8 @@ std::string ConsistentSubspace::name_of(PetscInt unknown) const {
   return system_.unknowns()[static_cast<std::size_t>(unknown)].name();
 }
 
-/// Places in eta of a coordinate and all its images under the rotor's symmetry, the first first.
+/// Places in eta of a coordinate and of all its images under the rotor's symmetry, in ascending
+/// order.
 std::vector<std::size_t> ConsistentSubspace::images_of(std::size_t coordinate) const {
   const system::RotorSymmetry& symmetry = system_.symmetry();
   std::vector<std::size_t> places{coordinate};
@@ -162,8 +164,9 @@ std::vector<std::size_t> ConsistentSubspace::images_of(std::size_t coordinate) c
 
 void ConsistentSubspace::tie_coordinates(const Eigen::SparseMatrix<double>& K) {
   if (constraints_.size() <= tied_.size()) return;
-  // Beams held at both ends: what constraints leave when the positions have met theirs, W^T D p = 0
-  // with W^T D_tied = 0, ties the coordinates that it pivots on.
+  // Beams held at both ends: the tied positions satisfy as many constraints as there are tied
+  // positions. The remaining constraints, W^T D p = 0 with W^T D_tied = 0, tie the coordinates of
+  // their pivots.
   const auto excess = static_cast<Eigen::Index>(constraints_.size() - tied_.size());
   const Eigen::MatrixXd D_tied = part(K, constraints_, tied_);
   const Eigen::MatrixXd D_free =
@@ -172,8 +175,9 @@ void ConsistentSubspace::tie_coordinates(const Eigen::SparseMatrix<double>& K) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> tied_qr(D_tied);
   const Eigen::MatrixXd W = Eigen::MatrixXd(tied_qr.householderQ()).rightCols(excess);
   Eigen::MatrixXd rest = W.transpose() * D_free;
-  // Coordinates that the rotor's symmetry moves onto each other are tied together, or P would not
-  // map eta onto eta. Pivots: the image whose remaining column is shortest decides.
+  // Coordinates that the rotor's symmetry maps onto each other are tied together; otherwise P would
+  // not map eta onto eta. The image with the shortest remaining column decides the choice of
+  // pivots.
   std::vector<bool> chosen(coordinates_.size(), false);
   for (Eigen::Index count = 0; count < excess;) {
     std::vector<std::size_t> best;
@@ -335,7 +339,7 @@ Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
   put(1, 1, part(tangents.M, kinematic_, coordinates_), eta_scale);
   put(1, 2, part(tangents.K, kinematic_, velocities_), ones(velocities_));
   put(2, 2, inertia, ones(velocities_));
-  // Impulses count by the inertia that they act on: 5.3.
+  // Impulses are scaled by the inertia that they act on (docs/theory.md, section 5.3).
   std::vector<double> levels;
   for (Eigen::Index i = row_largest.size() - static_cast<Eigen::Index>(balance_.size());
        i < row_largest.size(); ++i)
@@ -356,8 +360,8 @@ Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
   return state;
 }
 
-/// Rates of the states that constraint rows contain, into theirs of `rates`: their evolution rows
-/// are linear in them.
+/// Writes the rates of the states that constraint rows contain into `rates`. The evolution rows of
+/// these states are linear in the rates.
 void ConsistentSubspace::find_driving_rates(double t, Vec z, Eigen::MatrixXd& rates) const {
   const petsc::Handle<Vec> z_dot = system_.make_state();
   const petsc::Handle<Vec> r = system_.make_state();

@@ -21,21 +21,22 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Relative change of a row of the tangents over a period beyond which they depend on time.
+/// Largest relative change over a period of a row of tangents that count as constant.
 constexpr double constant_tolerance = 1e-9;
 
-/// The second shift, relative to the first, and how far two shifts may differ in a mode, relative:
-/// the stiffest strains of a fine mesh have frequencies beyond what double precision holds.
+/// The second shift relative to the first, and the largest relative difference of a resolved
+/// exponent between two shifts. Double precision does not resolve the frequencies of the stiffest
+/// strains of a fine mesh.
 constexpr double check_shift = 3.0;
 constexpr double largest_difference = 1e-6;
 
-/// How many of the slowest modes have a shift of their own.
+/// Number of the slowest modes, which have a shift of their own.
 constexpr std::size_t slow_modes = 12;
 
-/// Below this, relative to the shift, an exponent is zero: a double zero in double precision.
+/// Relative to the shift: a smaller exponent is zero (a double zero in double precision).
 constexpr double zero_to_shift = 1e-7;
-/// An exponent this small that another shift has otherwise is half of a double zero, which
-/// round-off splits by its square root.
+/// Relative to the shift: a smaller exponent that differs for another shift belongs to a double
+/// zero, which round-off splits by its square root.
 constexpr double split_to_shift = 1e-5;
 
 struct Spectrum {
@@ -67,9 +68,9 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
   }
 }
 
-/// y of (K + sigma M) y = M x is a consistent state where x is one, with the rate sigma y - x: in
-/// (eta, eta_dot, xi) the map from x to y is (sigma - A)^-1, and a state with exponent lambda
-/// becomes itself times 1 / (sigma - lambda). `rate`: of the energy coordinates.
+/// If x is a consistent state, y of (K + sigma M) y = M x is one, too, with the rate sigma y - x.
+/// In (eta, eta_dot, xi) the map from x to y is (sigma - A)^-1; it multiplies a state with exponent
+/// lambda by 1 / (sigma - lambda). `rate`: of the energy coordinates.
 Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                        const ConsistentSubspace& subspace, double sigma, double rate) {
   const petsc::Handle<Vec> z = system.make_state();
@@ -108,7 +109,8 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
       spectrum.shapes.col(spectrum.shapes.cols() - 1) = shapes * combination;
     };
     if (exponent.imag() > 0.0 && std::abs(exponent) < zero_to_shift * sigma) {
-      // A double zero that round-off has split into a pair: two real rows, as on another day.
+      // Round-off has split a double zero into a complex pair. It is kept as two real modes, like a
+      // double zero that round-off splits into two real exponents.
       keep(exponent.real(), real_part(vector));
       keep(exponent.real(), real_part(vector));
     } else {
@@ -135,7 +137,7 @@ double middle_of(const std::vector<double>& moduli, std::size_t count, double fa
   return n > 0 ? std::exp(sum / static_cast<double>(n)) : fallback;
 }
 
-/// The middle of the widest gap, as a ratio, between two moduli in [low, high].
+/// The geometric middle of the gap with the largest ratio between two moduli in [low, high].
 double widest_gap(const std::vector<double>& moduli, double low, double high) {
   double gap = 1.0;
   double middle = low;
@@ -148,7 +150,7 @@ double widest_gap(const std::vector<double>& moduli, double low, double high) {
   return middle;
 }
 
-/// A shift, what it finds, and what a shift nearby finds.
+/// A shift, its spectrum, and the spectrum of the second shift.
 struct CheckedSpectrum {
   double sigma = 0.0;
   Spectrum found, check;
@@ -177,8 +179,9 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     return CheckedSpectrum{sigma, find_spectrum(system, solution, subspace, sigma, rate),
                            find_spectrum(system, solution, subspace, check_shift * sigma, rate)};
   };
-  // The error of an exponent is about that of max(sigma, |lambda|^2 / sigma): the slow modes, which
-  // matter, and the fast ones, which a fine mesh brings along, want a shift each.
+  // The error of an exponent is about the round-off of max(sigma, |lambda|^2 / sigma). The slow
+  // modes, which are of interest, and the fast modes, which a fine mesh adds, therefore have a
+  // shift each.
   const double zero = zero_exponent * rate;
   const std::vector<double> moduli =
       moduli_of(find_spectrum(system, solution, subspace, rate, rate), zero);
@@ -205,7 +208,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
       }
   };
   collect(border);
-  // A mode at the border that the two shifts see on different sides is lost or found twice.
+  // A mode that the two shifts place on different sides of the border is lost or found twice. Then
+  // all modes are those of the fast shift.
   if (exponents != subspace.size()) collect(-1.0);
   std::vector<Complex> exponents_found;
   std::vector<Eigen::MatrixXcd> shapes;

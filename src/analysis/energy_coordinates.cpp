@@ -7,7 +7,7 @@
 namespace samara::analysis {
 namespace {
 
-/// R with R^T R = metric; of a metric that does not count all coordinates, `fallback` alone.
+/// R with R^T R = metric; `fallback` on the diagonal where the metric is not positive definite.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& metric, double fallback) {
   const Eigen::LLT<Eigen::MatrixXd> factors(metric);
   if (factors.info() != Eigen::Success || !metric.allFinite())

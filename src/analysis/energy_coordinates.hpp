@@ -1,5 +1,5 @@
-// Coordinates of reduced states in which energy is half a sum of squares (docs/theory.md, section
-// 5.2).
+// Coordinates of reduced states in which the energy is half a sum of squares (docs/theory.md,
+// section 5.2).
 #pragma once
 
 #include <Eigen/Core>
@@ -8,19 +8,21 @@
 
 namespace samara::analysis {
 
-/// (eta, eta_dot, xi), the first two in coordinates whose sum of squares is twice the energy; a
-/// motion with `rate` counts where nothing is restored. A map that keeps energy is orthogonal in
-/// them, so that each of its eigenvalues is as accurate as round-off allows, however stiff some
-/// strains are. First-order states have no energy: xi stays as it is.
+/// Reduced states (eta, eta_dot, xi), with eta and eta_dot in coordinates whose sum of squares is
+/// twice the energy. A displacement also has the kinetic energy of its motion at `rate`, so that
+/// those that nothing restores count. A map that conserves energy is orthogonal in these
+/// coordinates: each of its eigenvalues is as accurate as round-off allows, even if some strains
+/// are very stiff. First-order states have no energy: xi is not changed.
 class EnergyCoordinates {
  public:
   EnergyCoordinates() = default;
-  /// `basis`: states of a unit of each of d entries of eta, d of eta_dot, and of xi; `rate`
-  /// [rad/s].
+  /// `basis`: states for a unit of each of d entries of eta, of d entries of eta_dot, and of the
+  /// entries of xi; `rate` [rad/s].
   EnergyCoordinates(const system::PeriodicSystem& system, const Eigen::MatrixXd& basis,
                     Eigen::Index d, double rate);
 
-  /// From columns per unit of (eta, eta_dot, xi), in place, to columns per unit of these.
+  /// Converts columns per unit of (eta, eta_dot, xi), in place, to columns per unit of these
+  /// coordinates.
   void divide(Eigen::MatrixXd& columns) const;
   /// Energy coordinates of states (eta, eta_dot, xi), 2 d + n_1 x columns.
   Eigen::MatrixXd of(const Eigen::MatrixXd& states) const;

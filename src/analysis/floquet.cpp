@@ -29,37 +29,39 @@ namespace {
 using Complex = std::complex<double>;
 using namespace std::complex_literals;
 
-/// |lambda| dt / 2 beyond which a mode counts as unresolved.
+/// |lambda| dt / 2 above which a mode counts as unresolved.
 constexpr double largest_half_phase = 0.7;
 constexpr double largest_residual = 1e-6;
 /// Relative to the largest multiplier: a smaller one is round-off.
 constexpr double least_multiplier = 1e-12;
-/// A multiplier below the first that leaves more than the second of its exponent open is round-off.
+/// A multiplier below the first value is round-off if the relative round-off error of its exponent
+/// exceeds the second value.
 constexpr double small_multiplier = 1e-6;
 constexpr double largest_round_off = 1e-2;
-/// Share of the kinetic energy of a resolved mode in harmonics beyond that phase, at the most: more
-/// is a mixture of modes so fast that they all look alike, with multipliers near -1 or 1.
+/// Largest share of the kinetic energy of a resolved mode in harmonics beyond that phase. A mode
+/// with a larger share is a mixture of very fast modes, whose multipliers are all near -1 or 1.
 constexpr double largest_fast_share = 0.01;
 /// Relative to an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
 constexpr double least_imaginary = 1e-6;
-/// Distance of an exponent that belongs to no free motion.
+/// Replaces an exponent that belongs to no free motion.
 constexpr double far_from_zero = std::numeric_limits<double>::infinity();
-/// Relative to the energy of a state of length 1 in energy coordinates: less is round-off. A motion
-/// that rests comes with the square root of round-off as its exponent, and moves with that speed.
+/// Relative to the energy of a state of length 1 in energy coordinates: a smaller energy is
+/// round-off. The computed exponent of a motion at rest is the square root of round-off, and so is
+/// its speed.
 constexpr double rest_energy = 1e-10;
-/// Numbers in the time series of the modes that are identified at a time, about.
+/// Approximate number of values in the time series of the modes that are identified together.
 constexpr Eigen::Index batch_values = 1 << 24;
-/// Instants of the mode shapes a revolution, at the most.
+/// Largest number of instants of the mode shapes per revolution.
 constexpr int shape_samples = 24;
-/// Instants a sector that name a mode which is not resolved.
+/// Instants per sector for the name of a mode that is not resolved.
 constexpr Eigen::Index label_samples = 3;
 
-/// Weights of the first steps' ends for the part that alternates in sign, see
+/// Weights of the ends of the first steps that give the part with alternating sign, see
 /// Analysis::smooth_velocities.
 constexpr std::array<double, 9> alternating_weights{1.0 / 256.0,   -8.0 / 256.0, 28.0 / 256.0,
                                                     -56.0 / 256.0, 70.0 / 256.0, -56.0 / 256.0,
                                                     28.0 / 256.0,  -8.0 / 256.0, 1.0 / 256.0};
-/// The directions that change sign turn with the azimuth: one pass leaves a few hundredths.
+/// The directions of this part turn with the azimuth: one pass leaves a few hundredths of it.
 constexpr int smoothing_passes = 2;
 
 class Analysis {
@@ -134,10 +136,10 @@ class Analysis {
     }
   }
 
-  /// Those that smooth the velocities.
+  /// The steps that smooth the velocities.
   using FirstSteps = std::array<std::unique_ptr<StepPropagator>, alternating_weights.size() - 1>;
 
-  /// The map over a sector, P (eta, eta_dot, xi) in the coordinates of the start: its columns.
+  /// Columns of the map over a sector: P (eta, eta_dot, xi) in the coordinates of the start.
   void take_states(const Eigen::MatrixXd& z) {
     map_.setZero(states_, states_);
     map_(Eigen::all, own_) =
@@ -146,11 +148,12 @@ class Analysis {
   }
 
   /// Velocities that obey the constraints at t = 0 differ from those of a smooth sequence of steps
-  /// by O(dt^2), and that part would change sign with every step for ever. The eighth difference of
-  /// the steps' ends is this part and, of a motion of frequency omega, sin^8(omega dt / 2). Steps
-  /// go forward only: a step back multiplies a decay with lambda dt / 2 = -1 by infinity. Only what
-  /// no rate of eta makes, `admissible`, is corrected: fast modes are not smooth at all, and keep
-  /// their velocities. `steps` keep the factors of the first steps.
+  /// by O(dt^2). This part would change sign with every step and not decay. The eighth difference
+  /// of the ends of the steps contains the whole of this part, and a motion of frequency omega by
+  /// the factor sin^8(omega dt / 2). Steps go forward only: a backward step multiplies a decay with
+  /// lambda dt / 2 = -1 by infinity. Velocities that rates of eta produce (`admissible`) are not
+  /// corrected: fast modes are not smooth, and keep their velocities. `steps` keep the factors of
+  /// the first steps.
   void smooth_velocities(const Eigen::MatrixXd& admissible, FirstSteps& steps,
                          Eigen::MatrixXd& z) const {
     std::vector<PetscInt> velocities;
@@ -172,8 +175,8 @@ class Analysis {
     }
   }
 
-  /// P on (eta, eta_dot, xi): their entries are unknowns, each by a scale of its own, and P renames
-  /// and signs unknowns.
+  /// Applies P to (eta, eta_dot, xi). Their entries are unknowns, each divided by its own scale; P
+  /// renames unknowns and changes signs.
   Eigen::MatrixXd turned(const Eigen::MatrixXd& reduced) const {
     if (sectors_ == 1) return reduced;
     const system::RotorSymmetry& symmetry = system_.symmetry();
@@ -208,12 +211,12 @@ class Analysis {
 
   bool is_zero(Complex exponent) const { return std::abs(exponent) < zero_exponent * speed_; }
 
-  /// Whether the step resolves an exponent, lambda of the motion itself.
+  /// Whether the step resolves an exponent lambda of the motion.
   bool in_reach(Complex exponent) const {
     return 0.5 * std::abs(exponent.imag()) * dt_ <= largest_half_phase &&
            0.5 * std::abs(exponent.real()) * dt_ <= largest_half_phase;
   }
-  /// The exponent of a motion in the harmonic k from the principal one of the steps.
+  /// The exponent of a motion at the harmonic k, from the principal exponent of the steps.
   Complex unwarped_at(Complex principal, int k) const {
     return unwarped(principal + Complex(0.0, k * speed_), dt_);
   }
@@ -240,19 +243,20 @@ class Analysis {
         set_.deflated_rate = std::min(set_.deflated_rate, decay_of(least_multiplier * largest));
         continue;
       }
-      if (pairs.values[i].imag() < 0.0) continue;  // its conjugate stands for it
+      if (pairs.values[i].imag() < 0.0) continue;  // its conjugate is kept
       const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
       const double condition = conditions(static_cast<Eigen::Index>(i));
       const Complex exponent = principal_exponent(pairs.values[i]);
       if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
-        // A double zero that round-off has split into a pair: two real rows, as on another day.
+        // Round-off has split a double zero into a complex pair. It is kept as two real modes, like
+        // a double zero that round-off splits into two real exponents.
         keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
         keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
       } else {
         keep(pairs.values[i], vector, condition, states[i]);
       }
     }
-    if (ranks_.size > 1) {  // one rank decides
+    if (ranks_.size > 1) {  // all ranks use the result of one
       int count = static_cast<int>(multipliers_.size());
       MPI_Bcast(&count, 1, MPI_INT, 0, ranks_.comm);
       MPI_Bcast(&set_.deflated, 1, MPI_INT, 0, ranks_.comm);
@@ -277,8 +281,8 @@ class Analysis {
 
   // ---- identification --------------------------------------------------------------------------
 
-  /// Weights of the initial states in the given modes: real part and imaginary part of one after
-  /// the other.
+  /// Weights of the initial states in the given modes: real part and imaginary part of one mode
+  /// after the other.
   Eigen::MatrixXd weights_of(const std::vector<Eigen::Index>& modes) const {
     Eigen::MatrixXd weights(states_, 2 * static_cast<Eigen::Index>(modes.size()));
     Eigen::Index column = 0;
@@ -307,7 +311,8 @@ class Analysis {
       std::vector<Eigen::Index> modes(static_cast<std::size_t>(std::min(batch, count - first)));
       std::iota(modes.begin(), modes.end(), first);
       multiply(signals, weights_of(modes), values);
-      // Every rank has the energies of some signals of each mode, and the modes want all of them.
+      // Every rank has the energies of some signals of each mode; the modes need the sum over all
+      // ranks.
       Eigen::MatrixXd energies(steps_, parts * static_cast<Eigen::Index>(modes.size()));
       for (const Eigen::Index mode : modes) {
         const Complex exponent = exponents_[static_cast<std::size_t>(mode)];
@@ -329,8 +334,9 @@ class Analysis {
     find_displacements();
   }
 
-  /// Displacements that nothing restores and that rest: their kinetic energy is round-off, and the
-  /// middle of the first step has them whole. (A decay or vibration too fast for the step has not.)
+  /// Finds displacements at rest that nothing restores: their kinetic energy is round-off, and at
+  /// the middle of the first step they have their full size. (This is not so for a decay or a
+  /// vibration too fast for the step.)
   void find_displacements() {
     std::vector<Eigen::Index> modes;
     for (std::size_t m = 0; m < set_.modes.size(); ++m)
@@ -347,7 +353,7 @@ class Analysis {
     }
   }
 
-  /// A mode at rest has no energy to be named after, and no harmonic but 0.
+  /// A mode at rest has no energy in any part, and its harmonic is 0.
   void settle_rest(Eigen::Index mode) {
     Mode& at_rest = set_.modes[static_cast<std::size_t>(mode)];
     at_rest.parts.clear();
@@ -403,8 +409,8 @@ class Analysis {
     return whole;
   }
 
-  /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega), velocities and states, at the first
-  /// middle of a step and the one a sector later.
+  /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega), velocities and states, at the middle
+  /// of the first step and one sector later.
   double closure(const Eigen::Ref<const Eigen::VectorXcd>& begin,
                  const Eigen::Ref<const Eigen::VectorXcd>& end, Complex multiplier) const {
     double size = 0.0;
@@ -443,8 +449,8 @@ class Analysis {
       set_.modes[static_cast<std::size_t>(m)].residual = residuals(m);
   }
 
-  /// Shapes of the modes that may count as resolved; of the other modes as much as their names
-  /// need.
+  /// Collects the shapes of the modes that may count as resolved; for the other modes only as many
+  /// instants as their names need.
   void collect_shapes() {
     std::vector<Eigen::Index> trusted;
     std::vector<Eigen::Index> others;
@@ -479,9 +485,10 @@ class Analysis {
     }
   }
 
-  /// A real growth or decay of the joints alone, and what counts as zero, is no oscillation: the
-  /// harmonics that the rotor sees of it are those of its own turning, and k stays 0. A motion
-  /// that changes sign with every step, or nearly so, is excluded: a decay too fast for the step.
+  /// A real growth or decay of the joints alone, or an exponent that counts as zero, is no
+  /// oscillation: its harmonics in rotor axes come from the rotation of these axes, and k is 0. A
+  /// motion that changes sign with every step, or nearly so, is excluded: it is a decay too fast
+  /// for the step.
   void settle_rigid_body_modes() {
     Eigen::VectorXd harmonics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set_.modes.size()));
     if (ranks_.rank == 0) {
@@ -513,8 +520,8 @@ class Analysis {
     return share;
   }
 
-  /// Moves the harmonic of mode m into the exponent, maps the step back and chooses the conjugate
-  /// with Im >= 0. May be called again with another harmonic.
+  /// Adds the harmonic of mode m to the exponent, maps the warping by the step back and chooses the
+  /// conjugate with Im >= 0. May be called again with another harmonic.
   void settle(std::size_t m) {
     Mode& mode = set_.modes[m];
     const bool slow = fast_share(m) <= largest_fast_share;
@@ -532,7 +539,7 @@ class Analysis {
                              (size * system_.period() / static_cast<double>(sectors_));
     }
     const double noise = least_imaginary * (size + std::abs(mode.harmonic) * speed_);
-    if (std::abs(mode.exponent.imag()) < noise) {  // real, as the parts that k belongs to see it
+    if (std::abs(mode.exponent.imag()) < noise) {  // real in the axes that k belongs to
       mode.exponent.imag(0.0);
       mode.step_exponent.imag(0.0);
     }
@@ -542,7 +549,7 @@ class Analysis {
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
   }
 
-  /// The other one of the pair stands for both.
+  /// Replaces mode m by its conjugate, which represents the pair from then on.
   void conjugate(std::size_t m) {
     Mode& mode = set_.modes[m];
     exponents_[m] = std::conj(exponents_[m]);
@@ -560,8 +567,8 @@ class Analysis {
     if (!set_.shapes.empty()) set_.shapes[m] = set_.shapes[m].conjugate().eval();
   }
 
-  /// Whether a mode is among the multipliers next to one of the motions that nothing restores, two
-  /// of each.
+  /// Whether a mode may be a motion that nothing restores: its multiplier is among those nearest to
+  /// one, two for each of these motions.
   bool may_be_free(std::size_t m) const {
     const std::size_t most = 2 * system_.unconstrained_coordinates().size();
     const auto nearer = std::count_if(exponents_.begin(), exponents_.end(), [&](Complex other) {
@@ -574,13 +581,13 @@ class Analysis {
     return set_.modes[m].residual / std::abs(multipliers_[m]);
   }
 
-  /// Whether a multiplier is so small that round-off has made it.
+  /// Whether a multiplier is small enough, and its error large enough, to be round-off.
   bool is_round_off(std::size_t m) const {
     return std::abs(multipliers_[m]) < small_multiplier &&
            set_.modes[m].round_off_error > largest_round_off;
   }
 
-  /// Modes that round-off has made become deflated ones.
+  /// Counts modes that are round-off as deflated, and removes them.
   void drop_round_off() {
     std::vector<Eigen::Index> kept;
     for (std::size_t m = 0; m < set_.modes.size(); ++m) {
@@ -644,7 +651,7 @@ class Analysis {
     return result;
   }
 
-  /// The frequency of a mode is that of the motion it is named after, which may be at another
+  /// The frequency of a mode is that of the motion it is named after, which may have another
   /// harmonic than the part with most kinetic energy. Only the first rank knows these motions.
   void move_to_leading(const std::vector<LeadingMotion>& leading) {
     Eigen::VectorXd shifts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set_.modes.size()));
@@ -659,7 +666,7 @@ class Analysis {
     }
   }
 
-  /// From the shapes, which only the first rank has.
+  /// Finds the mesh errors from the shapes, which only the first rank has.
   void find_mesh_errors() {
     const std::vector<system::MeshError> elements = system_.mesh_errors();
     Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(2, static_cast<Eigen::Index>(set_.modes.size()));
@@ -706,13 +713,13 @@ class Analysis {
   Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th step x own states
   Eigen::MatrixXd end_;               ///< all unknowns in the middle of the step after the sector
   EnergyCoordinates coordinates_;     ///< of the states at the start
-  Eigen::MatrixXd map_;               ///< of these, over a sector
+  Eigen::MatrixXd map_;               ///< over a sector, in these coordinates
   std::vector<Complex> multipliers_;  ///< of the sector
-  std::vector<double> conditions_;    ///< of these
-  std::vector<int> leading_states_;  ///< see the function of this name; before round-off is dropped
-  std::vector<Complex> exponents_;   ///< principal
+  std::vector<double> conditions_;    ///< of the multipliers
+  std::vector<int> leading_states_;   ///< see leading_states(); with those of dropped modes
+  std::vector<Complex> exponents_;    ///< principal
   Eigen::MatrixXcd vectors_;
-  ModeSet set_;  ///< the result as it comes to be; the first rank has the shapes
+  ModeSet set_;  ///< the result; only the first rank has the shapes
 };
 
 }  // namespace
@@ -729,7 +736,7 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
         "; hint: auto");
   const std::string& broken_by = system.symmetry().broken_by;
   if (options.period == FloquetPeriod::automatic && !broken_by.empty())
-    observer.note("floquet: full period, for " + broken_by);
+    observer.note("floquet: full period, because " + broken_by);
   const int sectors = options.period == FloquetPeriod::full ? 1 : repeats;
   const int steps = (options.steps + sectors - 1) / sectors * sectors;
   if (steps != options.steps)

@@ -18,9 +18,9 @@ namespace {
 /// Relative to Unknown::scale: least size of a state in the measure of its residual.
 constexpr double least_state = 1e-3;
 
-/// A scaled residual that is round-off.
+/// Scaled residual that counts as round-off.
 constexpr double vanished = 1e-13;
-/// Relative: what scaling there and back does to a vector.
+/// Relative change of a vector by scaling and scaling back.
 constexpr double same = 1e-14;
 
 /// Newton's method: line search and number of steps.
@@ -29,10 +29,10 @@ struct NewtonLimits {
   int most_steps = 50;
 };
 
-/// The path of `release`. The change of a controller's pitch needs full steps: each raises the
-/// residual of the rotations first, and a line search would cut it down.
+/// For `release`. A change of a controller's pitch needs full Newton steps: each of them first
+/// raises the residual of the rotations, and a line search would shorten the step.
 constexpr NewtonLimits full_steps{SNESLINESEARCHBASIC, 15};
-/// Smallest part of the loads of free coordinates that one step takes away.
+/// Smallest part of the loads on free coordinates that one step removes.
 constexpr double least_release = 1.0 / 64.0;
 
 int sample_count(int harmonics) { return 4 * harmonics + 2; }
@@ -54,10 +54,10 @@ struct RowLoad {
 };
 
 /// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i and has number
-/// i (2 H + 1) + c; the mean of a held coordinate gives its place to the load that holds it.
+/// i (2 H + 1) + c; the load that holds a coordinate takes the place of the coordinate's mean.
 class Balance {
  public:
-  /// `given`: constant loads that act besides.
+  /// `given`: additional constant loads.
   Balance(const system::PeriodicSystem& system, const Coordinates& held,
           const std::vector<RowLoad>& given, int harmonics)
       : system_(system),
@@ -106,8 +106,8 @@ class Balance {
     for (const RowLoad& given : given_) result(0, given.row) += given.load;
   }
 
-  /// Entry (i, j) becomes the block sum_k w(t_k) [K_ij(t_k) b(t_k) + M_ij(t_k) b_dot(t_k)]^T: for
-  /// all entries at once the product of a matrix of the harmonics with the sampled tangents.
+  /// Entry (i, j) becomes the block sum_k w(t_k) [K_ij(t_k) b(t_k) + M_ij(t_k) b_dot(t_k)]^T. The
+  /// blocks of all entries are the product of a matrix of the harmonics with the sampled tangents.
   void tangent(const PetscScalar* h, Mat matrix) {
     const PeriodicSolution solution(unpack(h), system_.period());
     const int samples = sample_count(harmonics_);
@@ -137,7 +137,7 @@ class Balance {
   petsc::Handle<Mat> make_matrix() {
     std::vector<Eigen::Triplet<double>> places;
     std::vector<std::vector<PetscInt>> rows = system_.pattern();
-    if (rows.empty()) {  // the system does not know
+    if (rows.empty()) {  // the system does not declare a pattern
       std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
       std::iota(all.begin(), all.end(), PetscInt{0});
       rows.assign(all.size(), all);
@@ -254,7 +254,7 @@ class Balance {
 /// Context of SNES's callbacks: the unknowns and rows are scaled by `scaling`.
 struct SolverContext {
   Balance* balance = nullptr;
-  const Eigen::VectorXd* start = nullptr;  ///< whose tangent the matrix holds, before the first one
+  const Eigen::VectorXd* start = nullptr;  ///< the matrix has its tangent; null after the first use
   const Equilibration* scaling = nullptr;
   Eigen::VectorXd unscaled;
   std::exception_ptr error;
@@ -277,7 +277,7 @@ PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
       context.balance->residual(context.unscale(x), view.data());
     }
     petsc::check(VecPointwiseMult(f, f, context.scaling->rows.get()));
-    context.error = nullptr;  // what a line search has left behind is no cause of what comes
+    context.error = nullptr;  // an error in a line search is no cause of a later failure
   } catch (const DomainError&) {
     context.error = std::current_exception();
     return SNESSetFunctionDomainError(snes);
@@ -288,7 +288,7 @@ PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
   return 0;
 }
 
-/// Here and not in SNES, which would only say that the linear solve failed.
+/// Factors the matrix here and not in SNES, which would only report that the linear solve failed.
 void factor(SNES snes, Mat operators, Mat matrix) {
   KSP linear = nullptr;
   PetscInt iterations = 0;
@@ -300,10 +300,10 @@ void factor(SNES snes, Mat operators, Mat matrix) {
   const std::string text =
       "trim: " + failure.words + " after " + std::to_string(iterations) + " Newton steps; hint: ";
   if (!failure.is_singular) throw ConvergenceError(text + failure.hint);
-  throw SingularError(text + (iterations == 0
-                                  ? "something may move that nothing holds, or is held twice"
-                                  : "-trim_snes_monitor shows the steps; a softer load or a "
-                                    "stiffer blade shows whether a steady state exists"));
+  throw SingularError(
+      text + (iterations == 0 ? "a coordinate may move that nothing holds, or a part is held twice"
+                              : "-trim_snes_monitor shows the steps; a smaller load or a "
+                                "stiffer blade shows whether a steady state exists"));
 }
 
 PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* pointer) noexcept {
@@ -355,17 +355,17 @@ void fail(SNES solver, const SolverContext& context) {
     }
   }
   text << "; hint: -trim_snes_monitor shows the steps, -trim_snes_max_it raises their number; a "
-          "softer load or a stiffer blade shows whether a steady state exists";
+          "smaller load or a stiffer blade shows whether a steady state exists";
   throw ConvergenceError(text.str());
 }
 
 /// Settings that MUMPS chooses badly here; an option of the user has priority. (MatMumpsSetIcntl
 /// before the first factorization has no effect in PETSc 3.18.)
-/// - 7: METIS is for larger meshes; a chain of blocks fills in half as much in the order of
-///   approximate minimum fill.
-/// - 6: the permutation to a large diagonal comes with a scaling, both from the values of the first
-///   matrix and kept for the later ones, whose factors it can make worthless. Rows and columns are
-///   equilibrated already.
+/// - 7: the ordering by METIS suits larger meshes; for a chain of blocks approximate minimum fill
+///   causes half as much fill-in.
+/// - 6: the permutation to a large diagonal comes with a scaling. Both use the values of the first
+///   matrix and are kept for later ones, whose factors they can make useless. Rows and columns are
+///   already equilibrated.
 class PreferredFactorization {
  public:
   PreferredFactorization() {
@@ -425,8 +425,8 @@ double residual_at(const Eigen::VectorXd& h, SolverContext& context) {
   return (f.array() * Eigen::Map<const Eigen::ArrayXd>(rows.data(), f.size())).matrix().norm();
 }
 
-/// From `start`, or the undeformed system, to whose residual `tolerance` is relative; without
-/// residuals and load level.
+/// Solves from `start`, or from the undeformed system, to whose residual `tolerance` is relative.
+/// Does not set the residuals and the load level.
 Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
            const std::vector<RowLoad>& given, int harmonics, double tolerance,
            const PeriodicSolution* start, const NewtonLimits& limits = {}) {
@@ -457,8 +457,8 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
   petsc::check(SNESSetJacobian(solver.get(), matrix.get(), matrix.get(), form_jacobian, &context));
   double enough = vanished;
   if (start != nullptr) {
-    // A good start leaves little that could fall by the tolerance; but it knows nothing yet of
-    // harmonics that are new, and one step gives them.
+    // The residual of a good start is too small to fall by the factor of the tolerance. But such a
+    // start has no values for new harmonics; one step finds them.
     const Eigen::VectorXd undeformed = start_vector(system, harmonics, nullptr);
     enough = std::max(enough, tolerance * residual_at(undeformed, context));
     if (residual_at(h, context) > vanished)
@@ -512,10 +512,10 @@ struct HeldStart {
   std::vector<RowLoad> loads;  ///< that hold the free coordinates
 };
 
-/// The forces that restore a hinge (centrifugal force, weight) act through loads that the
-/// undeformed system does not carry yet, and the integral of a controller finds its value through
-/// motions that it does not have yet: Newton's method diverges from there. None without free
-/// coordinates, or where this start is not found.
+/// The forces that restore a hinge (centrifugal force, weight) act through internal loads that the
+/// undeformed system does not have, and the integral of a controller gets its value through motions
+/// that it does not have: Newton's method diverges from there. Empty without free coordinates, or
+/// where this start is not found.
 std::optional<HeldStart> hold_free(const system::PeriodicSystem& system, int harmonics,
                                    double tolerance) {
   const Coordinates free = system.free_coordinates();
@@ -534,7 +534,7 @@ std::optional<HeldStart> hold_free(const system::PeriodicSystem& system, int har
   }
 }
 
-/// Homotopy: takes the loads that hold the free coordinates away in parts, all at once if that
+/// Homotopy: removes the loads that hold the free coordinates in parts, or at once if that
 /// converges.
 Trim release(const system::PeriodicSystem& system, int harmonics, double tolerance,
              const HeldStart& start) {

@@ -12,7 +12,7 @@ namespace {
 
 using system::EnergyGroup;
 
-/// Energies closer than this, relative, are a tie.
+/// Relative difference below which energies count as equal.
 constexpr double tie = 1e-6;
 /// Relative to a group's largest pivot: a smaller pivot is round-off of a semi-definite weight.
 constexpr double no_energy = 1e-13;
@@ -31,7 +31,7 @@ std::vector<Image> images(const system::RotorSymmetry& symmetry) {
   return before;
 }
 
-/// The unknowns of a group in each sector: what the group's place shows, one sector after another.
+/// The unknowns that take the place of those of a group, one sector after another.
 std::vector<std::vector<Image>> sectors_of(const EnergyGroup& group, int sectors,
                                            const std::vector<Image>& before) {
   std::vector<std::vector<Image>> all(1);
@@ -52,7 +52,8 @@ PetscInt first_unknown(const std::vector<Image>& images) {
       ->unknown;
 }
 
-/// Groups that the symmetry moves onto each other, and 0 where another one stands for them all.
+/// Number of groups that the symmetry maps onto each other; 0 where another group represents them
+/// all.
 int count_alike(const std::vector<std::vector<Image>>& sectors) {
   const PetscInt own = first_unknown(sectors[0]);
   int alike = 1;
@@ -72,7 +73,8 @@ Eigen::MatrixXd energy_root(const EnergyGroup& group) {
   const Eigen::LDLT<Eigen::MatrixXd> factors(weight);
   const Eigen::VectorXd pivots = factors.vectorD();
   const double least = no_energy * pivots.maxCoeff();
-  // Transpositions do not associate: from the right they would come in the wrong order.
+  // The permutation is formed from the left: from the right the transpositions would act in the
+  // wrong order.
   const Eigen::MatrixXd permutation = factors.transpositionsP() * Eigen::MatrixXd::Identity(n, n);
   const Eigen::MatrixXd upper = Eigen::MatrixXd(factors.matrixU()) * permutation;
   Eigen::MatrixXd root(n, n);
@@ -176,7 +178,7 @@ void describe_energy(const Eigen::MatrixXd& energies, const std::vector<std::str
   const double share = mode.kinetic_energy > 0.0 ? 1.0 / mode.kinetic_energy : 0.0;
   for (Eigen::Index p = 0; p < count; ++p)
     mode.parts.push_back({parts[static_cast<std::size_t>(p)], share * energies.col(p).sum()});
-  // Those that name the mode.
+  // The energies that name the mode.
   const auto leading = energies.middleCols(state < 0 ? 0 : count + state, state < 0 ? count : 1);
   const double total = leading.sum();
   const double scale = total > 0.0 ? 1.0 / total : 0.0;

@@ -23,16 +23,17 @@ using system::EnergyGroup;
 /// Share of the energy that must be strain for a mode to be called elastic.
 constexpr double elastic_share = 0.15;
 
-/// Moduli, and real parts relative to the modulus, closer than this sort as the same.
-constexpr double same_size = 1e-6;
-/// Exponents closer than this, relative, or than so many of their errors by round-off, are the
+/// Relative difference below which moduli, and real parts relative to the modulus, sort as the
 /// same.
+constexpr double same_size = 1e-6;
+/// Exponents are the same if their relative difference is below `degenerate`, or below
+/// `many_errors` times their errors by round-off.
 constexpr double degenerate = 1e-7;
 constexpr double many_errors = 4.0;
 
-/// Exponents that are the same, one chain of neighbours each, of two or more; zeros left out.
-/// `apart`: of each, how far the same one may be, relative. Those of different `classes` are not
-/// the same.
+/// Groups of two or more exponents that are the same, each group a chain of neighbours; zeros are
+/// left out. `apart`: for each exponent, the largest relative difference from one that is the same.
+/// Exponents of different `classes` are not the same.
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::complex<double>>& exponents,
                                                 const std::vector<double>& apart,
                                                 const std::vector<int>& classes) {
@@ -63,7 +64,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<std::complex<d
   return groups;
 }
 
-/// The joint that turns most: the position of the largest mean square.
+/// The joint that moves most: its position has the largest mean square.
 std::optional<system::Owner> moving_joint(const system::PeriodicSystem& system,
                                           const Eigen::MatrixXcd& shape) {
   std::optional<system::Owner> joint;
@@ -81,7 +82,7 @@ std::optional<system::Owner> moving_joint(const system::PeriodicSystem& system,
   return joint;
 }
 
-/// Motion in a system that does not declare its motions: by the strain energy.
+/// Motion of a mode of a system that does not declare its motions, from the strain energy.
 system::Motion strained_motion(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
                                const Mode& mode, double zero) {
   const std::map<std::string, double> strain = strain_energies(system, shape);
@@ -106,16 +107,17 @@ const char* word_of(int n, int instances) {
   return n == instances - 1 ? " progressive" : " reactionless";
 }
 
-/// Name of a mode, by its pieces.
+/// Name of a mode, in two parts.
 struct Name {
   system::Motion motion;
-  std::string together;  ///< of the blades
+  std::string together;  ///< word for the phase between the blades
   std::string text() const { return motion.name() + together; }
 };
 
-/// Modes of equal exponents mix at will: what their names differ in says nothing. Other harmonics
-/// keep them apart over a blade passage, where half a turn, say, gives one the opposite sign.
-/// `canonical`: they have been chosen by how the blades move together.
+/// Modes of equal exponents are arbitrary mixtures: differences between their names have no meaning
+/// and are removed. Over a blade passage modes at different harmonics stay distinct, because half a
+/// turn, for example, changes the sign of one of them. `canonical`: the modes have been chosen by
+/// the phase between the blades.
 void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vector<Name>& names) {
   std::vector<std::complex<double>> exponents;
   std::vector<double> apart;
@@ -146,8 +148,8 @@ void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vect
   }
 }
 
-/// Places in ascending order of `values`, the same for those that are closer than `apart` to the
-/// next.
+/// Places in ascending order of `values`; the same place for a value whose distance to the next is
+/// at most `relative` times its modulus plus `absolute`.
 std::vector<int> ranks_of(const std::vector<double>& values, double relative, double absolute) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), 0);
@@ -185,8 +187,8 @@ void choose_shapes(const system::PeriodicSystem& system,
       all.col(j) = shapes[mode].col(0) / shapes[mode].norm();
       values(j) = exponents[mode];
     }
-    // P moves the blades' motions on by one blade: within these modes it is a matrix W, whose B-th
-    // power is one, and which does not mix exponents.
+    // P moves the motion of each blade to the next blade. Within these modes it is a matrix W whose
+    // B-th power is the identity; W does not mix exponents.
     Eigen::MatrixXcd turned(all.rows(), count);
     for (Eigen::Index row = 0; row < all.rows(); ++row) {
       const auto at = static_cast<std::size_t>(row);
@@ -320,8 +322,8 @@ void arrange_modes(ModeSet& set) {
           set.participation.row(static_cast<Eigen::Index>(order[i]));
   }
   set = std::move(sorted);
-  // Modes that are not resolved come after the others, take the last numbers, and change no name of
-  // a mode that is.
+  // Modes that are not resolved come after the others and take the last numbers; they do not change
+  // the names of resolved modes.
   std::map<std::string, int> alike;
   for (const Mode& mode : set.modes)
     if (mode.resolved) ++alike[mode.label];

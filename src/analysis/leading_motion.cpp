@@ -13,20 +13,20 @@
 namespace samara::analysis {
 namespace {
 
-/// Share of a multiblade component beyond which it names a mode.
+/// Share above which a multiblade component names a mode.
 constexpr double clear_share = 0.7;
 
-/// On each side of the identified harmonic, those whose rates make the kinetic energy.
+/// Number of harmonics on each side of the identified one whose rates give the kinetic energy.
 constexpr Eigen::Index fitted_harmonics = 8;
 
-/// Share of the kinetic energy whose coordinates move at the identified harmonic, beyond which they
-/// alone name a mode.
+/// Share of the kinetic energy of the coordinates at the identified harmonic above which this
+/// harmonic alone names a mode.
 constexpr double dominant_part = 0.5;
 
-/// Share of the kinetic energy at a harmonic, from which on it may be that of the mode.
+/// Share of the kinetic energy above which a harmonic may become that of the mode.
 constexpr double clear_part = 0.2;
 
-/// Whether an exponent is none but for round-off and the step.
+/// Whether an exponent is zero but for round-off and the error by the step.
 bool is_at_rest(const Mode& mode, const ModeSet& set) {
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   const double unsure = mode.growth_error - mode.mesh_growth_error;
@@ -42,14 +42,15 @@ double time_of(const ModeSet& set, const Eigen::MatrixXcd& shape, Eigen::Index c
   return set.shape_times[static_cast<std::size_t>(column / taken * all + column % taken)];
 }
 
-/// A mode as its name wants it: of its coordinates the identified harmonic alone, which is the one
-/// whose frequency is stated. Beside it a motion may have others, where exponents of two modes
-/// nearly coincide but for multiples of the rotor speed.
+/// A mode for its name: its coordinates at the identified harmonic alone, because the stated
+/// frequency is that of this harmonic. A motion may have further harmonics where exponents of two
+/// modes nearly coincide but for multiples of the rotor speed.
 struct NamedShape {
   Eigen::MatrixXcd shape;       ///< positions and loads at the identified harmonic
   Eigen::MatrixXcd shape_rate;  ///< (lambda + d/dt) of it
   Eigen::MatrixXcd whole_rate;  ///< (lambda + d/dt) of all harmonics
-  /// The fit: shape = coefficients waves^T, rates of lambda; empty where nothing was fitted.
+  /// The fit: shape = coefficients waves^T, with lambda + i h Omega in `rates`; empty without a
+  /// fit.
   Eigen::MatrixXcd coefficients;
   Eigen::MatrixXcd waves;
   Eigen::VectorXcd rates;
@@ -62,9 +63,9 @@ struct NamedShape {
   std::complex<double> rate_at(Eigen::Index h) const { return rates(reach() + h); }
 };
 
-/// Harmonics about the identified one are fitted, for instants of several sectors are not equally
-/// spaced. A shape of few instants, or at rest, stands for its rate, and so does each harmonic
-/// where none has been identified.
+/// Harmonics about the identified one are fitted, because the instants of several sectors are not
+/// equally spaced. A shape of few instants, or at rest, is used in place of its rate. For a real
+/// exponent the shape keeps all harmonics.
 NamedShape named_shape(const ModeSet& set, std::size_t m) {
   const Mode& mode = set.modes[m];
   const Eigen::MatrixXcd& shape = set.shapes[m];
@@ -101,7 +102,7 @@ NamedShape named_shape(const ModeSet& set, std::size_t m) {
   return named;
 }
 
-/// The motions about the steady states at all instants of the shapes.
+/// Energies of the motions about the steady state at the instants of the shapes.
 class MotionsInTime {
  public:
   MotionsInTime(const system::PeriodicSystem& system, const PeriodicSolution& solution)
@@ -128,12 +129,12 @@ class MotionsInTime {
 
 struct Leading {
   std::size_t motion = 0;
-  bool at_identified = true;  ///< harmonic, by which it was found
-  /// Its own harmonic, from the identified one, or nothing where it has several.
+  bool at_identified = true;  ///< found from the identified harmonic alone
+  /// Harmonic of the motion, counted from the identified one; empty where it has several.
   std::optional<int> shift = 0;
 };
 
-/// Share of the kinetic energy of mode m in the harmonic `h` beyond the identified one.
+/// Share of the kinetic energy of mode m in the harmonic `h`, counted from the identified one.
 double share_at(const ModeSet& set, std::size_t m, Eigen::Index h) {
   const Eigen::Index column = set.modes[m].harmonic + h - set.first_harmonic;
   return column >= 0 && column < set.participation.cols()
@@ -141,7 +142,7 @@ double share_at(const ModeSet& set, std::size_t m, Eigen::Index h) {
              : 0.0;
 }
 
-/// Energy of a motion and of those of its name, of all blades, say.
+/// Energy of a motion and of those with the same name, for example of all blades.
 double energy_alike(const std::vector<system::Motion>& motions, std::size_t motion,
                     const Eigen::VectorXd& energies) {
   double sum = 0.0;
@@ -151,8 +152,8 @@ double energy_alike(const std::vector<system::Motion>& motions, std::size_t moti
 }
 
 /// The harmonic, counted from the identified one, that has most of the kinetic energy of a motion
-/// and of those of its name, `own` over all, and no small part of that of the mode; nothing where
-/// none has.
+/// and of those with the same name, and more than `clear_part` of that of the mode. Empty where
+/// there is none. `own`: energy of these motions at all harmonics.
 std::optional<int> own_shift(const std::vector<system::Motion>& motions, const ModeSet& set,
                              std::size_t m, std::size_t motion, double own, const NamedShape& named,
                              int sectors, MotionsInTime& in_time) {
@@ -169,10 +170,10 @@ std::optional<int> own_shift(const std::vector<system::Motion>& motions, const M
   return std::nullopt;
 }
 
-/// The motion with the largest share of the kinetic energy and that of the strain energy together.
-/// Strain weighs as much as the kinetic energy where all that restores is strain, less where
-/// rotation stiffens, and more in overdamped motions, which hardly move; it does not count at rest,
-/// where it is that of another motion, and beside a joint that drifts.
+/// The motion with the largest sum of kinetic and strain energy. The strain energy equals the
+/// kinetic energy where strain alone restores; it is smaller where rotation stiffens, and larger in
+/// overdamped motions, which hardly move. It does not count at rest, where it is that of another
+/// motion, and for a joint that drifts.
 Leading find_leading(const system::PeriodicSystem& system,
                      const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t m,
                      const NamedShape& named, int sectors, MotionsInTime& in_time) {
@@ -185,7 +186,8 @@ Leading find_leading(const system::PeriodicSystem& system,
     identified += about.of(named.shape_rate.col(c), named.whole_rate.col(c));
     all += about.of(named.whole_rate.col(c), named.whole_rate.col(c));
   }
-  // Less where the mode was identified in blades that the tower carries: it is in another one.
+  // The identified harmonic has less of the energy where it is that of blades that the tower moves:
+  // the tower moves at another harmonic.
   const bool is_dominant = identified.sum() > dominant_part * all.sum();
   const Eigen::VectorXd& energies = is_dominant ? identified : all;
   const double part = is_dominant ? identified.sum() / all.sum() : 1.0;
@@ -205,7 +207,8 @@ Leading find_leading(const system::PeriodicSystem& system,
     return found;
   };
   if (is_at_rest(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
-  // A joint that drifts: what bends with it has little of the motion, however much it strains.
+  // A joint drifts: the parts that bend with it have little of the motion, even if their strain is
+  // large.
   const system::Owner& mover = motions[leading().motion].owner;
   const bool is_beam = mover.kind == system::PartKind::beam || mover.instance > 0;
   if (mode.exponent.imag() == 0.0 && !is_beam) return leading();
@@ -213,7 +216,8 @@ Leading find_leading(const system::PeriodicSystem& system,
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
     shares[name] += energy / (part * mode.kinetic_energy);
   Leading found = leading();
-  // Where most of this motion is at another harmonic, its frequency is there.
+  // Where most of this motion is at another harmonic, the frequency of the motion is that of this
+  // harmonic.
   const double own = energy_alike(motions, found.motion, all);
   if (named.waves.size() > 0 && mode.exponent.imag() > 0.0 &&
       energy_alike(motions, found.motion, identified) < dominant_part * own)
@@ -221,8 +225,8 @@ Leading find_leading(const system::PeriodicSystem& system,
   return found;
 }
 
-/// Shares of the multiblade components of a motion: n = 0 is the mean of the blades, in n each
-/// blade is 2 pi n / B ahead of the one behind it. Empty where nothing moves.
+/// Shares of the multiblade components of a motion: n = 0 is the mean of the blades; in component n
+/// each blade is 2 pi n / B ahead of the blade behind it. Empty where nothing moves.
 Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int count,
                                   const system::Motion& one, const Eigen::MatrixXcd& shape) {
   std::vector<const system::Motion*> alike;
@@ -242,7 +246,7 @@ Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, in
   return total > 0.0 ? Eigen::VectorXd(shares / total) : Eigen::VectorXd();
 }
 
-/// The states of parts alike, one of them `one`, as motions.
+/// The states of `one` and of the identical parts, as motions.
 std::vector<system::Motion> motions_of_states(const system::PeriodicSystem& system,
                                               const system::Owner& one) {
   std::vector<system::Motion> motions;
@@ -257,7 +261,7 @@ std::vector<system::Motion> motions_of_states(const system::PeriodicSystem& syst
   return motions;
 }
 
-/// The multiblade component that a motion clearly is, -1 where it is none.
+/// The dominant multiblade component of a motion, -1 where there is none.
 int clear_component(const Eigen::VectorXd& shares) {
   Eigen::Index largest = 0;
   return shares.size() > 0 && shares.maxCoeff(&largest) > clear_share ? static_cast<int>(largest)
@@ -301,7 +305,8 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
       one.component = clear_component(multiblade_shares(
           motions, count, motion,
           shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m])));
-      // The mode will be its conjugate, in which the blades follow each other the other way.
+      // The mode will be replaced by its conjugate, in which the blades follow each other in the
+      // opposite order.
       if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
         one.component = count - one.component;
     }

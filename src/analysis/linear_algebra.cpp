@@ -16,7 +16,7 @@ namespace {
 
 /// Ratio of |J x - b| to |x| + |b|, where the rows and columns of J have entries of about one.
 constexpr double largest_solve_residual = 1e-11;
-/// Factors of a badly scaled matrix lose digits that refinement brings back.
+/// Factors of a badly scaled matrix lose digits; refinement restores them.
 constexpr int most_refinements = 3;
 
 void multiply_each(Vec factors, const std::vector<double>& by) {
@@ -24,8 +24,8 @@ void multiply_each(Vec factors, const std::vector<double>& by) {
   for (std::size_t i = 0; i < by.size(); ++i) view[static_cast<PetscInt>(i)] *= by[i];
 }
 
-/// All eigenvalues are equal: their order is the caller's affair, and SLEPc's way of sorting (swaps
-/// in the Schur form) fails on the degenerate pairs of identical blades.
+/// All eigenvalues compare as equal: the caller sorts them. Sorting by SLEPc (swaps in the Schur
+/// form) fails for the degenerate pairs of identical blades.
 PetscErrorCode keep_order(PetscScalar, PetscScalar, PetscScalar, PetscScalar, PetscInt* result,
                           void*) noexcept {
   *result = 0;
@@ -78,7 +78,7 @@ FactorFailure explain_mumps(KSP solver, PC factored, PCFailedReason reason) {
     failure.hint = "a larger " + room;
     failure.wants_room = !is_given(solver, room_option);
   } else {
-    failure.hint = "the user's guide of MUMPS has the meaning of these numbers";
+    failure.hint = "the user's guide of MUMPS explains these numbers";
   }
   return failure;
 }
@@ -120,7 +120,8 @@ void apply_scaling(const Equilibration& scaling, Mat matrix) {
   petsc::check(MatGetBlockSize(matrix, &size));
   petsc::check(
       MatGetRowIJ(matrix, 0, PETSC_FALSE, PETSC_TRUE, &block_rows, &begin, &block_columns, &done));
-  if (done == PETSC_FALSE) throw InternalError("a block matrix does not show its structure");
+  if (done == PETSC_FALSE)
+    throw InternalError("PETSc gives no access to the structure of a block matrix");
   petsc::check(MatSeqBAIJGetArray(matrix, &values));
   const petsc::ReadView rows(scaling.rows.get());
   const petsc::ReadView columns(scaling.columns.get());
@@ -186,7 +187,7 @@ Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, do
   const auto size = [&system](Eigen::Index i) {
     return system.unknowns()[static_cast<std::size_t>(i)].scale;
   };
-  std::vector<double> inertia(n, 0.0);  // largest term of a balance row that is no internal load
+  std::vector<double> inertia(n, 0.0);  // largest term of a balance row except internal loads
   for (Eigen::Index j = 0; j < entries.outerSize(); ++j) {
     if (role(j) == system::UnknownRole::internal) continue;
     const double column = role(j) == system::UnknownRole::velocity ? rate : size(j);
@@ -229,7 +230,7 @@ FactorFailure set_up(KSP solver) {
   for (const char* room : {"100", "300", "1000", "3000"}) {
     FactorFailure failure = find_failure(solver);
     if (!failure.wants_room) return failure;
-    // MUMPS takes another size of its work array only before it looks at the pattern.
+    // MUMPS accepts another size of its work array only before it analyses the pattern.
     const std::string option = "-" + prefix_of(solver) + room_option;
     PC factored = nullptr;
     Mat operators = nullptr;
@@ -258,7 +259,7 @@ void DirectSolver::factor(Mat matrix) {
     PC preconditioner = nullptr;
     petsc::check(KSPGetPC(solver_.get(), &preconditioner));
     petsc::check(PCSetType(preconditioner, PCLU));
-    // Systems number their unknowns so that elimination in their order fills in little.
+    // Systems number their unknowns so that elimination in this order causes little fill-in.
     petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
     petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
     petsc::check(KSPSetFromOptions(solver_.get()));
@@ -274,14 +275,14 @@ void DirectSolver::factor(Mat matrix) {
   if (failure.reason == PC_NOERROR) return;
   PC factored = nullptr;
   petsc::check(KSPGetPC(solver_.get(), &factored));
-  petsc::check(PCReset(factored));  // or the next matrix would be taken for factored
+  petsc::check(PCReset(factored));  // otherwise the next matrix would count as factored
   const std::string text = "linear solve (" + prefix_ + "): " + failure.words;
   if (failure.is_singular) throw SingularError(text);
   throw ConvergenceError(text + "; hint: " + failure.hint);
 }
 
-/// A beam held at its end has a block without an inverse of its own: rows must change places. The
-/// solver of the user's choice stands.
+/// A beam held at its end has a singular diagonal block: rows must be interchanged. The caller
+/// keeps a solver that the user has chosen.
 void DirectSolver::take_pivoting_solver() {
   PC factored = nullptr;
   petsc::check(KSPGetPC(solver_.get(), &factored));
@@ -290,7 +291,7 @@ void DirectSolver::take_pivoting_solver() {
   petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
 }
 
-/// Residual of one column, a new one each time.
+/// Residual of one column; each solve takes another one.
 double DirectSolver::compute_residual(const Eigen::MatrixXd& right) const {
   const auto n = static_cast<PetscInt>(right.rows());
   Eigen::VectorXd x = solution_.col(probe_);
@@ -407,7 +408,7 @@ Eigen::SparseMatrix<double> to_sparse(Mat matrix) {
 
 namespace {
 
-/// Types of SLEPc's that find a few eigenvalues only do not accept the order of all.
+/// SLEPc's types that find only a few eigenvalues end with an error if all are requested.
 void solve_whole(EPS solver, const std::string& prefix) {
   const PetscErrorCode code = EPSSolve(solver);
   if (code == PETSC_ERR_SUP || code == PETSC_ERR_USER_INPUT) {
@@ -445,7 +446,7 @@ void require_whole_spectrum(const std::string& prefix) {
     petsc::check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
     if (given != PETSC_FALSE)
       throw InputError(option +
-                       ": all eigenvalues are computed, of a matrix without symmetry; "
+                       ": all eigenvalues are computed, and the matrix has no symmetry; "
                        "hint: leave the option out");
   }
 }

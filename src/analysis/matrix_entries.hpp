@@ -1,4 +1,4 @@
-// The entries of a serial matrix in place, in blocks or not.
+// Access in place to the entries of a serial matrix, with or without blocks.
 #pragma once
 
 #include "samara/base/error.hpp"
@@ -16,7 +16,8 @@ class MatrixEntries {
     PetscBool done = PETSC_FALSE;
     petsc::check(
         MatGetRowIJ(matrix, 0, PETSC_FALSE, is_blocked_, &rows_, &begin_, &columns_, &done));
-    if (done == PETSC_FALSE) throw InternalError("a matrix does not show its structure");
+    if (done == PETSC_FALSE)
+      throw InternalError("PETSc gives no access to the structure of a matrix");
     if (is_blocked_ != PETSC_FALSE)
       petsc::check(MatSeqBAIJGetArray(matrix, &values_));
     else
@@ -33,7 +34,7 @@ class MatrixEntries {
     MatRestoreRowIJ(matrix_, 0, PETSC_FALSE, is_blocked_, &rows_, &begin_, &columns_, &done);
   }
 
-  /// visit(i, j, value) for every entry, value a reference into values().
+  /// Calls visit(i, j, value) for every entry; value is a reference into values().
   template <class Visit>
   void for_each(Visit visit) {
     for (PetscInt i = 0; i < rows_; ++i)
@@ -43,7 +44,7 @@ class MatrixEntries {
             visit(i * size_ + r, columns_[k] * size_ + c, values_[(k * size_ + c) * size_ + r]);
   }
 
-  /// In the same order for all matrices of a pattern.
+  /// The order is the same for all matrices of a pattern.
   PetscScalar* values() { return values_; }
 
  private:

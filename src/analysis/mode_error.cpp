@@ -6,14 +6,14 @@
 namespace samara::analysis {
 namespace {
 
-/// Estimates are more than the first term of the error.
+/// Safety factors: an estimate is the first term of the error times its factor.
 constexpr double step_safety = 2.5;
 constexpr double mesh_safety = 2.0;
-/// Part of an exponent's error that is growth: step and elements keep the symmetries that
-/// forbid it, or nearly so (docs/theory.md, section 5.8).
+/// Part of an exponent's error that is growth. It is small, because step and elements keep, at
+/// least nearly, the symmetries that exclude growth (docs/theory.md, section 5.8).
 constexpr double growing_part = 0.01;
 constexpr double growing_part_of_tables = 0.05;
-/// An exponent that is not this many times its error is not told from zero.
+/// An exponent smaller than this many times its error is not distinguished from zero.
 constexpr double several = 10.0;
 constexpr double least_round_off = 1e-10;
 
@@ -62,8 +62,8 @@ void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<doub
   const double size = std::abs(mode.exponent);
   mode.growth_error = spread.growth + growing_part * spread.modulus +
                       size * std::max(mode.round_off_error, least_round_off);
-  // A multiplier of one, of a motion that nothing restores or of the same a moment later: the step
-  // may split it in any direction.
+  // A multiplier of one belongs to a motion that nothing restores, or to the same motion shifted in
+  // time. The error by the step may split it in any direction.
   if (std::abs(principal) < several * spread.modulus)
     mode.growth_error = std::max(mode.growth_error, several * spread.modulus);
 }

@@ -1,4 +1,4 @@
-// The ranks that share an analysis, and the sums they make.
+// The ranks that share an analysis, and sums over them.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct Ranks {
   }
 
  private:
-  /// Numbers in a message, at the most.
+  /// Largest number of values in a message.
   static constexpr Eigen::Index most_values = 1 << 20;
   static int part(Eigen::Index rest) { return static_cast<int>(std::min(most_values, rest)); }
 };

@@ -20,9 +20,9 @@ namespace {
 constexpr int most_revolutions = 40;
 constexpr int most_step_iterations = 20;
 constexpr double step_tolerance = 1e-12;
-/// A solved correction leaves less than this part of the defect.
+/// Largest part of the defect that a solved correction may leave.
 constexpr double unsolved = 1e-6;
-/// Harmonics of the series, at the most; a step's error is far above what lies beyond.
+/// Largest number of harmonics of the series; higher harmonics are far below the error by the step.
 constexpr int most_harmonics = 24;
 
 Eigen::VectorXd values_of(Vec z) {
@@ -80,8 +80,8 @@ class Shooting {
   }
 
  private:
-  /// The subspace about the present start; the steady state's own change is left out of the
-  /// Jacobian, which slows the iteration down a little and moves nothing.
+  /// The subspace about the present start. The Jacobian leaves out the change of the steady state:
+  /// the iteration becomes a little slower, its result does not change.
   ConsistentSubspace& subspace() {
     solution_ = std::make_unique<PeriodicSolution>(start_, system_.period());
     subspace_ = std::make_unique<ConsistentSubspace>(system_, *solution_);
@@ -146,8 +146,8 @@ class Shooting {
       }
       observer_.progress("shooting", k + 1, steps_ + 1);
     }
-    // Two consecutive instants of eta and one of xi repeat, and the means of the unconstrained
-    // coordinates vanish.
+    // Conditions: eta repeats at two consecutive instants and xi at one, and the means of the
+    // unconstrained coordinates are zero.
     const Eigen::MatrixXd rate_columns =
         (space.coordinates_of(columns) - last_columns - eta_columns[1] + eta_columns[0]) /
         (dt_ * speed_);
@@ -164,10 +164,10 @@ class Shooting {
     const double scale = std::max({1.0, eta_.norm(), xi_.norm()});
     if (!(left <= std::max(tolerance_ * scale, unsolved * defect.norm())))
       throw ConvergenceError(
-          "trim: shooting: the correction's matrix is singular, no correction closes the "
-          "revolution (defect " +
-          general(defect.norm(), 3) + ", left by the best one found " + general(left, 3) +
-          "); hint: check the balance of the torques, the limits of the actuators");
+          "trim: shooting: the matrix of the correction is singular, and no correction makes the "
+          "revolution periodic (defect " +
+          general(defect.norm(), 3) + ", after the best correction " + general(left, 3) +
+          "); hint: check the balance of the torques and the limits of the actuators");
     eta_ += correction.head(d);
     eta_rate_ += correction.segment(d, d);
     xi_ += correction.segment(2 * d, n_1);
@@ -175,8 +175,8 @@ class Shooting {
     return correction.head(reduced).norm();
   }
 
-  /// Newton on one step of the nonlinear equations: rows with rates at the middle, rows without at
-  /// the end. Leaves `linearized` factored at the step.
+  /// Newton's method for one step of the nonlinear equations: rows with rates at the middle, rows
+  /// without rates at the end. Leaves `linearized` factored at the step.
   void advance(int k, Eigen::VectorXd& z, Eigen::VectorXd& middle, LinearizedStep& linearized) {
     const double t_middle = (k + 0.5) * dt_;
     const double t_end = (k + 1.0) * dt_;
@@ -241,7 +241,7 @@ class Shooting {
       }
     }
     std::ostringstream words;
-    words << "shooting: " << steps_ << " steps return to their start";
+    words << "shooting: " << steps_ << " steps return to the initial state";
     Trim trim{PeriodicSolution(coefficients, system_.period()),
               TrimMethod::shooting,
               revolutions,

@@ -3,7 +3,7 @@
 namespace samara::analysis {
 namespace {
 
-/// Numbers that go to another rank at a time, about.
+/// Approximate number of values in a message to another rank.
 constexpr Eigen::Index message_values = 1 << 18;
 
 }  // namespace

@@ -1,8 +1,8 @@
-// The signals of all initial states over a sector, dealt over the ranks by what they belong to.
+// The signals of all initial states over a sector. Each rank has some of the signals.
 //
-// Ranks integrate some of the initial states each, but a mode combines all of them: while the steps
-// go on, every rank sends the others the signals they are to analyse, and keeps its own share of
-// all states.
+// Each rank integrates some of the initial states, but a mode combines all of them. During the
+// integration every rank therefore sends each other rank the signals that this rank analyses, and
+// receives its own signals of all states.
 #pragma once
 
 #include <array>
@@ -16,24 +16,25 @@ namespace samara::analysis {
 
 class SignalSeries {
  public:
-  /// `states` initial states, dealt to the ranks in turn.
+  /// `states`: number of initial states, which are distributed to the ranks in turn.
   SignalSeries(const system::PeriodicSystem& system, int sectors, long steps, Eigen::Index states,
                const Ranks& ranks);
-  /// Waits for nothing: messages on their way are given up where an analysis ends early.
+  /// Does not wait: pending messages are cancelled where an analysis ends early.
   ~SignalSeries();
   SignalSeries(const SignalSeries&) = delete;
   SignalSeries& operator=(const SignalSeries&) = delete;
 
-  /// The share of this rank.
+  /// Energy in the signals of this rank.
   HarmonicEnergy& energy() { return energies_[static_cast<std::size_t>(ranks_.rank)]; }
 
-  /// The own states in the middle of the next step. Every rank calls it once a step.
+  /// Appends the states of this rank at the middle of the next step. Every rank calls it once per
+  /// step.
   void append(const Eigen::MatrixXd& states);
 
-  /// Signals of this rank, step after step, x all initial states; whole after the last step.
+  /// Signals of this rank, step after step, x all initial states; complete after the last step.
   const Eigen::MatrixXd& values() const { return values_; }
 
-  /// Rows of the rank that has most; the same on every rank.
+  /// Largest number of rows of values() of any rank; the same on every rank.
   Eigen::Index most_rows() const { return most_signals_ * steps_; }
 
  private:
@@ -41,7 +42,7 @@ class SignalSeries {
   struct Block {
     std::vector<Eigen::MatrixXd> outgoing, incoming;  ///< to and from every rank
     std::vector<MPI_Request> requests;
-    long first = 0;  ///< step
+    long first = 0;  ///< step of the series
     long steps = 0;
   };
 
@@ -54,11 +55,11 @@ class SignalSeries {
   Ranks ranks_;
   Eigen::Index states_;
   long steps_;
-  Eigen::Index most_signals_ = 0;         ///< of a rank
+  Eigen::Index most_signals_ = 0;         ///< largest number of a rank
   long block_;                            ///< steps that are sent together
-  long taken_ = 0;                        ///< steps
+  long taken_ = 0;                        ///< steps appended
   std::vector<HarmonicEnergy> energies_;  ///< of every rank
-  std::array<Block, 2> blocks_;           ///< one on its way while the other is filled
+  std::array<Block, 2> blocks_;           ///< one is sent while the other is filled
   Eigen::MatrixXd values_;
 };
 

@@ -18,11 +18,11 @@ namespace {
 
 constexpr int most_newton_steps = 20;
 
-/// A correction this many times the one before is no convergence any more, after the first few.
+/// After the first Newton steps, a correction this many times the one before counts as divergence.
 constexpr double largest_growth = 10.0;
 constexpr int patient_newton_steps = 3;
 
-/// How often a step is halved before the path is given up.
+/// Largest number of halvings of a step before the analysis stops.
 constexpr int most_halvings = 20;
 
 /// A remainder of the load factor, or a motion [m, rad], that is round-off.
@@ -31,23 +31,23 @@ constexpr double round_off = 1e-12;
 /// Cosine between the tangents at both ends of an arc; below it the step may have changed branches.
 constexpr double least_cosine = 0.3;
 
-/// Stiffness of free coordinates, relative to the stiffness that holds them at the start:
-/// coordinates with less than `weak` are left to the loads, those with less than `restored` under
-/// loads are unrestored.
+/// Stiffness of free coordinates, relative to the stiffness that holds them at the start: only
+/// loads restore coordinates with less than `weak`; nothing restores those with less than
+/// `restored` under loads.
 constexpr double weak = 1e-6;
 constexpr double restored = 1e-8;
 
-/// Relative to the largest internal load: what free coordinates feel of the loads, if anything.
+/// Relative to the largest internal load: smaller loads on free coordinates count as zero.
 constexpr double unfelt = 1e-10;
 
-/// Parts in which coordinates are set free, the least of them, and how far one may move in one of
-/// them, beside its whole way [rad, m].
+/// Release of coordinates in parts: largest part, smallest part, and largest motion of a coordinate
+/// in one part, relative to 1 [rad, m] plus its position.
 constexpr double first_part = 0.125;
 constexpr double least_part = 1e-6;
 constexpr double longest_stride = 0.5;
 
-/// A point of the path: the state, in which an unconstrained coordinate gives its place to the load
-/// that holds it, and the load factor.
+/// A point of the path: the state and the load factor. In the state the load that holds an
+/// unconstrained coordinate takes the place of this coordinate.
 struct Point {
   Eigen::VectorXd x;
   double factor = 0.0;
@@ -63,8 +63,8 @@ struct Easing {
   double remaining = 0.0;
 };
 
-/// r(x, f) = (1 - f) r_unloaded + f r_loaded, and what belongs to it. `held` coordinates, the
-/// unconstrained ones and others, stay at zero.
+/// r(x, f) = (1 - f) r_unloaded + f r_loaded, with its tangents and its solver. Held `coordinates`,
+/// the unconstrained ones and others, stay at zero.
 class Equilibrium {
  public:
   Equilibrium(const system::PeriodicSystem& system,
@@ -126,7 +126,7 @@ class Equilibrium {
     solver_.solve(columns);
   }
 
-  /// Stiffness of the rest of the turbine against some of the held coordinates, by their positions.
+  /// Stiffness of the rest of the turbine against displacements of some of the held coordinates.
   Eigen::MatrixXd stiffness_of(const Point& point, const std::vector<PetscInt>& coordinates) {
     assemble(point);
     const Eigen::SparseMatrix<double> K = to_sparse(jacobian_.get());
@@ -138,7 +138,7 @@ class Equilibrium {
     return at(columns, coordinates);
   }
 
-  /// Motions of the coordinates that are being freed, under a unit load on each of them.
+  /// Motions of the coordinates that are being released, under a unit load on each of them.
   Eigen::MatrixXd eased_compliance(const Point& point) {
     const auto n = static_cast<Eigen::Index>(easing_.rows.size());
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size_, n);
@@ -148,8 +148,8 @@ class Equilibrium {
     return at(columns, easing_.unknowns);
   }
 
-  /// The system with large rotations counted anew, for which the point is rewritten; null where
-  /// none is large.
+  /// The system with large rotations counted from their present values; the point is rewritten for
+  /// it. Null where no rotation is large.
   std::unique_ptr<system::PeriodicSystem> counted_from(Point& point) {
     put(state_of(point.x));
     std::unique_ptr<system::PeriodicSystem> system = loaded_.counted_from(z_.get());
@@ -163,7 +163,7 @@ class Equilibrium {
     return system;
   }
 
-  /// The holding load is the residual of an unconstrained coordinate's row.
+  /// Loads that hold coordinates; each is the residual of the row of its coordinate.
   std::vector<HeldCoordinate> held_loads(const Point& point) const {
     std::vector<HeldCoordinate> held;
     for (const system::UnconstrainedCoordinate& unconstrained : held_)
@@ -177,7 +177,7 @@ class Equilibrium {
     return x;
   }
 
-  /// The state counts rotations from the undeformed one.
+  /// The result counts rotations from the undeformed state.
   StaticState describe(const Point& point, int newton_steps) {
     Eigen::VectorXd r;
     Eigen::VectorXd by_factor;
@@ -258,7 +258,7 @@ class Equilibrium {
     return info.nz_used;
   }
 
-  /// The tangent as it is, with what eases free coordinates.
+  /// Assembles the tangent, with the springs on the coordinates that are being released.
   void assemble(const Point& point) {
     put(state_of(point.x));
     loaded_.tangents(0.0, z_.get(), rest_.get(), 0.0, jacobian_.get(), nullptr);
@@ -302,7 +302,7 @@ class Equilibrium {
   std::unique_ptr<system::PeriodicSystem> unloaded_;
   Eigen::Index size_;
   petsc::Handle<Vec> z_;
-  petsc::Handle<Vec> rest_;  ///< no rates
+  petsc::Handle<Vec> rest_;  ///< zero rates
   petsc::Handle<Vec> r_;
   petsc::Handle<Mat> jacobian_;
   petsc::Handle<Mat> unloaded_jacobian_;
@@ -312,8 +312,8 @@ class Equilibrium {
   std::vector<Eigen::Index> states_;
 };
 
-/// Along the path by one unit of arc length: ds^2 = |positions|^2 / D^2 + df^2 / f0^2, with f0 the
-/// first step of the factor and D the length of the first step of the positions.
+/// Change along the path per unit of arc length: ds^2 = |positions|^2 / D^2 + df^2 / f0^2, with f0
+/// the first step of the factor and D the length of the first step of the positions.
 struct Direction {
   Eigen::VectorXd x;
   double factor = 0.0;
@@ -346,8 +346,8 @@ class PathFollower {
  private:
   // ---- one step ------------------------------------------------------------------------------
 
-  /// Newton's method: at a given factor, or, with a direction, in the plane across it through the
-  /// point. Returns the number of steps.
+  /// Newton's method at a given factor or, with a direction, in the plane through the point that is
+  /// perpendicular to the direction. Returns the number of steps.
   int correct(Point& point, const Direction* across) {
     double last = std::numeric_limits<double>::infinity();
     for (int step = 1; step <= most_newton_steps; ++step) {
@@ -359,7 +359,7 @@ class PathFollower {
       if (across != nullptr) columns.col(1) = -by_factor;
       equilibrium_->solve(point, columns);
       Eigen::VectorXd change = columns.col(0);
-      if (across != nullptr) {  // the border, eliminated
+      if (across != nullptr) {  // elimination of the border
         const double factor_change =
             -product(*across, {columns.col(0), 0.0}) / product(*across, {columns.col(1), 1.0});
         change += factor_change * columns.col(1);
@@ -400,7 +400,8 @@ class PathFollower {
     if (++halvings_ > most_halvings) give_up();
   }
 
-  /// A point that is in equilibrium; the residual is looked at, which may find it out of range.
+  /// Adds a point in equilibrium to the path. Its residual is evaluated, which may find a rotation
+  /// out of range.
   void accept(const Point& point, int newton_steps) {
     path_.states.push_back(equilibrium_->describe(point, newton_steps));
     constexpr long parts = 1000;
@@ -436,21 +437,21 @@ class PathFollower {
     std::string names;
     for (const system::UnconstrainedCoordinate& free : free_)
       names += (names.empty() ? " (" : ", ") + free.name;
-    return "something may move that nothing holds" + (names.empty() ? "" : names + ")") +
-           ", or is held twice";
+    return "a coordinate may move that nothing holds" + (names.empty() ? "" : names + ")") +
+           ", or a part is held twice";
   }
 
   const char* load_hint() const {
     if (tried_ > options_.most_steps)
-      return "more static.max_steps; the path may never reach the whole loads";
+      return "a larger static.max_steps; the path may never reach the full loads";
     if (options_.method == StaticMethod::load)
-      return "more static.steps; static.method: arc_length where the load can rise no more";
+      return "more static.steps; static.method: arc_length where the load cannot rise further";
     return "more static.steps, or a finer mesh";
   }
 
-  /// Counts large rotations from where they are now: the next step may turn as far again. The point
-  /// is corrected, for a coarse mesh depends a little on what rotations count from. True where the
-  /// point has been rewritten.
+  /// Counts large rotations from their present values, so that the next step may turn as far again.
+  /// The point is corrected, because the solution on a coarse mesh depends a little on the
+  /// reference of the rotations. True where the point has been rewritten.
   bool recount(Point& point) {
     Point anew = point;
     std::unique_ptr<system::PeriodicSystem> system = equilibrium_->counted_from(anew);
@@ -462,11 +463,11 @@ class PathFollower {
     } catch (const DomainError&) {
       std::swap(equilibrium_, other);
       return false;
-    } catch (const ConvergenceError&) {  // at a limit point, say: later, then
+    } catch (const ConvergenceError&) {  // for example at a limit point
       std::swap(equilibrium_, other);
       return false;
     }
-    other.reset();  // before the system that it is of
+    other.reset();  // before the system that it refers to
     recounted_ = std::move(system);
     point = anew;
     return true;
@@ -484,7 +485,8 @@ class PathFollower {
     return unknowns;
   }
 
-  /// Free coordinates held at zero: at rest without loads, and at the first step with them.
+  /// Points with free coordinates held at zero: one without loads, and one with the loads of the
+  /// first step.
   struct Held {
     Point rest;
     Point loaded;
@@ -493,7 +495,7 @@ class PathFollower {
     int newton_steps = 0;
   };
 
-  /// None where it cannot be done, because the beam would be held twice.
+  /// Empty where the coordinates cannot be held, because the beam would be held twice.
   std::optional<Held> hold_free() {
     std::vector<system::UnconstrainedCoordinate> coordinates = system_.unconstrained_coordinates();
     coordinates.insert(coordinates.end(), free_.begin(), free_.end());
@@ -515,9 +517,9 @@ class PathFollower {
     return {};
   }
 
-  /// A hinge that loads alone restore turns as soon as there are any: at the factor 0 the tangent
-  /// is singular, and the path starts at the first step, with the supports held there and then set
-  /// free. False where that is not needed, or not possible.
+  /// A hinge that only loads restore turns as soon as loads act: at load factor 0 the tangent is
+  /// singular. The path therefore starts at the first step; the supports are held there and then
+  /// released. False where that is not needed or not possible.
   bool release(Point& point) {
     if (free_.empty()) return false;
     const std::optional<Held> held = hold_free();
@@ -544,9 +546,9 @@ class PathFollower {
     return true;
   }
 
-  /// The loads that hold free coordinates, and a spring beside them, go to zero at a constant load
-  /// factor: the spring keeps the path away from other branches. Returns the number of Newton's
-  /// steps.
+  /// Reduces the loads that hold free coordinates, and a spring on each of them, to zero at a
+  /// constant load factor. The springs keep the path away from other branches. Returns the number
+  /// of Newton steps.
   int set_free(Point& point) {
     int newton_steps = 0;
     const bool at_once = easing_.loads.cwiseAbs().maxCoeff() <= round_off * easing_.stiffness;
@@ -579,10 +581,10 @@ class PathFollower {
   void refuse_leap(const Point& point, const Point& next) const {
     for (const PetscInt at : easing_.unknowns)
       if (std::abs(next.x(at) - point.x(at)) > longest_stride * (1.0 + std::abs(point.x(at))))
-        throw ConvergenceError("a coordinate that was set free moves too far in one step");
+        throw ConvergenceError("a released coordinate moves too far in one step");
   }
 
-  /// Checks the free directions, with almost no spring beside the turbine and its loads.
+  /// Checks that turbine and loads restore the free directions, with very soft springs added.
   void require_restored(const Point& point) {
     const double remaining = easing_.remaining;
     easing_.remaining = restored;
@@ -599,14 +601,14 @@ class PathFollower {
       if (std::abs(motion(static_cast<Eigen::Index>(n))) > 0.1 * motion.cwiseAbs().maxCoeff())
         names += (names.empty() ? "" : ", ") + free_[n].name;
     throw InputError("static: nothing restores " + names +
-                     ", which is free: no load, no spring, no other support; hint: a stiffness in "
-                     "its place");
+                     ", which is free: no load, no spring, no other support; hint: give it a "
+                     "stiffness");
   }
 
   // ---- prescribed factors --------------------------------------------------------------------
 
-  /// Newton may end on another branch of equilibria, where the motion of the step, or what comes
-  /// next, goes back against the tangent.
+  /// Newton's method may end on another branch of equilibria. Then the motion of the step is
+  /// opposite to the tangent at its start or at its end.
   void refuse_jump(const Point& point, const Direction& slope, const Point& next,
                    const Direction& next_slope) const {
     const Eigen::VectorXd motion = next.x - point.x;
@@ -620,7 +622,7 @@ class PathFollower {
     double step = first_step_;
     Direction slope = slope_at(point);
     while (point.factor < 1.0) {
-      // Cut steps end on the next multiple of the first step, too.
+      // Cut steps, too, end at the next multiple of the first step.
       const double multiple =
           (std::floor(point.factor / first_step_ + round_off) + 1.0) * first_step_;
       Point next = point;
@@ -662,7 +664,7 @@ class PathFollower {
     return {columns.col(0), 1.0};
   }
 
-  /// The unit tangent that goes on in the direction `before`.
+  /// The unit tangent with a positive component along `before`.
   Direction tangent_at(const Point& point, const Direction& before) {
     Direction tangent = slope_at(point);
     const double along = product(before, tangent);
@@ -684,14 +686,14 @@ class PathFollower {
       Direction ahead;
       const bool found = attempt([&] {
         int newton_steps = correct(next, &tangent);
-        if (next.factor >= 1.0) {  // the end lies between
+        if (next.factor >= 1.0) {  // the end of the path is within this step
           const double part = (1.0 - point.factor) / (next.factor - point.factor);
           next = {point.x + part * (next.x - point.x), 1.0};
           newton_steps += correct(next, nullptr);
         }
         ahead = tangent_at(next, tangent);
         if (product(tangent, ahead) < least_cosine)
-          throw ConvergenceError("the path bends too sharply, or leaves for another branch");
+          throw ConvergenceError("the path bends too sharply, or changes to another branch");
         accept(next, newton_steps);
       });
       if (!found) {
@@ -712,7 +714,7 @@ class PathFollower {
                                                : std::min(before.factor, behind.factor);
     path_.limit_points.push_back(factor);
     std::ostringstream text;
-    text << "static: limit point near load factor " << factor << ", from where it "
+    text << "static: limit point near load factor " << factor << "; beyond it the load factor "
          << (tangent.factor > 0.0 ? "falls" : "rises");
     observer_.note(text.str());
   }
@@ -730,9 +732,9 @@ class PathFollower {
   const StaticOptions& options_;
   Observer& observer_;
   std::vector<system::UnconstrainedCoordinate> free_;  ///< coordinates without springs
-  Easing easing_;                                      ///< while they are set free
-  std::unique_ptr<system::PeriodicSystem> recounted_;  ///< rotations counted anew, if they grew
-  std::unique_ptr<Equilibrium> equilibrium_;           ///< of that, or of the system itself
+  Easing easing_;                                      ///< while they are released
+  std::unique_ptr<system::PeriodicSystem> recounted_;  ///< with rotations counted anew
+  std::unique_ptr<Equilibrium> equilibrium_;           ///< of recounted_, or of the system itself
   StaticPath path_;
   double first_step_ = 1.0;  ///< of the factor
   double length_ = 1.0;      ///< D

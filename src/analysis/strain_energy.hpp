@@ -10,7 +10,7 @@
 
 namespace samara::analysis {
 
-/// Mean over the instants of a shape, in its scale.
+/// Mean strain energy of a group over the instants of a shape, as the shape is scaled.
 double mean_strain_energy(const system::EnergyGroup& group, const Eigen::MatrixXcd& shape);
 
 /// Mean strain energy by the name of the motion that it restores.

@@ -19,13 +19,13 @@
 namespace samara::analysis {
 namespace {
 
-/// Integrators that suit this system, with the orders of docs/theory.md, section 9.1.
+/// Types of TS that suit this system, with the orders of docs/theory.md, section 9.1.
 constexpr std::array<const char*, 5> sound_types{TSBDF, TSTHETA, TSCN, TSALPHA, TSBEULER};
-/// Order of BDF with rigid strains (docs/theory.md, section 9.1).
+/// Highest stable order of BDF with rigid strains (docs/theory.md, section 9.1).
 constexpr PetscInt most_stable_order = 2;
-/// Newton with an old tangent goes on while each correction is this much smaller than the last.
+/// Newton's method keeps an old tangent while each step reduces the residual to this part or less.
 constexpr double slow_contraction = 0.1;
-/// The first steps after a start differ in what multiplies M.
+/// Number of steps after a start in which the factor of M differs from step to step.
 constexpr int starting_steps = 3;
 /// Ratio of a step to the one before: BDF2 is stable up to 2.4.
 constexpr double largest_growth = 2.0;
@@ -35,18 +35,18 @@ constexpr double left_out = 1e30;
 /// Relative to the state: smaller corrections that no longer shrink are round-off.
 constexpr double stagnation = 1e-8;
 constexpr double round_off = 1e-9;
-/// Relative to the step: the first one of BDF2, which begins with a step of first order. The next
-/// ones may be twice as long each. So the error of the start is a thousandth of what it would be.
+/// Relative to the step: the first step of BDF2, which is of first order. Each later step may be
+/// twice as long as the one before. This reduces the error of the start to a thousandth.
 constexpr double first_step = 1.0 / 32.0;
 constexpr int most_newton_steps = 20;
-/// How far an angle may be from where its rate leads within a step [rad]. The equations of a step
-/// have other solutions, whole turns away or with a hinge folded back.
+/// Largest difference of an angle at the end of a step from the value that its rate predicts [rad].
+/// The equations of a step have other solutions, whole turns away or with a hinge folded back.
 constexpr double largest_deviation = 0.1;
-/// Relative to a step: the one that finds the rates at the start.
+/// Step that finds the rates at the start, relative to a step of the simulation.
 constexpr double start_fraction = 1e-3;
 constexpr int start_iterations = 4;
 
-/// The system as TS sees it, and how TS is led from one instant of the grid to the next.
+/// The equations for TS, and the control of TS from one instant of the grid to the next.
 class Integration {
  public:
   Integration(const system::PeriodicSystem& system, const TransientStart& start,
@@ -133,23 +133,24 @@ class Integration {
     begin_angles(start_.z_dot);
   }
 
-  /// Forgets the rates before: what follows depends on the state of a start, or of a checkpoint,
-  /// alone. Rates may be unknown.
+  /// Replaces the earlier rates, so that the further run depends on the state of a start, or of a
+  /// checkpoint, alone. Rates may be unknown.
   void begin_angles(const Eigen::VectorXd& z_dot) {
     has_rates_ = z_dot.size() > 0;
     if (!has_rates_) return;
     for (Angle& angle : angles_) angle.rate = z_dot(angle.unknown);
   }
 
-  /// Where a step begins.
+  /// Notes the angles at the start of a step.
   void note_angles() {
     const petsc::ReadView view(before_.get());
     const petsc::ReadView factors(scaling_.columns.get());
     for (Angle& angle : angles_) angle.value = view[angle.unknown] * factors[angle.unknown];
   }
 
-  /// Where a step has ended. Rates of BDF2 are those at its end; those of other methods are not
-  /// what the equations see (twice the rate in the trapezoidal rule): the mean over the step.
+  /// Notes the rates at the end of a step. With BDF the equations contain these rates. With other
+  /// methods the equations contain other rates (twice the rate in the trapezoidal rule); the mean
+  /// over the step is used instead.
   void note_rates(double taken) {
     const petsc::ReadView rates(z_dot_.get());
     const petsc::ReadView ends(x_.get());
@@ -160,7 +161,7 @@ class Integration {
     has_rates_ = true;
   }
 
-  /// Whether the solution of a step, of which the last residual is, goes on from the steps before.
+  /// Whether the solution of a step, at the last residual, continues the steps before.
   bool goes_on() {
     if (!has_rates_) return true;
     const petsc::ReadView view(z_.get());
@@ -171,7 +172,7 @@ class Integration {
                                system::angle_stretch(unknown, value);
       if (std::abs(deviation) <= largest_deviation) continue;
       error_ = std::make_exception_ptr(DomainError(unknown.name() + " is " + general(deviation, 4) +
-                                                   " rad from where its rate leads it"));
+                                                   " rad from the angle that its rate predicts"));
       return false;
     }
     return true;
@@ -203,7 +204,7 @@ class Integration {
     return point;
   }
 
-  /// With the scaled state `x`, at no time yet.
+  /// Point with the scaled state `x`; its time is not set.
   TransientStart point_of(Vec x) {
     TransientStart point;
     point.origin = origin_;
@@ -234,7 +235,7 @@ class Integration {
     KSP linear = nullptr;
     petsc::check(SNESGetKSP(snes_, &linear));
     petsc::check(KSPSetOperators(linear, matrix, matrix));
-    factor_failure_ = set_up(linear);  // without factors SNES gives up, and TS cuts the step
+    factor_failure_ = set_up(linear);  // without factors SNES fails, and TS cuts the step
     ++factorizations_;
     is_new_tangent_ = true;
   }
@@ -264,7 +265,7 @@ class Integration {
     });
   }
 
-  /// With the middle of the step in z_, z_dot_ and t_.
+  /// Finds the end of the step from its middle in z_, z_dot_ and t_.
   void find_end() {
     PetscReal dt = 0.0;
     petsc::check(TSGetTimeStep(ts_.get(), &dt));
@@ -272,7 +273,8 @@ class Integration {
     petsc::check(VecWAXPY(z_end_.get(), 0.5 * dt, z_dot_.get(), z_.get()));
   }
 
-  /// A start: velocities are made admissible, and nothing is known of the steps before.
+  /// Starts the midpoint rule: makes the velocities admissible, and discards the errors of earlier
+  /// steps.
   void begin_midpoint() {
     if (!is_midpoint_) return;
     velocities_.emplace(system_, options_.step);
@@ -302,8 +304,8 @@ class Integration {
     return result;
   }
 
-  /// Behind the back of TS, which would take a solution that has changed between steps for a new
-  /// start and leave the error of the steps out of its choice of the next.
+  /// Changes the state without notice to TS. With notice TS would take the changed solution for a
+  /// new start, and would not use the error of the steps for the length of the next one.
   void change_state(const Eigen::VectorXd& z) {
     const petsc::ReadView factors(scaling_.columns.get());
     const PetscScalar* values = nullptr;
@@ -323,15 +325,16 @@ class Integration {
     change_state(admissible_ + velocities_only(used_kick_));
   }
 
-  /// Makes the velocities at the end of a step admissible. Leaves in z_ and z_dot_ the middle of
-  /// the step between admissible velocities, with the reactions' mean over the step.
+  /// Makes the velocities at the end of a step admissible. Afterwards z_ and z_dot_ contain the
+  /// middle of the step between admissible velocities, with the mean of the reactions over the
+  /// step.
   void finish_midpoint(double t, double dt) {
     if (!velocities_) return;
     const Eigen::VectorXd before = admissible_;
     const Eigen::VectorXd z = read_state(x_.get());
     put(z, z_end_.get());
     // The error of the step is d = e - k, with the jump e at its end and the correction k before
-    // it; the next kick is -d/2, or with the last d -(2/3 d - d_last/6).
+    // it; the next kick is -d/2 or, if the step before had d_last, -(2/3 d - d_last/6).
     const bool is_first = missed_.size() == 0;
     const Eigen::VectorXd carried =
         is_first ? Eigen::VectorXd(0.5 * used_kick_)
@@ -348,8 +351,7 @@ class Integration {
           rates[k] = (admissible_(i) - before(i)) / dt;
         } else if (velocities_->is_reaction(i)) {
           middle[k] += (used_kick_(i) + jumps(i, 0)) / dt;
-          admissible_(i) =
-              middle[k];  // the ends of steps know no reactions, TS takes it for a guess
+          admissible_(i) = middle[k];  // reactions have no value at a step's end; a guess for TS
           rates[k] = 0.0;
         }
       }
@@ -365,9 +367,9 @@ class Integration {
     Eigen::Map<Eigen::VectorXd>(view.data(), values.size()) = values;
   }
 
-  /// The first row of the time series; false where the observer ends it there. Where the rates are
-  /// not known yet, rates and internal loads are those of a backward Euler step that is too short
-  /// to move anything.
+  /// Passes the first row of the time series to the observer; false where the observer ends the run
+  /// there. Where the rates are not known, rates and internal loads are those of a backward Euler
+  /// step that is too short to change the positions.
   bool sample_start() {
     const double dt = start_fraction * options_.step;
     Eigen::VectorXd z = start_.z;
@@ -424,7 +426,7 @@ class Integration {
     petsc::check(TSSetMaxTime(ts, 0.5 * PETSC_MAX_REAL));
     petsc::check(TSSetMaxSteps(ts, PETSC_MAX_INT - 1));
     petsc::check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
-    petsc::check(TSSetMaxSNESFailures(ts, -1));  // TS counts those of a step by itself
+    petsc::check(TSSetMaxSNESFailures(ts, -1));  // TS itself counts those of a step
     petsc::check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
     petsc::check(TSSetPreStep(ts, before_step));
     petsc::check(TSSetPreStage(ts, before_stage));
@@ -469,8 +471,9 @@ class Integration {
         constraints_.push_back(static_cast<PetscInt>(i));
   }
 
-  /// Steps by the error of the positions and of first-order states: internal loads and, beside
-  /// rigid strains, velocities are rough where the step changes, and would cut it for nothing.
+  /// Chooses steps by the error of the positions and of first-order states. Internal loads and,
+  /// with rigid strains, velocities are not smooth where the step changes, and would cut it
+  /// needlessly.
   void make_adaptive(TSAdapt adapt) {
     petsc::check(TSAdaptSetType(adapt, TSADAPTBASIC));
     petsc::check(TSAdaptSetClip(adapt, least_growth, largest_growth));
@@ -489,7 +492,7 @@ class Integration {
     petsc::check(TSSetTolerances(ts_.get(), tolerance, tolerances_.get(), tolerance, nullptr));
   }
 
-  /// TS has types that cannot solve for z where M is singular, or change r; they would fail later.
+  /// Some types of TS cannot solve for z where M is singular, or change r; they would fail later.
   void require_sound_type() const {
     TSType type = nullptr;
     petsc::check(TSGetType(ts_.get(), &type));
@@ -499,7 +502,7 @@ class Integration {
     std::string words;
     for (const char* sound : sound_types) words += std::string(words.empty() ? "" : ", ") + sound;
     throw InputError("-transient_ts_type " + name +
-                     ": not for a system with constraints; those that are: " + words);
+                     ": not suitable for a system with constraints; suitable types: " + words);
   }
 
   void require_stable_order() const {
@@ -507,7 +510,7 @@ class Integration {
     petsc::check(TSBDFGetOrder(ts_.get(), &order));
     if (order > most_stable_order)
       throw InputError("-transient_ts_bdf_order " + std::to_string(order) +
-                       ": from order 3 on BDF is unstable beside rigid strains; hint: order 2");
+                       ": from order 3 on BDF is unstable with rigid strains; hint: order 2");
   }
 
   double grid(long step) const { return origin_ + static_cast<double>(step) * options_.step; }
@@ -529,7 +532,7 @@ class Integration {
     return 0;
   }
 
-  /// The rest of the way to the next instant of the grid, in equal parts no longer than the limit.
+  /// Divides the time to the next instant of the grid into equal steps no longer than the limit.
   static PetscErrorCode before_step(TS ts) noexcept {
     Integration& self = of(ts);
     return self.guarded([&] {
@@ -547,7 +550,7 @@ class Integration {
     });
   }
 
-  /// Where the step is to end: the next instant of the grid, or where the run is to stop.
+  /// Time at which the step is to end: the next instant of the grid, or the stop of the run.
   double target() const {
     const double next = grid(step_ + 1);
     return options_.stop_at ? std::min(next, *options_.stop_at) : next;
@@ -643,7 +646,7 @@ class Integration {
   PetscErrorCode in_domain(PetscErrorCode (*refuse)(SNES), const Work& work) noexcept {
     try {
       work();
-      error_ = nullptr;  // what was out of range in an attempt before is no cause of what comes
+      error_ = nullptr;  // an earlier attempt out of range is no cause of a later failure
     } catch (const DomainError&) {
       error_ = std::current_exception();
       return refuse(snes_);
@@ -654,7 +657,7 @@ class Integration {
     return 0;
   }
 
-  /// The error that is left after a correction d that shrinks the residual by rho is about
+  /// The remaining error after a correction d that reduces the residual by the factor rho is about
   /// rho / (1 - rho) |d|.
   static PetscErrorCode test_convergence(SNES snes, PetscInt iteration, PetscReal size,
                                          PetscReal change, PetscReal residual,
@@ -676,7 +679,7 @@ class Integration {
     const double contraction = residual / before;
     const bool is_solved = contraction < 1.0 && contraction / (1.0 - contraction) * change <=
                                                     self.options_.tolerance * size;
-    // The tangent is as good as it can be: what is left is round-off.
+    // The tangent is new: the remaining residual is round-off.
     const bool is_stagnant =
         self.is_new_tangent_ && contraction > slow_contraction && change <= stagnation * size;
     if (is_solved || is_stagnant) {
@@ -702,7 +705,8 @@ class Integration {
       const Eigen::Map<const Eigen::VectorXd> values(view.data(), system_.size());
       Eigen::Index worst = 0;
       values.cwiseAbs().maxCoeff(&worst);
-      text << "; what changes most: " << system_.unknowns()[static_cast<std::size_t>(worst)].name();
+      text << "; the unknown that changes most: "
+           << system_.unknowns()[static_cast<std::size_t>(worst)].name();
     }
     if (factor_failure_.reason != PC_NOERROR) text << "; " << factor_failure_.words;
     if (error_) {
@@ -721,9 +725,9 @@ class Integration {
   TransientObserver& observer_;
   const TransientStart& start_;
   double origin_;
-  long step_;           ///< of the grid, done
-  long last_step_;      ///< of the grid
-  double limit_ = 0.0;  ///< of the step [s], less than its length after a cut
+  long step_;           ///< of the grid, completed
+  long last_step_;      ///< last one of the grid
+  double limit_ = 0.0;  ///< upper limit of the step [s], reduced after a cut
   double asked_ = 0.0;
   petsc::Handle<Vec> z_;      ///< of the last residual
   petsc::Handle<Vec> z_dot_;  ///< of the last residual
@@ -741,20 +745,20 @@ class Integration {
   double end_time_ = 0.0;
   petsc::Handle<Vec> no_rates_;
   petsc::Handle<Mat> jacobian_end_;
-  std::optional<AdmissibleVelocities> velocities_;  ///< where not all are admissible
+  std::optional<AdmissibleVelocities> velocities_;  ///< empty where all are admissible
   Eigen::VectorXd admissible_;                      ///< z at the end of the last step
   Eigen::VectorXd kick_;       ///< jump before the next step, velocities and impulses
-  double kick_step_ = 0.0;     ///< [s] the step that it is of
+  double kick_step_ = 0.0;     ///< length of the step that kick_ is for [s]
   Eigen::VectorXd used_kick_;  ///< jump before the last step
-  Eigen::VectorXd missed_;     ///< by the last step; empty: none since the start
+  Eigen::VectorXd missed_;     ///< error of the last step; empty: none since the start
   double last_residual_ = 0.0;
   int steps_since_start_ = 0;
-  bool is_new_tangent_ = false;  ///< since the last correction
+  bool is_new_tangent_ = false;  ///< new since the last correction
   TransientEnd reason_ = TransientEnd::complete;
   petsc::Handle<Vec> before_;  ///< x before the last step
   double time_before_ = 0.0;
   std::vector<Angle> angles_;
-  bool has_rates_ = false;  ///< of them
+  bool has_rates_ = false;  ///< the rates of angles_ are known
   long step_before_ = 0;
   long steps_ = 0;
   long newton_steps_ = 0;

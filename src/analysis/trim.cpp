@@ -14,7 +14,7 @@
 namespace samara::analysis {
 namespace {
 
-/// Relative to the largest internal load: below it a constant is the solution.
+/// Residual relative to the largest internal load: below it a constant is the solution.
 constexpr double round_off = 1e-11;
 /// Relative to the largest residual of the undeformed system: a larger change is no round-off.
 constexpr double changing = 1e-6;
@@ -27,12 +27,13 @@ double allowed_residual(const Trim& trim, double relative) {
 /// is the solution.
 constexpr double state_round_off = 1e-9;
 
-/// With Q identical blades the tower sees multiples of Q. Leaving out the multiple next above H
-/// while the blades keep H leaves its load unbalanced: H + 1 must not be a multiple of Q.
+/// With Q identical blades the loads on the tower are at multiples of Q. If H + 1 is such a
+/// multiple, harmonic H of the blades causes a load at H + 1 that is not balanced: H + 1 must not
+/// be a multiple of Q.
 bool is_closed(int harmonics, int sectors) { return sectors < 2 || (harmonics + 1) % sectors != 0; }
 
-/// True where the undeformed system feels loads that change with time, or a prescribed motion
-/// changes: no constant balances them.
+/// True where loads on the undeformed system, or a prescribed motion, change with time: no constant
+/// balances them.
 bool feels_time(const system::PeriodicSystem& system) {
   if (!system.constraints_are_autonomous()) return true;
   const petsc::Handle<Vec> z = system.make_state();
@@ -53,7 +54,7 @@ bool feels_time(const system::PeriodicSystem& system) {
   return false;
 }
 
-/// True where the undeformed system carries nothing.
+/// True where the undeformed system is in equilibrium.
 bool is_balanced(const system::PeriodicSystem& system) {
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
@@ -65,8 +66,9 @@ bool is_balanced(const system::PeriodicSystem& system) {
   return size == 0.0;
 }
 
-/// At rest. A hinge that loads alone restore has a singular tangent in the undeformed state: the
-/// start is where they have brought it. Without loads the undeformed state is the solution.
+/// Solves at rest. A hinge that only loads restore has a singular tangent in the undeformed state:
+/// the start is then the end of the static path. Without loads the undeformed state is the
+/// solution.
 Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance) {
   const auto solve = [&](const PeriodicSolution* start) {
     try {
@@ -82,7 +84,7 @@ Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance) {
   return solve(&start);
 }
 
-/// A constant is only tried: an unbalanced rotor may have none.
+/// Tries a constant solution; an unbalanced rotor may have none.
 std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options) {
   try {
     return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
@@ -91,8 +93,9 @@ std::optional<Trim> try_constant(const system::PeriodicSystem& system, const Tri
   }
 }
 
-/// Each a third more than the one before, up to the next that is closed: the work grows with H^2 to
-/// H^3, so that all before a solution cost about as much as it.
+/// Numbers of harmonics, each a third more than the one before and raised to the next closed one.
+/// The work grows with H^2 to H^3: all attempts before a solution cost about as much as the
+/// solution.
 std::vector<int> harmonics_to_try(int least, int sectors) {
   std::vector<int> numbers;
   for (int next = std::max(1, least); next <= auto_harmonics;) {
@@ -104,7 +107,8 @@ std::vector<int> harmonics_to_try(int least, int sectors) {
   return numbers;
 }
 
-/// From the solution with fewer harmonics, or anew where that leads nowhere.
+/// Solves from the solution with fewer harmonics, or from the undeformed system where that does not
+/// converge.
 Trim solve_from(const system::PeriodicSystem& system, int harmonics, double tolerance,
                 const std::optional<Trim>& last) {
   if (last) {
@@ -155,8 +159,9 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
   const petsc::Stage stage("trim");
   require_roles(system);
   if (system.period() == 0.0) return solve_at_rest(system, options.tolerance);
-  // A balanced rotor without gravity or tilt stands still in its own axes: a constant is exact.
-  // Loads and motions that oscillate are no constant, and might vanish at all of its samples.
+  // The state of a balanced rotor without gravity or tilt is constant in its own axes: a constant
+  // is exact. Loads and motions that oscillate exclude a constant, but they might be zero at all of
+  // its samples.
   const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)
                                            ? try_constant(system, options)
                                            : std::nullopt;

@@ -671,7 +671,7 @@ loads:
                           "transient={duration: 10, step: 0.01, start: undeformed}")
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn("170 degrees", run.stderr)
-        self.assertIn("what changes most: blade 1", run.stderr)
+        self.assertIn("the unknown that changes most: blade 1", run.stderr)
         times, values, _, status = series(self.folder / "a.h5")
         self.assertIn("failed", status)
         self.assertGreater(len(times), 10)

@@ -1,10 +1,10 @@
 // The states that a linearized system can have (docs/theory.md, section 5).
 //
 // Strain and joint constraints tie positions to each other and to the internal loads of elastic
-// strains. Everything that moves is therefore a function of eta: the internal loads of the elastic
-// strains, and the positions in no constraint. Their number is the number of degrees of freedom d;
-// it is counted, not guessed from a rank. First-order states xi, n_1 of them, stand beside eta and
-// its rate: a reduced state is (eta, eta_dot, xi).
+// strains. All positions are therefore functions of eta, which consists of the internal loads of
+// the elastic strains and the positions in no constraint. The number of entries of eta is the
+// number of degrees of freedom d; it is counted, not estimated from a numerical rank. There are n_1
+// first-order states xi besides: a reduced state is (eta, eta_dot, xi).
 #pragma once
 
 #include <string>
@@ -32,22 +32,22 @@ class ConsistentSubspace {
   /// 2 d + n_1
   int size() const { return 2 * degrees_of_freedom() + first_order(); }
 
-  /// The unknowns that are eta.
+  /// Unknowns that form eta.
   const std::vector<PetscInt>& coordinates() const { return coordinates_; }
   /// Entry i of eta is unknown coordinates()[i] divided by scale()[i].
   const std::vector<double>& scale() const { return scale_; }
 
-  /// The unknowns that are xi, each divided by its Unknown::scale.
+  /// Unknowns that form xi, each divided by its Unknown::scale.
   const std::vector<PetscInt>& states() const { return states_; }
   const std::vector<double>& state_scale() const { return state_scale_; }
-  /// Those of them that constraint rows contain.
+  /// Unknowns of states() that constraint rows contain.
   const std::vector<PetscInt>& driving() const { return driving_; }
-  /// Rates of xi (n_1 x columns) where those of driving() are the rows of `rates`, unknowns per
-  /// second; zero of the others.
+  /// Rates of xi (n_1 x columns): the rows of `rates` [unknown per second] are those of driving(),
+  /// the rates of the other states are zero.
   Eigen::MatrixXd spread_rates(const Eigen::MatrixXd& rates) const;
 
   /// Unknowns that constraint rows determine from eta and xi: positions, and internal loads of
-  /// beams held twice.
+  /// beams held at both ends.
   const std::vector<PetscInt>& tied() const { return tied_; }
   const std::vector<PetscInt>& constraint_rows() const { return constraints_; }
   const std::vector<PetscInt>& kinematic_rows() const { return kinematic_; }
@@ -59,19 +59,19 @@ class ConsistentSubspace {
   /// xi of the columns of z, scaled: n_1 x columns.
   Eigen::MatrixXd states_of(const Eigen::MatrixXd& z) const;
 
-  /// The consistent state next to each column of z at time t: eta, below it the eta_dot that
-  /// impulses of the reactions alone would leave of its velocities, then xi (2 d + n_1 x columns;
-  /// size x columns). Velocities that no rate of eta makes are orthogonal to the others in the
-  /// metric of the kinetic energy and vanish. `rate_step` [s]: as for basis().
-  /// @throws InternalError where velocities without inertia are left to the reactions
+  /// The consistent state nearest to each column of z (size x columns) at time t, as 2 d + n_1 x
+  /// columns: eta, then eta_dot after impulses of the reactions alone have made the velocities
+  /// consistent, then xi. Velocities that no rate of eta produces are orthogonal to the others in
+  /// the metric of the kinetic energy; they become zero. `rate_step` [s]: as for basis().
+  /// @throws InternalError where velocities without inertia depend on the reactions alone
   Eigen::MatrixXd state_of(double t, const Eigen::MatrixXd& z, double rate_step) const;
 
   /// Unknowns whose values at a step's ends belong to the state: x, and internal loads in eta.
   const std::vector<bool>& carried() const { return carried_; }
 
-  /// Basis of the consistent states at time t: n x (2 d + n_1), a unit of each entry of eta, of
-  /// eta_dot and of xi where all others are 0. `rate_step` [s]: over which the change of the
-  /// constraints in time is differenced.
+  /// Basis of the consistent states at time t: n x (2 d + n_1), one column for a unit of each entry
+  /// of eta, of eta_dot and of xi, with all other entries 0. `rate_step` [s]: step of the
+  /// difference quotient for the change of the constraints in time.
   Eigen::MatrixXd basis(double t, double rate_step) const;
 
   /// The nonlinear state with the given (eta, eta_dot, xi): solves the constraint rows for the tied
@@ -97,8 +97,8 @@ class ConsistentSubspace {
   std::vector<double> scale_;  ///< eta = z / scale
   std::vector<bool> carried_;
   std::vector<PetscInt> constraints_;  ///< rows
-  std::vector<PetscInt> tied_;         ///< what constraint rows determine: positions
-  std::vector<double> tied_scale_;     ///< of the last ones of these, which are internal loads
+  std::vector<PetscInt> tied_;         ///< unknowns that constraint rows determine
+  std::vector<double> tied_scale_;     ///< of the last entries of tied_, which are internal loads
   std::vector<PetscInt> kinematic_;    ///< rows
   std::vector<PetscInt> velocities_;   ///< unknowns
   std::vector<PetscInt> balance_;      ///< rows
@@ -106,7 +106,7 @@ class ConsistentSubspace {
   std::vector<PetscInt> states_;       ///< unknowns of first order
   std::vector<double> state_scale_;    ///< xi = z / scale
   std::vector<PetscInt> driving_;      ///< states that constraint rows contain
-  std::vector<Eigen::Index> driving_places_;  ///< of these in xi
+  std::vector<Eigen::Index> driving_places_;  ///< of driving_ in xi
   std::vector<PetscInt> reactions_;           ///< internal loads that no constraint row contains
   bool fixed_constraints_ = false;
 };

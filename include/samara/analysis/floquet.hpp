@@ -11,14 +11,14 @@ namespace samara::analysis {
 
 struct Floquet {
   ModeSet set;
-  int steps = 0;      ///< a revolution, as used
+  int steps = 0;      ///< per revolution, as used
   int sectors = 1;    ///< Q: integrated over T / Q
   double step = 0.0;  ///< dt [s]
 };
 
-/// Integrates about `solution`, finds and identifies all modes. `system` is a serial copy on every
-/// rank of `comm`; the columns are dealt over the ranks, and the modes too. The mode shapes are
-/// on rank 0 of `comm` only.
+/// Integrates the perturbations about `solution`, finds and identifies all modes. `system` is a
+/// serial copy on every rank of `comm`; the columns, and the signals that identify the modes, are
+/// distributed over the ranks. The mode shapes are on rank 0 of `comm` only.
 /// @throws InputError where the system has no period, ConvergenceError from the solvers
 Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                            const FloquetOptions& options, MPI_Comm comm, Observer& observer);

@@ -11,15 +11,14 @@ namespace samara::analysis {
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
                             const PeriodicSolution* start);
 
-/// The largest balance row of the residual of `solution`, in the middle between the samples of
-/// harmonic balance (`shift` 0.5) or at them (0). The constant `loads` hold unconstrained
-/// coordinates.
+/// The largest balance row of the residual of `solution`, midway between the samples of harmonic
+/// balance (`shift` 0.5) or at them (0). The constant `loads` hold unconstrained coordinates.
 double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                         const std::vector<HeldCoordinate>& loads, double shift);
 
-/// Largest of the evolution and definition rows over a period under these loads, relative to the
-/// largest sum of the moduli of its terms, states and auxiliaries counting with a thousandth of
-/// their Unknown::scale at the least; 0 where there are none.
+/// Largest residual of the evolution and definition rows over a period under these loads, each
+/// relative to the largest sum of the moduli of its terms. In these terms states and auxiliaries
+/// are at least a thousandth of their Unknown::scale. The result is 0 without such rows.
 double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                       const std::vector<HeldCoordinate>& loads);
 

@@ -8,37 +8,39 @@
 
 namespace samara::analysis {
 
-/// Mean strain energy of a shape, in its scale.
+/// Mean strain energy of a shape as it is scaled.
 double strain_energy_of(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape);
 
-/// True where almost nothing strains: a rigid-body motion of the free joints. A strain's damping
-/// counts with it: an overdamped motion of a beam is none of its joints.
+/// True where almost no part is strained: a rigid-body motion of the free joints. The damping of a
+/// strain counts with the strain, so that an overdamped motion of a beam is not taken for a motion
+/// of its joints.
 bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape,
                    const Mode& mode);
 
-/// Whether constant modes of equal exponents are told apart by how the blades move together: where
-/// three or more turn, and look alike.
+/// Whether the phase between the blades distinguishes constant modes of equal exponents: true for
+/// three or more identical blades of a turning rotor.
 bool has_canonical_shapes(const system::PeriodicSystem& system);
 
-/// Among the combinations of constant modes of equal exponents those in which each blade is ahead
-/// of the one behind it by the same angle, where has_canonical_shapes; exponents by round-off.
+/// Where has_canonical_shapes, replaces constant modes of equal exponents by their combinations in
+/// which each blade is ahead of the blade behind it by the same phase angle. The exponents change
+/// by round-off.
 void choose_shapes(const system::PeriodicSystem& system,
                    std::vector<std::complex<double>>& exponents,
                    std::vector<Eigen::MatrixXcd>& shapes);
 
-/// Scales every shape so that its largest position is 1, and its kinetic energy with it.
+/// Scales every shape so that its largest position is 1, and its kinetic energy accordingly.
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
 
-/// Names modes, without numbers, by their leading motion, or by where their strain energy is where
-/// there is no `leading`; with words for how the blades move together, and the frequency in the
-/// fixed frame. A mode is at the harmonic of its leading motion by now. Where there are no shapes,
-/// nothing is named.
+/// Names modes, without numbers, after their leading motion or, if `leading` is empty, after the
+/// motion with most strain energy. Adds a word for the phase between the blades, and sets the
+/// frequency in the fixed frame. Each mode must already be at the harmonic of its leading motion.
+/// Without shapes no mode is named.
 void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingMotion>& leading,
                 ModeSet& set, int sectors = 1);
 
-/// Sorts modes and numbers those of one name: resolved ones first, then by |lambda|; where that is
-/// the same, by growth, name and harmonic. Neither depends on the order in which an eigensolver
-/// found them.
+/// Sorts modes: resolved ones first, then by |lambda|, growth, name and harmonic. Numbers the modes
+/// of the same name. Order and numbers do not depend on the order in which an eigensolver found the
+/// modes.
 void arrange_modes(ModeSet& set);
 
 }  // namespace samara::analysis

@@ -1,4 +1,4 @@
-// Which motion of the turbine a mode is named after, and at which harmonic it moves
+// The motion of the turbine that a mode is named after, and the harmonic of this motion
 // (docs/theory.md, section 5.6).
 #pragma once
 
@@ -11,22 +11,22 @@
 
 namespace samara::analysis {
 
-/// Number of equal parts, the blades, that have motions.
+/// Number of identical parts (the blades) that have motions.
 int count_instances(const std::vector<system::Motion>& motions);
 
-/// The motion that a mode is named after: that with most kinetic and strain energy.
+/// The motion that a mode is named after: the one with most kinetic and strain energy.
 struct LeadingMotion {
   system::Motion motion;
-  /// How the blades do it together: in n each is 2 pi n / B ahead of the one behind it, -1: none of
-  /// them clearly.
+  /// Multiblade component n of the motion: each blade is 2 pi n / B ahead of the blade behind it.
+  /// -1: no component is dominant.
   int component = -1;
-  int harmonic = 0;      ///< in which it has its energy, as Mode::harmonic
+  int harmonic = 0;      ///< that has its energy, as Mode::harmonic
   bool is_clear = true;  ///< most of its energy is in this harmonic
 };
 
-/// One for each mode; none where the system does not know its motions. Needs the shapes, each of a
-/// number of instants of every one of `sectors` parts of the period, of `set.shape_times` the
-/// first: empty where there are none.
+/// One for each mode; empty where the system does not declare its motions, or without shapes. Each
+/// shape has some instants of each of `sectors` parts of the period: the first ones of
+/// `set.shape_times` in this part.
 std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& system,
                                                 const PeriodicSolution& solution,
                                                 const ModeSet& set, int sectors = 1);

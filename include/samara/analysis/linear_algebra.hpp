@@ -24,16 +24,16 @@ struct Equilibration {
 
 Equilibration equilibrate(Mat matrix);
 
-/// rows matrix columns, in place; faster than MatDiagonalScale for block matrices.
+/// Scales `matrix` in place by both factors; faster than MatDiagonalScale for block matrices.
 void apply_scaling(const Equilibration& scaling, Mat matrix);
 
 /// The factors rounded to powers of two: scaling with them and back loses no digit.
 void round_to_powers_of_two(Equilibration& scaling);
 
 /// Factors from the roles of unknowns: positions 1, velocities `rate` [1/s], internal loads the
-/// median inertia load that belongs to them; rows by their largest entry. The matrix of (19) has
-/// condition 6e17 as it is, 1e8 equilibrated and 2e3 so (the paper's turbine, 500 steps), and so
-/// have the blocks that the elimination divides by.
+/// median inertia load that belongs to them; rows by their largest entry. The condition number of
+/// the matrix of (19) is 6e17 unscaled, 1e8 equilibrated and 2e3 with these factors (the paper's
+/// turbine, 500 steps). The same holds for the pivot blocks of the elimination.
 Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, double rate);
 
 /// A matrix without an inverse.
@@ -41,29 +41,29 @@ class SingularError : public ConvergenceError {
   using ConvergenceError::ConvergenceError;
 };
 
-/// Why there are no factors.
+/// Reason why a factorization failed.
 struct FactorFailure {
-  PCFailedReason reason = PC_NOERROR;  ///< that, where there are
-  std::string words;                   ///< what the solver says
+  PCFailedReason reason = PC_NOERROR;  ///< PC_NOERROR: it succeeded
+  std::string words;                   ///< message of the solver
   std::string hint;                    ///< empty where the matrix is singular
-  bool is_singular = false;            ///< the solver has established it
-  bool wants_room = false;             ///< a larger work array may do
+  bool is_singular = false;            ///< as reported by the solver
+  bool wants_room = false;             ///< a larger work array may help
 };
 
-/// Sets up a solver whose operators are new, which factors them. Where MUMPS needs a larger work
-/// array than it has estimated it gets one, unless an option sets its size.
+/// Sets up a solver with new operators, and so factors them. If MUMPS needs a larger work array
+/// than it has estimated, it gets one, unless an option sets the size.
 /// @throws InternalError where there is not enough memory.
 FactorFailure set_up(KSP solver);
 
-/// LU with fixed scaling. The scaling of the first matrix serves all later ones of its pattern.
+/// LU factorization with fixed scaling: all later matrices of a pattern use that of the first one.
 class DirectSolver {
  public:
-  /// `prefix` of the KSP's options, e.g. "floquet_"; `scale` gives the factors of a matrix.
+  /// `prefix` of the KSP's options, e.g. "floquet_"; `scale` returns the factors for a matrix.
   DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale);
 
   /// Factors `matrix`, which is scaled in place.
-  /// @throws SingularError where that is established, ConvergenceError where there are no factors
-  /// for another reason.
+  /// @throws SingularError where the matrix is singular, ConvergenceError where the factorization
+  /// fails for another reason.
   void factor(Mat matrix);
 
   /// Solves for all columns of `right`, which is overwritten by the solution.
@@ -80,14 +80,14 @@ class DirectSolver {
   petsc::Handle<KSP> solver_;
   Equilibration scaling_;
   Mat matrix_ = nullptr;
-  Eigen::MatrixXd solution_;  ///< kept: large arrays cost more to get than to fill
+  Eigen::MatrixXd solution_;  ///< kept: allocation of large arrays takes longer than filling
   Eigen::Index probe_ = 0;
 };
 
-/// The real part of an eigenvector, whose phase is free, where its largest entry is real.
+/// Real part of an eigenvector after a phase shift that makes its largest entry real.
 Eigen::VectorXd real_part(const Eigen::VectorXcd& vector);
 
-/// A B by BLAS; `c` is resized where it must be.
+/// A B by BLAS; `c` is resized if necessary.
 Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c);
@@ -105,14 +105,15 @@ struct Eigenpairs {
   std::vector<double> residuals;  ///< |A v - lambda v| / |v|
 };
 
-/// @throws InputError naming an option that asks SLEPc for other eigenpairs than all.
+/// @throws InputError that names an option by which SLEPc would not find all eigenpairs.
 void require_whole_spectrum(const std::string& prefix);
 
 /// @throws InputError as above, ConvergenceError where eigenpairs are missing.
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& prefix);
 
-/// |y| |x| / |y.x| of left and right eigenvectors, by which errors of the matrix are in an
-/// eigenvalue at the most: 1 of a normal matrix, infinite where eigenvectors coincide.
+/// |y| |x| / |y.x| of left and right eigenvectors: the largest factor from an error of the matrix
+/// to the error of an eigenvalue. It is 1 for a normal matrix, and infinite where eigenvectors
+/// coincide.
 Eigen::VectorXd condition_numbers(const Eigenpairs& pairs);
 
 }  // namespace samara::analysis

@@ -23,27 +23,27 @@ struct PartShare {
 struct Mode {
   std::complex<double> multiplier;  ///< over the full period; 0 where the analysis has no period
   std::complex<double> exponent;    ///< lambda + i k Omega with the dominant k [rad/s], Im >= 0
-  /// The same of the sequence of steps, which (2/dt) tanh(. dt/2) maps to `exponent`; where nothing
-  /// was integrated, the exponent itself.
+  /// Exponent of the sequence of steps, which (2/dt) tanh(. dt/2) maps to `exponent`; without an
+  /// integration, the exponent itself.
   std::complex<double> step_exponent;
   int harmonic = 0;            ///< k, relative to the principal exponent
   double damping_ratio = 0.0;  ///< -Re / |lambda|; 0 where |lambda| counts as zero
   std::string label;
-  /// Im of the exponent as the ground sees it [rad/s]; not-a-number where that
-  /// is not one frequency (docs/theory.md, section 5.6).
+  /// Im of the exponent in the fixed frame [rad/s]; not-a-number where the motion has no single
+  /// frequency there (docs/theory.md, section 5.6).
   double fixed_frame_frequency = std::numeric_limits<double>::quiet_NaN();
-  bool resolved = true;  ///< |lambda| dt / 2 is small enough, and the residual
+  bool resolved = true;  ///< |lambda| dt / 2 and the residual are small enough
   /// Estimated errors of the exponent, relative to its modulus (docs/theory.md, section 5.9).
   double step_error = 0.0;
   double mesh_error = 0.0;
   double round_off_error = 0.0;
-  double growth_error = 0.0;       ///< of the real part [rad/s]: a growth below it is none
-  double mesh_growth_error = 0.0;  ///< of this, what the elements make
+  double growth_error = 0.0;  ///< of the real part [rad/s]; a smaller growth is not significant
+  double mesh_growth_error = 0.0;  ///< part of growth_error from the elements
   /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
   /// tangents: relative difference of the exponent found with two shifts.
   double residual = 0.0;
   std::vector<PartShare> parts;  ///< descending
-  /// The part whose first-order states it is a mode of, rather than of a motion.
+  /// Part whose first-order states dominate the mode; empty for a mode of a motion.
   std::optional<system::Owner> state;
   double kinetic_energy = 0.0;  ///< mean, of the shape as it is scaled [J]
 };
@@ -63,25 +63,26 @@ inline double logarithmic_decrement(const Mode& mode) {
 struct ModeSet {
   std::vector<Mode> modes;  ///< in the order of arrange_modes (identification.hpp)
   int degrees_of_freedom = 0;
-  int instances = 0;          ///< of several parts alike: the blades; 0 where there are none
+  int instances = 0;          ///< number of identical parts (the blades); 0: none
   double rotor_speed = 0.0;   ///< Omega [rad/s]
-  double step = 0.0;          ///< of time [s], of the integration; 0: nothing was integrated
+  double step = 0.0;          ///< time step of the integration [s]; 0: no integration
   bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*
-  int states = 0;             ///< exponents there are, each of a pair counted
-  int found = 0;              ///< of these, those of `modes`
-  /// Number of these that decay below round-off within the integration: their exponents are not
-  /// known and not among `modes`. All of them decay at `deflated_rate` [1/s] or faster.
+  int states = 0;             ///< number of exponents; both of a pair count
+  int found = 0;              ///< number of these that belong to `modes`
+  /// Number of exponents that decay below round-off within the integration: their values are not
+  /// known, and `modes` does not contain them. All of them decay at `deflated_rate` [1/s] or
+  /// faster.
   int deflated = 0;
   double deflated_rate = std::numeric_limits<double>::infinity();
-  /// The least modulus of an exponent that is not resolved [rad/s], at the most that which the time
-  /// step resolves: below it all modes are known, but for those that are deflated.
+  /// Smallest modulus of an exponent that is not resolved [rad/s], but not more than the largest
+  /// modulus that the time step resolves. All modes below it are known, except deflated ones.
   double reach = std::numeric_limits<double>::infinity();
   /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
   Eigen::MatrixXd participation;
   int first_harmonic = 0;
-  /// Periodic mode shapes Z(t) exp(-lambda t): per mode, size x samples, at `shape_times` [s];
-  /// the largest position is 1 m or 1 rad, of a mode of states the largest state its scale. Empty
-  /// for a mode that is not resolved.
+  /// Periodic mode shapes Z(t) exp(-lambda t): per mode, size x samples, at `shape_times` [s]; the
+  /// largest position is 1 m or 1 rad; in a mode of states the largest state equals its scale.
+  /// Empty for a mode that is not resolved.
   std::vector<Eigen::MatrixXcd> shapes;
   std::vector<double> shape_times;
 };

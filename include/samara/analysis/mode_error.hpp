@@ -1,4 +1,4 @@
-// Estimates of what step, mesh and round-off do to an exponent (docs/theory.md, section 5.9).
+// Estimates of the errors of an exponent by step, mesh and round-off (docs/theory.md, section 5.9).
 #pragma once
 
 #include <complex>
@@ -11,14 +11,14 @@
 
 namespace samara::analysis {
 
-/// Where nothing changes with time, a sequence of steps with the exponent `s` is that of the exact
-/// exponent (2/dt) tanh(s dt/2): the inverse of the step's map (1 + lambda dt/2)/(1 - lambda dt/2).
+/// Exact exponent (2/dt) tanh(s dt/2) of a sequence of steps that has the exponent `s`, with
+/// constant coefficients: the inverse of the step's map (1 + lambda dt/2)/(1 - lambda dt/2).
 std::complex<double> unwarped(std::complex<double> s, double step);
 
-/// Change by the step of a mode whose energy is in several harmonics: each is warped by its own
-/// frequency. `principal`: of the sequence of steps [rad/s]; `shares` of the kinetic energy by
-/// harmonic from `first`; `harmonic`: the one whose warping is mapped back [rad/s, complex modulus
-/// and real part].
+/// Error by the step of the exponent of a mode with energy in several harmonics, in modulus and
+/// real part [rad/s]: each harmonic is warped according to its own frequency. `principal`: exponent
+/// of the sequence of steps [rad/s]; `shares`: of the kinetic energy, by harmonic from `first`;
+/// `harmonic`: the one whose warping is mapped back.
 struct WarpingSpread {
   double modulus = 0.0;
   double growth = 0.0;
@@ -26,16 +26,16 @@ struct WarpingSpread {
 WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVectorXd& shares,
                              int first, int harmonic, double speed, double step);
 
-/// Relative errors of the exponent by the mesh, of its modulus and of its real part: twice the
+/// Relative errors of the exponent by the mesh, in its modulus and in its real part: twice the
 /// first term of the elements' errors. `shape`: size x samples; `energy_of_mode`: the larger of its
-/// mean kinetic and strain energy, in the same scale: alike in vibrations, where rotation does not
-/// stiffen, and the latter in overdamped motions.
+/// mean kinetic and strain energy, in the same scale. The two are equal in vibrations without
+/// stiffening by rotation; in overdamped motions the strain energy is larger.
 Eigen::Vector2d find_mesh_error(const std::vector<system::MeshError>& elements,
                                 const Eigen::MatrixXcd& shape, std::complex<double> exponent,
                                 double energy_of_mode);
 
-/// Error of the growth by step and round-off. `spread`: of the step; `principal`: the exponent
-/// without multiples of the rotor speed, which the step must tell from zero.
+/// Sets the error of the growth by step and round-off. `spread`: error by the step; `principal`:
+/// the exponent without multiples of the rotor speed, to be distinguished from zero.
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal);
 
 /// Adds the relative error of the mesh to a mode, and to the error of its growth.

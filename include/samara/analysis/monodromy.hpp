@@ -1,10 +1,10 @@
 // Integrates the linearized periodic system over a period (docs/theory.md, section 5; Lee, Hodges &
 // Patil (2002), eq. (18), (19)).
 //
-// One factorization a step serves all columns. Rows with rates hold at the middle of a step with
-// central differences, as (19); rows without (strains) hold at the step's end. Where those rows are
-// constant in time the two are the same; where they change with the steady state, only the second
-// keeps rigid strains exactly unstrained.
+// One factorization per step serves all columns. Rows with rates are satisfied at the middle of a
+// step with central differences, as in (19); rows without rates (strains) are satisfied at the end
+// of the step. For rows that are constant in time both places are equivalent. If the rows change
+// with the steady state, only the end of the step keeps rigid strains exactly zero.
 #pragma once
 
 #include <string>
@@ -23,22 +23,24 @@ namespace samara::analysis {
 class LinearizedStep {
  public:
   /// `carried`: see ConsistentSubspace. `fixed_constraints`: the rows without rates never change,
-  /// and need no tangents of their own. `prefix`: of the solver's options.
+  /// and need no tangents at the end of the step. `prefix`: of the solver's options.
   LinearizedStep(const system::PeriodicSystem& system, const std::vector<bool>& carried,
                  double step, bool fixed_constraints, const std::string& prefix);
 
-  /// Tangents at the middle, and of the rows without rates at the end (t_end, z_end).
+  /// Factors the tangents at the middle, with those of the rows without rates at the end (t_end,
+  /// z_end).
   void factor(double t_middle, Vec z_middle, Vec z_dot_middle, double t_end, Vec z_end,
               Vec z_dot_end);
 
-  /// Columns of states from the step's start to its end; returns their values at the middle, which
-  /// stand until the next call. `load` (size x columns or empty) is added to the rows.
+  /// Advances columns of states from the start of the step to its end; returns their values at the
+  /// middle, which are valid until the next call. `load` (size x columns or empty) is added to the
+  /// rows.
   const Eigen::MatrixXd& advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load = {});
 
   /// Solves J x = right for the values x at the middle, J = 2 M / dt + K.
   void solve(Eigen::MatrixXd& right) { solver_.solve(right); }
 
-  /// From the values z at the step's start and those at its middle to the values at its end.
+  /// Replaces the values z at the start of the step by those at its end, from those at its middle.
   void to_end(Eigen::Ref<Eigen::MatrixXd> z,
               const Eigen::Ref<const Eigen::MatrixXd>& middle) const {
     z = (2.0 * middle - z).array().colwise() * carried_.array();
@@ -65,11 +67,11 @@ class StepPropagator {
   StepPropagator(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                  const std::vector<bool>& carried, double step);
 
-  /// From z at the start of step k (t = k step) to its end; returns the values at the middle, which
-  /// stand until the next call.
+  /// Advances z from the start of step k (t = k step) to its end; returns the values at the middle,
+  /// which are valid until the next call.
   const Eigen::MatrixXd& advance(long k, Eigen::MatrixXd& z);
 
-  /// The same step with other columns.
+  /// Advances other columns by the same step.
   const Eigen::MatrixXd& repeat(Eigen::MatrixXd& z) { return linearized_.advance(z); }
 
  private:

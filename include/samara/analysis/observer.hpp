@@ -1,4 +1,4 @@
-// How a long analysis tells of itself.
+// Notes and progress of a long analysis.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ class Observer {
   virtual ~Observer() = default;
   /// A fact that the user should know.
   virtual void note(const std::string& text) { (void)text; }
-  /// `done` of `all` steps of a stage, called often.
+  /// `done` of `all` steps of a stage are complete; called often.
   virtual void progress(const std::string& stage, long done, long all) {
     (void)stage;
     (void)done;

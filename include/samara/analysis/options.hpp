@@ -11,17 +11,17 @@ enum class TrimMethod { harmonic_balance, shooting };
 struct TrimOptions {
   TrimMethod method = TrimMethod::harmonic_balance;
   int harmonics = 4;             ///< H >= 0 of (15)
-  int least_harmonics = 0;       ///< the highest harmonic of the prescribed loads: H is no less
+  int least_harmonics = 0;       ///< highest harmonic of the prescribed loads, lower limit of H
   bool automatic = false;        ///< raise H until the residual between the samples is small
-  double tolerance = 1e-10;      ///< relative, of the nonlinear solve
+  double tolerance = 1e-10;      ///< of the nonlinear solve, relative
   double auto_tolerance = 1e-6;  ///< of the residual between the samples, relative to the loads
-  int steps = 500;               ///< steps a revolution of the shooting method
+  int steps = 500;               ///< steps per revolution of the shooting method
 };
 
 enum class FloquetPeriod { automatic, full, blade };
 
 struct FloquetOptions {
-  int steps = 500;  ///< steps of (19) a revolution
+  int steps = 500;  ///< steps of (19) per revolution
   FloquetPeriod period = FloquetPeriod::automatic;
 };
 
@@ -29,9 +29,9 @@ enum class StaticMethod { load, arc_length };
 
 struct StaticOptions {
   StaticMethod method = StaticMethod::load;
-  int steps = 10;           ///< of the load factor from 0 to 1; arc length: 1/steps is the first
+  int steps = 10;           ///< of the load factor from 0 to 1; arc length: the first is 1/steps
   double tolerance = 1e-9;  ///< of the last Newton correction, relative to the solution
-  int most_steps = 1000;    ///< of the path, cut ones included
+  int most_steps = 1000;    ///< largest number on the path, cut ones included
 };
 
 enum class TransientMethod { bdf2, midpoint };
@@ -39,13 +39,13 @@ enum class TransientMethod { bdf2, midpoint };
 struct TransientOptions {
   TransientMethod method = TransientMethod::bdf2;
   double duration = 0.0;      ///< [s], > 0
-  double step = 0.0;          ///< [s], > 0; with a step_tolerance the longest
+  double step = 0.0;          ///< [s], > 0; with a step_tolerance: the longest step
   double tolerance = 1e-9;    ///< of the last Newton correction's error, relative to the state
-  long checkpoint_steps = 0;  ///< between checkpoints; 0: none
+  long checkpoint_steps = 0;  ///< steps between checkpoints; 0: none
   /// Tolerance of a step's error in every position, absolute [m, rad] and relative; 0: constant
   /// steps.
   double step_tolerance = 0.0;
-  std::optional<double> stop_at;  ///< [s], where the run ends if it is before the end
+  std::optional<double> stop_at;  ///< [s], time of an earlier end of the run
 };
 
 }  // namespace samara::analysis

@@ -1,4 +1,4 @@
-// Rows and columns of the tangents on a steady state, and square parts of them solved.
+// Rows and columns of the tangents on a steady state, and solutions with square parts of them.
 #pragma once
 
 #include <vector>
@@ -32,7 +32,7 @@ Sparse rows_of(const Sparse& whole, const std::vector<PetscInt>& rows);
 /// Factors of a square part, for several right-hand sides.
 class SparseSolver {
  public:
-  /// @throws InternalError that says that `what` does not determine the state, where it is singular
+  /// @throws InternalError where the matrix is singular: `what` do not determine the state
   SparseSolver(const Sparse& matrix, const char* what);
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
 

@@ -1,9 +1,9 @@
-// The time series of r(t, z, z_dot) = 0 from a given state (docs/theory.md, section 9).
+// Simulation in time of r(t, z, z_dot) = 0 from a given state (docs/theory.md, section 9).
 //
-// PETSc's TS integrates the system as it is, fully implicit, with the exact tangents K + shift M:
-// BDF2 (second order, damps what a step does not resolve) or the implicit midpoint rule (second
-// order, damps nothing). Unknowns and rows are scaled by powers of two, so that norms mean
-// something and no digit is lost on the way there and back.
+// PETSc's TS integrates the system fully implicitly with the exact tangents K + shift M, by BDF2
+// (second order, damps motions that a step does not resolve) or by the implicit midpoint rule
+// (second order, no numerical damping). Unknowns and rows are scaled by powers of two: norms are
+// meaningful, and the scaling causes no round-off.
 #pragma once
 
 #include <string>
@@ -18,20 +18,21 @@
 
 namespace samara::analysis {
 
-/// Where a time series begins, or goes on.
+/// State from which a simulation starts or continues.
 struct TransientStart {
   double time = 0.0;                 ///< of z [s]
   long step = 0;                     ///< steps done since `origin`
-  double origin = 0.0;               ///< from which the steps are counted [s]
+  double origin = 0.0;               ///< time from which the steps are counted [s]
   Eigen::VectorXd z;                 ///< consistent: constraints and kinematic rows hold
-  Eigen::VectorXd z_dot;             ///< empty: not known
-  std::vector<HeldCoordinate> held;  ///< constant loads that act beside those of the system
-  /// The observer sees it. False: its internal loads and rates are not those of the system.
+  Eigen::VectorXd z_dot;             ///< empty: unknown
+  std::vector<HeldCoordinate> held;  ///< constant loads in addition to those of the system
+  /// The observer gets this state as a row. False: its internal loads and rates are not those of
+  /// the system.
   bool is_row = true;
 };
 
-/// The equations hold at t with z and z_dot: at the end of a step, for the midpoint rule in its
-/// middle.
+/// The equations are satisfied at t with z and z_dot: at the end of a step or, for the midpoint
+/// rule, at its middle.
 struct TransientSample {
   double t = 0.0;
   Vec z = nullptr;
@@ -40,43 +41,43 @@ struct TransientSample {
   bool on_grid = true;  ///< false: part of a step that was cut
 };
 
-/// Takes what a time series gives, while it runs.
+/// Receives the samples of a running simulation.
 class TransientObserver : public Observer {
  public:
-  /// After each step, and before the first one of a run that does not go on with another.
+  /// Called after each step, and before the first step of a run that does not continue another run.
   /// @returns false to end the run after this step
   virtual bool sample(const TransientSample& sample) = 0;
-  /// The integrator starts anew here: from `point` another run goes on as this one does.
+  /// Called where the integrator starts anew: a run from `point` continues as this one does.
   virtual void checkpoint(const TransientStart& point) { (void)point; }
 };
 
 enum class TransientEnd {
-  complete,  ///< options.duration is over
+  complete,  ///< options.duration is reached
   stopped,   ///< at options.stop_at
   observer,  ///< the observer ended it
 };
 
 struct TransientRun {
   TransientStart end;     ///< the last state
-  TransientStart before;  ///< the one a step before
+  TransientStart before;  ///< the state one step earlier
   TransientEnd reason = TransientEnd::complete;
-  std::string method;  ///< TS's type in words
+  std::string method;  ///< type of TS, as text
   long steps = 0;
   long newton_steps = 0;
   long factorizations = 0;
-  long cuts = 0;  ///< steps that were tried again, shorter
+  long cuts = 0;  ///< steps that were repeated with a shorter length
 };
 
-/// Follows the system for options.duration from the start's origin. Serial: every rank computes the
-/// same. Options prefix `transient_`.
-/// @throws ConvergenceError with the time and the unknown that is worst off.
+/// Integrates the system over options.duration from the origin of `start`. Serial: every rank
+/// computes the same. Options prefix `transient_`.
+/// @throws ConvergenceError with the time and the unknown that changes most.
 TransientRun run_transient(const system::PeriodicSystem& system, const TransientStart& start,
                            const TransientOptions& options, TransientObserver& observer);
 
-/// The undeformed system in its prescribed motion at time t.
+/// Start from the undeformed system in its prescribed motion at time t.
 TransientStart start_undeformed(const system::PeriodicSystem& system, double t);
 
-/// On the periodic steady state at time t.
+/// Start from the periodic steady state at time t.
 TransientStart start_on(const system::PeriodicSystem& system, const Trim& trim, double t);
 
 }  // namespace samara::analysis

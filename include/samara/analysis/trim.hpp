@@ -12,15 +12,15 @@
 
 namespace samara::analysis {
 
-/// A coordinate that nothing restores: its mean was set to zero.
+/// Unconstrained coordinate, whose mean was set to zero.
 struct HeldCoordinate {
   std::string name;
   std::string unit;
-  double load = 0.0;      ///< constant load that holds the mean; not small: no equilibrium there
-  PetscInt unknown = -1;  ///< of the system; -1: of none
+  double load = 0.0;      ///< constant load that holds the mean; not small: no equilibrium
+  PetscInt unknown = -1;  ///< of the system; -1: none
 };
 
-/// Adds these loads to a residual.
+/// Adds the loads of `held` to a residual.
 void add_held_loads(const system::PeriodicSystem& system, const std::vector<HeldCoordinate>& held,
                     Vec r);
 
@@ -33,30 +33,34 @@ struct Trim {
   double residual_between = 0.0;  ///< largest balance row between the samples [N, N m]
   double load_level = 0.0;        ///< largest internal load of the solution [N, N m]
   std::vector<HeldCoordinate> held = {};
-  /// The larger residual, relative to the largest load or 1 N, 1 N m, or that of states if larger.
+  /// The larger of both residuals, relative to the largest load (at least 1 N, 1 N m), or
+  /// state_residual if that is larger.
   double imbalance() const {
     return std::max(std::max(residual, residual_between) / std::max(load_level, 1.0),
                     state_residual);
   }
-  /// Harmonics tried and the residual between the samples that each left (more than one: auto).
+  /// Numbers of harmonics that were tried, each with its residual between the samples (several:
+  /// auto).
   std::vector<std::pair<int, double>> attempts = {};
   /// Largest evolution or definition row, at the samples and between them, relative to its terms.
   double state_residual = 0.0;
-  /// Harmonic balance only: largest harmonic of a balance row that is to vanish [N, N m]; residuals
-  /// that the samples show beyond it are harmonics that were left out. Not a number: not known.
+  /// Harmonic balance only: largest of those harmonics of the balance rows that the solve makes
+  /// zero [N, N m]. A larger residual at the samples comes from harmonics that were left out. Not a
+  /// number: not known.
   double harmonic_residual = 0.0;
 };
 
-/// Harmonics that `harmonics: auto` tries, at the most.
+/// Largest number of harmonics that `harmonics: auto` tries.
 inline constexpr int auto_harmonics = 60;
 
-/// Harmonics of the series that shooting with `steps` steps a revolution gives.
+/// Number of harmonics of the series from shooting with `steps` steps per revolution.
 int shooting_harmonics(int steps);
 
 /// Solves for the periodic steady state from the undeformed system in its prescribed motion.
 /// Serial: every rank computes the same.
 /// @throws ConvergenceError with PETSc's reason and a hint.
-/// @throws InputError at rest where something may move that nothing restores, or is held twice.
+/// @throws InputError at rest where a coordinate may move that nothing restores, or where a part is
+/// held twice.
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
                Observer& observer);
 
