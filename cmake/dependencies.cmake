@@ -6,7 +6,7 @@ find_package(MPI REQUIRED COMPONENTS C CXX)
 pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET petsc>=3.18)
 pkg_check_modules(SLEPC REQUIRED IMPORTED_TARGET slepc>=3.18)
 set(BLA_VENDOR Generic)  # Debian's alternative: OpenBLAS where it is installed
-find_package(BLAS REQUIRED)
+find_package(LAPACK REQUIRED)  # with BLAS
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3>=3.3)
 pkg_check_modules(MUPARSER REQUIRED IMPORTED_TARGET muparser>=2.3)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
@@ -27,7 +27,7 @@ set_property(TARGET PkgConfig::PETSC PkgConfig::SLEPC PkgConfig::HDF5 PkgConfig:
 
 add_library(samara_external_petsc INTERFACE)
 target_link_libraries(samara_external_petsc
-                      INTERFACE PkgConfig::SLEPC PkgConfig::PETSC MPI::MPI_CXX BLAS::BLAS)
+                      INTERFACE PkgConfig::SLEPC PkgConfig::PETSC MPI::MPI_CXX LAPACK::LAPACK)
 
 # Libraries of the file formats: only the room io may use them.
 add_library(samara_external_files INTERFACE)

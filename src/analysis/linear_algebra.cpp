@@ -11,6 +11,8 @@
 
 #include "samara/base/error.hpp"
 
+#include "block_factors.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -247,12 +249,44 @@ FactorFailure set_up(KSP solver) {
   return find_failure(solver);
 }
 
-DirectSolver::DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale)
-    : prefix_(std::move(prefix)), scale_(std::move(scale)) {}
+DirectSolver::DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale,
+                           Elimination elimination)
+    : prefix_(std::move(prefix)), scale_(std::move(scale)), elimination_(elimination) {}
+DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
+DirectSolver& DirectSolver::operator=(DirectSolver&&) noexcept = default;
+DirectSolver::~DirectSolver() = default;
+
+/// Whether an option chooses or shows something of the KSP or of its preconditioner.
+bool DirectSolver::is_solver_given() const {
+  char* all = nullptr;
+  petsc::check(PetscOptionsGetAll(nullptr, &all));
+  const std::string options = all;
+  petsc::check(PetscFree(all));
+  const auto is_there = [&](const char* part) {
+    return options.find("-" + prefix_ + part) != std::string::npos;
+  };
+  return is_there("ksp_") || is_there("pc_") || is_there("mat_");
+}
 
 void DirectSolver::factor(Mat matrix) {
-  if (!solver_) {
+  matrix_ = matrix;
+  const bool is_first = !scaling_.rows;
+  if (is_first) {
     scaling_ = scale_(matrix);
+    if (elimination_ == Elimination::blocks && BlockFactors::accepts(matrix) && !is_solver_given())
+      blocks_ = std::make_unique<BlockFactors>(matrix);
+  }
+  apply_scaling(scaling_, matrix);
+  if (blocks_) {
+    if (blocks_->factor(matrix)) return;
+    blocks_.reset();
+    pivots_ = true;
+  }
+  factor_by_petsc();
+}
+
+void DirectSolver::factor_by_petsc() {
+  if (!solver_) {
     petsc::check(KSPCreate(PETSC_COMM_SELF, solver_.fill()));
     petsc::check(KSPSetOptionsPrefix(solver_.get(), prefix_.c_str()));
     petsc::check(KSPSetType(solver_.get(), KSPPREONLY));
@@ -261,14 +295,13 @@ void DirectSolver::factor(Mat matrix) {
     petsc::check(PCSetType(preconditioner, PCLU));
     // Systems number their unknowns so that elimination in this order causes little fill-in.
     petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
-    petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
+    if (pivots_) petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
+    petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
     petsc::check(KSPSetFromOptions(solver_.get()));
   }
-  apply_scaling(scaling_, matrix);
-  petsc::check(KSPSetOperators(solver_.get(), matrix, matrix));
-  matrix_ = matrix;
+  petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
   FactorFailure failure = set_up(solver_.get());
-  if (failure.reason != PC_NOERROR && !is_solver_chosen(solver_.get())) {
+  if (failure.reason != PC_NOERROR && !pivots_ && !is_solver_chosen(solver_.get())) {
     take_pivoting_solver();
     failure = set_up(solver_.get());
   }
@@ -289,23 +322,65 @@ void DirectSolver::take_pivoting_solver() {
   petsc::check(PCReset(factored));
   petsc::check(PCFactorSetMatSolverType(factored, MATSOLVERMUMPS));
   petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
+  pivots_ = true;
 }
 
-/// Residual of one column; each solve takes another one.
-double DirectSolver::compute_residual(const Eigen::MatrixXd& right) const {
-  const auto n = static_cast<PetscInt>(right.rows());
-  Eigen::VectorXd x = solution_.col(probe_);
-  Eigen::VectorXd product(right.rows());
+double DirectSolver::compute_residual(const Eigen::VectorXd& x,
+                                      const Eigen::VectorXd& right) const {
+  const auto n = static_cast<PetscInt>(right.size());
+  Eigen::VectorXd product(right.size());
   petsc::Handle<Vec> in;
   petsc::Handle<Vec> out;
   petsc::check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, x.data(), in.fill()));
   petsc::check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, product.data(), out.fill()));
   petsc::check(MatMult(matrix_, in.get(), out.get()));
-  return (product - right.col(probe_)).norm();
+  return (product - right).norm();
 }
 
 void DirectSolver::solve(Eigen::MatrixXd& right) {
   if (right.cols() == 0) return;
+  probe_ = (probe_ + 1) % right.cols();  // each solve checks another column
+  if (blocks_) {
+    if (solve_by_blocks(right)) return;
+    // The factors have lost too many digits: rows must be interchanged.
+    blocks_.reset();
+    pivots_ = true;
+    factor_by_petsc();
+  }
+  solve_by_petsc(right);
+}
+
+/// @returns false, with `right` as it was, where refinement does not bring the residual down.
+bool DirectSolver::solve_by_blocks(Eigen::MatrixXd& right) {
+  const petsc::ReadView rows(scaling_.rows.get());
+  const petsc::ReadView columns(scaling_.columns.get());
+  const Eigen::Map<const Eigen::VectorXd> row_factors(rows.data(), right.rows());
+  const Eigen::Map<const Eigen::VectorXd> column_factors(columns.data(), right.rows());
+  const Eigen::VectorXd b = right.col(probe_).cwiseProduct(row_factors);
+  const auto is_small = [&](const Eigen::VectorXd& x) {
+    return compute_residual(x, b) <= largest_solve_residual * (b.norm() + x.norm());
+  };
+  blocks_->solve(right, row_factors);
+  if (is_small(blocks_->column(probe_))) {
+    blocks_->copy(column_factors, right);
+    return true;
+  }
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(right.rows());
+  const Eigen::SparseMatrix<double> matrix = to_sparse(matrix_);
+  blocks_->copy(ones, solution_);
+  Eigen::MatrixXd change;
+  for (int refinement = 0; refinement < most_refinements && solution_.allFinite(); ++refinement) {
+    blocks_->solve(row_factors.asDiagonal() * right - matrix * solution_, ones);
+    blocks_->copy(ones, change);
+    solution_ += change;
+    if (!is_small(solution_.col(probe_))) continue;
+    right = solution_.array().colwise() * column_factors.array();
+    return true;
+  }
+  return false;
+}
+
+void DirectSolver::solve_by_petsc(Eigen::MatrixXd& right) {
   const petsc::ReadView rows(scaling_.rows.get());
   const petsc::ReadView columns(scaling_.columns.get());
   const Eigen::Map<const Eigen::VectorXd> row_factors(rows.data(), right.rows());
@@ -319,11 +394,10 @@ void DirectSolver::solve(Eigen::MatrixXd& right) {
   petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, m, right.data(), B.fill()));
   petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, m, solution_.data(), X.fill()));
   petsc::check(KSPMatSolve(solver_.get(), B.get(), X.get()));
-  probe_ = (probe_ + 1) % right.cols();
   for (int refinement = 0;; ++refinement) {
     const double size = right.col(probe_).norm();
     const double result = solution_.col(probe_).norm();
-    const double residual = compute_residual(right);
+    const double residual = compute_residual(solution_.col(probe_), right.col(probe_));
     if (residual <= largest_solve_residual * (size + result)) break;
     if (refinement == most_refinements || !std::isfinite(residual)) {
       std::ostringstream text;

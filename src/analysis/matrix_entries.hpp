@@ -1,6 +1,8 @@
 // Access in place to the entries of a serial matrix, with or without blocks.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "samara/base/error.hpp"
 #include "samara/petsc/handle.hpp"
 #include "samara/petsc/session.hpp"
@@ -44,8 +46,16 @@ class MatrixEntries {
             visit(i * size_ + r, columns_[k] * size_ + c, values_[(k * size_ + c) * size_ + r]);
   }
 
-  /// The order is the same for all matrices of a pattern.
+  /// The order is the same for all matrices of a pattern. Blocks column by column.
   PetscScalar* values() { return values_; }
+  const PetscScalar* values() const { return values_; }
+
+  PetscInt block_size() const { return size_; }
+  PetscInt block_rows() const { return rows_; }
+  /// First block of block row i; end of the last row for i = block_rows().
+  PetscInt begin(Eigen::Index i) const { return begin_[i]; }
+  /// Block column of a block.
+  PetscInt column(PetscInt block) const { return columns_[block]; }
 
  private:
   Mat matrix_;

@@ -29,6 +29,56 @@ petsc::Handle<Mat> to_petsc(const Eigen::MatrixXd& values) {
   return matrix;
 }
 
+/// Chains of blocks with a border at the end, and with a closed loop, which causes fill-in.
+struct Chains {
+  static constexpr PetscInt size = 5;
+  static constexpr PetscInt rows = 12;
+
+  explicit Chains(unsigned seed) : values(Eigen::MatrixXd::Zero(size * rows, size * rows)) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> entry(-1.0, 1.0);
+    for (PetscInt i = 0; i < rows; ++i)
+      for (PetscInt j = 0; j < rows; ++j) {
+        if (!is_block(i, j)) continue;
+        for (PetscInt r = 0; r < size; ++r)
+          for (PetscInt c = 0; c < size; ++c) values(i * size + r, j * size + c) = entry(random);
+      }
+    values.diagonal().array() += 8.0;
+  }
+
+  static bool is_block(PetscInt i, PetscInt j) {
+    const bool is_chain = i == j || (std::abs(i - j) == 1 && std::max(i, j) != 6);
+    const bool is_border = std::max(i, j) == rows - 1;
+    const bool is_loop = std::min(i, j) == 1 && std::max(i, j) == 5;
+    return is_chain || is_border || is_loop;
+  }
+
+  petsc::Handle<Mat> matrix() const {
+    petsc::Handle<Mat> matrix;
+    const auto n = static_cast<PetscInt>(values.rows());
+    petsc::check(MatCreateSeqBAIJ(PETSC_COMM_SELF, size, n, n, rows, nullptr, matrix.fill()));
+    for (PetscInt i = 0; i < n; ++i)
+      for (PetscInt j = 0; j < n; ++j)
+        if (is_block(i / size, j / size))
+          petsc::check(MatSetValue(matrix.get(), i, j, values(i, j), INSERT_VALUES));
+    petsc::check(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
+    petsc::check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
+    return matrix;
+  }
+
+  /// Largest error of solutions for 7 random columns.
+  double error_of(analysis::DirectSolver& solver) const {
+    const petsc::Handle<Mat> held = matrix();
+    const Eigen::MatrixXd exact = Eigen::MatrixXd::Random(values.rows(), 7);
+    Eigen::MatrixXd right = values * exact;
+    solver.factor(held.get());
+    solver.solve(right);
+    return (right - exact).cwiseAbs().maxCoeff();
+  }
+
+  Eigen::MatrixXd values;
+};
+
 /// Diagonally dominant, then rows and columns stretched by six decades up and down.
 struct BadlyScaled {
   BadlyScaled(Eigen::Index n, unsigned seed) : core(n, n), rows(n), columns(n) {
@@ -98,6 +148,42 @@ BOOST_AUTO_TEST_CASE(direct_solver_solves_all_columns_of_badly_scaled_matrices) 
     const Eigen::MatrixXd found = system.columns.asDiagonal() * right;
     BOOST_TEST((found - exact).cwiseAbs().maxCoeff() < 1e-13);
   }
+}
+
+BOOST_AUTO_TEST_CASE(block_matrices_are_solved_with_fill_in) {
+  analysis::DirectSolver solver("test_", analysis::equilibrate);
+  for (const unsigned seed : {1U, 2U, 3U}) BOOST_TEST(Chains(seed).error_of(solver) < 1e-13);
+}
+
+// Rows are interchanged within diagonal blocks only. A matrix whose solution needs more is solved
+// by another solver: a diagonal block that is zero, or singular but for 1e-9, or alone singular
+// after the elimination of the blocks before it.
+BOOST_AUTO_TEST_CASE(block_matrices_with_singular_diagonal_blocks_are_solved) {
+  constexpr PetscInt n = Chains::size;
+  for (const double left : {0.0, 1e-9}) {
+    Chains chains(4);
+    chains.values.block(3 * n, 3 * n, n, n) = left * Eigen::MatrixXd::Identity(n, n);
+    const double condition = chains.values.jacobiSvd().singularValues().maxCoeff() /
+                             chains.values.jacobiSvd().singularValues().minCoeff();
+    BOOST_TEST(condition < 1e3);
+    analysis::DirectSolver solver("test_", analysis::equilibrate);
+    BOOST_TEST(Chains(5).error_of(solver) < 1e-13);
+    BOOST_TEST(chains.error_of(solver) < 1e-10);
+    BOOST_TEST(Chains(6).error_of(solver) < 1e-12);
+  }
+  Chains chains(7);
+  const Eigen::MatrixXd first = chains.values.topLeftCorner(n, n);
+  chains.values.block(n, n, n, n) =
+      chains.values.block(n, 0, n, n) * first.inverse() * chains.values.block(0, n, n, n);
+  analysis::DirectSolver solver("test_", analysis::equilibrate);
+  BOOST_TEST(chains.error_of(solver) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(options_choose_the_solver_of_block_matrices) {
+  petsc::check(PetscOptionsSetValue(nullptr, "-blocks_pc_type", "none"));
+  analysis::DirectSolver solver("blocks_", analysis::equilibrate);
+  BOOST_CHECK_THROW(Chains(1).error_of(solver), ConvergenceError);
+  petsc::check(PetscOptionsClearValue(nullptr, "-blocks_pc_type"));
 }
 
 BOOST_AUTO_TEST_CASE(direct_solver_accepts_no_columns) {

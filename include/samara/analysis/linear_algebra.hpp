@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -55,11 +56,21 @@ struct FactorFailure {
 /// @throws InternalError where there is not enough memory.
 FactorFailure set_up(KSP solver);
 
+class BlockFactors;
+
 /// LU factorization with fixed scaling: all later matrices of a pattern use that of the first one.
+/// Matrices of blocks are factored by BlockFactors, others by PETSc's LU, and those that need rows
+/// interchanged by MUMPS. Options of the KSP or its preconditioner choose PETSc's solver.
 class DirectSolver {
  public:
+  enum class Elimination { blocks, petsc };
+
   /// `prefix` of the KSP's options, e.g. "floquet_"; `scale` returns the factors for a matrix.
-  DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale);
+  DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale,
+               Elimination elimination = Elimination::blocks);
+  DirectSolver(DirectSolver&&) noexcept;
+  DirectSolver& operator=(DirectSolver&&) noexcept;
+  ~DirectSolver();
 
   /// Factors `matrix`, which is scaled in place.
   /// @throws SingularError where the matrix is singular, ConvergenceError where the factorization
@@ -72,12 +83,19 @@ class DirectSolver {
   void solve(Eigen::MatrixXd& right);
 
  private:
-  double compute_residual(const Eigen::MatrixXd& right) const;
+  double compute_residual(const Eigen::VectorXd& x, const Eigen::VectorXd& right) const;
+  bool is_solver_given() const;
+  void factor_by_petsc();
   void take_pivoting_solver();
+  bool solve_by_blocks(Eigen::MatrixXd& right);
+  void solve_by_petsc(Eigen::MatrixXd& right);
 
   std::string prefix_;
   std::function<Equilibration(Mat)> scale_;
+  Elimination elimination_;
+  std::unique_ptr<BlockFactors> blocks_;  ///< null: PETSc solves
   petsc::Handle<KSP> solver_;
+  bool pivots_ = false;  ///< MUMPS interchanges rows, unless an option chooses another solver
   Equilibration scaling_;
   Mat matrix_ = nullptr;
   Eigen::MatrixXd solution_;  ///< kept: allocation of large arrays takes longer than filling

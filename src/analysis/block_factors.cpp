@@ -1,0 +1,156 @@
+#include "block_factors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+
+#include <petscblaslapack.h>
+
+#include "matrix_entries.hpp"
+
+namespace samara::analysis {
+namespace {
+
+/// Relative to the largest entry of a block row before elimination: a smaller pivot is round-off.
+constexpr double least_pivot = 1e-13;
+
+/// C = C - A B with A of size x size, B and C of size x columns.
+void subtract_product(const double* a, const double* b, double* c, Eigen::Index size,
+                      Eigen::Index columns) {
+  const auto m = static_cast<PetscBLASInt>(size);
+  const auto n = static_cast<PetscBLASInt>(columns);
+  const PetscScalar minus = -1.0;
+  const PetscScalar one = 1.0;
+  BLASgemm_("N", "N", &m, &n, &m, &minus, a, &m, b, &m, &one, c, &m);
+}
+
+}  // namespace
+
+bool BlockFactors::accepts(Mat matrix) {
+  PetscBool is_blocked = PETSC_FALSE;
+  petsc::check(
+      PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQBAIJ, &is_blocked));
+  return is_blocked != PETSC_FALSE;
+}
+
+BlockFactors::BlockFactors(Mat matrix) {
+  const MatrixEntries entries(matrix);
+  size_ = entries.block_size();
+  rows_ = entries.block_rows();
+  begin_.push_back(0);
+  // Row i gets the columns of U of each row k that it eliminates.
+  for (Index i = 0; i < rows_; ++i) {
+    std::set<Index> row;
+    row.insert(i);
+    for (PetscInt k = entries.begin(i); k < entries.begin(i + 1); ++k)
+      row.insert(entries.column(k));
+    for (auto k = row.begin(); *k < i; ++k)
+      for (Index entry = diagonal_[static_cast<std::size_t>(*k)] + 1;
+           entry < begin_[static_cast<std::size_t>(*k) + 1]; ++entry)
+        row.insert(columns_[static_cast<std::size_t>(entry)]);
+    const auto first = static_cast<Index>(columns_.size());
+    diagonal_.push_back(first + std::distance(row.begin(), row.find(i)));
+    columns_.insert(columns_.end(), row.begin(), row.end());
+    begin_.push_back(static_cast<Index>(columns_.size()));
+  }
+  values_.resize(columns_.size() * static_cast<std::size_t>(size_ * size_));
+  interchanges_.resize(static_cast<std::size_t>(rows_ * size_));
+}
+
+bool BlockFactors::factor_diagonal(Index i, double largest) {
+  const auto n = static_cast<PetscBLASInt>(size_);
+  double* values = block(diagonal_[static_cast<std::size_t>(i)]);
+  PetscBLASInt status = 0;
+  LAPACKgetrf_(&n, &n, values, &n, interchanges(i), &status);
+  if (status != 0) return false;
+  double pivot = largest;
+  for (Index k = 0; k < size_; ++k) pivot = std::min(pivot, std::abs(values[k * (size_ + 1)]));
+  return pivot > least_pivot * largest;
+}
+
+/// A becomes A D^-1 with the diagonal block D = P^T L U of row k.
+void BlockFactors::divide(double* a, Index k) const {
+  const auto n = static_cast<PetscBLASInt>(size_);
+  const double* factors = block(diagonal_[static_cast<std::size_t>(k)]);
+  const PetscScalar one = 1.0;
+  BLAStrsm_("R", "U", "N", "N", &n, &n, &one, factors, &n, a, &n);
+  BLAStrsm_("R", "L", "N", "U", &n, &n, &one, factors, &n, a, &n);
+  for (Index c = size_ - 1; c >= 0; --c)
+    if (const Index other = interchanges(k)[c] - 1; other != c)
+      std::swap_ranges(a + c * size_, a + (c + 1) * size_, a + other * size_);
+}
+
+bool BlockFactors::factor(Mat matrix) {
+  const MatrixEntries entries(matrix);
+  const Index area = size_ * size_;
+  std::fill(values_.begin(), values_.end(), 0.0);
+  std::vector<Index> place(static_cast<std::size_t>(rows_), -1);
+  for (Index i = 0; i < rows_; ++i) {
+    const Index first = begin_[static_cast<std::size_t>(i)];
+    const Index last = begin_[static_cast<std::size_t>(i) + 1];
+    for (Index entry = first; entry < last; ++entry)
+      place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)])] = entry;
+    double largest = 0.0;
+    for (PetscInt k = entries.begin(i); k < entries.begin(i + 1); ++k) {
+      const Eigen::Map<const Eigen::VectorXd> one(entries.values() + k * area, area);
+      largest = std::max(largest, one.cwiseAbs().maxCoeff());
+      std::copy_n(one.data(), area, block(place[static_cast<std::size_t>(entries.column(k))]));
+    }
+    for (Index entry = first; entry < diagonal_[static_cast<std::size_t>(i)]; ++entry) {
+      const auto k = static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)]);
+      divide(block(entry), columns_[static_cast<std::size_t>(entry)]);
+      for (Index other = diagonal_[k] + 1; other < begin_[k + 1]; ++other)
+        subtract_product(
+            block(entry), block(other),
+            block(place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(other)])]),
+            size_, size_);
+    }
+    if (!factor_diagonal(i, largest)) return false;
+  }
+  return true;
+}
+
+void BlockFactors::solve(const Eigen::Ref<const Eigen::MatrixXd>& right,
+                         const Eigen::Ref<const Eigen::VectorXd>& row_factors) {
+  right_sides_ = right.cols();
+  packed_.resize(static_cast<std::size_t>(rows_ * size_ * right_sides_));
+  const auto n = static_cast<PetscBLASInt>(size_);
+  const auto m = static_cast<PetscBLASInt>(right_sides_);
+  for (Index i = 0; i < rows_; ++i) {
+    Eigen::Map<Eigen::MatrixXd>(rows_of(i), size_, right_sides_) =
+        right.middleRows(i * size_, size_).array().colwise() *
+        row_factors.segment(i * size_, size_).array();
+    for (Index entry = begin_[static_cast<std::size_t>(i)];
+         entry < diagonal_[static_cast<std::size_t>(i)]; ++entry)
+      subtract_product(block(entry), rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
+                       size_, right_sides_);
+  }
+  for (Index i = rows_ - 1; i >= 0; --i) {
+    const Index diagonal = diagonal_[static_cast<std::size_t>(i)];
+    for (Index entry = diagonal + 1; entry < begin_[static_cast<std::size_t>(i) + 1]; ++entry)
+      subtract_product(block(entry), rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
+                       size_, right_sides_);
+    PetscBLASInt status = 0;
+    LAPACKgetrs_("N", &n, &m, block(diagonal), &n, interchanges(i), rows_of(i), &n, &status);
+  }
+}
+
+Eigen::VectorXd BlockFactors::column(Index c) const {
+  Eigen::VectorXd values(rows_ * size_);
+  for (Index i = 0; i < rows_; ++i)
+    values.segment(i * size_, size_) =
+        Eigen::Map<const Eigen::VectorXd>(rows_of(i) + c * size_, size_);
+  return values;
+}
+
+void BlockFactors::copy(const Eigen::Ref<const Eigen::VectorXd>& factors,
+                        Eigen::MatrixXd& solution) const {
+  solution.resize(rows_ * size_, right_sides_);
+  for (Index i = 0; i < rows_; ++i)
+    solution.middleRows(i * size_, size_) =
+        Eigen::Map<const Eigen::MatrixXd>(rows_of(i), size_, right_sides_).array().colwise() *
+        factors.segment(i * size_, size_).array();
+}
+
+}  // namespace samara::analysis

@@ -1,0 +1,59 @@
+// LU factorization of a sparse matrix of square blocks, for many right-hand sides at once.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <petscsys.h>
+
+#include "samara/petsc/handle.hpp"
+
+namespace samara::analysis {
+
+/// Factors A = (I + L) (D + U) block row by block row in the given order. Rows are interchanged in
+/// the diagonal blocks D only, which are factored by LAPACK. A solve multiplies each block with all
+/// right-hand sides. The unknowns of chains with a border at the end cause no fill-in.
+class BlockFactors {
+ public:
+  /// Whether `matrix` consists of blocks (MATSEQBAIJ).
+  static bool accepts(Mat matrix);
+
+  /// Finds the fill-in of the pattern of `matrix`, which all later matrices have.
+  explicit BlockFactors(Mat matrix);
+
+  /// @returns false where a diagonal block is singular to working precision.
+  bool factor(Mat matrix);
+
+  /// Solves for all columns of diag(`row_factors`) `right`.
+  void solve(const Eigen::Ref<const Eigen::MatrixXd>& right,
+             const Eigen::Ref<const Eigen::VectorXd>& row_factors);
+
+  /// Column c of the solution.
+  Eigen::VectorXd column(Eigen::Index c) const;
+  /// diag(`factors`) times the solution.
+  void copy(const Eigen::Ref<const Eigen::VectorXd>& factors, Eigen::MatrixXd& solution) const;
+
+ private:
+  using Index = Eigen::Index;
+
+  double* block(Index entry) { return values_.data() + entry * size_ * size_; }
+  const double* block(Index entry) const { return values_.data() + entry * size_ * size_; }
+  double* rows_of(Index i) { return packed_.data() + i * size_ * right_sides_; }
+  const double* rows_of(Index i) const { return packed_.data() + i * size_ * right_sides_; }
+  PetscBLASInt* interchanges(Index i) { return interchanges_.data() + i * size_; }
+  const PetscBLASInt* interchanges(Index i) const { return interchanges_.data() + i * size_; }
+  bool factor_diagonal(Index i, double largest);
+  void divide(double* a, Index k) const;
+
+  Index size_ = 1;  ///< rows of a block
+  Index rows_ = 0;  ///< block rows
+  Index right_sides_ = 0;
+  std::vector<Index> begin_;     ///< of each block row in columns_, with fill-in; rows_ + 1 entries
+  std::vector<Index> diagonal_;  ///< entry of the diagonal block of each row
+  std::vector<Index> columns_;   ///< ascending in each row
+  std::vector<double> values_;   ///< L, factors of D, U; blocks column by column
+  std::vector<double> packed_;   ///< right-hand sides, block row by block row
+  std::vector<PetscBLASInt> interchanges_;  ///< of the rows of the diagonal blocks, from 1
+};
+
+}  // namespace samara::analysis
