@@ -320,12 +320,28 @@ std::size_t resident_megabytes(pid_t child) {
   return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) >> 20;
 }
 
-/// How a child ended; empty: as it should.
+/// Processor time of a child and of the processes that it has waited for [s].
+double processor_seconds(pid_t child) {
+  std::ifstream stream("/proc/" + std::to_string(child) + "/stat");
+  std::string text;
+  std::getline(stream, text);
+  std::istringstream fields(text.substr(std::min(text.rfind(')'), text.size() - 1) + 1));
+  std::string skipped;
+  for (int i = 3; i < 14; ++i) fields >> skipped;
+  double ticks = 0.0;
+  double part = 0.0;
+  for (int i = 14; i <= 17 && fields >> part; ++i) ticks += part;
+  return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+/// How a child ended; empty: as it should. A hang is an input that takes more processor time than
+/// `timeout`, or ten times as much by the clock: a busy machine must not make findings.
 std::string watch(pid_t child, const Options& options, Clock::time_point end, bool has_end) {
   using std::chrono::duration;
   constexpr auto pause = std::chrono::milliseconds(20);
   std::uint64_t last = shared->executions;
   Clock::time_point since = Clock::now();
+  double spent = processor_seconds(child);
   for (;;) {
     int status = 0;
     if (::waitpid(child, &status, WNOHANG) == child) {
@@ -336,8 +352,11 @@ std::string watch(pid_t child, const Options& options, Clock::time_point end, bo
     if (shared->executions != last) {
       last = shared->executions;
       since = now;
+      spent = processor_seconds(child);
     }
-    const bool hangs = duration<double>(now - since).count() > options.number("timeout");
+    const double limit = options.number("timeout");
+    const bool hangs = processor_seconds(child) - spent > limit ||
+                       duration<double>(now - since).count() > 10.0 * limit;
     const bool is_hungry =
         static_cast<double>(resident_megabytes(child)) > options.number("rss_limit_mb");
     const bool is_over = has_end && now > end;
