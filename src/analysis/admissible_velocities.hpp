@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -31,7 +32,9 @@ class AdmissibleVelocities {
 
   /// Two jumps at time t in the state z, whose positions are consistent: the first makes the
   /// velocities of z admissible, the second makes `jump`, a change of velocities, admissible.
-  /// @throws ConvergenceError where a motion has no inertia
+  /// The velocity of a motion without inertia, which no impulse determines, is the one at which the
+  /// elastic loads that act on it do not change.
+  /// @throws ConvergenceError where a motion has neither inertia nor stiffness
   Jumps correct(double t, Vec z, const Eigen::VectorXd& jump);
 
  private:
@@ -45,9 +48,11 @@ class AdmissibleVelocities {
 
   void classify(double t, Vec z);
   void build();
+  bool solve(Jumps& jumps);
 
   const system::PeriodicSystem& system_;
-  double interval_;
+  double dt_;
+  double tau_ = 0.0;  ///< [s], of (9.1b)
   bool is_restricted_ = false;
   std::vector<Column> columns_;
   petsc::Handle<Vec> rates_;  ///< zero
@@ -55,6 +60,7 @@ class AdmissibleVelocities {
   petsc::Handle<Vec> jump_;
   petsc::Handle<Mat> matrix_;
   petsc::Handle<Mat> mass_;
+  Eigen::SparseMatrix<double> added_;  ///< tau^2 K_e
   DirectSolver solver_;
 };
 

@@ -249,9 +249,8 @@ FactorFailure set_up(KSP solver) {
   return find_failure(solver);
 }
 
-DirectSolver::DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale,
-                           Elimination elimination)
-    : prefix_(std::move(prefix)), scale_(std::move(scale)), elimination_(elimination) {}
+DirectSolver::DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale)
+    : prefix_(std::move(prefix)), scale_(std::move(scale)) {}
 DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
 DirectSolver& DirectSolver::operator=(DirectSolver&&) noexcept = default;
 DirectSolver::~DirectSolver() = default;
@@ -273,7 +272,7 @@ void DirectSolver::factor(Mat matrix) {
   const bool is_first = !scaling_.rows;
   if (is_first) {
     scaling_ = scale_(matrix);
-    if (elimination_ == Elimination::blocks && BlockFactors::accepts(matrix) && !is_solver_given())
+    if (BlockFactors::accepts(matrix) && !is_solver_given())
       blocks_ = std::make_unique<BlockFactors>(matrix);
   }
   apply_scaling(scaling_, matrix);

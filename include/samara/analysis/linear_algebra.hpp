@@ -63,11 +63,8 @@ class BlockFactors;
 /// interchanged by MUMPS. Options of the KSP or its preconditioner choose PETSc's solver.
 class DirectSolver {
  public:
-  enum class Elimination { blocks, petsc };
-
   /// `prefix` of the KSP's options, e.g. "floquet_"; `scale` returns the factors for a matrix.
-  DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale,
-               Elimination elimination = Elimination::blocks);
+  DirectSolver(std::string prefix, std::function<Equilibration(Mat)> scale);
   DirectSolver(DirectSolver&&) noexcept;
   DirectSolver& operator=(DirectSolver&&) noexcept;
   ~DirectSolver();
@@ -82,6 +79,9 @@ class DirectSolver {
   /// steps of iterative refinement.
   void solve(Eigen::MatrixXd& right);
 
+  /// Of the factored matrices.
+  const Equilibration& scaling() const { return scaling_; }
+
  private:
   double compute_residual(const Eigen::VectorXd& x, const Eigen::VectorXd& right) const;
   bool is_solver_given() const;
@@ -92,7 +92,6 @@ class DirectSolver {
 
   std::string prefix_;
   std::function<Equilibration(Mat)> scale_;
-  Elimination elimination_;
   std::unique_ptr<BlockFactors> blocks_;  ///< null: PETSc solves
   petsc::Handle<KSP> solver_;
   bool pivots_ = false;  ///< MUMPS interchanges rows, unless an option chooses another solver
