@@ -20,7 +20,7 @@ void declare_motion(Visitor& fields, model::JointDefinition& joint) {
     }
     for (const char* key : {"stiffness", "damping"})
       if (fields.given(key))
-        fields.refuse(key, "a prescribed joint moves as it is told, whatever springs it has");
+        fields.refuse(key, "springs and dampers have no effect on a prescribed joint");
     fields.at_least_one({"angle_deg", "harmonic"}, "of a prescribed joint, or \"harmonic\"");
   } else if (!is_prescribed && !fields.describes()) {
     return;
@@ -114,7 +114,7 @@ void declare_actuator(Visitor& fields, model::PitchActuatorDefinition& actuator)
       Field("rate_limit_deg", deg_per_s, positive, "of the pitch rate").none_at_infinity(),
       actuator.rate_limit);
   fields.number(Field("lowest_deg", deg, half_turn,
-                      "lower limit of what is asked for; the pitch of the case must be within the "
+                      "lower limit of the demanded pitch; the pitch of the case must be within the "
                       "limits. At a limit a controller of the pitch holds no speed")
                     .none_at_infinity(),
                 actuator.lowest);
@@ -293,7 +293,7 @@ void declare_blades(Visitor& fields, model::BladesDefinition& blades) {
                 blades.pitch_link);
   fields.numbered(
       Field("each",
-            "what differs on one blade, by its number from 1: `{2: {pitch_deg: "
+            "keys that differ on one blade, by its number from 1: `{2: {pitch_deg: "
             "0.5, mass_factor: 1.01}}`")
           .or_else("all alike"),
       "blade number", blades.count, blades.each,

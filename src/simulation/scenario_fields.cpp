@@ -281,7 +281,7 @@ void declare_transient(Visitor& fields, const model::TurbineDefinition& turbine,
                 {{"bdf2", analysis::TransientMethod::bdf2},
                  {"midpoint", analysis::TransientMethod::midpoint}});
   fields.number(
-      {"tolerance", "", fields::tolerance, "of what Newton leaves, relative to the state"},
+      {"tolerance", "", fields::tolerance, "error of Newton's iteration, relative to the state"},
       options.tolerance);
   fields.number(Field("step_tolerance", "m, rad", step_error,
                       "of the error of a step in the positions, absolute and relative: steps "
@@ -317,7 +317,8 @@ void declare_transient(Visitor& fields, const model::TurbineDefinition& turbine,
   fields.list(
       Field("events", "a list, see below"), "events", 1, transient.events,
       [&](turbine::TurbineEvent& event) { declare_event(fields, options.duration, event); });
-  fields.block({"output", "what is written"}, [&] { declare_output(fields, turbine, transient); });
+  fields.block({"output", "channels and rows of the time series"},
+               [&] { declare_output(fields, turbine, transient); });
 }
 
 void declare_forms(Visitor& fields, linear::LinearizeOptions& options) {
@@ -334,7 +335,7 @@ void declare_forms(Visitor& fields, linear::LinearizeOptions& options) {
       if (*is_asked_for) forms.emplace_back(word);
   fields.name_list(
       {"forms",
-       "what is written: `state_space`; `descriptor` (all unknowns); `multiblade` (three and more "
+       "forms to write: `state_space`; `descriptor` (all unknowns); `multiblade` (three and more "
        "blades); `average` (mean over the azimuth, in multiblade coordinates where `multiblade` is "
        "there too); `hill` (constant, by harmonic lifting); `lyapunov_floquet` (A constant, B and "
        "C "
@@ -364,8 +365,8 @@ void declare_linearize(Visitor& fields, const model::TurbineDefinition& turbine,
        "azimuths, equally spaced, from which the series are made; a parked rotor has one"},
       options.azimuths);
   fields.integer({"harmonics", "", integers(0, fields::most_harmonics),
-                  "of the series in the azimuth; at most (azimuths - 1)/2. The table shows what "
-                  "the series misses between the azimuths"},
+                  "of the series in the azimuth; at most (azimuths - 1)/2. The table shows the "
+                  "error of the series between the azimuths"},
                  options.harmonics);
   if (2 * options.harmonics + 1 > options.azimuths) {
     if (fields.given("harmonics"))

@@ -953,8 +953,8 @@ BOOST_AUTO_TEST_CASE(a_prescribed_angle_must_be_stated_and_only_there) {
               "case.yaml:10:3: nacelle.yaw: missing key \"angle_deg\" (of a prescribed joint, or "
               "\"harmonic\")");
   check_error(minimal + "nacelle:\n  yaw: {joint: prescribed, angle_deg: 8, stiffness: 4}\n",
-              "case.yaml:10:42: nacelle.yaw.stiffness: a prescribed joint moves as it is told, "
-              "whatever springs it has");
+              "case.yaml:10:42: nacelle.yaw.stiffness: springs and dampers have no effect on "
+              "a prescribed joint");
   check_error(minimal + "nacelle:\n  yaw: {joint: locked, angle_deg: 8}\n",
               "case.yaml:10:24: nacelle.yaw.angle_deg: only a joint: prescribed has a motion");
   check_error(minimal + "hub:\n  teeter: {harmonic: {per_rev: 1}}\n",

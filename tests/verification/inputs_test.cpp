@@ -60,8 +60,8 @@ std::vector<std::string> coarse() {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(the_rotating_beam_has_the_frequencies_of_wright) {
-  // Wright et al. (1982), flap; lead-lag by the identity flap^2 - speed^2. What shear and rotary
-  // inertia change is below 1e-4 in the first mode, 2e-3 in the third.
+  // Wright et al. (1982), flap; lead-lag by the identity flap^2 - speed^2. The effect of shear and
+  // rotary inertia is below 1e-4 in the first mode, 2e-3 in the third.
   struct Published {
     const char* speed;
     std::array<double, 3> flap;

@@ -59,8 +59,8 @@ BOOST_AUTO_TEST_CASE(converged_frequencies_are_those_of_hermite_elements) {
 }
 
 BOOST_AUTO_TEST_CASE(converged_frequencies_are_those_of_ritz) {
-  // To more digits than the print: 1e-6. What Ritz leaves out is the coupling of flap and twist by
-  // 2 I2 Omega, I2 = 1e-4 of 5 kg m.
+  // More digits than the print: 1e-6. The Ritz solution leaves out the coupling of flap and twist
+  // by 2 I2 Omega, I2 = 1e-4 of 5 kg m.
   const analysis::ModeSet set = constant_modes_of(locked_rotor(10, 3).turbine);
   const double speed = set.rotor_speed;
   const RitzBeam blade{8.42, 1.8, speed, 67.5772, 5.0, 0.0001, 4.9999, 1e7};

@@ -28,7 +28,7 @@ void require_export_path(const std::string& path, const std::string& source);
 
 /// Writes the time series of the result `source` to `path`, completely or not at all. The memory
 /// holds a slice of the rows; for a .h5 it holds all rows twice.
-/// @throws InputError if a segment is missing, or the format cannot hold the time series
+/// @throws InputError if the format cannot hold the time series, or `path` cannot be written
 void export_series(const std::string& source, const TimeSeriesReader& series,
                    const std::string& path);
 

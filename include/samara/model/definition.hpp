@@ -133,8 +133,9 @@ struct TorqueLaw {
   bool covers(double speed) const {
     return table.empty() || (speed >= table.front().first && speed <= table.back().first);
   }
-  /// Torque and slope at a speed. A table is linear between its entries; at an entry the slope is
-  /// the mean of both sides. At rest a table that does not cover speed 0 gives no torque.
+  /// Torque and slope at a speed. A table is linear between its entries; at an inner entry the
+  /// slope is the mean of both sides, at the first and the last that of its segment. At rest a
+  /// table that does not cover speed 0 gives no torque.
   elements::TorqueLine at(double speed) const;
   /// The whole law of a rotor with this mean speed; zero if the table does not cover it.
   elements::TorqueLine line_at(double mean_speed) const {
