@@ -195,7 +195,6 @@ bool AdmissibleVelocities::solve(Jumps& jumps) {
     solver_.solve(next);
     const double residual =
         largest((added_ * (next - jumps)).eval().array().colwise() * row_factors);
-    fprintf(stderr, "tau %g it %d rel %g\n", tau_, iteration, residual / size);
     jumps.swap(next);
     if (residual <= iteration_tolerance * size) return true;
     if (!(residual <= slowest_contraction * last))
