@@ -283,6 +283,8 @@ int run(const std::vector<std::string>& arguments) {
   const Session session(line.petsc_options);
   if (const int code = session.agree(outcome.code, outcome.message)) return code;
   if (converts) return 0;
+  outcome = attempt("", [] { refuse_unsupported_options(Session::options()); });
+  if (const int code = session.agree(outcome.code, outcome.message)) return code;
   outcome = attempt(line.case_path, [&] { lock_result(job); });
   if (const int code = session.agree(outcome.code, outcome.message)) return code;
   outcome = attempt(line.case_path, [&] { line.command->run(job); });

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 #include <string_view>
 #include <vector>
+
+#include "samara/base/error.hpp"
 
 #include "table.hpp"
 
@@ -82,6 +85,28 @@ std::string prefixed_option(const std::string& option, const std::string& comman
     if (contains(prefix.objects, object) && contains(prefix.commands, command))
       return std::string("-") + prefix.name + name;
   return "";
+}
+
+void refuse_unsupported_options(const std::string& options) {
+  struct Refused {
+    std::string_view ending;
+    const char* reason;
+  };
+  constexpr std::array<Refused, 4> refused{
+      {{"mat_type",
+        "the types of matrices are fixed: baij with the blocks of the nodes, and for the trim no "
+        "assembled matrix, or aij with options of its preconditioner"},
+       {"vec_type", "the types of vectors are fixed"},
+       {"snes_fd", "the tangents are exact; hint: -trim_snes_mf_operator applies differences"},
+       {"snes_fd_color",
+        "the tangents are exact; hint: -trim_snes_mf_operator applies differences"}}};
+  std::istringstream words(options);
+  for (std::string word; words >> word;) {
+    if (word.front() != '-') continue;
+    for (const Refused& one : refused)
+      if (word.ends_with("_" + std::string(one.ending)) || word == "-" + std::string(one.ending))
+        throw InputError(word + ": " + one.reason);
+  }
 }
 
 }  // namespace samara::drivers

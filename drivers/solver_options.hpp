@@ -12,4 +12,8 @@ std::string solver_options_text();
 /// without its prefix. `option`: with its dash.
 std::string prefixed_option(const std::string& option, const std::string& command);
 
+/// `options`: all that are given, as text.
+/// @throws InputError for one that the solvers cannot follow
+void refuse_unsupported_options(const std::string& options);
+
 }  // namespace samara::drivers

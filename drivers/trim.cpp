@@ -191,6 +191,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
             scientific(trim.attempts[i].second, 1) + "\n";
   text +=
       "Newton       " + count(trim.newton_steps, "step") + ", " + explain(trim.convergence) + "\n";
+  if (!trim.linear_solver.empty()) text += "linear       " + trim.linear_solver + "\n";
   text += "residual     " + scientific(trim.residual, 1) + " at the samples, " +
           scientific(trim.residual_between, 1) + " between them [N, N m]; largest load " +
           general(trim.load_level, 4) + "\n";

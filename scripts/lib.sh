@@ -87,9 +87,11 @@ get_cached() { sed -n "s/^$1:[^=]*=//p" "$build/CMakeCache.txt" 2>/dev/null; }
 
 # A Release build of this checkout; the build itself notices changed CMake files.
 configure() {
-  local generator=()
-  if [[ $(get_cached CMAKE_HOME_DIRECTORY) != "$root" ]]; then # none yet, or the checkout was moved
-    find "$build" -mindepth 1 -maxdepth 1 ! -name 'samara.*' ! -name install.log -exec rm -rf {} +
+  local generator=() home
+  home=$(get_cached CMAKE_HOME_DIRECTORY)
+  if [[ $home != "$root" ]]; then # none yet, new packages, or the checkout was moved
+    [[ -z $home ]] ||
+      find "$build" -mindepth 1 -maxdepth 1 ! -name 'samara.*' ! -name install.log -exec rm -rf {} +
     generator=(-G Ninja)
   elif [[ $(get_cached CMAKE_BUILD_TYPE) == Release && (-e $build/build.ninja || -e $build/Makefile) ]]
   then

@@ -7,7 +7,7 @@
 
 #include <petscblaslapack.h>
 
-#include "matrix_entries.hpp"
+#include "samara/petsc/handle.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -27,24 +27,14 @@ void subtract_product(const double* a, const double* b, double* c, Eigen::Index 
 
 }  // namespace
 
-bool BlockFactors::accepts(Mat matrix) {
-  PetscBool is_blocked = PETSC_FALSE;
-  petsc::check(
-      PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQBAIJ, &is_blocked));
-  return is_blocked != PETSC_FALSE;
-}
-
-BlockFactors::BlockFactors(Mat matrix) {
-  const MatrixEntries entries(matrix);
-  size_ = entries.block_size();
-  rows_ = entries.block_rows();
+BlockFactors::BlockFactors(const BlockMatrix& pattern) : size_(pattern.size), rows_(pattern.rows) {
   begin_.push_back(0);
   // Row i gets the columns of U of each row k that it eliminates.
   for (Index i = 0; i < rows_; ++i) {
     std::set<Index> row;
     row.insert(i);
-    for (PetscInt k = entries.begin(i); k < entries.begin(i + 1); ++k)
-      row.insert(entries.column(k));
+    for (PetscInt k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k)
+      row.insert(pattern.columns[k]);
     for (auto k = row.begin(); *k < i; ++k)
       for (Index entry = diagonal_[static_cast<std::size_t>(*k)] + 1;
            entry < begin_[static_cast<std::size_t>(*k) + 1]; ++entry)
@@ -81,8 +71,7 @@ void BlockFactors::divide(double* a, Index k) const {
       std::swap_ranges(a + c * size_, a + (c + 1) * size_, a + other * size_);
 }
 
-bool BlockFactors::factor(Mat matrix) {
-  const MatrixEntries entries(matrix);
+bool BlockFactors::factor(const BlockMatrix& matrix) {
   const Index area = size_ * size_;
   std::fill(values_.begin(), values_.end(), 0.0);
   std::vector<Index> place(static_cast<std::size_t>(rows_), -1);
@@ -92,10 +81,10 @@ bool BlockFactors::factor(Mat matrix) {
     for (Index entry = first; entry < last; ++entry)
       place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)])] = entry;
     double largest = 0.0;
-    for (PetscInt k = entries.begin(i); k < entries.begin(i + 1); ++k) {
-      const Eigen::Map<const Eigen::VectorXd> one(entries.values() + k * area, area);
+    for (PetscInt k = matrix.begin[i]; k < matrix.begin[i + 1]; ++k) {
+      const Eigen::Map<const Eigen::VectorXd> one(matrix.values + k * area, area);
       largest = std::max(largest, one.cwiseAbs().maxCoeff());
-      std::copy_n(one.data(), area, block(place[static_cast<std::size_t>(entries.column(k))]));
+      std::copy_n(one.data(), area, block(place[static_cast<std::size_t>(matrix.columns[k])]));
     }
     for (Index entry = first; entry < diagonal_[static_cast<std::size_t>(i)]; ++entry) {
       const auto k = static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)]);

@@ -6,23 +6,27 @@
 #include <Eigen/Core>
 #include <petscsys.h>
 
-#include "samara/petsc/handle.hpp"
-
 namespace samara::analysis {
+
+/// A sparse matrix of square blocks. Block row i has the blocks begin[i] to begin[i + 1] - 1.
+struct BlockMatrix {
+  Eigen::Index size = 1;  ///< rows of a block
+  Eigen::Index rows = 0;  ///< block rows
+  const PetscInt* begin = nullptr;
+  const PetscInt* columns = nullptr;  ///< block column of each block
+  const double* values = nullptr;     ///< blocks column by column
+};
 
 /// Factors A = (I + L) (D + U) block row by block row in the given order. Rows are interchanged in
 /// the diagonal blocks D only, which are factored by LAPACK. A solve multiplies each block with all
 /// right-hand sides. The unknowns of chains with a border at the end cause no fill-in.
 class BlockFactors {
  public:
-  /// Whether `matrix` consists of blocks (MATSEQBAIJ).
-  static bool accepts(Mat matrix);
-
-  /// Finds the fill-in of the pattern of `matrix`, which all later matrices have.
-  explicit BlockFactors(Mat matrix);
+  /// Finds the fill-in of a pattern, which all matrices have.
+  explicit BlockFactors(const BlockMatrix& pattern);
 
   /// @returns false where a diagonal block is singular to working precision.
-  bool factor(Mat matrix);
+  bool factor(const BlockMatrix& matrix);
 
   /// Solves for all columns of diag(`row_factors`) `right`.
   void solve(const Eigen::Ref<const Eigen::MatrixXd>& right,

@@ -32,6 +32,8 @@ constexpr double largest_difference = 1e-6;
 
 /// Number of the slowest modes, which have a shift of their own.
 constexpr std::size_t slow_modes = 12;
+/// Modes that are slower than that shift by this factor have another one.
+constexpr double much_slower = 1e-3;
 
 /// Relative to the shift: a smaller exponent is zero (a double zero in double precision).
 constexpr double zero_to_shift = 1e-7;
@@ -129,21 +131,23 @@ std::vector<double> moduli_of(const Spectrum& spectrum, double zero) {
   return moduli;
 }
 
-/// Geometric mean of the first `count` moduli.
-double middle_of(const std::vector<double>& moduli, std::size_t count, double fallback) {
-  const std::size_t n = std::min(count, moduli.size());
+/// Geometric mean of `count` moduli from number `first`.
+double middle_of(const std::vector<double>& moduli, std::size_t first, std::size_t count,
+                 double fallback) {
+  const std::size_t end = std::min(first + count, moduli.size());
   double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) sum += std::log(moduli[i]);
-  return n > 0 ? std::exp(sum / static_cast<double>(n)) : fallback;
+  for (std::size_t i = first; i < end; ++i) sum += std::log(moduli[i]);
+  return end > first ? std::exp(sum / static_cast<double>(end - first)) : fallback;
 }
 
-/// The geometric middle of the gap with the largest ratio between two moduli in [low, high].
+/// The geometric middle of the gap between two moduli that has the largest ratio, of the gaps that
+/// have a part in [low, high].
 double widest_gap(const std::vector<double>& moduli, double low, double high) {
   double gap = 1.0;
   double middle = low;
   for (std::size_t i = 1; i < moduli.size(); ++i) {
     const double ratio = moduli[i] / moduli[i - 1];
-    if (moduli[i - 1] < low || moduli[i] > high || ratio <= gap) continue;
+    if (moduli[i] < low || moduli[i - 1] > high || ratio <= gap) continue;
     gap = ratio;
     middle = std::sqrt(moduli[i] * moduli[i - 1]);
   }
@@ -181,13 +185,24 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   };
   // The error of an exponent is about the round-off of max(sigma, |lambda|^2 / sigma). The slow
   // modes, which are of interest, and the fast modes, which a fine mesh adds, therefore have a
-  // shift each.
+  // shift each, and so have modes that are much slower than the other slow ones.
   const double zero = zero_exponent * rate;
   const std::vector<double> moduli =
       moduli_of(find_spectrum(system, solution, subspace, rate, rate), zero);
-  const CheckedSpectrum slow = checked(middle_of(moduli, slow_modes, rate));
-  const CheckedSpectrum fast = checked(middle_of(moduli, moduli.size(), rate));
-  const double border = widest_gap(moduli_of(slow.found, zero), slow.sigma, fast.sigma);
+  const auto slowest = static_cast<std::size_t>(
+      std::lower_bound(moduli.begin(), moduli.end(),
+                       much_slower * middle_of(moduli, 0, slow_modes, rate)) -
+      moduli.begin());
+  std::vector<double> shifts;
+  if (slowest > 0) shifts.push_back(middle_of(moduli, 0, slowest, rate));
+  shifts.push_back(middle_of(moduli, slowest, slow_modes, rate));
+  shifts.push_back(middle_of(moduli, 0, moduli.size(), rate));
+  std::vector<CheckedSpectrum> spectra;
+  for (const double shift : shifts) spectra.push_back(checked(shift));
+  std::vector<double> borders;  // above each spectrum but the last
+  for (std::size_t i = 0; i + 1 < spectra.size(); ++i)
+    borders.push_back(
+        widest_gap(moduli_of(spectra[i].found, zero), spectra[i].sigma, spectra[i + 1].sigma));
 
   struct Found {
     Complex exponent;
@@ -196,21 +211,26 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   };
   std::vector<Found> order;
   int exponents = 0;
-  const auto collect = [&](double split) {
+  const auto collect = [&] {
     order.clear();
     exponents = 0;
-    for (const CheckedSpectrum* spectrum : {&slow, &fast})
-      for (std::size_t i = 0; i < spectrum->found.exponents.size(); ++i) {
-        const Complex exponent = spectrum->found.exponents[i];
-        if ((std::abs(exponent) <= split) != (spectrum == &slow)) continue;
-        order.push_back({exponent, spectrum, static_cast<Eigen::Index>(i)});
+    for (std::size_t s = 0; s < spectra.size(); ++s)
+      for (std::size_t i = 0; i < spectra[s].found.exponents.size(); ++i) {
+        const Complex exponent = spectra[s].found.exponents[i];
+        const double size = std::abs(exponent);
+        if ((s > 0 && size <= borders[s - 1]) || (s < borders.size() && size > borders[s]))
+          continue;
+        order.push_back({exponent, &spectra[s], static_cast<Eigen::Index>(i)});
         exponents += exponent.imag() != 0.0 ? 2 : 1;
       }
   };
-  collect(border);
-  // A mode that the two shifts place on different sides of the border is lost or found twice. Then
-  // all modes are those of the fast shift.
-  if (exponents != subspace.size()) collect(-1.0);
+  collect();
+  // A mode that two shifts place on different sides of a border is lost or found twice. Then all
+  // modes are those of the fast shift.
+  if (exponents != subspace.size()) {
+    std::fill(borders.begin(), borders.end(), -1.0);
+    collect();
+  }
   std::vector<Complex> exponents_found;
   std::vector<Eigen::MatrixXcd> shapes;
   for (const Found& found : order) {

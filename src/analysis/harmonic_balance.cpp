@@ -12,6 +12,9 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
+#include "harmonic_preconditioner.hpp"
+#include "harmonic_tangents.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -22,6 +25,12 @@ constexpr double least_state = 1e-3;
 constexpr double vanished = 1e-13;
 /// Relative change of a vector by scaling and scaling back.
 constexpr double same = 1e-14;
+
+/// GMRES: reduction of the residual of a linear system, iterations of one solve, and those up to
+/// which the factors of an earlier tangent are kept.
+constexpr double linear_tolerance = 1e-10;
+constexpr PetscInt most_iterations = 60;
+constexpr PetscInt few_iterations = 15;
 
 /// Newton's method: line search and number of steps.
 struct NewtonLimits {
@@ -34,16 +43,6 @@ struct NewtonLimits {
 constexpr NewtonLimits full_steps{SNESLINESEARCHBASIC, 15};
 /// Smallest part of the loads on free coordinates that one step removes.
 constexpr double least_release = 1.0 / 64.0;
-
-int sample_count(int harmonics) { return 4 * harmonics + 2; }
-
-/// Fourier weights of a sample at t: mean, then 2/N cos, 2/N sin.
-Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
-  Eigen::VectorXd weights = PeriodicSolution::basis(harmonics, period, t);
-  weights *= 2.0 / sample_count(harmonics);
-  weights(0) *= 0.5;
-  return weights;
-}
 
 using Coordinates = std::vector<system::UnconstrainedCoordinate>;
 
@@ -68,17 +67,15 @@ class Balance {
         size_(static_cast<Eigen::Index>(system.size())),
         z_(system.make_state()),
         z_dot_(system.make_state()),
-        r_(system.make_state()),
-        jacobian_(system.make_jacobian()),
-        mass_(system.make_mass()) {}
+        r_(system.make_state()) {}
 
   PetscInt unknowns() const { return static_cast<PetscInt>(size_ * width_); }
 
-  Eigen::MatrixXd unpack(const PetscScalar* h) const {
+  PeriodicSolution solution_of(const PetscScalar* h) const {
     Eigen::MatrixXd coefficients = Eigen::Map<const Eigen::MatrixXd>(h, width_, size_).transpose();
     for (const system::UnconstrainedCoordinate& coordinate : held_)
       coefficients(coordinate.unknown, 0) = 0.0;
-    return coefficients;
+    return {std::move(coefficients), system_.period()};
   }
 
   std::vector<double> loads(const PetscScalar* h) const {
@@ -89,7 +86,7 @@ class Balance {
   }
 
   void residual(const PetscScalar* h, PetscScalar* out) {
-    const PeriodicSolution solution(unpack(h), system_.period());
+    const PeriodicSolution solution = solution_of(h);
     const std::vector<double> held = loads(h);
     Eigen::Map<Eigen::MatrixXd> result(out, width_, size_);
     result.setZero();
@@ -106,50 +103,15 @@ class Balance {
     for (const RowLoad& given : given_) result(0, given.row) += given.load;
   }
 
-  /// Entry (i, j) becomes the block sum_k w(t_k) [K_ij(t_k) b(t_k) + M_ij(t_k) b_dot(t_k)]^T. The
-  /// blocks of all entries are the product of a matrix of the harmonics with the sampled tangents.
-  void tangent(const PetscScalar* h, Mat matrix) {
-    const PeriodicSolution solution(unpack(h), system_.period());
-    const int samples = sample_count(harmonics_);
-    const Eigen::Index entries = pattern_.nonZeros();
-    Eigen::MatrixXd sampled = Eigen::MatrixXd::Zero(entries, 2 * samples);
-    Eigen::MatrixXd harmonics(width_ * width_, 2 * samples);
-    for (int k = 0; k < samples; ++k) {
-      const double t = time_of(k);
-      solution.evaluate(t, z_.get(), z_dot_.get());
-      system_.tangents(t, z_.get(), z_dot_.get(), 0.0, jacobian_.get(), mass_.get());
-      sample_entries(jacobian_.get(), sampled.col(k));
-      sample_entries(mass_.get(), sampled.col(samples + k));
-      const Eigen::VectorXd w = projection(t);
-      const Eigen::MatrixXd by_value =
-          PeriodicSolution::basis(harmonics_, period(), t) * w.transpose();
-      const Eigen::MatrixXd by_rate =
-          PeriodicSolution::basis_rate(harmonics_, period(), t) * w.transpose();
-      harmonics.col(k) = Eigen::Map<const Eigen::VectorXd>(by_value.data(), by_value.size());
-      harmonics.col(samples + k) =
-          Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
-    }
-    insert_blocks(multiply(harmonics, sampled.transpose()), matrix);
-  }
-
-  /// An AIJ matrix with the pattern of the tangent: every place of K and M becomes a block of
-  /// harmonics.
-  petsc::Handle<Mat> make_matrix() {
-    std::vector<Eigen::Triplet<double>> places;
-    std::vector<std::vector<PetscInt>> rows = system_.pattern();
-    if (rows.empty()) {  // the system does not declare a pattern
-      std::vector<PetscInt> all(static_cast<std::size_t>(system_.size()));
-      std::iota(all.begin(), all.end(), PetscInt{0});
-      rows.assign(all.size(), all);
-    }
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (const PetscInt j : rows[i]) places.emplace_back(static_cast<PetscInt>(i), j, 1.0);
-    // The load that holds a coordinate stands in the place of its mean.
-    for (const system::UnconstrainedCoordinate& coordinate : held_)
-      places.emplace_back(coordinate.row, coordinate.unknown, 1.0);
-    pattern_.resize(size_, size_);
-    pattern_.setFromTriplets(places.begin(), places.end());
-    return make_block_matrix();
+  /// Largest coefficient of a balance row.
+  double largest_load(const PetscScalar* h) {
+    Eigen::MatrixXd rows(width_, size_);
+    residual(h, rows.data());
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < size_; ++i)
+      if (system_.rows()[static_cast<std::size_t>(i)] == system::RowRole::balance)
+        largest = std::max(largest, rows.col(i).lpNorm<Eigen::Infinity>());
+    return largest;
   }
 
  private:
@@ -157,85 +119,6 @@ class Balance {
   double time_of(int k) const { return system_.period() * k / sample_count(harmonics_); }
 
   Eigen::VectorXd projection(double t) const { return fourier_weights(harmonics_, period(), t); }
-
-  bool is_held(PetscInt unknown) const {
-    return std::any_of(
-        held_.begin(), held_.end(),
-        [unknown](const system::UnconstrainedCoordinate& n) { return n.unknown == unknown; });
-  }
-
-  petsc::Handle<Mat> make_block_matrix() const {
-    std::vector<PetscInt> begin{0};
-    std::vector<PetscInt> columns;
-    for (Eigen::Index i = 0; i < size_; ++i)
-      for (int row = 0; row < width_; ++row) {
-        for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(pattern_, i); it; ++it)
-          for (int c = 0; c < width_; ++c)
-            columns.push_back(static_cast<PetscInt>(it.col()) * width_ + c);
-        begin.push_back(static_cast<PetscInt>(columns.size()));
-      }
-    petsc::Handle<Mat> matrix;
-    petsc::check(MatCreate(PETSC_COMM_SELF, matrix.fill()));
-    petsc::check(MatSetSizes(matrix.get(), unknowns(), unknowns(), unknowns(), unknowns()));
-    petsc::check(MatSetType(matrix.get(), MATSEQAIJ));
-    petsc::check(MatSeqAIJSetPreallocationCSR(matrix.get(), begin.data(), columns.data(), nullptr));
-    return matrix;
-  }
-
-  /// Whether the load that holds `unknown` acts in `row`.
-  bool holds(Eigen::Index row, PetscInt unknown) const {
-    return std::any_of(held_.begin(), held_.end(),
-                       [row, unknown](const system::UnconstrainedCoordinate& n) {
-                         return n.unknown == unknown && n.row == row;
-                       });
-  }
-
-  /// The entries of a tangent in the order of the pattern.
-  void sample_entries(Mat sample, Eigen::Ref<Eigen::VectorXd> out) const {
-    std::vector<Eigen::Index> place(static_cast<std::size_t>(size_), -1);
-    for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i) {
-      const Eigen::Index first = pattern_.outerIndexPtr()[i];
-      const Eigen::Index last = pattern_.outerIndexPtr()[i + 1];
-      for (Eigen::Index e = first; e < last; ++e)
-        place[static_cast<std::size_t>(pattern_.innerIndexPtr()[e])] = e;
-      PetscInt count = 0;
-      const PetscInt* columns = nullptr;
-      const PetscScalar* values = nullptr;
-      petsc::check(MatGetRow(sample, i, &count, &columns, &values));
-      for (PetscInt c = 0; c < count; ++c) {
-        const Eigen::Index e = place[static_cast<std::size_t>(columns[c])];
-        if (e >= 0)
-          out(e) = values[c];
-        else if (values[c] != 0.0)
-          throw InternalError("row " + std::to_string(i) +
-                              " of the tangents has an entry in column " +
-                              std::to_string(columns[c]) + ", outside their pattern");
-      }
-      petsc::check(MatRestoreRow(sample, i, &count, &columns, &values));
-      for (Eigen::Index e = first; e < last; ++e)
-        place[static_cast<std::size_t>(pattern_.innerIndexPtr()[e])] = -1;
-    }
-  }
-
-  /// `blocks`: a column per entry of the pattern, its block of harmonics row by row.
-  void insert_blocks(const Eigen::MatrixXd& blocks, Mat matrix) const {
-    PetscScalar* values = nullptr;
-    petsc::check(MatSeqAIJGetArrayWrite(matrix, &values));
-    PetscScalar* next = values;  // in the order of make_block_matrix
-    for (Eigen::Index i = 0; i < size_; ++i) {
-      const Eigen::Index first = pattern_.outerIndexPtr()[i];
-      const Eigen::Index last = pattern_.outerIndexPtr()[i + 1];
-      for (int row = 0; row < width_; ++row)
-        for (Eigen::Index e = first; e < last; ++e) {
-          const auto unknown = static_cast<PetscInt>(pattern_.innerIndexPtr()[e]);
-          next = std::copy_n(&blocks(row * width_, e), width_, next);
-          if (is_held(unknown)) *(next - width_) = holds(i, unknown) && row == 0 ? 1.0 : 0.0;
-        }
-    }
-    petsc::check(MatSeqAIJRestoreArrayWrite(matrix, &values));
-    petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
-    petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
-  }
 
   const system::PeriodicSystem& system_;
   const Coordinates& held_;
@@ -246,41 +129,91 @@ class Balance {
   petsc::Handle<Vec> z_;
   petsc::Handle<Vec> z_dot_;
   petsc::Handle<Vec> r_;
-  petsc::Handle<Mat> jacobian_;
-  petsc::Handle<Mat> mass_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> pattern_;  ///< of K and M together
 };
 
-/// Context of SNES's callbacks: the unknowns and rows are scaled by `scaling`.
+/// A linear system that the preconditioner of the harmonics does not solve.
+class LinearFailure : public ConvergenceError {
+  using ConvergenceError::ConvergenceError;
+};
+
+/// Context of the callbacks of SNES and its linear solver: unknowns and rows are scaled.
 struct SolverContext {
   Balance* balance = nullptr;
-  const Eigen::VectorXd* start = nullptr;  ///< the matrix has its tangent; null after the first use
-  const Equilibration* scaling = nullptr;
+  HarmonicTangents* tangents = nullptr;
+  HarmonicPreconditioner* preconditioner = nullptr;  ///< null: the matrix is assembled and factored
+  const Eigen::VectorXd* start = nullptr;  ///< that `tangents` belong to; null after the first use
+  Eigen::VectorXd rows;                    ///< factors
+  Eigen::VectorXd columns;
   Eigen::VectorXd unscaled;
+  Eigen::VectorXd product;
+  bool is_factored = false;
   std::exception_ptr error;
 
   const PetscScalar* unscale(Vec x) {
     const petsc::ReadView view(x);
-    const petsc::ReadView columns(scaling->columns.get());
-    const Eigen::Map<const Eigen::VectorXd> scaled(view.data(), unscaled.size());
-    const Eigen::Map<const Eigen::VectorXd> factors(columns.data(), unscaled.size());
-    unscaled = scaled.cwiseProduct(factors);
+    unscaled = Eigen::Map<const Eigen::VectorXd>(view.data(), columns.size()).cwiseProduct(columns);
     return unscaled.data();
+  }
+
+  /// x = values / columns.
+  void scale(const Eigen::VectorXd& values, Vec x) const {
+    const petsc::WriteView view(x);
+    Eigen::Map<Eigen::VectorXd>(view.data(), values.size()) = values.cwiseQuotient(columns);
   }
 };
 
 PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
-    {
-      const petsc::WriteView view(f);
-      context.balance->residual(context.unscale(x), view.data());
-    }
-    petsc::check(VecPointwiseMult(f, f, context.scaling->rows.get()));
+    const petsc::WriteView view(f);
+    context.balance->residual(context.unscale(x), view.data());
+    Eigen::Map<Eigen::VectorXd>(view.data(), context.rows.size()).array() *= context.rows.array();
     context.error = nullptr;  // an error in a line search is no cause of a later failure
   } catch (const DomainError&) {
     context.error = std::current_exception();
     return SNESSetFunctionDomainError(snes);
+  } catch (...) {
+    context.error = std::current_exception();
+    return PETSC_ERR_USER;
+  }
+  return 0;
+}
+
+/// y = J x of the shell matrix, without an assembled J.
+PetscErrorCode multiply_tangents(Mat matrix, Vec x, Vec y) noexcept {
+  void* pointer = nullptr;
+  if (const PetscErrorCode code = MatShellGetContext(matrix, &pointer)) return code;
+  auto& context = *static_cast<SolverContext*>(pointer);
+  try {
+    const petsc::ReadView in(x);
+    const petsc::WriteView out(y);
+    context.product = Eigen::Map<const Eigen::VectorXd>(in.data(), context.columns.size())
+                          .cwiseProduct(context.columns);
+    context.tangents->multiply(context.product.data(), out.data());
+    Eigen::Map<Eigen::VectorXd>(out.data(), context.rows.size()).array() *= context.rows.array();
+  } catch (...) {
+    context.error = std::current_exception();
+    return PETSC_ERR_USER;
+  }
+  return 0;
+}
+
+/// @throws LinearFailure
+void factor_harmonics(SolverContext& context) {
+  if (!context.preconditioner->factor(context.rows, context.columns))
+    throw LinearFailure("trim: the preconditioner of the harmonics is singular");
+  context.is_factored = true;
+}
+
+PetscErrorCode apply_preconditioner(PC preconditioner, Vec x, Vec y) noexcept {
+  void* pointer = nullptr;
+  if (const PetscErrorCode code = PCShellGetContext(preconditioner, &pointer)) return code;
+  auto& context = *static_cast<SolverContext*>(pointer);
+  try {
+    if (!context.is_factored) factor_harmonics(context);  // -trim_snes_mf: tangents of the start
+    const petsc::ReadView in(x);
+    const petsc::WriteView out(y);
+    context.preconditioner->solve(in.data(), out.data());
   } catch (...) {
     context.error = std::current_exception();
     return PETSC_ERR_USER;
@@ -306,17 +239,49 @@ void factor(SNES snes, Mat operators, Mat matrix) {
                                 "stiffer blade shows whether a steady state exists"));
 }
 
+/// Whether the factors of an earlier tangent served well in the last linear solve.
+bool factors_serve(SNES snes, const SolverContext& context) {
+  KSP linear = nullptr;
+  PetscInt iterations = 0;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  petsc::check(SNESGetKSP(snes, &linear));
+  petsc::check(KSPGetConvergedReason(linear, &reason));
+  petsc::check(KSPGetIterationNumber(linear, &iterations));
+  return context.is_factored && reason > 0 && iterations <= few_iterations;
+}
+
+/// Scales the rows and columns of an assembled matrix.
+void scale(SolverContext& context, Mat matrix) {
+  const auto n = static_cast<PetscInt>(context.rows.size());
+  petsc::Handle<Vec> rows;
+  petsc::Handle<Vec> columns;
+  petsc::check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, context.rows.data(), rows.fill()));
+  petsc::check(
+      VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, context.columns.data(), columns.fill()));
+  petsc::check(MatDiagonalScale(matrix, rows.get(), columns.get()));
+}
+
 PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* pointer) noexcept {
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
     const PetscScalar* h = context.unscale(x);
     const bool is_start = context.start != nullptr && (context.unscaled - *context.start).norm() <=
                                                           same * context.start->norm();
-    if (!is_start) context.balance->tangent(h, matrix);
+    if (!is_start) context.tangents->sample(context.balance->solution_of(h));
     context.start = nullptr;
-    petsc::check(
-        MatDiagonalScale(matrix, context.scaling->rows.get(), context.scaling->columns.get()));
-    factor(snes, operators, matrix);
+    if (context.preconditioner != nullptr) {
+      if (!factors_serve(snes, context)) factor_harmonics(context);
+      petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+      petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+    } else {
+      context.tangents->fill(matrix);
+      scale(context, matrix);
+    }
+    if (operators != matrix) {  // -trim_snes_mf_operator
+      petsc::check(MatAssemblyBegin(operators, MAT_FINAL_ASSEMBLY));
+      petsc::check(MatAssemblyEnd(operators, MAT_FINAL_ASSEMBLY));
+    }
+    if (context.preconditioner == nullptr) factor(snes, operators, matrix);
   } catch (const DomainError&) {
     context.error = std::current_exception();
     return SNESSetJacobianDomainError(snes);
@@ -421,34 +386,99 @@ Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics
 double residual_at(const Eigen::VectorXd& h, SolverContext& context) {
   Eigen::VectorXd f(h.size());
   context.balance->residual(h.data(), f.data());
-  const petsc::ReadView rows(context.scaling->rows.get());
-  return (f.array() * Eigen::Map<const Eigen::ArrayXd>(rows.data(), f.size())).matrix().norm();
+  return f.cwiseProduct(context.rows).norm();
+}
+
+/// Whether an option chooses a preconditioner or a matrix that the harmonics' own does not serve.
+bool is_direct_solver_given() {
+  char* all = nullptr;
+  petsc::check(PetscOptionsGetAll(nullptr, &all));
+  const std::string options = all;
+  petsc::check(PetscFree(all));
+  const auto is_there = [&](const char* text) { return options.find(text) != std::string::npos; };
+  return is_there("-trim_pc_") || is_there("-trim_mat_") || is_there("-trim_ksp_type preonly");
+}
+
+/// KSP and PC of a SNES, before its options.
+void choose_linear_solver(SNES solver, SolverContext& context) {
+  KSP linear = nullptr;
+  PC preconditioner = nullptr;
+  petsc::check(SNESGetKSP(solver, &linear));
+  petsc::check(KSPGetPC(linear, &preconditioner));
+  if (context.preconditioner == nullptr) {
+    petsc::check(KSPSetType(linear, KSPPREONLY));
+    petsc::check(PCSetType(preconditioner, PCLU));
+    petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
+    return;
+  }
+  petsc::check(KSPSetType(linear, KSPGMRES));
+  petsc::check(KSPGMRESSetRestart(linear, most_iterations));
+  petsc::check(KSPSetPCSide(linear, PC_RIGHT));
+  petsc::check(
+      KSPSetTolerances(linear, linear_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
+  petsc::check(PCSetType(preconditioner, PCSHELL));
+  petsc::check(PCShellSetName(preconditioner, "harmonics with a border"));
+  petsc::check(PCShellSetContext(preconditioner, &context));
+  petsc::check(PCShellSetApply(preconditioner, apply_preconditioner));
+}
+
+/// The linear solver that was used, for the report.
+std::string words_of_solver(SNES solver, const SolverContext& context, PetscInt size) {
+  KSP linear = nullptr;
+  PC preconditioner = nullptr;
+  KSPType type = nullptr;
+  PCType kind = nullptr;
+  MatSolverType package = nullptr;
+  PetscInt iterations = 0;
+  petsc::check(SNESGetKSP(solver, &linear));
+  petsc::check(KSPGetPC(linear, &preconditioner));
+  petsc::check(KSPGetType(linear, &type));
+  petsc::check(PCGetType(preconditioner, &kind));
+  petsc::check(SNESGetLinearSolveIterations(solver, &iterations));
+  const std::string words =
+      std::string(type) + ", " + std::to_string(iterations) + " iterations, preconditioned by ";
+  if (context.preconditioner != nullptr)
+    return words + "harmonics with a border of " +
+           std::to_string(context.preconditioner->border_size()) + " of " + std::to_string(size) +
+           " unknowns";
+  petsc::check(PCFactorGetMatSolverType(preconditioner, &package));
+  const std::string name =
+      std::string(kind) + (package == nullptr ? "" : std::string(" (") + package + ")");
+  return std::string(type) == KSPPREONLY ? name : words + name;
+}
+
+petsc::Handle<Mat> make_shell(PetscInt size, SolverContext& context) {
+  petsc::Handle<Mat> matrix;
+  petsc::check(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &context, matrix.fill()));
+  petsc::check(MatShellSetOperation(matrix.get(), MATOP_MULT,
+                                    reinterpret_cast<void (*)()>(multiply_tangents)));
+  return matrix;
 }
 
 /// Solves from `start`, or from the undeformed system, to whose residual `tolerance` is relative.
 /// Does not set the residuals and the load level.
-Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
-           const std::vector<RowLoad>& given, int harmonics, double tolerance,
-           const PeriodicSolution* start, const NewtonLimits& limits = {}) {
+/// @throws LinearFailure if `tries_harmonics` and the preconditioner of the harmonics fails
+Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const Coordinates& held,
+              const std::vector<RowLoad>& given, int harmonics, double tolerance,
+              const PeriodicSolution* start, const NewtonLimits& limits) {
   Balance balance(system, held, given, harmonics);
-  const petsc::Handle<Mat> matrix = balance.make_matrix();
-  const petsc::Handle<Vec> x =
-      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
-  const petsc::Handle<Vec> f =
-      petsc::make_vector(PETSC_COMM_SELF, balance.unknowns(), balance.unknowns());
+  HarmonicTangents tangents(system, held, harmonics);
+  HarmonicPreconditioner preconditioner(tangents);
   Eigen::VectorXd h = start_vector(system, harmonics, start);
-  balance.tangent(h.data(), matrix.get());
-  const Equilibration scaling = equilibrate(matrix.get());
+  tangents.sample(balance.solution_of(h.data()));
   SolverContext context;
   context.balance = &balance;
+  context.tangents = &tangents;
+  if (tries_harmonics && preconditioner.is_useful()) context.preconditioner = &preconditioner;
   context.start = &h;
-  context.scaling = &scaling;
-  context.unscaled.resize(h.size());
-  {
-    const petsc::WriteView view(x.get());
-    Eigen::Map<Eigen::VectorXd>(view.data(), h.size()) = h;
-  }
-  petsc::check(VecPointwiseDivide(x.get(), x.get(), scaling.columns.get()));
+  const Eigen::VectorXd undeformed = start_vector(system, harmonics, nullptr);
+  tangents.scale(balance.largest_load(undeformed.data()), context.rows, context.columns);
+  const PetscInt size = balance.unknowns();
+  const petsc::Handle<Mat> matrix =
+      context.preconditioner != nullptr ? make_shell(size, context) : tangents.make_matrix();
+  const petsc::Handle<Vec> x = petsc::make_vector(PETSC_COMM_SELF, size, size);
+  const petsc::Handle<Vec> f = petsc::make_vector(PETSC_COMM_SELF, size, size);
+  context.scale(h, x.get());
 
   petsc::Handle<SNES> solver;
   petsc::check(SNESCreate(PETSC_COMM_SELF, solver.fill()));
@@ -459,7 +489,6 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
   if (start != nullptr) {
     // The residual of a good start is too small to fall by the factor of the tolerance. But such a
     // start has no values for new harmonics; one step finds them.
-    const Eigen::VectorXd undeformed = start_vector(system, harmonics, nullptr);
     enough = std::max(enough, tolerance * residual_at(undeformed, context));
     if (residual_at(h, context) > vanished)
       petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
@@ -468,27 +497,25 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
   SNESLineSearch search = nullptr;
   petsc::check(SNESGetLineSearch(solver.get(), &search));
   petsc::check(SNESLineSearchSetType(search, limits.line_search));
-  KSP linear = nullptr;
-  PC preconditioner = nullptr;
-  petsc::check(SNESGetKSP(solver.get(), &linear));
-  petsc::check(KSPSetType(linear, KSPPREONLY));
-  petsc::check(KSPGetPC(linear, &preconditioner));
-  petsc::check(PCSetType(preconditioner, PCLU));
-  petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
+  choose_linear_solver(solver.get(), context);
   petsc::check(SNESSetFromOptions(solver.get()));
   const PreferredFactorization factorization;
   const PetscErrorCode code = SNESSolve(solver.get(), nullptr, x.get());
   if (code != 0 && context.error) std::rethrow_exception(context.error);
+  if (code == PETSC_ERR_SUP)
+    throw InputError("trim: PETSc does not support these options of -trim_ together");
   petsc::check(code);
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   petsc::check(SNESGetConvergedReason(solver.get(), &reason));
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE && context.preconditioner != nullptr)
+    throw LinearFailure("trim: GMRES with the preconditioner of the harmonics does not converge");
   if (reason < 0) fail(solver.get(), context);
   PetscReal left = 0.0;
   petsc::check(SNESGetFunctionNorm(solver.get(), &left));
   if (reason == SNES_CONVERGED_FNORM_ABS && left > vanished) reason = SNES_CONVERGED_FNORM_RELATIVE;
 
   const PetscScalar* solution = context.unscale(x.get());
-  Trim trim{PeriodicSolution(balance.unpack(solution), system.period()),
+  Trim trim{balance.solution_of(solution),
             TrimMethod::harmonic_balance,
             0,
             SNESConvergedReasons[reason],
@@ -500,10 +527,25 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
   PetscInt steps = 0;
   petsc::check(SNESGetIterationNumber(solver.get(), &steps));
   trim.newton_steps = static_cast<int>(steps);
+  trim.linear_solver = words_of_solver(solver.get(), context, system.size());
   const std::vector<double> loads = balance.loads(solution);
   for (std::size_t n = 0; n < loads.size(); ++n)
     trim.held.push_back({held[n].name, held[n].unit, loads[n], held[n].unknown});
   return trim;
+}
+
+/// As solve_by, with an assembled matrix and its factors where the preconditioner of the harmonics
+/// does not serve.
+Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
+           const std::vector<RowLoad>& given, int harmonics, double tolerance,
+           const PeriodicSolution* start, const NewtonLimits& limits = {}) {
+  if (!is_direct_solver_given()) {
+    try {
+      return solve_by(true, system, held, given, harmonics, tolerance, start, limits);
+    } catch (const LinearFailure&) {
+    }
+  }
+  return solve_by(false, system, held, given, harmonics, tolerance, start, limits);
 }
 
 /// The start of a trim with free coordinates, whose means are held at zero.

@@ -12,6 +12,7 @@
 #include "samara/base/error.hpp"
 
 #include "block_factors.hpp"
+#include "matrix_entries.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -181,7 +182,12 @@ Equilibration equilibrate(Mat matrix) {
 }
 
 Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, double rate) {
-  const Eigen::SparseMatrix<double> entries = to_sparse(matrix);
+  return scaling_by_role(system, to_sparse(matrix), rate);
+}
+
+Equilibration scaling_by_role(const system::PeriodicSystem& system,
+                              const Eigen::SparseMatrix<double>& entries, double rate,
+                              double least_load) {
   const auto n = static_cast<std::size_t>(entries.rows());
   const auto role = [&system](Eigen::Index i) {
     return system.unknowns()[static_cast<std::size_t>(i)].role;
@@ -203,10 +209,12 @@ Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, do
     if (system.rows()[i] == system::RowRole::balance && inertia[i] > 0.0)
       levels.push_back(inertia[i]);
   std::sort(levels.begin(), levels.end());
-  const double load = levels.empty() ? 1.0 : levels[levels.size() / 2];
+  const double inertia_load = levels.empty() ? 1.0 : levels[levels.size() / 2];
+  const double load = std::max(inertia_load, least_load);
 
-  Equilibration scaling;
-  petsc::check(MatCreateVecs(matrix, scaling.columns.fill(), scaling.rows.fill()));
+  const auto size_of_all = static_cast<PetscInt>(n);
+  Equilibration scaling{petsc::make_vector(PETSC_COMM_SELF, size_of_all, size_of_all),
+                        petsc::make_vector(PETSC_COMM_SELF, size_of_all, size_of_all)};
   std::vector<double> row_largest(n, 0.0);
   {
     const petsc::WriteView columns(scaling.columns.get());
@@ -272,12 +280,12 @@ void DirectSolver::factor(Mat matrix) {
   const bool is_first = !scaling_.rows;
   if (is_first) {
     scaling_ = scale_(matrix);
-    if (BlockFactors::accepts(matrix) && !is_solver_given())
-      blocks_ = std::make_unique<BlockFactors>(matrix);
+    if (const MatrixEntries entries(matrix); entries.has_blocks() && !is_solver_given())
+      blocks_ = std::make_unique<BlockFactors>(entries.blocks());
   }
   apply_scaling(scaling_, matrix);
   if (blocks_) {
-    if (blocks_->factor(matrix)) return;
+    if (blocks_->factor(MatrixEntries(matrix).blocks())) return;
     blocks_.reset();
     pivots_ = true;
   }

@@ -7,6 +7,8 @@
 #include "samara/petsc/handle.hpp"
 #include "samara/petsc/session.hpp"
 
+#include "block_factors.hpp"
+
 namespace samara::analysis {
 
 class MatrixEntries {
@@ -46,16 +48,12 @@ class MatrixEntries {
             visit(i * size_ + r, columns_[k] * size_ + c, values_[(k * size_ + c) * size_ + r]);
   }
 
+  bool has_blocks() const { return is_blocked_ != PETSC_FALSE; }
+  BlockMatrix blocks() const { return {size_, rows_, begin_, columns_, values_}; }
+
   /// The order is the same for all matrices of a pattern. Blocks column by column.
   PetscScalar* values() { return values_; }
   const PetscScalar* values() const { return values_; }
-
-  PetscInt block_size() const { return size_; }
-  PetscInt block_rows() const { return rows_; }
-  /// First block of block row i; end of the last row for i = block_rows().
-  PetscInt begin(Eigen::Index i) const { return begin_[i]; }
-  /// Block column of a block.
-  PetscInt column(PetscInt block) const { return columns_[block]; }
 
  private:
   Mat matrix_;

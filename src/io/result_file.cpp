@@ -393,6 +393,7 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
   file.set_attribute("/trim", "harmonics", trim.solution.harmonics());
   file.set_attribute("/trim", "newton_steps", trim.newton_steps);
   file.set_attribute("/trim", "convergence", trim.convergence);
+  file.set_attribute("/trim", "linear_solver", trim.linear_solver);
 }
 
 void ResultFile::write_static(const analysis::StaticPath& path) {

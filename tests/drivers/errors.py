@@ -172,11 +172,37 @@ class Solvers(ProgramTest):
 
     def test_a_work_array_that_is_too_small_is_no_singular_matrix(self):
         self.write("case.yaml", HEAVY_TIP)
-        small = ["-trim_mat_mumps_icntl_14", "1"]
+        small = ["-trim_mat_mumps_icntl_14", "-50"]
         self.refuse("trim", "case.yaml", *small, code=3,
                     words=["INFOG(1) = -9", "work array", "hint: a larger -trim_mat_mumps_icntl_14"])
         run = self.succeed("trim", "case.yaml")
         self.assertEqual(run.stderr, "")
+
+    def test_options_of_the_trim_do_as_petsc_says(self):
+        for options, solver in (
+                ([], "gmres, "),
+                (["-trim_ksp_type", "bcgs"], "bcgs, "),
+                (["-trim_snes_mf_operator"], "gmres, "),
+                (["-trim_snes_mf"], "gmres, "),
+                (["-trim_ksp_type", "gmres", "-trim_pc_type", "lu"], "gmres, "),
+                (["-trim_ksp_type", "preonly"], "lu (mumps)")):
+            run = self.succeed("trim", BASELINE, "--set", "gravity=9.81", *options)
+            self.assertIn("\nlinear       " + solver, run.stdout)
+
+    def test_a_factorization_without_pivoting_names_its_zero_pivot(self):
+        self.refuse("trim", BASELINE, "--set", "gravity=9.81", "-trim_pc_factor_mat_solver_type",
+                    "petsc", code=3, words=["FACTOR_NUMERIC_ZEROPIVOT",
+                                            "hint: -trim_pc_factor_mat_solver_type mumps"])
+
+    def test_options_that_the_solvers_cannot_follow_are_refused(self):
+        for option, value, word in (("-mat_type", "dense", "fixed"),
+                                    ("-trim_mat_type", "baij", "fixed"),
+                                    ("-floquet_mat_type", "aij", "fixed"),
+                                    ("-vec_type", "mpi", "fixed"),
+                                    ("-trim_snes_fd", None, "exact")):
+            self.refuse("trim", BASELINE, option, *([value] if value else []),
+                        place=f"samara: {option}: ", words=[word])
+        self.refuse("trim", BASELINE, "-trim_ksp_type", "cg", words=["does not support"])
 
     def test_entries_that_only_rounding_makes_are_in_the_pattern(self):
         self.write("case.yaml", WHIRLING)

@@ -36,6 +36,9 @@ void round_to_powers_of_two(Equilibration& scaling);
 /// the matrix of (19) is 6e17 unscaled, 1e8 equilibrated and 2e3 with these factors (the paper's
 /// turbine, 500 steps). The same holds for the pivot blocks of the elimination.
 Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, double rate);
+Equilibration scaling_by_role(const system::PeriodicSystem& system,
+                              const Eigen::SparseMatrix<double>& matrix, double rate,
+                              double least_load = 0.0);
 
 /// A matrix without an inverse.
 class SingularError : public ConvergenceError {

@@ -48,6 +48,7 @@ struct Trim {
   /// zero [N, N m]. A larger residual at the samples comes from harmonics that were left out. Not a
   /// number: not known.
   double harmonic_residual = 0.0;
+  std::string linear_solver = {};  ///< of harmonic balance, in words
 };
 
 /// Largest number of harmonics that `harmonics: auto` tries.
