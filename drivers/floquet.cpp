@@ -24,7 +24,8 @@ std::string headline(const io::Case& input, const analysis::Floquet& floquet) {
                                : "1/" + std::to_string(floquet.sectors) + " revolution";
   return (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n" + "rotor speed " +
          general(speed, 6) + " rad/s; " + count(floquet.set.degrees_of_freedom, "degree") +
-         " of freedom; " + std::to_string(floquet.steps) + " steps a revolution, integrated over " +
+         " of freedom; " + std::to_string(floquet.steps) + " steps of order " +
+         std::to_string(floquet.order) + " a revolution, integrated over " +
          span + "\n\n";
 }
 

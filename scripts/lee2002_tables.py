@@ -86,7 +86,7 @@ class Run:
         self.name = name
         self.steps = settings["steps"]
         has_tower = case != "rigid_tower"
-        arguments = [f"floquet.steps={self.steps}"]
+        arguments = [f"floquet.steps={self.steps}", "floquet.time_order=2"]
         for part in ("blades", "tower") if has_tower else ("blades",):
             for key in ("order", "elements"):
                 if key in settings:

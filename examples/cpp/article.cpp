@@ -43,7 +43,6 @@ simulation::Scenario article() {
   turbine.hub.teeter.kind = model::JointKind::free;
   turbine.blades.count = 2;
   turbine.blades.beam = uniform(8.42, 1e7);
-  scenario.floquet.steps = 300;
   return scenario;
 }
 

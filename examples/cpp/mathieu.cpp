@@ -97,7 +97,7 @@ int main() {
     const Mathieu system(1.0, q, 0.05);  // a = 1: the first region of instability
     const analysis::Trim trim = analysis::find_trim(system, {}, silent);
     analysis::FloquetOptions options;
-    options.steps = 2000;
+    options.steps = 200;
     const analysis::Floquet floquet =
         analysis::find_floquet_modes(system, trim.solution, options, PETSC_COMM_SELF, silent);
     for (const analysis::Mode& mode : floquet.set.modes)

@@ -2,12 +2,9 @@
 // them (docs/theory.md, section 9.1).
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 
-#include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/impulse_equations.hpp"
 #include "samara/system/periodic_system.hpp"
 
 namespace samara::analysis {
@@ -23,12 +20,10 @@ class AdmissibleVelocities {
   AdmissibleVelocities(const system::PeriodicSystem& system, double dt);
 
   /// False where every velocity is admissible.
-  bool is_restricted() const { return is_restricted_; }
+  bool is_restricted() const { return equations_.is_restricted(); }
 
   /// True for an internal load that no elastic strain determines.
-  bool is_reaction(Eigen::Index unknown) const {
-    return columns_[static_cast<std::size_t>(unknown)] == Column::reaction;
-  }
+  bool is_reaction(Eigen::Index unknown) const { return equations_.is_reaction(unknown); }
 
   /// Two jumps at time t in the state z, whose positions are consistent: the first makes the
   /// velocities of z admissible, the second makes `jump`, a change of velocities, admissible.
@@ -38,30 +33,14 @@ class AdmissibleVelocities {
   Jumps correct(double t, Vec z, const Eigen::VectorXd& jump);
 
  private:
-  enum class Column { none, position, velocity, elastic, reaction, state, auxiliary };
-  /// The columns of K and of M that a row keeps.
-  struct Kept {
-    Column of_K = Column::none;
-    Column of_M = Column::none;
-  };
-  static Kept kept_by(system::RowRole row);
-
-  void classify(double t, Vec z);
-  void build();
   bool solve(Jumps& jumps);
 
   const system::PeriodicSystem& system_;
   double dt_;
-  double tau_ = 0.0;  ///< [s], of (9.1b)
-  bool is_restricted_ = false;
-  std::vector<Column> columns_;
   petsc::Handle<Vec> rates_;  ///< zero
   petsc::Handle<Vec> r_;
   petsc::Handle<Vec> jump_;
-  petsc::Handle<Mat> matrix_;
-  petsc::Handle<Mat> mass_;
-  Eigen::SparseMatrix<double> added_;  ///< tau^2 K_e
-  DirectSolver solver_;
+  ImpulseEquations equations_;
 };
 
 }  // namespace samara::analysis

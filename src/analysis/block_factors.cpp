@@ -15,16 +15,6 @@ namespace {
 /// Relative to the largest entry of a block row before elimination: a smaller pivot is round-off.
 constexpr double least_pivot = 1e-13;
 
-/// C = C - A B with A of size x size, B and C of size x columns.
-void subtract_product(const double* a, const double* b, double* c, Eigen::Index size,
-                      Eigen::Index columns) {
-  const auto m = static_cast<PetscBLASInt>(size);
-  const auto n = static_cast<PetscBLASInt>(columns);
-  const PetscScalar minus = -1.0;
-  const PetscScalar one = 1.0;
-  BLASgemm_("N", "N", &m, &n, &m, &minus, a, &m, b, &m, &one, c, &m);
-}
-
 }  // namespace
 
 BlockFactors::BlockFactors(const BlockMatrix& pattern) : size_(pattern.size), rows_(pattern.rows) {
@@ -46,6 +36,30 @@ BlockFactors::BlockFactors(const BlockMatrix& pattern) : size_(pattern.size), ro
   }
   values_.resize(columns_.size() * static_cast<std::size_t>(size_ * size_));
   interchanges_.resize(static_cast<std::size_t>(rows_ * size_));
+  filled_rows_.resize(columns_.size());
+}
+
+/// Finds the rows of a block that are not zero throughout: elimination adds none to them.
+void BlockFactors::find_rows(Index entry) {
+  const Eigen::Map<const Eigen::MatrixXd> values(block(entry), size_, size_);
+  Index first = 0;
+  Index end = size_;
+  while (first < end && (values.row(first).array() == 0.0).all()) ++first;
+  while (first < end && (values.row(end - 1).array() == 0.0).all()) --end;
+  filled_rows_[static_cast<std::size_t>(entry)] = {first, end};
+}
+
+/// C = C - A B with the block A of an entry; B and C of size x columns.
+void BlockFactors::subtract_product(Index entry, const double* b, double* c, Index columns) const {
+  const auto [first, end] = filled_rows_[static_cast<std::size_t>(entry)];
+  if (first == end) return;
+  const auto rows = static_cast<PetscBLASInt>(end - first);
+  const auto size = static_cast<PetscBLASInt>(size_);
+  const auto n = static_cast<PetscBLASInt>(columns);
+  const PetscScalar minus = -1.0;
+  const PetscScalar one = 1.0;
+  BLASgemm_("N", "N", &rows, &n, &size, &minus, block(entry) + first, &size, b, &size, &one,
+            c + first, &size);
 }
 
 bool BlockFactors::factor_diagonal(Index i, double largest) {
@@ -89,12 +103,15 @@ bool BlockFactors::factor(const BlockMatrix& matrix) {
     for (Index entry = first; entry < diagonal_[static_cast<std::size_t>(i)]; ++entry) {
       const auto k = static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)]);
       divide(block(entry), columns_[static_cast<std::size_t>(entry)]);
+      find_rows(entry);
       for (Index other = diagonal_[k] + 1; other < begin_[k + 1]; ++other)
         subtract_product(
-            block(entry), block(other),
+            entry, block(other),
             block(place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(other)])]),
-            size_, size_);
+            size_);
     }
+    for (Index entry = diagonal_[static_cast<std::size_t>(i)] + 1; entry < last; ++entry)
+      find_rows(entry);
     if (!factor_diagonal(i, largest)) return false;
   }
   return true;
@@ -112,14 +129,14 @@ void BlockFactors::solve(const Eigen::Ref<const Eigen::MatrixXd>& right,
         row_factors.segment(i * size_, size_).array();
     for (Index entry = begin_[static_cast<std::size_t>(i)];
          entry < diagonal_[static_cast<std::size_t>(i)]; ++entry)
-      subtract_product(block(entry), rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
-                       size_, right_sides_);
+      subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
+                       right_sides_);
   }
   for (Index i = rows_ - 1; i >= 0; --i) {
     const Index diagonal = diagonal_[static_cast<std::size_t>(i)];
     for (Index entry = diagonal + 1; entry < begin_[static_cast<std::size_t>(i) + 1]; ++entry)
-      subtract_product(block(entry), rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
-                       size_, right_sides_);
+      subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
+                       right_sides_);
     PetscBLASInt status = 0;
     LAPACKgetrs_("N", &n, &m, block(diagonal), &n, interchanges(i), rows_of(i), &n, &status);
   }

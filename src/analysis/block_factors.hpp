@@ -1,6 +1,7 @@
 // LU factorization of a sparse matrix of square blocks, for many right-hand sides at once.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -46,6 +47,8 @@ class BlockFactors {
   const double* rows_of(Index i) const { return packed_.data() + i * size_ * right_sides_; }
   PetscBLASInt* interchanges(Index i) { return interchanges_.data() + i * size_; }
   const PetscBLASInt* interchanges(Index i) const { return interchanges_.data() + i * size_; }
+  void find_rows(Index entry);
+  void subtract_product(Index entry, const double* b, double* c, Index columns) const;
   bool factor_diagonal(Index i, double largest);
   void divide(double* a, Index k) const;
 
@@ -56,7 +59,9 @@ class BlockFactors {
   std::vector<Index> diagonal_;  ///< entry of the diagonal block of each row
   std::vector<Index> columns_;   ///< ascending in each row
   std::vector<double> values_;   ///< L, factors of D, U; blocks column by column
-  std::vector<double> packed_;   ///< right-hand sides, block row by block row
+  /// First row of each block off the diagonal that is not zero, and the row behind the last one.
+  std::vector<std::pair<Index, Index>> filled_rows_;
+  std::vector<double> packed_;              ///< right-hand sides, block row by block row
   std::vector<PetscBLASInt> interchanges_;  ///< of the rows of the diagonal blocks, from 1
 };
 

@@ -15,6 +15,10 @@ namespace {
 
 /// Smallest pivot: below it no strain yields in a direction in which a beam is held twice.
 constexpr double least_pivot = 1e-9;
+/// Step of the differences in time, relative to the period, and their weights at 1 and 2 steps. At
+/// 10 harmonics the error is 3e-12, at 30 harmonics 3e-10.
+constexpr double relative_step = 5e-5;
+constexpr std::array<double, 2> difference_weights{2.0 / 3.0, -1.0 / 12.0};
 
 }  // namespace
 
@@ -239,8 +243,7 @@ Eigen::MatrixXd ConsistentSubspace::states_of(const Eigen::MatrixXd& z) const {
 }
 
 /// Columns for a unit of each entry of eta and of xi: positions, internal loads in eta, and states.
-Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
-  const SparseTangents tangents = tangents_on(system_, solution_, t);
+Eigen::MatrixXd ConsistentSubspace::positions(const Sparse& K, const SparseSolver& tied) const {
   const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
   const auto n_1 = static_cast<Eigen::Index>(first_order());
   Eigen::MatrixXd z = Eigen::MatrixXd::Zero(system_.size(), d + n_1);
@@ -249,35 +252,46 @@ Eigen::MatrixXd ConsistentSubspace::positions(double t) const {
   for (Eigen::Index i = 0; i < n_1; ++i)
     z(states_[static_cast<std::size_t>(i)], d + i) = state_scale_[static_cast<std::size_t>(i)];
   Eigen::MatrixXd strained(static_cast<Eigen::Index>(constraints_.size()), d + n_1);
-  strained.leftCols(d) = part(tangents.K, constraints_, coordinates_) *
+  strained.leftCols(d) = part(K, constraints_, coordinates_) *
                          Eigen::Map<const Eigen::VectorXd>(scale_.data(), d).asDiagonal();
   strained.rightCols(n_1) =
-      part(tangents.K, constraints_, states_) *
+      part(K, constraints_, states_) *
       Eigen::Map<const Eigen::VectorXd>(state_scale_.data(), n_1).asDiagonal();
-  const Eigen::MatrixXd tied =
-      SparseSolver(part(tangents.K, constraints_, tied_), "constraints").solve(-strained);
-  for (std::size_t i = 0; i < tied_.size(); ++i)
-    z.row(tied_[i]) = tied.row(static_cast<Eigen::Index>(i));
+  z(tied_, Eigen::all) = tied.solve(-strained);
   return z;
 }
 
-Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
+Sparse ConsistentSubspace::constraint_rates(double t) const {
+  Sparse rates(static_cast<Eigen::Index>(constraints_.size()), system_.size());
+  if (fixed_constraints_ || system_.period() == 0.0) return rates;
+  const double step = relative_step * system_.period();
+  for (std::size_t n = 0; n < difference_weights.size(); ++n)
+    for (const double side : {-1.0, 1.0}) {
+      const double shift = side * static_cast<double>(n + 1) * step;
+      rates += side * difference_weights[n] / step *
+               rows_of(tangents_on(system_, solution_, t + shift).K, constraints_);
+    }
+  return rates;
+}
+
+Eigen::MatrixXd ConsistentSubspace::basis(double t) const {
   const auto d = static_cast<Eigen::Index>(degrees_of_freedom());
   const auto n_1 = static_cast<Eigen::Index>(first_order());
   const Eigen::Index n = system_.size();
   Eigen::MatrixXd z = Eigen::MatrixXd::Zero(n, 2 * d + n_1);
   Eigen::MatrixXd z_dot = Eigen::MatrixXd::Zero(n, 2 * d + n_1);  // of positions
-  const Eigen::MatrixXd Z = positions(t);
+  const SparseTangents tangents = tangents_on(system_, solution_, t);
+  const SparseSolver tied(part(tangents.K, constraints_, tied_), "constraints");
+  const Eigen::MatrixXd Z = positions(tangents.K, tied);
   z.leftCols(d) = Z.leftCols(d);
   z.rightCols(n_1) = Z.rightCols(n_1);
   z_dot.middleCols(d, d) = Z.leftCols(d);
-  if (!fixed_constraints_) {
-    const Eigen::MatrixXd Z_dot =
-        (positions(t + rate_step) - positions(t - rate_step)) / (2.0 * rate_step);
-    z_dot.leftCols(d) = Z_dot.leftCols(d);
-    z_dot.rightCols(n_1) = Z_dot.rightCols(n_1);
+  // D p_dot + D_dot p = 0, where eta and xi do not change.
+  if (const Sparse change = constraint_rates(t); change.nonZeros() > 0) {
+    const Eigen::MatrixXd Z_dot = tied.solve(-(change * Z));
+    z_dot(tied_, Eigen::seqN(0, d)) = Z_dot.leftCols(d);
+    z_dot(tied_, Eigen::seqN(2 * d, n_1)) = Z_dot.rightCols(n_1);
   }
-  const SparseTangents tangents = tangents_on(system_, solution_, t);
   if (!driving_.empty()) z_dot += Z.rightCols(n_1) * driving_rates(tangents.K, tangents.M, z);
   const Eigen::MatrixXd p = z(positions_, Eigen::all);
   const Eigen::MatrixXd p_dot = z_dot(positions_, Eigen::all);
@@ -291,14 +305,13 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t, double rate_step) const {
   return z;
 }
 
-Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z,
-                                             double rate_step) const {
+Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z) const {
   const Eigen::Index d = degrees_of_freedom();
   const Eigen::Index n_1 = first_order();
   Eigen::MatrixXd state(2 * d + n_1, z.cols());
   state.topRows(d) = coordinates_of(z);
   state.bottomRows(n_1) = states_of(z);
-  const Eigen::MatrixXd all = basis(t, rate_step)(velocities_, Eigen::all);
+  const Eigen::MatrixXd all = basis(t)(velocities_, Eigen::all);
   const Eigen::MatrixXd at_rest = all.leftCols(d);
   Eigen::MatrixXd moving = z(velocities_, Eigen::all) - multiply(at_rest, state.topRows(d));
   if (n_1 > 0) moving -= multiply(all.rightCols(n_1), state.bottomRows(n_1));

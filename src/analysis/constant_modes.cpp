@@ -86,7 +86,7 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
       "modes_", [&system, sigma](Mat matrix) { return scale_by_role(system, matrix, sigma); });
   solver.factor(jacobian.get());
   const Eigen::Index d = subspace.degrees_of_freedom();
-  Eigen::MatrixXd states = subspace.basis(0.0, 1e-3 / sigma);
+  Eigen::MatrixXd states = subspace.basis(0.0);
   const EnergyCoordinates coordinates(system, states, d, rate);
   coordinates.divide(states);
   Eigen::MatrixXd shapes = M * states;
@@ -171,6 +171,14 @@ double distance(Complex exponent, const Spectrum& other, double zero) {
 
 }  // namespace
 
+std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
+                                         const PeriodicSolution& solution) {
+  const ConsistentSubspace subspace(system, solution);
+  if (subspace.size() == 0) return {};
+  const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 1.0;
+  return moduli_of(find_spectrum(system, solution, subspace, rate, rate), zero_exponent * rate);
+}
+
 ModeSet find_constant_modes(const system::PeriodicSystem& system,
                             const PeriodicSolution& solution) {
   require_constant(system, solution);
@@ -189,13 +197,16 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   const double zero = zero_exponent * rate;
   const std::vector<double> moduli =
       moduli_of(find_spectrum(system, solution, subspace, rate, rate), zero);
-  const auto slowest = static_cast<std::size_t>(
-      std::lower_bound(moduli.begin(), moduli.end(),
-                       much_slower * middle_of(moduli, 0, slow_modes, rate)) -
-      moduli.begin());
+  const auto first_above = [&moduli](double limit) {
+    return static_cast<std::size_t>(std::lower_bound(moduli.begin(), moduli.end(), limit) -
+                                    moduli.begin());
+  };
+  // Moduli below the first of these may belong to a double zero.
+  const std::size_t first = first_above(split_to_shift * rate);
+  const std::size_t slowest = first_above(much_slower * middle_of(moduli, 0, slow_modes, rate));
   std::vector<double> shifts;
-  if (slowest > 0) shifts.push_back(middle_of(moduli, 0, slowest, rate));
-  shifts.push_back(middle_of(moduli, slowest, slow_modes, rate));
+  if (slowest > first) shifts.push_back(middle_of(moduli, first, slowest - first, rate));
+  shifts.push_back(middle_of(moduli, slowest > first ? slowest : 0, slow_modes, rate));
   shifts.push_back(middle_of(moduli, 0, moduli.size(), rate));
   std::vector<CheckedSpectrum> spectra;
   for (const double shift : shifts) spectra.push_back(checked(shift));

@@ -1,20 +1,19 @@
 #include "samara/analysis/floquet.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <numeric>
 #include <sstream>
 #include <string>
 
+#include "samara/analysis/collocation_step.hpp"
 #include "samara/analysis/consistent_subspace.hpp"
+#include "samara/analysis/constant_modes.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/mode_error.hpp"
-#include "samara/analysis/monodromy.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
@@ -29,8 +28,6 @@ namespace {
 using Complex = std::complex<double>;
 using namespace std::complex_literals;
 
-/// |lambda| dt / 2 above which a mode counts as unresolved.
-constexpr double largest_half_phase = 0.7;
 constexpr double largest_residual = 1e-6;
 /// Relative to the largest multiplier: a smaller one is round-off.
 constexpr double least_multiplier = 1e-12;
@@ -56,31 +53,52 @@ constexpr int shape_samples = 24;
 /// Instants per sector for the name of a mode that is not resolved.
 constexpr Eigen::Index label_samples = 3;
 
-/// Weights of the ends of the first steps that give the part with alternating sign, see
-/// Analysis::smooth_velocities.
-constexpr std::array<double, 9> alternating_weights{1.0 / 256.0,   -8.0 / 256.0, 28.0 / 256.0,
-                                                    -56.0 / 256.0, 70.0 / 256.0, -56.0 / 256.0,
-                                                    28.0 / 256.0,  -8.0 / 256.0, 1.0 / 256.0};
-/// The directions of this part turn with the azimuth: one pass leaves a few hundredths of it.
-constexpr int smoothing_passes = 2;
+/// Modes that a chosen number of steps resolves, those of a verdict.
+constexpr std::size_t first_modes = 10;
+/// Limits of a number of steps that is chosen.
+constexpr int least_steps = 36;
+constexpr double most_steps = 2000.0;
+/// Reach of these steps beyond the frequency of the last of these modes: factor, and multiples of
+/// the rotor speed, since the axes in which a mode is identified may turn.
+constexpr double reach_factor = 1.25;
+constexpr double reach_harmonics = 3.0;
+/// Factor of the number of steps from one attempt to the next, and the same where modes are beyond
+/// reach.
+constexpr double least_increase = 1.15;
+constexpr double most_increase = 3.0;
+constexpr double usual_increase = 1.6;
+/// An estimated number of steps is raised by this factor.
+constexpr double step_margin = 1.05;
+constexpr int most_attempts = 5;
+
+/// Instants of a step at which the motion is identified: its middle for order 2, its start and
+/// others for higher orders. They are more than the stages and show motions that are too fast for
+/// the step: at the ends of steps these may look like slow ones.
+int samples_of_step(int order) { return order == 2 ? 1 : order / 2 + 1; }
 
 class Analysis {
  public:
+  /// `rule`: of a number of steps in the period that the sectors divide.
   Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution, int sectors,
-           int steps, const Ranks& ranks, Observer& observer)
+           int steps, const FloquetOptions& options, const Ranks& ranks, Observer& observer)
       : system_(system),
         solution_(solution),
         ranks_(ranks),
         observer_(observer),
         subspace_(system, solution),
         sectors_(sectors),
-        steps_(steps),
-        span_(steps / sectors),
-        dt_(system.period() / steps),
+        rule_{options.order, system.period() / steps},
+        accuracy_(options.accuracy.value_or(std::numeric_limits<double>::infinity())),
+        steps_(steps / sectors),
+        samples_of_step_(samples_of_step(options.order)),
+        offset_(options.order == 2 ? 0.5 : 0.0),
+        samples_(steps * samples_of_step_),
+        span_(samples_ / sectors),
+        dt_(system.period() / samples_),
         speed_(2.0 * std::numbers::pi / system.period()),
         states_(subspace_.size()),
         series_(system, sectors, span_, states_, ranks),
-        stride_(std::max(1, (steps + shape_samples - 1) / shape_samples)) {}
+        stride_(std::max(1, (samples_ + shape_samples - 1) / shape_samples)) {}
 
   Floquet run() {
     if (states_ == 0)
@@ -106,73 +124,37 @@ class Analysis {
 
   void integrate() {
     const Eigen::Index d = subspace_.degrees_of_freedom();
-    Eigen::MatrixXd start = subspace_.basis(0.0, 0.5 * dt_);
+    Eigen::MatrixXd start = subspace_.basis(0.0);
     coordinates_ = EnergyCoordinates(system_, start, d, speed_);
     coordinates_.divide(start);
     for (Eigen::Index j = ranks_.rank; j < states_; j += ranks_.size) own_.push_back(j);
     Eigen::MatrixXd z = start(Eigen::all, own_);
     const Eigen::Index shapes = (span_ + stride_ - 1) / stride_;
     shapes_.resize(z.rows() * shapes, z.cols());
-    const auto propagator = [this] {
-      return std::make_unique<StepPropagator>(system_, solution_, subspace_.carried(), dt_);
-    };
-    FirstSteps first;
-    for (auto& step : first) step = propagator();
-    smooth_velocities(start.middleCols(d, d), first, z);
-    const std::unique_ptr<StepPropagator> others = propagator();
-    for (long k = 0; k <= span_; ++k) {
-      if (k == span_) take_states(z);
-      const auto at = static_cast<std::size_t>(k);
-      if (at == first.size())
-        for (auto& step : first) step.reset();
-      const Eigen::MatrixXd& middle =
-          at < first.size() ? first[at]->repeat(z) : others->advance(k, z);
-      if (k == span_) end_ = middle;
-      if (k < span_) {
-        series_.append(middle);
-        if (k % stride_ == 0) shapes_.middleRows(k / stride_ * z.rows(), z.rows()) = middle;
+    CollocationStep step(system_, solution_, subspace_, rule_.order, rule_.step);
+    Eigen::MatrixXd values;
+    long sample = 0;
+    for (long k = 0; k < steps_; ++k) {
+      step.advance(k, z);
+      for (int i = 0; i < samples_of_step_; ++i, ++sample) {
+        step.sample((i + offset_) / samples_of_step_, values);
+        series_.append(values);
+        if (sample % stride_ == 0)
+          shapes_.middleRows(sample / stride_ * z.rows(), z.rows()) = values;
       }
-      observer_.progress("floquet", k + 1, span_ + 1);
+      observer_.progress("floquet", k + 1, steps_ + 1);
     }
+    take_states(step.state());
+    step.advance(steps_, z);
+    step.sample(offset_ / samples_of_step_, end_);
+    observer_.progress("floquet", steps_ + 1, steps_ + 1);
   }
-
-  /// The steps that smooth the velocities.
-  using FirstSteps = std::array<std::unique_ptr<StepPropagator>, alternating_weights.size() - 1>;
 
   /// Columns of the map over a sector: P (eta, eta_dot, xi) in the coordinates of the start.
-  void take_states(const Eigen::MatrixXd& z) {
+  void take_states(const Eigen::MatrixXd& ends) {
     map_.setZero(states_, states_);
-    map_(Eigen::all, own_) =
-        coordinates_.of(turned(subspace_.state_of(static_cast<double>(span_) * dt_, z, 0.5 * dt_)));
+    map_(Eigen::all, own_) = coordinates_.of(turned(ends));
     ranks_.sum(map_);
-  }
-
-  /// Velocities that obey the constraints at t = 0 differ from those of a smooth sequence of steps
-  /// by O(dt^2). This part would change sign with every step and not decay. The eighth difference
-  /// of the ends of the steps contains the whole of this part, and a motion of frequency omega by
-  /// the factor sin^8(omega dt / 2). Steps go forward only: a backward step multiplies a decay with
-  /// lambda dt / 2 = -1 by infinity. Velocities that rates of eta produce (`admissible`) are not
-  /// corrected: fast modes are not smooth, and keep their velocities. `steps` keep the factors of
-  /// the first steps.
-  void smooth_velocities(const Eigen::MatrixXd& admissible, FirstSteps& steps,
-                         Eigen::MatrixXd& z) const {
-    std::vector<PetscInt> velocities;
-    for (Eigen::Index i = 0; i < z.rows(); ++i)
-      if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::velocity)
-        velocities.push_back(static_cast<PetscInt>(i));
-    for (int pass = 0; pass < smoothing_passes; ++pass) {
-      Eigen::MatrixXd moved = z;
-      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(z.rows(), z.cols());
-      for (std::size_t m = 0; m < alternating_weights.size(); ++m) {
-        if (m > 0 && pass == 0) steps[m - 1]->advance(static_cast<long>(m) - 1, moved);
-        if (m > 0 && pass > 0) steps[m - 1]->repeat(moved);
-        change(velocities, Eigen::all) -= alternating_weights[m] * moved(velocities, Eigen::all);
-      }
-      const Eigen::MatrixXd rates = subspace_.state_of(0.0, change, 0.5 * dt_)
-                                        .middleRows(admissible.cols(), admissible.cols());
-      z(velocities, Eigen::all) += change(velocities, Eigen::all) -
-                                   admissible(velocities, Eigen::all) * coordinates_.rates(rates);
-    }
   }
 
   /// Applies P to (eta, eta_dot, xi). Their entries are unknowns, each divided by its own scale; P
@@ -213,12 +195,12 @@ class Analysis {
 
   /// Whether the step resolves an exponent lambda of the motion.
   bool in_reach(Complex exponent) const {
-    return 0.5 * std::abs(exponent.imag()) * dt_ <= largest_half_phase &&
-           0.5 * std::abs(exponent.real()) * dt_ <= largest_half_phase;
+    return std::abs(exponent.imag()) <= rule_.reach() && std::abs(exponent.real()) <= rule_.reach();
   }
-  /// The exponent of a motion at the harmonic k, from the principal exponent of the steps.
-  Complex unwarped_at(Complex principal, int k) const {
-    return unwarped(principal + Complex(0.0, k * speed_), dt_);
+  /// The same for the harmonic k of the principal exponent of the steps.
+  bool in_reach_at(Complex principal, int k) const {
+    const Complex s = principal + Complex(0.0, k * speed_);
+    return rule_.may_reach(s) && in_reach(unwarped(s, rule_));
   }
 
   void keep(Complex multiplier, const Eigen::VectorXcd& vector, double condition, int state) {
@@ -302,7 +284,8 @@ class Analysis {
     const Eigen::MatrixXd& signals = series_.values();
     HarmonicEnergy& energy = series_.energy();
     const Eigen::Index parts = energy.columns();
-    set_.participation.setZero(count, steps_);
+    set_.participation.setZero(count, samples_);
+    sampled_shares_.setZero(count, samples_);
     const Eigen::Index batch = std::max<Eigen::Index>(
         1, batch_values / std::max<Eigen::Index>(1, 2 * series_.most_rows()));
     Eigen::VectorXcd factors(span_);
@@ -313,25 +296,55 @@ class Analysis {
       multiply(signals, weights_of(modes), values);
       // Every rank has the energies of some signals of each mode; the modes need the sum over all
       // ranks.
-      Eigen::MatrixXd energies(steps_, parts * static_cast<Eigen::Index>(modes.size()));
+      Eigen::MatrixXd energies(samples_, parts * static_cast<Eigen::Index>(modes.size()));
+      Eigen::MatrixXd of_ends(samples_ / samples_of_step_, energies.cols());
       for (const Eigen::Index mode : modes) {
         const Complex exponent = exponents_[static_cast<std::size_t>(mode)];
         for (long k = 0; k < span_; ++k)
-          factors(k) = std::exp(-exponent * ((static_cast<double>(k) + 0.5) * dt_));
+          factors(k) = std::exp(-exponent * ((static_cast<double>(k) + offset_) * dt_));
         const Eigen::Index at = mode - first;
         energies.middleCols(at * parts, parts) =
             energy.energies(values.col(2 * at).data(), values.col(2 * at + 1).data(), factors);
+        of_ends.middleCols(at * parts, parts) = energy.energies_of_part(samples_of_step_);
       }
       ranks_.sum(energies);
+      ranks_.sum(of_ends);
       Eigen::VectorXd participation;
+      Eigen::VectorXd at_ends;
       for (const Eigen::Index mode : modes) {
         describe_energy(energies.middleCols((mode - first) * parts, parts), energy.part_names(),
                         leading_states_[static_cast<std::size_t>(mode)],
                         set_.modes[static_cast<std::size_t>(mode)], participation);
-        set_.participation.row(mode) = participation;
+        Mode unused;
+        describe_energy(of_ends.middleCols((mode - first) * parts, parts), energy.part_names(),
+                        leading_states_[static_cast<std::size_t>(mode)], unused, at_ends);
+        sampled_shares_.row(mode) = participation;
+        set_.participation.row(mode) = shares_of_harmonics(participation, at_ends);
       }
     }
     find_displacements();
+  }
+
+  /// Shares of all harmonics from those at the ends of steps, which have the order of the rule but
+  /// do not distinguish harmonics that differ by the number of steps. `sampled`: shares at all
+  /// samples, which have the error of the polynomials in a step; they choose between such
+  /// harmonics.
+  Eigen::VectorXd shares_of_harmonics(const Eigen::VectorXd& sampled,
+                                      const Eigen::VectorXd& at_ends) const {
+    if (samples_of_step_ == 1) return sampled;
+    const Eigen::Index ends = at_ends.size();
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(samples_);
+    for (Eigen::Index i = 0; i < ends; ++i) {
+      const Eigen::Index harmonic = i - ends / 2;
+      Eigen::Index chosen = -1;
+      for (Eigen::Index a = -samples_of_step_; a <= samples_of_step_; ++a) {
+        const Eigen::Index place = harmonic + a * ends + samples_ / 2;
+        if (place < 0 || place >= samples_) continue;
+        if (chosen < 0 || sampled(place) > sampled(chosen)) chosen = place;
+      }
+      shares(chosen) = at_ends(i);
+    }
+    return shares;
   }
 
   /// Finds displacements at rest that nothing restores: their kinetic energy is round-off, and at
@@ -346,7 +359,9 @@ class Analysis {
     if (modes.empty()) return;
     Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), own_weights_of(modes));
     ranks_.sum(first);
-    const Eigen::MatrixXd states = coordinates_.of(subspace_.state_of(0.5 * dt_, first, 0.5 * dt_));
+    Eigen::MatrixXd states = Eigen::MatrixXd::Zero(states_, first.cols());
+    states.topRows(subspace_.degrees_of_freedom()) = subspace_.coordinates_of(first);
+    states = coordinates_.of(states);
     for (std::size_t i = 0; i < modes.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(2 * i);
       if (states.middleCols<2>(column).squaredNorm() > 0.5) settle_rest(modes[i]);
@@ -358,8 +373,10 @@ class Analysis {
     Mode& at_rest = set_.modes[static_cast<std::size_t>(mode)];
     at_rest.parts.clear();
     at_rest.harmonic = 0;
-    set_.participation.row(mode).setZero();
-    set_.participation(mode, steps_ / 2) = 1.0;
+    for (Eigen::MatrixXd* shares : {&set_.participation, &sampled_shares_}) {
+      shares->row(mode).setZero();
+      (*shares)(mode, samples_ / 2) = 1.0;
+    }
   }
 
   /// P^-1 on chosen unknowns: (P y)_i = sign_i y_source(i).
@@ -395,7 +412,7 @@ class Analysis {
                                                       columns);
     Eigen::MatrixXcd part(sector.unknowns, columns);
     for (Eigen::Index k = 0; k < columns; ++k) {
-      const double t = (static_cast<double>(k * sector.stride) + 0.5) * dt_;
+      const double t = (static_cast<double>(k * sector.stride) + offset_) * dt_;
       const Complex factor = std::exp(-exponent * t);
       part.col(k).real() = factor.real() * real.col(k) - factor.imag() * imaginary.col(k);
       part.col(k).imag() = factor.imag() * real.col(k) + factor.real() * imaginary.col(k);
@@ -457,7 +474,7 @@ class Analysis {
     for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       const Complex exponent = exponents_[m];
       const bool may_be_rigid = exponent.imag() == 0.0 || is_zero(exponent);
-      const bool fine = may_be_rigid || in_reach(unwarped_at(exponent, set_.modes[m].harmonic));
+      const bool fine = may_be_rigid || in_reach_at(exponent, set_.modes[m].harmonic);
       (fine && set_.modes[m].residual <= largest_residual ? trusted : others)
           .push_back(static_cast<Eigen::Index>(m));
     }
@@ -512,10 +529,10 @@ class Analysis {
   /// Share of the kinetic energy of mode m in harmonics that the step does not resolve.
   double fast_share(std::size_t m) const {
     double share = 0.0;
-    for (Eigen::Index i = 0; i < steps_; ++i) {
-      const auto harmonic = static_cast<int>(i - steps_ / 2);
-      if (!in_reach(unwarped_at(exponents_[m], harmonic)))
-        share += set_.participation(static_cast<Eigen::Index>(m), i);
+    for (Eigen::Index i = 0; i < samples_; ++i) {
+      const auto harmonic = static_cast<int>(i - samples_ / 2);
+      if (!in_reach_at(exponents_[m], harmonic))
+        share += sampled_shares_(static_cast<Eigen::Index>(m), i);
     }
     return share;
   }
@@ -527,9 +544,9 @@ class Analysis {
     const bool slow = fast_share(m) <= largest_fast_share;
     const WarpingSpread spread =
         warping_spread(exponents_[m], set_.participation.row(static_cast<Eigen::Index>(m)),
-                       -static_cast<int>(steps_ / 2), mode.harmonic, speed_, dt_);
+                       -static_cast<int>(samples_ / 2), mode.harmonic, speed_, rule_);
     mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
-    mode.exponent = unwarped(mode.step_exponent, dt_);
+    mode.exponent = unwarped(mode.step_exponent, rule_);
     if (mode.exponent.imag() < -zero_exponent * speed_) conjugate(m);
     const double size = std::abs(mode.exponent);
     mode.damping_ratio = is_zero(mode.exponent) ? 0.0 : -mode.exponent.real() / size;
@@ -544,7 +561,8 @@ class Analysis {
       mode.step_exponent.imag(0.0);
     }
     set_growth_error(mode, spread, may_be_free(m) ? exponents_[m] : far_from_zero);
-    mode.resolved = slow && in_reach(mode.exponent) && mode.residual <= largest_residual;
+    mode.resolved = slow && in_reach_at(exponents_[m], mode.harmonic) &&
+                    mode.residual <= largest_residual && mode.step_error <= accuracy_;
     std::stable_sort(mode.parts.begin(), mode.parts.end(),
                      [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
   }
@@ -558,11 +576,13 @@ class Analysis {
     mode.harmonic = -mode.harmonic;
     mode.multiplier = std::conj(mode.multiplier);
     const auto row = static_cast<Eigen::Index>(m);
-    const Eigen::RowVectorXd shares = set_.participation.row(row);
-    const Eigen::Index half = steps_ / 2;
-    for (Eigen::Index i = 0; i < steps_; ++i) {
-      const Eigen::Index mirrored = half - (i - half);
-      set_.participation(row, i) = mirrored >= 0 && mirrored < steps_ ? shares(mirrored) : 0.0;
+    const Eigen::Index half = samples_ / 2;
+    for (Eigen::MatrixXd* all : {&set_.participation, &sampled_shares_}) {
+      const Eigen::RowVectorXd shares = all->row(row);
+      for (Eigen::Index i = 0; i < samples_; ++i) {
+        const Eigen::Index mirrored = half - (i - half);
+        (*all)(row, i) = mirrored >= 0 && mirrored < samples_ ? shares(mirrored) : 0.0;
+      }
     }
     if (!set_.shapes.empty()) set_.shapes[m] = set_.shapes[m].conjugate().eval();
   }
@@ -610,6 +630,7 @@ class Analysis {
     set_.modes.resize(kept.size());
     if (!set_.shapes.empty()) set_.shapes.resize(kept.size());
     set_.participation = set_.participation(kept, Eigen::all).eval();
+    sampled_shares_ = sampled_shares_(kept, Eigen::all).eval();
   }
 
   Floquet finish() {
@@ -617,9 +638,9 @@ class Analysis {
     drop_round_off();
     set_.degrees_of_freedom = subspace_.degrees_of_freedom();
     set_.rotor_speed = speed_;
-    set_.step = dt_;
+    set_.step = rule_.step;
     set_.conservative = system_.is_conservative();
-    set_.first_harmonic = -steps_ / 2;
+    set_.first_harmonic = -samples_ / 2;
     set_.states = static_cast<int>(states_);
     for (const Complex multiplier : multipliers_) set_.found += multiplier.imag() == 0.0 ? 1 : 2;
     if (set_.found + set_.deflated != set_.states)
@@ -629,11 +650,11 @@ class Analysis {
     const Eigen::Index columns = shapes_.rows() / system_.size();
     for (int q = 0; q < sectors_; ++q)
       for (Eigen::Index k = 0; k < columns; ++k)
-        set_.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + 0.5) * dt_);
+        set_.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + offset_) * dt_);
     const std::vector<LeadingMotion> leading =
         find_leading_motions(system_, solution_, set_, sectors_);
     move_to_leading(leading);
-    set_.reach = 2.0 * largest_half_phase / dt_;
+    set_.reach = rule_.reach();
     for (const Mode& mode : set_.modes)
       if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
     find_mesh_errors();
@@ -644,9 +665,10 @@ class Analysis {
     for (std::size_t m = 0; m < set_.shapes.size(); ++m)
       if (!set_.modes[m].resolved) set_.shapes[m].resize(0, 0);
     Floquet result;
-    result.steps = steps_;
+    result.steps = static_cast<int>(steps_) * sectors_;
+    result.order = rule_.order;
     result.sectors = sectors_;
-    result.step = dt_;
+    result.step = rule_.step;
     result.set = std::move(set_);
     return result;
   }
@@ -702,16 +724,21 @@ class Analysis {
   Observer& observer_;
   ConsistentSubspace subspace_;
   int sectors_;
-  int steps_;
-  long span_;
-  double dt_;
+  TimeRule rule_;
+  double accuracy_;  ///< largest error by the step of a resolved mode
+  long steps_;       ///< in a sector
+  int samples_of_step_;
+  double offset_;  ///< of the first sample, in distances between samples
+  int samples_;    ///< in a period
+  long span_;      ///< samples in a sector
+  double dt_;      ///< between samples [s]
   double speed_;
   Eigen::Index states_;
   SignalSeries series_;
   long stride_;
   std::vector<Eigen::Index> own_;     ///< initial states of this rank
-  Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th step x own states
-  Eigen::MatrixXd end_;               ///< all unknowns in the middle of the step after the sector
+  Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th sample x own states
+  Eigen::MatrixXd end_;               ///< all unknowns at the first sample after the sector
   EnergyCoordinates coordinates_;     ///< of the states at the start
   Eigen::MatrixXd map_;               ///< over a sector, in these coordinates
   std::vector<Complex> multipliers_;  ///< of the sector
@@ -719,8 +746,48 @@ class Analysis {
   std::vector<int> leading_states_;   ///< see leading_states(); with those of dropped modes
   std::vector<Complex> exponents_;    ///< principal
   Eigen::MatrixXcd vectors_;
-  ModeSet set_;  ///< the result; only the first rank has the shapes
+  Eigen::MatrixXd sampled_shares_;  ///< of the harmonics, at all samples; modes x harmonics
+  ModeSet set_;                     ///< the result; only the first rank has the shapes
 };
+
+}  // namespace
+
+namespace {
+
+/// Number of steps in a revolution whose reach is beyond the slowest modes, as the tangents at the
+/// start have them.
+double choose_steps(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                    int order) {
+  const std::vector<double> moduli = find_moduli_at_start(system, solution);
+  if (moduli.empty()) return least_steps;
+  const double speed = 2.0 * std::numbers::pi / system.period();
+  const double last = moduli[std::min(moduli.size(), first_modes) - 1];
+  const double reach = reach_factor * (last + reach_harmonics * speed);
+  const double steps = reach / TimeRule{order, system.period()}.reach();
+  return std::clamp(steps, static_cast<double>(least_steps), most_steps);
+}
+
+/// Factor of the number of steps that resolves the slowest modes, with the accuracy where one is
+/// asked for; 1 where they are.
+double increase_of(const ModeSet& set, const FloquetOptions& options) {
+  std::vector<const Mode*> modes;
+  for (const Mode& mode : set.modes) modes.push_back(&mode);
+  std::sort(modes.begin(), modes.end(), [](const Mode* a, const Mode* b) {
+    return std::abs(a->exponent) < std::abs(b->exponent);
+  });
+  modes.resize(std::min(modes.size(), first_modes));
+  double factor = 1.0;
+  for (const Mode* mode : modes) {
+    if (mode->resolved) continue;
+    const bool is_known =
+        options.accuracy && mode->step_error > *options.accuracy && mode->step_error < 1.0;
+    const double wanted =
+        is_known ? step_margin * std::pow(mode->step_error / *options.accuracy, 1.0 / options.order)
+                 : usual_increase;
+    factor = std::max(factor, std::clamp(wanted, least_increase, most_increase));
+  }
+  return factor;
+}
 
 }  // namespace
 
@@ -738,11 +805,29 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   if (options.period == FloquetPeriod::automatic && !broken_by.empty())
     observer.note("floquet: full period, because " + broken_by);
   const int sectors = options.period == FloquetPeriod::full ? 1 : repeats;
-  const int steps = (options.steps + sectors - 1) / sectors * sectors;
-  if (steps != options.steps)
-    observer.note("floquet: " + std::to_string(steps) + " steps a revolution, a multiple of the " +
-                  std::to_string(sectors) + " blades");
-  return Analysis(system, solution, sectors, steps, Ranks(comm), observer).run();
+  const auto run = [&](int steps) {
+    return Analysis(system, solution, sectors, steps, options, Ranks(comm), observer).run();
+  };
+  const auto whole = [sectors](double steps) {
+    return static_cast<int>(std::ceil(steps / sectors)) * sectors;
+  };
+  if (options.steps > 0) {
+    const int steps = whole(options.steps);
+    if (steps != options.steps)
+      observer.note("floquet: " + std::to_string(steps) +
+                    " steps a revolution, a multiple of the " + std::to_string(sectors) +
+                    " blades");
+    return run(steps);
+  }
+  int steps = whole(choose_steps(system, solution, options.order));
+  for (int attempt = 1;; ++attempt) {
+    Floquet found = run(steps);
+    const double factor = increase_of(found.set, options);
+    if (factor <= 1.0 || attempt == most_attempts || steps * factor > most_steps) return found;
+    steps = std::max(whole(steps * factor), steps + sectors);
+    observer.note("floquet: the ten slowest modes need more steps, " + std::to_string(steps) +
+                  " a revolution");
+  }
 }
 
 }  // namespace samara::analysis

@@ -168,6 +168,19 @@ const Eigen::MatrixXd& HarmonicEnergy::energies(const double* real, const double
   return energies_;
 }
 
+/// The spectrum of a part of the instants is the sum of the harmonics that they do not distinguish.
+Eigen::MatrixXd HarmonicEnergy::energies_of_part(int stride) const {
+  const Eigen::Index samples = energies_.rows() / stride;
+  Eigen::MatrixXd energies = Eigen::MatrixXd::Zero(samples, columns_);
+  if (part_of_.empty()) return energies;
+  const Eigen::MatrixXcd& spectrum = transform_->output();
+  for (Eigen::Index r = 0; r < spectrum.cols(); ++r) {
+    const Eigen::MatrixXcd sum = spectrum.col(r).reshaped(samples, stride).rowwise().sum();
+    energies.col(part_of_[static_cast<std::size_t>(r)]) += 0.5 * sum.cwiseAbs2();
+  }
+  return energies;
+}
+
 void describe_energy(const Eigen::MatrixXd& energies, const std::vector<std::string>& parts,
                      int state, Mode& mode, Eigen::VectorXd& participation) {
   const Eigen::Index samples = energies.rows();

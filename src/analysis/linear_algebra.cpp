@@ -453,6 +453,26 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return c;
 }
 
+void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen::MatrixXd& b,
+              Eigen::MatrixXd& c) {
+  constexpr int group = 8;  // columns at once
+  using Group = Eigen::Array<double, group, 1>;
+  std::vector<Group> values(static_cast<std::size_t>(b.rows()), Group::Zero());
+  c.resize(a.rows(), b.cols());
+  for (Eigen::Index first = 0; first < b.cols(); first += group) {
+    const Eigen::Index count = std::min<Eigen::Index>(group, b.cols() - first);
+    for (Eigen::Index j = 0; j < count; ++j)
+      for (Eigen::Index i = 0; i < b.rows(); ++i)
+        values[static_cast<std::size_t>(i)](j) = b(i, first + j);
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      Group sum = Group::Zero();
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(a, i); it; ++it)
+        sum += it.value() * values[static_cast<std::size_t>(it.col())];
+      for (Eigen::Index j = 0; j < count; ++j) c(i, first + j) = sum(j);
+    }
+  }
+}
+
 Eigen::MatrixXd exponential(const Eigen::MatrixXd& matrix) {
   const auto n = static_cast<PetscInt>(matrix.rows());
   Eigen::MatrixXd copy = matrix;

@@ -1,7 +1,10 @@
 #include "samara/analysis/mode_error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace samara::analysis {
 namespace {
@@ -16,18 +19,63 @@ constexpr double growing_part_of_tables = 0.05;
 /// An exponent smaller than this many times its error is not distinguished from zero.
 constexpr double several = 10.0;
 constexpr double least_round_off = 1e-10;
+/// Largest |lambda| dt of a resolved mode, by stage.
+constexpr double phase_of_a_stage = 1.4;
+constexpr int most_steps = 30;
+constexpr double settled = 1e-15;
+
+/// Coefficients of the numerator of the diagonal Pade approximants of exp, by power.
+using PadeNumerator = std::array<double, 4>;
+constexpr std::array<PadeNumerator, 3> numerators{{{1.0, 1.0 / 2.0, 0.0, 0.0},
+                                                   {1.0, 1.0 / 2.0, 1.0 / 12.0, 0.0},
+                                                   {1.0, 1.0 / 2.0, 1.0 / 10.0, 1.0 / 120.0}}};
+
+std::pair<std::complex<double>, std::complex<double>> value_and_slope(
+    const PadeNumerator& coefficients, std::complex<double> x) {
+  const auto& [c0, c1, c2, c3] = coefficients;
+  return {c0 + x * (c1 + x * (c2 + x * c3)), c1 + x * (2.0 * c2 + x * 3.0 * c3)};
+}
 
 }  // namespace
 
-std::complex<double> unwarped(std::complex<double> s, double step) {
-  return 2.0 / step * std::tanh(0.5 * step * s);
+double TimeRule::reach() const { return phase_of_a_stage * 0.5 * order / step; }
+
+bool TimeRule::may_reach(std::complex<double> s) const {
+  // R(i x) = N(i x) / N(-i x) has twice the phase of N(i x); R(x) grows with x up to there.
+  const double x = reach() * step;
+  const PadeNumerator& numerator = numerators[static_cast<std::size_t>(order / 2 - 1)];
+  const double phase = 2.0 * std::arg(value_and_slope(numerator, {0.0, x}).first);
+  const double decay = std::log(value_and_slope(numerator, x).first.real() /
+                                std::abs(value_and_slope(numerator, -x).first.real()));
+  return std::abs(s.imag()) * step <= (phase > 0.0 ? phase : phase + 2.0 * std::numbers::pi) &&
+         std::abs(s.real()) * step <= decay;
+}
+
+std::complex<double> unwarped(std::complex<double> s, const TimeRule& rule) {
+  const std::complex<double> w = rule.step * s;
+  if (rule.order == 2) return 2.0 / rule.step * std::tanh(0.5 * w);
+  if (!rule.may_reach(s)) return s;
+  // N(x) = exp(w) N(-x) with the numerator N of R, times exp(-w/2); by Newton's method from x = w.
+  const PadeNumerator& numerator = numerators[static_cast<std::size_t>(rule.order / 2 - 1)];
+  const std::complex<double> root = std::exp(0.5 * w);
+  std::complex<double> x = w;
+  for (int step = 0; step < most_steps; ++step) {
+    const auto [above, above_slope] = value_and_slope(numerator, x);
+    const auto [below, below_slope] = value_and_slope(numerator, -x);
+    const std::complex<double> change =
+        (above / root - below * root) / (above_slope / root + below_slope * root);
+    x -= change;
+    if (std::abs(change) <= settled * std::abs(x)) break;
+  }
+  return x / rule.step;
 }
 
 WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVectorXd& shares,
-                             int first, int harmonic, double speed, double step) {
+                             int first, int harmonic, double speed, const TimeRule& rule) {
   const auto change = [&](int k) {
     const std::complex<double> s = principal + std::complex<double>(0.0, k * speed);
-    return unwarped(s, step) - s;
+    if (rule.order > 2 && !rule.may_reach(s)) return s;  // not resolved: wrong by its own size
+    return unwarped(s, rule) - s;
   };
   const std::complex<double> mapped = change(harmonic);
   WarpingSpread spread;

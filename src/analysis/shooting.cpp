@@ -10,7 +10,7 @@
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/harmonic_balance.hpp"
-#include "samara/analysis/monodromy.hpp"
+#include "samara/analysis/linearized_step.hpp"
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
 
@@ -100,7 +100,7 @@ class Shooting {
     const Eigen::Index n = system_.size();
     LinearizedStep linearized(system_, space.carried(), dt_, false, "shooting_");
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, reduced + held);
-    columns.leftCols(reduced) = space.basis(0.0, 0.5 * dt_);
+    columns.leftCols(reduced) = space.basis(0.0);
     columns.middleCols(d, d) *= speed_;
     Eigen::MatrixXd forcing = Eigen::MatrixXd::Zero(n, reduced + held);
     for (Eigen::Index h = 0; h < held; ++h)

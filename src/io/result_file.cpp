@@ -541,6 +541,7 @@ void ResultFile::write_floquet(const analysis::Floquet& floquet) {
   write_participation(file, "/floquet", set);
   write_shapes(file, "/floquet", set);
   file.set_attribute("/floquet", "steps", floquet.steps);
+  file.set_attribute("/floquet", "order", floquet.order);
   file.set_attribute("/floquet", "sectors", floquet.sectors);
   file.set_attribute("/floquet", "step", floquet.step);
 }

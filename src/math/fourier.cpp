@@ -35,4 +35,6 @@ const Eigen::MatrixXcd& FourierTransform::run() {
   return plan_->output;
 }
 
+const Eigen::MatrixXcd& FourierTransform::output() const { return plan_->output; }
+
 }  // namespace samara::math

@@ -31,6 +31,8 @@ constexpr double most_time_steps = 1e9;
 constexpr double step_round_off = 1e-6;
 /// Range of step errors of positions [m, rad].
 constexpr Range step_error{"a number from 1e-12 to 0.1", 1e-12, 0.1};
+/// Range of relative errors of modes by time steps.
+constexpr Range mode_accuracy{"a number from 1e-10 to 0.1", 1e-10, 0.1};
 
 void declare_trim(Visitor& fields, analysis::TrimOptions& trim) {
   fields.choice(Field("method", "how the periodic steady state is found"), trim.method,
@@ -54,9 +56,10 @@ void declare_trim(Visitor& fields, analysis::TrimOptions& trim) {
 
 void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
   fields.integer(
-      {"steps", "", integers(least_steps, most_steps),
-       "steps a revolution; rounded up to a multiple of the number of blades where one blade "
-       "passage is enough"},
+      Field("steps", "", integers(least_steps, most_steps),
+            "steps a revolution; rounded up to a multiple of the number of blades where one blade "
+            "passage is enough")
+          .none_at_zero("as many as the ten slowest modes need, and at least 36"),
       floquet.steps);
   fields.choice(Field("period",
                       "`full`: one revolution; `blade`: one blade passage, for blades "
@@ -65,8 +68,15 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
                 {{"auto", analysis::FloquetPeriod::automatic},
                  {"full", analysis::FloquetPeriod::full},
                  {"blade", analysis::FloquetPeriod::blade}});
-  int order = 2;
-  fields.choice(Field("time_order", "order of the time step"), order, {{"2", 2}});
+  fields.choice(Field("time_order",
+                      "order of the time steps: 2 (central differences), 4 or 6 (Gauss collocation "
+                      "with 2 or 3 stages)"),
+                floquet.order, {{"2", 2}, {"4", 4}, {"6", 6}});
+  fields.number({"accuracy", "", mode_accuracy,
+                 "largest relative error of a mode by the time steps: a mode whose error is larger "
+                 "counts as not resolved. Where `steps` is left out their number is raised until "
+                 "the ten slowest modes are below it"},
+                floquet.accuracy);
 }
 
 void declare_static(Visitor& fields, analysis::StaticOptions& statics) {

@@ -23,7 +23,8 @@ namespace {
 analysis::Floquet floquet_of(const system::PeriodicSystem& system, int steps,
                              analysis::FloquetPeriod period = analysis::FloquetPeriod::full) {
   analysis::Observer observer;
-  return find_floquet_modes(system, rest(system), {steps, period}, PETSC_COMM_SELF, observer);
+  return find_floquet_modes(system, rest(system), {steps, period, 2, {}}, PETSC_COMM_SELF,
+                            observer);
 }
 
 std::vector<std::unique_ptr<FirstOrderSystem>> systems(double period) {

@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(ranks_do_not_change_the_modes_of_first_order_states) {
   const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(system.size(), 1), system.period());
   for (const auto period : {analysis::FloquetPeriod::full, analysis::FloquetPeriod::blade}) {
     analysis::Observer observer;
-    const analysis::FloquetOptions options{240, period};
+    const analysis::FloquetOptions options{240, period, 2, {}};
     require_same({find_floquet_modes(system, rest, options, PETSC_COMM_SELF, observer),
                   find_floquet_modes(system, rest, options, PETSC_COMM_WORLD, observer)});
   }

@@ -24,7 +24,7 @@ analysis::Floquet floquet_at_rest(const system::PeriodicSystem& system, int step
                                   analysis::FloquetPeriod period = analysis::FloquetPeriod::full) {
   const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(system.size(), 1), system.period());
   analysis::Observer observer;
-  return find_floquet_modes(system, rest, {steps, period}, PETSC_COMM_SELF, observer);
+  return find_floquet_modes(system, rest, {steps, period, 2, {}}, PETSC_COMM_SELF, observer);
 }
 
 /// The computed multiplier that is nearest to `wanted` or to its conjugate.
@@ -339,7 +339,7 @@ BOOST_AUTO_TEST_CASE(steps_are_rounded_up_to_a_multiple_of_the_blades_and_said) 
   const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(system.size(), 1), system.period());
   Listener listener;
   const analysis::Floquet floquet = find_floquet_modes(
-      system, rest, {100, analysis::FloquetPeriod::automatic}, PETSC_COMM_SELF, listener);
+      system, rest, {100, analysis::FloquetPeriod::automatic, 2, {}}, PETSC_COMM_SELF, listener);
   BOOST_TEST(floquet.steps == 102);
   BOOST_TEST(listener.said.find("102") != std::string::npos);
 }

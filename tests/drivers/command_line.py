@@ -143,14 +143,14 @@ class Tables(ProgramTest):
 
     def test_a_clamped_rotor_is_neutral(self):
         self.write("case.yaml", MINIMAL)
-        text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=2000").stdout
+        text = self.succeed("floquet", "case.yaml", "--set", "floquet.steps=700").stdout
         self.assertRegex(text, r"(?m)^neutral: no mode grows; \d+ are undamped, neither growing")
 
     def test_too_few_resolved_modes_are_no_verdict(self):
         # These steps resolve some of the first ten modes, and the resolved ones neither grow nor
         # decays: nothing is known of the others.
         self.write("case.yaml", MINIMAL)
-        for steps in ("12", "100", "500"):
+        for steps in ("12", "60", "160"):
             run = self.samara("floquet", "case.yaml", "--set", f"floquet.steps={steps}", "-o", "a.h5")
             self.assertEqual(run.returncode, 3, run.stdout)
             self.assertRegex(run.stdout, r"(?m)^no verdict: modes from \S+ Hz on are not resolved; "
@@ -168,7 +168,7 @@ class Tables(ProgramTest):
         self.assertRegex(text, r"(?m)^neutral: no mode grows; \d+ are undamped")
         self.assertRegex(text, r"(?m)^\d+ modes have too large an error and do not count for "
                                r"the verdict")
-        self.assertRegex(text, r"(?m)^ *\d+  blade lead-lag( \d)? .* - +- .* error \d+ %")
+        self.assertRegex(text, r"(?m)^ *\d+  blade [a-z -]+( \d)? .* - +- .* error \d+ %")
         fine = ("--set", "blades.order=2", "--set", "tower.order=2")
         self.assertRegex(self.succeed("floquet", BASELINE, *settings, *fine).stdout,
                          r"(?m)^neutral: no mode grows")
@@ -185,7 +185,7 @@ class Tables(ProgramTest):
         damped = MINIMAL.replace("length: 10", "length: 10\n  damping: 1e-3")
         self.write("case.yaml", damped + "gravity: 0\n")
         for command in ("floquet", "modes"):
-            text = self.succeed(command, "case.yaml", "--set", "floquet.steps=2000").stdout
+            text = self.succeed(command, "case.yaml", "--set", "floquet.steps=700").stdout
             self.assertRegex(text, r"(?m)^stable: all \d+ modes decay; the least damped is ")
 
     def test_damping_ratios_are_those_of_the_first_modes(self):
@@ -231,11 +231,11 @@ class Tables(ProgramTest):
 
     def test_unresolved_modes_are_explained(self):
         self.write("case.yaml", MINIMAL)
-        text = self.samara("floquet", "case.yaml", "--set", "floquet.steps=50").stdout
+        text = self.samara("floquet", "case.yaml", "--set", "floquet.steps=16").stdout
         hidden = int(re.search(r"(?m)^(\d+) unresolved, not listed \(--all lists them\) and left out "
                                "of the verdict:$", text).group(1))
         self.assertNotIn("unresolved*", text)
-        whole = self.samara("floquet", "case.yaml", "--set", "floquet.steps=50", "--all").stdout
+        whole = self.samara("floquet", "case.yaml", "--set", "floquet.steps=16", "--all").stdout
         self.assertRegex(whole, rf"(?m)^\* {hidden} unresolved, left out of the verdict: ")
         rows = [re.findall(r"(?m)^ *(\d+)  \w+ .*?(unresolved\*)?$", each) for each in (text, whole)]
         self.assertEqual(rows[0], rows[1][:-hidden])  # the resolved ones stand first
@@ -282,7 +282,7 @@ class Inputs(ProgramTest):
     def test_the_teetering_turbine_is_stable(self):
         case = SOURCE / "inputs/two_bladed/teetering.yaml"
         coarse = ("--set", "blades.elements=2", "--set", "tower.elements=2",
-                  "--set", "floquet.steps=400")
+                  "--set", "floquet.steps=48")
         text = self.succeed("check", case).stdout
         self.assertRegex(text, r"teeter free, \S+ N m s/rad")
         self.assertRegex(self.succeed("trim", case, *coarse).stdout, r"(?m)^teeter +deg +0 ")

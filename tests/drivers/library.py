@@ -81,7 +81,7 @@ class Library(unittest.TestCase):
                 rf"q = {q}: multiplier (\S+) (\S+)i", text)), key=lambda mu: mu.real)
             self.assertGreaterEqual(len(found), 1)
             for mu in found:
-                self.assertLess(min(abs(mu - other) for other in wanted), 2e-5)
+                self.assertLess(min(abs(mu - other) for other in wanted), 2e-6)
 
     def test_a_component_of_ones_own_has_its_roots(self):
         rows, text = self.found("component", r"J (\S+) kg m\^2, tau (\S+) s, c (\S+) N")

@@ -48,7 +48,7 @@ def amplitude(time, values, omega):
 class Linearize(ProgramTest):
     def exponents(self, steps, settings):
         self.succeed("floquet", BASELINE, *SMALL, *settings, "--set", f"floquet.steps={steps}",
-                     "-o", "floquet.h5")
+                     "--set", "floquet.time_order=2", "-o", "floquet.h5")
         with h5py.File(self.folder / "floquet.h5") as file:
             resolved = file["/floquet/resolved"][:] == 1
             return (file["/floquet/exponents"][:] @ [1, 1j])[resolved]

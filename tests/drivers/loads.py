@@ -266,7 +266,7 @@ class SteadyStates(ProgramTest):
         text = "# --set nothing, it says\n" + MINIMAL
         self.write("case.yaml", text)
         settings = ["gravity=9.81", "shaft.speed=5", "blades.sections.0.stiffness.EI3=1e9",
-                    "floquet.steps=8000"]
+                    "floquet.steps=2700"]
         self.succeed("floquet", "case.yaml", *(f"--set={setting}" for setting in settings), "-o",
                      "f.h5")
         (self.folder / "case.yaml").unlink()

@@ -49,7 +49,7 @@ class Readers(ProgramTest):
         maker.setUp()
         cls.addClassCleanup(maker.doCleanups)
         cls.results = maker.folder
-        maker.succeed("floquet", BASELINE, *COARSE, "--set", "floquet.steps=100", "-o",
+        maker.succeed("floquet", BASELINE, *COARSE, "--set", "floquet.steps=24", "-o",
                       "floquet.h5")
         maker.succeed("modes", BASELINE, *COARSE, "--parked", "-o", "modes.h5")
         maker.succeed("static", BASELINE, *COARSE, "--set", "shaft.speed=0", "--set",

@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(baseline_is_the_turbine_of_the_paper) {
   BOOST_TEST(on_its_mesh.turbine.tower.order == 1);
   BOOST_TEST(on_its_mesh.turbine.blades.beam.elements == 4);
   BOOST_TEST(on_its_mesh.turbine.blades.beam.order == 1);
-  BOOST_TEST(on_its_mesh.floquet.steps == 500);
+  BOOST_TEST(on_its_mesh.floquet.order == 6);
   const Case result = read_case(lee2002 + "baseline.yaml", {});
   const model::TurbineDefinition& turbine = result.turbine;
   BOOST_TEST(turbine.title.find("Lee, Hodges and Patil (2002)") != std::string::npos);
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(baseline_is_the_turbine_of_the_paper) {
   BOOST_TEST(result.trim.harmonics == 4);
   BOOST_TEST(!result.trim.automatic);
   BOOST_TEST(result.trim.tolerance == 1e-10);
-  BOOST_TEST(result.floquet.steps == 300);
+  BOOST_TEST(result.floquet.steps == 0);  // chosen
   BOOST_TEST((result.floquet.period == FloquetPeriod::automatic));
 }
 
@@ -913,8 +913,10 @@ BOOST_AUTO_TEST_CASE(what_is_not_available_yet_says_so) {
                   "  generator: {joint: free}\n",
               "case.yaml:11:3: shaft.generator: a free generator behind a shaft that may twist "
               "needs an inertia > 0");
-  check_error(minimal + "floquet:\n  time_order: 4\n",
-              "case.yaml:10:3: floquet.time_order: expected 2, got 4");
+  check_error(minimal + "floquet:\n  time_order: 3\n",
+              "case.yaml:10:3: floquet.time_order: expected 2, 4 or 6, got 3");
+  check_error(minimal + "floquet:\n  accuracy: 0\n",
+              "case.yaml:10:3: floquet.accuracy: expected a number from 1e-10 to 0.1, got 0");
 }
 
 BOOST_AUTO_TEST_CASE(a_yaw_block_must_state_its_joint) {

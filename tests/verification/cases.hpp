@@ -61,11 +61,19 @@ inline analysis::ModeSet constant_modes_of(const model::TurbineDefinition& defin
 inline analysis::Floquet floquet_of(
     const model::TurbineDefinition& definition, int steps,
     analysis::FloquetPeriod period = analysis::FloquetPeriod::automatic,
-    const analysis::TrimOptions& trim_options = {}, MPI_Comm comm = PETSC_COMM_SELF) {
+    const analysis::TrimOptions& trim_options = {}, MPI_Comm comm = PETSC_COMM_SELF,
+    int order = 2) {
   const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
   analysis::Observer observer;
   const analysis::Trim trim = analysis::find_trim(system, trim_options, observer);
-  return analysis::find_floquet_modes(system, trim.solution, {steps, period}, comm, observer);
+  return analysis::find_floquet_modes(system, trim.solution, {steps, period, order, {}}, comm,
+                                      observer);
+}
+
+/// With the options of the case.
+inline analysis::Floquet floquet_of(const io::Case& input) {
+  return floquet_of(input.turbine, input.floquet.steps, input.floquet.period, input.trim,
+                    PETSC_COMM_SELF, input.floquet.order);
 }
 
 /// The errors of a case; empty where it has none.

@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(torque_and_pitch_loops_have_the_roots_of_their_polynomials)
         analysis::find_constant_modes(solved.system, solved.trim.solution);
     require_modes(set, wanted, 1e-8);
     // By Floquet, whose exponents have the step's map undone, over a third of a revolution.
-    constexpr int steps = 150;
+    constexpr int steps = 36;
     analysis::Observer observer;
     const analysis::Floquet floquet = analysis::find_floquet_modes(
         solved.system, solved.trim.solution, {steps, analysis::FloquetPeriod::blade},
@@ -250,7 +250,7 @@ BOOST_AUTO_TEST_CASE(actuators_are_of_second_order) {
   // They move together as blades do.
   analysis::Observer observer;
   const analysis::Floquet floquet = analysis::find_floquet_modes(
-      solved.system, solved.trim.solution, {150}, PETSC_COMM_SELF, observer);
+      solved.system, solved.trim.solution, {36}, PETSC_COMM_SELF, observer);
   for (const std::string word : {"collective", "regressive", "progressive"})
     BOOST_TEST(std::ranges::count(floquet.set.modes, "pitch actuator " + word,
                                   &analysis::Mode::label) == 1);

@@ -104,14 +104,19 @@ BOOST_AUTO_TEST_CASE(resolved_modes_are_the_same_with_even_and_odd_steps) {
 }
 
 BOOST_AUTO_TEST_CASE(resolved_modes_of_the_undamped_turbine_are_on_the_unit_circle) {
-  // Conservative but for the shaft's drive: to 1e-7, what the rule leaves at 500 steps.
+  // Conservative but for the shaft's drive. The impulses after each step leave growth of the order
+  // of the rule and one more; it is below the error that is stated.
   int seen = 0;
+  const double period = 2.0 * pi / baseline().set.rotor_speed;
   for (const analysis::Mode& mode : baseline().set.modes) {
     if (!mode.resolved || is_real_pair(mode, baseline().set.rotor_speed)) continue;
     ++seen;
     const double off = std::abs(std::abs(mode.multiplier) - 1.0);
-    BOOST_TEST(off < (is_defective(mode, baseline().set.rotor_speed) ? defective : 1e-7),
+    BOOST_TEST(off < (is_defective(mode, baseline().set.rotor_speed)
+                          ? defective
+                          : 0.2 * mode.growth_error * period + 1e-9),
                mode.label << " " << off);
+    if (mode.exponent.imag() < 15.0 * baseline().set.rotor_speed) BOOST_TEST(off < 1e-5);
   }
   BOOST_TEST(seen > 15);
 }

@@ -1,8 +1,9 @@
-// Estimated errors of modes against true ones: three meshes and three time steps of each turbine,
+// Estimated errors of modes against true ones: three meshes and five time steps of each turbine,
 // and a reference whose own refinements agree to a tenth of the estimate.
 //
 // SAMARA_ALL_INPUTS=1 in the environment takes all inputs, some minutes (scripts/verify does).
 #include <cstdlib>
+#include <optional>
 
 #include <boost/test/unit_test.hpp>
 
@@ -40,8 +41,12 @@ const std::vector<Input>& all_inputs() {
   return inputs;
 }
 
-constexpr std::array<int, 3> steps{120, 240, 480};
-constexpr std::array<int, 2> reference_steps{1200, 1500};
+/// Time steps of a revolution, and their order.
+struct Rule {
+  int order, steps;
+};
+constexpr std::array<Rule, 5> rules{{{2, 120}, {2, 480}, {4, 48}, {6, 24}, {6, 48}}};
+constexpr std::array<Rule, 2> reference_rules{{{6, 120}, {6, 150}}};
 /// Estimates beyond it count for no verdict.
 constexpr double largest_estimate = 0.1;
 /// True errors below it are round-off.
@@ -49,11 +54,13 @@ constexpr double round_off = 1e-8;
 /// Modes of a run that are compared: those of the first verdicts, and half as many again.
 constexpr std::size_t compared = 15;
 
-analysis::ModeSet modes_of(const Input& input, Mesh used, int count) {
+analysis::ModeSet modes_of(const Input& input, Mesh used, Rule rule) {
   const io::Case found =
       io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + input.name + ".yaml",
                     mesh(input.has_tower, used.elements, used.order));
-  return floquet_of(found.turbine, count, found.floquet.period, found.trim).set;
+  return floquet_of(found.turbine, rule.steps, found.floquet.period, found.trim, PETSC_COMM_SELF,
+                    rule.order)
+      .set;
 }
 
 std::string stem_of(std::string label) {
@@ -114,14 +121,14 @@ BOOST_AUTO_TEST_CASE(estimated_errors_are_honest_and_useful) {
     if (input.is_large && !all) continue;
     BOOST_TEST_CONTEXT(input.name) {
       const std::array<analysis::ModeSet, 2> references{
-          modes_of(input, input.references[0], reference_steps[0]),
-          modes_of(input, input.references[1], reference_steps[1])};
+          modes_of(input, input.references[0], reference_rules[0]),
+          modes_of(input, input.references[1], reference_rules[1])};
       for (const Mesh& used : input.meshes)
-        for (const int count : steps) {
+        for (const Rule rule : rules) {
           Figures own;
           BOOST_TEST_MESSAGE(input.name << " " << used.elements << " x " << used.order << ", "
-                                        << count << " steps");
-          compare(modes_of(input, used, count), references, own);
+                                        << rule.steps << " steps of order " << rule.order);
+          compare(modes_of(input, used, rule), references, own);
           figures.counted += own.counted;
           figures.honest += own.honest;
           figures.generous.insert(figures.generous.end(), own.generous.begin(), own.generous.end());
@@ -136,4 +143,43 @@ BOOST_AUTO_TEST_CASE(estimated_errors_are_honest_and_useful) {
                                     << "over error " << *middle);
   BOOST_TEST(figures.honest >= 0.95 * figures.counted);
   BOOST_TEST(*middle < 10.0);
+}
+
+BOOST_AUTO_TEST_CASE(accuracy_keeps_its_promise) {
+  const bool all = std::getenv("SAMARA_ALL_INPUTS") != nullptr;
+  int counted = 0;
+  int kept = 0;
+  for (const Input& input : all_inputs()) {
+    if (input.is_large && !all) continue;
+    const io::Case found =
+        io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + input.name + ".yaml",
+                      mesh(input.has_tower, input.meshes[0].elements, input.meshes[0].order));
+    const turbine::TurbineSystem system(model::build_turbine(found.turbine), PETSC_COMM_SELF);
+    analysis::Observer observer;
+    const analysis::Trim trim = analysis::find_trim(system, found.trim, observer);
+    const auto run = [&](int steps, std::optional<double> accuracy) {
+      return analysis::find_floquet_modes(system, trim.solution,
+                                          {steps, found.floquet.period, 6, accuracy},
+                                          PETSC_COMM_SELF, observer)
+          .set;
+    };
+    const analysis::ModeSet reference = run(200, {});
+    for (const double accuracy : {1e-3, 1e-5}) {
+      const analysis::ModeSet set = run(0, accuracy);
+      std::size_t slow = 0;
+      for (const analysis::Mode& mode : set.modes) {
+        if (!mode.resolved) continue;
+        if (std::abs(mode.exponent) < set.reach) ++slow;
+        BOOST_TEST(mode.step_error <= accuracy);
+        if (std::abs(mode.exponent) < 1e-3 * set.rotor_speed) continue;
+        const double error = distance(mode, reference);
+        ++counted;
+        if (error <= accuracy) ++kept;
+        BOOST_TEST(error <= 10.0 * accuracy, input.name << " " << mode.label << " " << error);
+      }
+      BOOST_TEST(slow >= 10U, input.name << ": " << slow);
+    }
+  }
+  BOOST_REQUIRE(counted > 60);
+  BOOST_TEST(kept >= 0.95 * counted);
 }

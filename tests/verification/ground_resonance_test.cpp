@@ -114,7 +114,7 @@ analysis::Floquet floquet_at(double speed, const std::vector<std::string>& setti
   all.push_back("shaft.speed=" + std::to_string(speed));
   const io::Case input =
       io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/ground_resonance/hammond.yaml", all);
-  return floquet_of(input.turbine, input.floquet.steps);
+  return floquet_of(input);
 }
 
 double growth_of(const analysis::Floquet& floquet) {

@@ -240,8 +240,7 @@ BOOST_AUTO_TEST_CASE(a_damper_too_stiff_to_move_is_a_mass) {
   std::vector<analysis::Floquet> both;
   for (const std::string& text : {with_mass, with_dampers}) {
     const io::Case input = io::parse_case("test", text, {});
-    both.push_back(floquet_of(input.turbine, input.floquet.steps,
-                              analysis::FloquetPeriod::automatic, input.trim));
+    both.push_back(floquet_of(input));
     const model::Masses masses =
         model::compute_masses(input.turbine, model::build_turbine(input.turbine));
     BOOST_TEST(masses.whole.mass == 160.0 + 12.0 + 230.0 + 3.0 * (56.0 + 12.0), tolerance(1e-12));

@@ -27,8 +27,9 @@ struct Run {
         trim(analysis::find_trim(system, input.trim, observer)) {}
   analysis::ModeSet constant() const { return find_constant_modes(system, trim.solution); }
   analysis::ModeSet floquet(int steps) {
-    return find_floquet_modes(system, trim.solution, {steps, analysis::FloquetPeriod::automatic},
-                              PETSC_COMM_SELF, observer)
+    return find_floquet_modes(system, trim.solution,
+                              {steps, analysis::FloquetPeriod::automatic, 2, {}}, PETSC_COMM_SELF,
+                              observer)
         .set;
   }
 

@@ -239,7 +239,8 @@ BOOST_AUTO_TEST_CASE(free_yaw_has_a_real_pair_a_double_zero_and_splits_the_lead_
         real.push_back(mode.exponent.real() / speed);
     }
     BOOST_REQUIRE(real.size() == 2U);
-    BOOST_TEST(real[0] == -real[1], tolerance(1e-7));
+    // The impulses after a step leave a growth of a higher order than the step's error.
+    BOOST_TEST(real[0] == -real[1], tolerance(1e-6));
     // mu = 1 is defective: round-off splits it into a real pair, or a complex one in one row.
     BOOST_TEST((zeros == 1 || zeros == 2));
     growth.push_back(std::max(real[0], real[1]));

@@ -202,7 +202,7 @@ FoundMode mode_of(const system::PeriodicSystem& system, const analysis::Trim& tr
                   const std::string& label) {
   analysis::Observer observer;
   const analysis::ModeSet set =
-      analysis::find_floquet_modes(system, trim.solution, {800}, PETSC_COMM_SELF, observer).set;
+      analysis::find_floquet_modes(system, trim.solution, {96}, PETSC_COMM_SELF, observer).set;
   for (std::size_t i = 0; i < set.modes.size(); ++i)
     if (set.modes[i].label == label) return {set.modes[i], set.shapes[i].col(0)};
   BOOST_FAIL("no mode " + label);

@@ -2,6 +2,8 @@
 // own axes (docs/theory.md, section 5).
 #pragma once
 
+#include <vector>
+
 #include "samara/analysis/mode.hpp"
 #include "samara/analysis/periodic_solution.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -12,5 +14,10 @@ namespace samara::analysis {
 /// computes the same. Mode::multiplier and participation stay empty, shapes have one sample.
 /// @throws InputError where the tangents depend on time (hint: samara floquet)
 ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution);
+
+/// Moduli of the exponents that the tangents at t = 0 have, ascending [rad/s]; without those that
+/// count as zero. A guide to the frequencies of a periodic system, in rotor axes.
+std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
+                                         const PeriodicSolution& solution);
 
 }  // namespace samara::analysis

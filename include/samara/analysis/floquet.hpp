@@ -12,6 +12,7 @@ namespace samara::analysis {
 struct Floquet {
   ModeSet set;
   int steps = 0;      ///< per revolution, as used
+  int order = 2;      ///< of the steps
   int sectors = 1;    ///< Q: integrated over T / Q
   double step = 0.0;  ///< dt [s]
 };

@@ -43,6 +43,8 @@ class HarmonicEnergy {
   /// instant after the other; `factors`: one number per instant of the sector.
   const Eigen::MatrixXd& energies(const double* real, const double* imaginary,
                                   const Eigen::VectorXcd& factors);
+  /// The same of every `stride`-th instant of the signals of the last call, from the first.
+  Eigen::MatrixXd energies_of_part(int stride) const;
 
  private:
   std::vector<std::string> parts_;

@@ -11,9 +11,22 @@
 
 namespace samara::analysis {
 
-/// Exact exponent (2/dt) tanh(s dt/2) of a sequence of steps that has the exponent `s`, with
-/// constant coefficients: the inverse of the step's map (1 + lambda dt/2)/(1 - lambda dt/2).
-std::complex<double> unwarped(std::complex<double> s, double step);
+/// A rule of integration in time: Gauss collocation of order 2, 4 or 6 with a step [s].
+struct TimeRule {
+  int order = 2;
+  double step = 0.0;
+
+  /// |Im lambda| and |Re lambda| above which an exponent counts as unresolved [rad/s].
+  double reach() const;
+  /// Whether an exponent `s` of a sequence of steps may belong to an exponent below reach(). The
+  /// map from lambda to s has an inverse there; beyond, several lambda have the same s.
+  bool may_reach(std::complex<double> s) const;
+};
+
+/// Exact exponent lambda of a sequence of steps that has the exponent `s`, with constant
+/// coefficients: exp(s dt) = R(lambda dt) with the diagonal Pade approximant R of exp. For order 2
+/// it is (2/dt) tanh(s dt/2). For higher orders it is `s` itself where the rule does not reach.
+std::complex<double> unwarped(std::complex<double> s, const TimeRule& rule);
 
 /// Error by the step of the exponent of a mode with energy in several harmonics, in modulus and
 /// real part [rad/s]: each harmonic is warped according to its own frequency. `principal`: exponent
@@ -24,7 +37,7 @@ struct WarpingSpread {
   double growth = 0.0;
 };
 WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVectorXd& shares,
-                             int first, int harmonic, double speed, double step);
+                             int first, int harmonic, double speed, const TimeRule& rule);
 
 /// Relative errors of the exponent by the mesh, in its modulus and in its real part: twice the
 /// first term of the elements' errors. `shape`: size x samples; `energy_of_mode`: the larger of its

@@ -21,8 +21,12 @@ struct TrimOptions {
 enum class FloquetPeriod { automatic, full, blade };
 
 struct FloquetOptions {
-  int steps = 500;  ///< steps of (19) per revolution
+  /// Per revolution; 0: as many as the ten slowest modes need, and at least some (theory 5.1).
+  int steps = 0;
   FloquetPeriod period = FloquetPeriod::automatic;
+  int order = 6;  ///< of the steps: 2, 4 or 6; 2 is (19)
+  /// Largest error by the time steps of a resolved mode, relative.
+  std::optional<double> accuracy = {};
 };
 
 enum class StaticMethod { load, arc_length };

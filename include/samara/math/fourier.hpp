@@ -21,6 +21,7 @@ class FourierTransform {
   /// Coefficients (1/n) sum_m x_m exp(-2 pi i k m / n), k = 0 .. n - 1 (k > n/2 is k - n), samples
   /// x signals; they are valid until the next run.
   const Eigen::MatrixXcd& run();
+  const Eigen::MatrixXcd& output() const;
 
  private:
   struct Plan;

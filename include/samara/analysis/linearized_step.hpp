@@ -1,10 +1,8 @@
-// Integrates the linearized periodic system over a period (docs/theory.md, section 5; Lee, Hodges &
-// Patil (2002), eq. (18), (19)).
+// One step of the midpoint rule for the linearized system (Lee, Hodges & Patil (2002), eq. (19)),
+// as the nonlinear steps of the shooting method need it.
 //
-// One factorization per step serves all columns. Rows with rates are satisfied at the middle of a
-// step with central differences, as in (19); rows without rates (strains) are satisfied at the end
-// of the step. For rows that are constant in time both places are equivalent. If the rows change
-// with the steady state, only the end of the step keeps rigid strains exactly zero.
+// One factorization serves all columns. Rows with rates are satisfied at the middle of the step;
+// rows without rates (strains) are satisfied at its end, where rigid strains remain exactly zero.
 #pragma once
 
 #include <string>
@@ -12,9 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/linear_algebra.hpp"
-#include "samara/analysis/periodic_solution.hpp"
 #include "samara/system/periodic_system.hpp"
 
 namespace samara::analysis {
@@ -59,26 +55,6 @@ class LinearizedStep {
   Eigen::SparseMatrix<double, Eigen::RowMajor> constraint_rows_;
   Eigen::MatrixXd middle_;
   DirectSolver solver_;
-};
-
-/// Advances columns of states along a periodic solution; a negative step goes back in time.
-class StepPropagator {
- public:
-  StepPropagator(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                 const std::vector<bool>& carried, double step);
-
-  /// Advances z from the start of step k (t = k step) to its end; returns the values at the middle,
-  /// which are valid until the next call.
-  const Eigen::MatrixXd& advance(long k, Eigen::MatrixXd& z);
-
-  /// Advances other columns by the same step.
-  const Eigen::MatrixXd& repeat(Eigen::MatrixXd& z) { return linearized_.advance(z); }
-
- private:
-  const PeriodicSolution& solution_;
-  double step_;
-  petsc::Handle<Vec> z_, z_dot_, z_end_, z_dot_end_;
-  LinearizedStep linearized_;
 };
 
 }  // namespace samara::analysis

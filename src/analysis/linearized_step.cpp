@@ -1,4 +1,4 @@
-#include "samara/analysis/monodromy.hpp"
+#include "samara/analysis/linearized_step.hpp"
 
 #include <cmath>
 
@@ -63,27 +63,6 @@ const Eigen::MatrixXd& LinearizedStep::advance(Eigen::MatrixXd& z, const Eigen::
   solver_.solve(middle_);
   to_end(z, middle_);
   return middle_;
-}
-
-StepPropagator::StepPropagator(const system::PeriodicSystem& system,
-                               const PeriodicSolution& solution, const std::vector<bool>& carried,
-                               double step)
-    : solution_(solution),
-      step_(step),
-      z_(system.make_state()),
-      z_dot_(system.make_state()),
-      z_end_(system.make_state()),
-      z_dot_end_(system.make_state()),
-      linearized_(system, carried, step,
-                  solution.is_constant() && system.constraints_are_autonomous(), "floquet_") {}
-
-const Eigen::MatrixXd& StepPropagator::advance(long k, Eigen::MatrixXd& z) {
-  const double middle = (static_cast<double>(k) + 0.5) * step_;
-  const double end = static_cast<double>(k + 1) * step_;
-  solution_.evaluate(middle, z_.get(), z_dot_.get());
-  solution_.evaluate(end, z_end_.get(), z_dot_end_.get());
-  linearized_.factor(middle, z_.get(), z_dot_.get(), end, z_end_.get(), z_dot_end_.get());
-  return linearized_.advance(z);
 }
 
 }  // namespace samara::analysis
