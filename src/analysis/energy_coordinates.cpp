@@ -43,9 +43,17 @@ Eigen::MatrixXd EnergyCoordinates::of(const Eigen::MatrixXd& states) const {
   const Eigen::Index d = eta_.rows();
   Eigen::MatrixXd result(states.rows(), states.cols());
   result.topRows(d) = eta_.triangularView<Eigen::Upper>() * states.topRows(d);
-  result.middleRows(d, d) = rates(states.middleRows(d, d));
+  result.middleRows(d, d) = rate_.triangularView<Eigen::Upper>() * states.middleRows(d, d);
   result.bottomRows(states.rows() - 2 * d) = states.bottomRows(states.rows() - 2 * d);
   return result;
+}
+
+Eigen::MatrixXd EnergyCoordinates::states_of(const Eigen::MatrixXd& coordinates) const {
+  const Eigen::Index d = eta_.rows();
+  Eigen::MatrixXd states = coordinates;
+  eta_.triangularView<Eigen::Upper>().solveInPlace(states.topRows(d));
+  rate_.triangularView<Eigen::Upper>().solveInPlace(states.middleRows(d, d));
+  return states;
 }
 
 }  // namespace samara::analysis

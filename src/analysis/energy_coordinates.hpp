@@ -26,10 +26,8 @@ class EnergyCoordinates {
   void divide(Eigen::MatrixXd& columns) const;
   /// Energy coordinates of states (eta, eta_dot, xi), 2 d + n_1 x columns.
   Eigen::MatrixXd of(const Eigen::MatrixXd& states) const;
-  /// Energy coordinates of eta_dot only, d x columns.
-  Eigen::MatrixXd rates(const Eigen::MatrixXd& eta_dot) const {
-    return rate_.triangularView<Eigen::Upper>() * eta_dot;
-  }
+  /// The inverse of of().
+  Eigen::MatrixXd states_of(const Eigen::MatrixXd& coordinates) const;
 
  private:
   Eigen::MatrixXd eta_, rate_;  ///< upper triangles

@@ -97,7 +97,8 @@ class Analysis {
         dt_(system.period() / samples_),
         speed_(2.0 * std::numbers::pi / system.period()),
         states_(subspace_.size()),
-        series_(system, sectors, span_, states_, ranks),
+        series_(system, sectors, first_samples(ranks.size, steps_, samples_of_step_), states_,
+                ranks),
         stride_(std::max(1, (samples_ + shape_samples - 1) / shape_samples)) {}
 
   Floquet run() {
@@ -122,39 +123,79 @@ class Analysis {
 
   // ---- the map over a sector -------------------------------------------------------------------
 
+  /// Each rank integrates some of the steps, for all initial states at the start of its own steps.
+  /// A step depends on nothing but the state at its start, so that the map over all steps is the
+  /// product of the maps of the ranks. One step more than a sector shows whether the motion
+  /// repeats.
   void integrate() {
-    const Eigen::Index d = subspace_.degrees_of_freedom();
     Eigen::MatrixXd start = subspace_.basis(0.0);
-    coordinates_ = EnergyCoordinates(system_, start, d, speed_);
-    coordinates_.divide(start);
-    for (Eigen::Index j = ranks_.rank; j < states_; j += ranks_.size) own_.push_back(j);
-    Eigen::MatrixXd z = start(Eigen::all, own_);
-    const Eigen::Index shapes = (span_ + stride_ - 1) / stride_;
-    shapes_.resize(z.rows() * shapes, z.cols());
-    CollocationStep step(system_, solution_, subspace_, rule_.order, rule_.step);
-    Eigen::MatrixXd values;
-    long sample = 0;
-    for (long k = 0; k < steps_; ++k) {
-      step.advance(k, z);
-      for (int i = 0; i < samples_of_step_; ++i, ++sample) {
-        step.sample((i + offset_) / samples_of_step_, values);
-        series_.append(values);
-        if (sample % stride_ == 0)
-          shapes_.middleRows(sample / stride_ * z.rows(), z.rows()) = values;
-      }
-      observer_.progress("floquet", k + 1, steps_ + 1);
-    }
-    take_states(step.state());
-    step.advance(steps_, z);
-    step.sample(offset_ / samples_of_step_, end_);
-    observer_.progress("floquet", steps_ + 1, steps_ + 1);
+    coordinates_ = EnergyCoordinates(system_, start, subspace_.degrees_of_freedom(), speed_);
+    const long first = first_step(ranks_.rank);
+    const long end = first_step(ranks_.rank + 1);
+    map_.setIdentity(states_, states_);
+    ranks_.attempt([&] {
+      if (first == end) return;
+      if (first > 0) start = subspace_.basis(static_cast<double>(first) * rule_.step);
+      coordinates_.divide(start);
+      integrate(first, end, std::move(start));
+    });
+    multiply_maps();
   }
 
-  /// Columns of the map over a sector: P (eta, eta_dot, xi) in the coordinates of the start.
-  void take_states(const Eigen::MatrixXd& ends) {
-    map_.setZero(states_, states_);
-    map_(Eigen::all, own_) = coordinates_.of(turned(ends));
-    ranks_.sum(map_);
+  void integrate(long first, long end, Eigen::MatrixXd z) {
+    const long samples = (std::min(end, steps_) - std::min(first, steps_)) * samples_of_step_;
+    long sample = first * samples_of_step_;
+    const long last = sample + samples;
+    for (long i = sample; i < last; ++i)
+      if (i % stride_ == 0) shape_numbers_.push_back(i / stride_);
+    shapes_.resize(z.rows() * static_cast<Eigen::Index>(shape_numbers_.size()), z.cols());
+    Eigen::Index shape = 0;
+    CollocationStep step(system_, solution_, subspace_, rule_.order, rule_.step);
+    Eigen::MatrixXd values;
+    for (long k = first; k < end; ++k) {
+      step.advance(k, z);
+      if (k == steps_) {
+        step.sample(offset_ / samples_of_step_, end_);
+      } else {
+        for (int i = 0; i < samples_of_step_; ++i, ++sample) {
+          step.sample((i + offset_) / samples_of_step_, values);
+          series_.append(values);
+          if (sample % stride_ == 0) shapes_.middleRows(z.rows() * shape++, z.rows()) = values;
+        }
+        if (k + 1 == std::min(end, steps_)) map_ = coordinates_.of(step.state());
+      }
+      observer_.progress("floquet", k + 1 - first, end - first);
+    }
+  }
+
+  /// Number of the first step of a rank. A sector has `steps_` of them, and one more is made.
+  long first_step(int rank) const { return first_step(rank, ranks_.size, steps_); }
+  static long first_step(int rank, int ranks, long steps) { return (steps + 1) * rank / ranks; }
+
+  /// Number of the first sample of each rank, and that of all samples.
+  static std::vector<long> first_samples(int ranks, long steps, int samples_of_step) {
+    std::vector<long> first;
+    for (int r = 0; r <= ranks; ++r)
+      first.push_back(std::min(first_step(r, ranks, steps), steps) * samples_of_step);
+    return first;
+  }
+
+  /// Columns of the map over a sector, P (eta, eta_dot, xi) in the coordinates of the start, and of
+  /// the map from there to the first step of this rank.
+  void multiply_maps() {
+    const auto count = static_cast<int>(map_.size());
+    if (ranks_.rank > 0) {
+      before_.resize(states_, states_);
+      MPI_Recv(before_.data(), count, MPI_DOUBLE, ranks_.rank - 1, 0, ranks_.comm,
+               MPI_STATUS_IGNORE);
+      map_ = multiply(map_, before_);
+    }
+    if (ranks_.rank + 1 < ranks_.size) {
+      MPI_Send(map_.data(), count, MPI_DOUBLE, ranks_.rank + 1, 0, ranks_.comm);
+    } else {
+      map_ = coordinates_.of(turned(coordinates_.states_of(map_)));
+    }
+    if (ranks_.size > 1) MPI_Bcast(map_.data(), count, MPI_DOUBLE, ranks_.size - 1, ranks_.comm);
   }
 
   /// Applies P to (eta, eta_dot, xi). Their entries are unknowns, each divided by its own scale; P
@@ -275,13 +316,14 @@ class Analysis {
     return weights;
   }
 
+  /// The same of the states at the first step of this rank.
   Eigen::MatrixXd own_weights_of(const std::vector<Eigen::Index>& modes) const {
-    return weights_of(modes)(own_, Eigen::all);
+    const Eigen::MatrixXd weights = weights_of(modes);
+    return ranks_.rank == 0 ? weights : multiply(before_, weights);
   }
 
   void identify() {
     const auto count = static_cast<Eigen::Index>(set_.modes.size());
-    const Eigen::MatrixXd& signals = series_.values();
     HarmonicEnergy& energy = series_.energy();
     const Eigen::Index parts = energy.columns();
     set_.participation.setZero(count, samples_);
@@ -293,7 +335,7 @@ class Analysis {
     for (Eigen::Index first = 0; first < count; first += batch) {
       std::vector<Eigen::Index> modes(static_cast<std::size_t>(std::min(batch, count - first)));
       std::iota(modes.begin(), modes.end(), first);
-      multiply(signals, weights_of(modes), values);
+      values = series_.combine(own_weights_of(modes));
       // Every rank has the energies of some signals of each mode; the modes need the sum over all
       // ranks.
       Eigen::MatrixXd energies(samples_, parts * static_cast<Eigen::Index>(modes.size()));
@@ -357,7 +399,7 @@ class Analysis {
           !set_.modes[m].state)
         modes.push_back(static_cast<Eigen::Index>(m));
     if (modes.empty()) return;
-    Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), own_weights_of(modes));
+    Eigen::MatrixXd first = shapes_of(modes, 1);
     ranks_.sum(first);
     Eigen::MatrixXd states = Eigen::MatrixXd::Zero(states_, first.cols());
     states.topRows(subspace_.degrees_of_freedom()) = subspace_.coordinates_of(first);
@@ -450,9 +492,9 @@ class Analysis {
   void find_residuals() {
     std::vector<Eigen::Index> modes(set_.modes.size());
     std::iota(modes.begin(), modes.end(), 0);
-    const Eigen::MatrixXd weights = own_weights_of(modes);
-    Eigen::MatrixXd first = multiply(shapes_.topRows(system_.size()), weights);
-    Eigen::MatrixXd last = multiply(end_, weights);
+    Eigen::MatrixXd first = shapes_of(modes, 1);
+    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(first.rows(), first.cols());
+    if (end_.size() > 0) last = multiply(end_, own_weights_of(modes));
     ranks_.sum_on(0, first);
     ranks_.sum_on(0, last);
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes.size()));
@@ -478,18 +520,32 @@ class Analysis {
       (fine && set_.modes[m].residual <= largest_residual ? trusted : others)
           .push_back(static_cast<Eigen::Index>(m));
     }
-    const Eigen::Index instants = shapes_.rows() / system_.size();
+    const Eigen::Index instants = (span_ + stride_ - 1) / stride_;
     set_.shapes.resize(ranks_.rank == 0 ? set_.modes.size() : 0);
     expand_shapes(trusted, instants);
     expand_shapes(others, std::min(instants, label_samples));
     settle_rigid_body_modes();
   }
 
+  /// The modes at the first `instants` of the shapes: real part and imaginary part of one mode
+  /// after the other. Zero where another rank has integrated them.
+  Eigen::MatrixXd shapes_of(const std::vector<Eigen::Index>& modes, Eigen::Index instants) const {
+    const Eigen::Index n = system_.size();
+    Eigen::MatrixXd values =
+        Eigen::MatrixXd::Zero(n * instants, 2 * static_cast<Eigen::Index>(modes.size()));
+    const auto count = std::lower_bound(shape_numbers_.begin(), shape_numbers_.end(), instants) -
+                       shape_numbers_.begin();
+    if (count == 0) return values;
+    Eigen::MatrixXd own;
+    multiply(shapes_.topRows(n * count), own_weights_of(modes), own);
+    values.middleRows(n * shape_numbers_.front(), n * count) = own;
+    return values;
+  }
+
   /// The first `instants` of a sector, continued over the period.
   void expand_shapes(const std::vector<Eigen::Index>& modes, Eigen::Index instants) {
     const Eigen::Index n = system_.size();
-    Eigen::MatrixXd values;
-    multiply(shapes_.topRows(n * instants), own_weights_of(modes), values);
+    Eigen::MatrixXd values = shapes_of(modes, instants);
     ranks_.sum_on(0, values);
     if (ranks_.rank != 0) return;
     std::vector<PetscInt> all(static_cast<std::size_t>(n));
@@ -647,7 +703,7 @@ class Analysis {
       throw InternalError("floquet: " + std::to_string(set_.found) + " exponents found and " +
                           std::to_string(set_.deflated) + " deflated of " +
                           std::to_string(set_.states));
-    const Eigen::Index columns = shapes_.rows() / system_.size();
+    const Eigen::Index columns = (span_ + stride_ - 1) / stride_;
     for (int q = 0; q < sectors_; ++q)
       for (Eigen::Index k = 0; k < columns; ++k)
         set_.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + offset_) * dt_);
@@ -736,9 +792,11 @@ class Analysis {
   Eigen::Index states_;
   SignalSeries series_;
   long stride_;
-  std::vector<Eigen::Index> own_;     ///< initial states of this rank
-  Eigen::MatrixXd shapes_;            ///< all unknowns at every stride-th sample x own states
-  Eigen::MatrixXd end_;               ///< all unknowns at the first sample after the sector
+  std::vector<long> shape_numbers_;  ///< of the shapes in shapes_, ascending
+  Eigen::MatrixXd shapes_;  ///< all unknowns at every stride-th sample of this rank x states
+  Eigen::MatrixXd
+      end_;  ///< all unknowns at the first sample after the sector; empty on other ranks
+  Eigen::MatrixXd before_;            ///< map from the start to the first step of this rank
   EnergyCoordinates coordinates_;     ///< of the states at the start
   Eigen::MatrixXd map_;               ///< over a sector, in these coordinates
   std::vector<Complex> multipliers_;  ///< of the sector

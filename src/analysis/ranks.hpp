@@ -2,10 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <exception>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 #include <mpi.h>
+
+#include "samara/base/error.hpp"
 
 namespace samara::analysis {
 
@@ -31,6 +35,28 @@ struct Ranks {
     for (Eigen::Index i = 0; i < values.size(); i += most_values)
       MPI_Reduce(rank == target ? MPI_IN_PLACE : values.data() + i, values.data() + i,
                  part(values.size() - i), MPI_DOUBLE, MPI_SUM, target, comm);
+  }
+
+  /// Does work that differs from rank to rank. If it fails on one of them, it fails on all.
+  template <class Work>
+  void attempt(const Work& work) const {
+    std::exception_ptr error;
+    std::string message;
+    try {
+      work();
+    } catch (const std::exception& failure) {
+      error = std::current_exception();
+      message = failure.what();
+    }
+    int failed = error ? rank : size;
+    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, comm);
+    if (failed == size) return;
+    int length = static_cast<int>(message.size());
+    MPI_Bcast(&length, 1, MPI_INT, failed, comm);
+    message.resize(static_cast<std::size_t>(length));
+    MPI_Bcast(message.data(), length, MPI_CHAR, failed, comm);
+    if (error) std::rethrow_exception(error);
+    throw ConvergenceError(message);
   }
 
  private:

@@ -1,11 +1,6 @@
-// The signals of all initial states over a sector. Each rank has some of the signals.
-//
-// Each rank integrates some of the initial states, but a mode combines all of them. During the
-// integration every rank therefore sends each other rank the signals that this rank analyses, and
-// receives its own signals of all states.
+// The signals of all initial states over a sector, of whose steps each rank has integrated some.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "samara/analysis/harmonic_energy.hpp"
@@ -16,51 +11,37 @@ namespace samara::analysis {
 
 class SignalSeries {
  public:
-  /// `states`: number of initial states, which are distributed to the ranks in turn.
-  SignalSeries(const system::PeriodicSystem& system, int sectors, long steps, Eigen::Index states,
-               const Ranks& ranks);
-  /// Does not wait: pending messages are cancelled where an analysis ends early.
-  ~SignalSeries();
-  SignalSeries(const SignalSeries&) = delete;
-  SignalSeries& operator=(const SignalSeries&) = delete;
+  /// `first`: number of the first sample of each rank, in the order of the ranks; the last entry is
+  /// the number of all samples. `states`: number of initial states.
+  SignalSeries(const system::PeriodicSystem& system, int sectors, std::vector<long> first,
+               Eigen::Index states, const Ranks& ranks);
 
-  /// Energy in the signals of this rank.
+  /// Energy in the signals that this rank analyses.
   HarmonicEnergy& energy() { return energies_[static_cast<std::size_t>(ranks_.rank)]; }
 
-  /// Appends the states of this rank at the middle of the next step. Every rank calls it once per
-  /// step.
+  /// Appends the next sample of this rank: unknowns x initial states.
   void append(const Eigen::MatrixXd& states);
 
-  /// Signals of this rank, step after step, x all initial states; complete after the last step.
-  const Eigen::MatrixXd& values() const { return values_; }
+  /// The signals that this rank analyses, sample after sample of the whole sector, for combinations
+  /// of the initial states. `weights`: initial states of the samples of this rank x combinations.
+  /// Every rank calls it.
+  Eigen::MatrixXd combine(const Eigen::MatrixXd& weights) const;
 
-  /// Largest number of rows of values() of any rank; the same on every rank.
-  Eigen::Index most_rows() const { return most_signals_ * steps_; }
+  /// Largest number of rows of combine() of any rank; the same on every rank.
+  Eigen::Index most_rows() const { return most_signals_ * first_.back(); }
 
  private:
-  /// Messages of one block of steps.
-  struct Block {
-    std::vector<Eigen::MatrixXd> outgoing, incoming;  ///< to and from every rank
-    std::vector<MPI_Request> requests;
-    long first = 0;  ///< step of the series
-    long steps = 0;
-  };
-
-  void send(Block& block) const;
-  void receive(Block& block);
-  Eigen::Index states_of(int rank) const {
-    return (states_ - rank + ranks_.size - 1) / ranks_.size;
+  long samples_of(int rank) const {
+    const auto r = static_cast<std::size_t>(rank);
+    return first_[r + 1] - first_[r];
   }
 
   Ranks ranks_;
-  Eigen::Index states_;
-  long steps_;
+  std::vector<long> first_;
   Eigen::Index most_signals_ = 0;         ///< largest number of a rank
-  long block_;                            ///< steps that are sent together
-  long taken_ = 0;                        ///< steps appended
+  long taken_ = 0;                        ///< samples appended
   std::vector<HarmonicEnergy> energies_;  ///< of every rank
-  std::array<Block, 2> blocks_;           ///< one is sent while the other is filled
-  Eigen::MatrixXd values_;
+  std::vector<Eigen::MatrixXd> values_;   ///< for every rank: its signals of this rank's samples
 };
 
 }  // namespace samara::analysis

@@ -1,5 +1,7 @@
 // Floquet's analysis on several ranks: every rank also does the whole work alone and compares.
 #include <cmath>
+#include <exception>
+#include <string>
 
 #include <boost/test/unit_test.hpp>
 
@@ -105,4 +107,49 @@ BOOST_AUTO_TEST_CASE(mode_shapes_are_on_the_first_rank) {
     BOOST_TEST((y - factor * x).norm() < 1e-7 * y.norm(), runs.alone.set.modes[m].label);
     BOOST_TEST(std::abs(factor) == 1.0, boost::test_tools::tolerance(1e-6));
   }
+}
+
+BOOST_AUTO_TEST_CASE(ranks_without_a_step_of_their_own_change_nothing) {
+  // One step and the closing one are dealt to up to three ranks.
+  const Mathieu system(2.5, 0.1);
+  const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(system.size(), 1), system.period());
+  analysis::Observer observer;
+  for (const int steps : {1, 2}) {
+    const analysis::FloquetOptions options{steps, analysis::FloquetPeriod::full, 6, {}};
+    require_same({find_floquet_modes(system, rest, options, PETSC_COMM_SELF, observer),
+                  find_floquet_modes(system, rest, options, PETSC_COMM_WORLD, observer)});
+  }
+}
+
+namespace {
+
+/// An oscillator whose equations end within the period.
+class Ending final : public SmallSystem {
+ public:
+  Ending() {
+    period_ = 2.0 * pi;
+    add_position("x");
+    add_velocity("v");
+    add_kinetic("mass", 1, 1.0);
+  }
+  void tangents_at(double t, const Eigen::VectorXd&, const Eigen::VectorXd&, Eigen::MatrixXd& K,
+                   Eigen::MatrixXd& M) const override {
+    if (t > 0.9 * period_) throw DomainError("the equations end here");
+    K << 0.0, 1.0, 1.7, 0.1;
+    M << -1.0, 0.0, 0.0, 1.0;
+  }
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_failure_on_one_rank_ends_all_of_them) {
+  const Ending system;
+  const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(system.size(), 1), system.period());
+  analysis::Observer observer;
+  BOOST_CHECK_EXCEPTION(find_floquet_modes(system, rest, {30, analysis::FloquetPeriod::full, 6, {}},
+                                           PETSC_COMM_WORLD, observer),
+                        std::exception, [](const std::exception& error) {
+                          return std::string(error.what()).find("the equations end here") !=
+                                 std::string::npos;
+                        });
 }

@@ -18,7 +18,7 @@ struct Floquet {
 };
 
 /// Integrates the perturbations about `solution`, finds and identifies all modes. `system` is a
-/// serial copy on every rank of `comm`; the columns, and the signals that identify the modes, are
+/// serial copy on every rank of `comm`; the steps, and the signals that identify the modes, are
 /// distributed over the ranks. The mode shapes are on rank 0 of `comm` only.
 /// @throws InputError where the system has no period, ConvergenceError from the solvers
 Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
