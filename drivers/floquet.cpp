@@ -25,8 +25,7 @@ std::string headline(const io::Case& input, const analysis::Floquet& floquet) {
   return (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n" + "rotor speed " +
          general(speed, 6) + " rad/s; " + count(floquet.set.degrees_of_freedom, "degree") +
          " of freedom; " + std::to_string(floquet.steps) + " steps of order " +
-         std::to_string(floquet.order) + " a revolution, integrated over " +
-         span + "\n\n";
+         std::to_string(floquet.order) + " a revolution, integrated over " + span + "\n\n";
 }
 
 }  // namespace

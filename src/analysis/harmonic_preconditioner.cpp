@@ -38,7 +38,8 @@ void HarmonicPreconditioner::find_border() {
   for (const Place& place : tangents_.places())
     users[static_cast<std::size_t>(place.column / block_)].insert(place.row / block_);
   std::vector<char> is_border(static_cast<std::size_t>(blocks), 0);
-  for (std::size_t b = 0; b < users.size(); ++b) is_border[b] = users[b].size() > most_neighbours;
+  for (std::size_t b = 0; b < users.size(); ++b)
+    if (users[b].size() > most_neighbours) is_border[b] = 1;
   for (const system::UnconstrainedCoordinate& held : tangents_.held())
     for (const PetscInt i : {held.unknown, held.row})
       is_border[static_cast<std::size_t>(i / block_)] = 1;

@@ -112,8 +112,8 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c);
 
-/// A B for a sparse matrix by rows and many columns; faster than Eigen's product, which goes through
-/// A once for each column.
+/// A B for a sparse matrix by rows and many columns; faster than Eigen's product, which goes
+/// through A once for each column.
 void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c);
 
