@@ -62,11 +62,8 @@ ConsistentSubspace::ConsistentSubspace(const system::PeriodicSystem& system,
   for (std::size_t i = 0; i < n; ++i) {
     if (system.rows()[i] == system::RowRole::kinematic)
       kinematic_.push_back(static_cast<PetscInt>(i));
-    if (system.rows()[i] == system::RowRole::balance) balance_.push_back(static_cast<PetscInt>(i));
     if (system.unknowns()[i].role == system::UnknownRole::velocity)
       velocities_.push_back(static_cast<PetscInt>(i));
-    if (system.unknowns()[i].role == system::UnknownRole::internal && !carried_[i])
-      reactions_.push_back(static_cast<PetscInt>(i));
     if (system.unknowns()[i].role == system::UnknownRole::position)
       positions_.push_back(static_cast<PetscInt>(i));
   }
@@ -303,74 +300,6 @@ Eigen::MatrixXd ConsistentSubspace::basis(double t) const {
   for (std::size_t i = 0; i < velocities_.size(); ++i)
     z.row(velocities_[i]) = v.row(static_cast<Eigen::Index>(i));
   return z;
-}
-
-Eigen::MatrixXd ConsistentSubspace::state_of(double t, const Eigen::MatrixXd& z) const {
-  const Eigen::Index d = degrees_of_freedom();
-  const Eigen::Index n_1 = first_order();
-  Eigen::MatrixXd state(2 * d + n_1, z.cols());
-  state.topRows(d) = coordinates_of(z);
-  state.bottomRows(n_1) = states_of(z);
-  const Eigen::MatrixXd all = basis(t)(velocities_, Eigen::all);
-  const Eigen::MatrixXd at_rest = all.leftCols(d);
-  Eigen::MatrixXd moving = z(velocities_, Eigen::all) - multiply(at_rest, state.topRows(d));
-  if (n_1 > 0) moving -= multiply(all.rightCols(n_1), state.bottomRows(n_1));
-
-  // D p_dot + D_eta eta_dot = 0, velocities V of these rates, and M (V - moving) + E_y y = 0 in the
-  // balance rows, with the impulses y of the reactions.
-  const SparseTangents tangents = tangents_on(system_, solution_, t);
-  const Sparse inertia = part(tangents.M, balance_, velocities_);
-  const std::array<const std::vector<PetscInt>*, 3> rows{&constraints_, &kinematic_, &balance_};
-  const std::array<const std::vector<PetscInt>*, 4> columns{&tied_, &coordinates_, &velocities_,
-                                                            &reactions_};
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::Index n = 0;
-  for (const std::vector<PetscInt>* some : columns) n += static_cast<Eigen::Index>(some->size());
-  Eigen::VectorXd row_largest = Eigen::VectorXd::Zero(n);
-  const auto put = [&](std::size_t row, std::size_t column, const Sparse& values,
-                       const Eigen::VectorXd& factors) {
-    Eigen::Index first_row = 0;
-    Eigen::Index first_column = 0;
-    for (std::size_t i = 0; i < row; ++i) first_row += static_cast<Eigen::Index>(rows[i]->size());
-    for (std::size_t i = 0; i < column; ++i)
-      first_column += static_cast<Eigen::Index>(columns[i]->size());
-    for (Eigen::Index j = 0; j < values.outerSize(); ++j)
-      for (Sparse::InnerIterator it(values, j); it; ++it) {
-        const double value = it.value() * factors(j);
-        entries.emplace_back(first_row + it.row(), first_column + j, value);
-        row_largest(first_row + it.row()) =
-            std::max(row_largest(first_row + it.row()), std::abs(value));
-      }
-  };
-  const auto ones = [](const std::vector<PetscInt>& some) -> Eigen::VectorXd {
-    return Eigen::VectorXd::Ones(static_cast<Eigen::Index>(some.size()));
-  };
-  const Eigen::Map<const Eigen::VectorXd> eta_scale(scale_.data(), d);
-  put(0, 0, part(tangents.K, constraints_, tied_), ones(tied_));
-  put(0, 1, part(tangents.K, constraints_, coordinates_), eta_scale);
-  put(1, 0, part(tangents.M, kinematic_, tied_), ones(tied_));
-  put(1, 1, part(tangents.M, kinematic_, coordinates_), eta_scale);
-  put(1, 2, part(tangents.K, kinematic_, velocities_), ones(velocities_));
-  put(2, 2, inertia, ones(velocities_));
-  // Impulses are scaled by the inertia that they act on (docs/theory.md, section 5.3).
-  std::vector<double> levels;
-  for (Eigen::Index i = row_largest.size() - static_cast<Eigen::Index>(balance_.size());
-       i < row_largest.size(); ++i)
-    if (row_largest(i) > 0.0) levels.push_back(row_largest(i));
-  std::sort(levels.begin(), levels.end());
-  const double impulse = levels.empty() ? 1.0 : levels[levels.size() / 2];
-  put(2, 3, part(tangents.K, balance_, reactions_), impulse * ones(reactions_));
-  Sparse matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::VectorXd row_scale =
-      row_largest.unaryExpr([](double a) { return a > 0.0 ? 1.0 / a : 1.0; });
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n, z.cols());
-  const auto balances = static_cast<Eigen::Index>(balance_.size());
-  right.bottomRows(balances) = row_scale.tail(balances).asDiagonal() * (inertia * moving);
-  const Eigen::MatrixXd found =
-      SparseSolver(row_scale.asDiagonal() * matrix, "momenta").solve(right);
-  state.middleRows(d, d) = found.middleRows(static_cast<Eigen::Index>(tied_.size()), d);
-  return state;
 }
 
 /// Writes the rates of the states that constraint rows contain into `rates`. The evolution rows of

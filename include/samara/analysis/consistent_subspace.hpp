@@ -59,13 +59,6 @@ class ConsistentSubspace {
   /// xi of the columns of z, scaled: n_1 x columns.
   Eigen::MatrixXd states_of(const Eigen::MatrixXd& z) const;
 
-  /// The consistent state nearest to each column of z (size x columns) at time t, as 2 d + n_1 x
-  /// columns: eta, then eta_dot after impulses of the reactions alone have made the velocities
-  /// consistent, then xi. Velocities that no rate of eta produces are orthogonal to the others in
-  /// the metric of the kinetic energy; they become zero.
-  /// @throws InternalError where velocities without inertia depend on the reactions alone
-  Eigen::MatrixXd state_of(double t, const Eigen::MatrixXd& z) const;
-
   /// Unknowns whose values at a step's ends belong to the state: x, and internal loads in eta.
   const std::vector<bool>& carried() const { return carried_; }
 
@@ -104,13 +97,11 @@ class ConsistentSubspace {
   std::vector<double> tied_scale_;     ///< of the last entries of tied_, which are internal loads
   std::vector<PetscInt> kinematic_;    ///< rows
   std::vector<PetscInt> velocities_;   ///< unknowns
-  std::vector<PetscInt> balance_;      ///< rows
   std::vector<PetscInt> positions_;    ///< unknowns
   std::vector<PetscInt> states_;       ///< unknowns of first order
   std::vector<double> state_scale_;    ///< xi = z / scale
   std::vector<PetscInt> driving_;      ///< states that constraint rows contain
   std::vector<Eigen::Index> driving_places_;  ///< of driving_ in xi
-  std::vector<PetscInt> reactions_;           ///< internal loads that no constraint row contains
   bool fixed_constraints_ = false;
 };
 
