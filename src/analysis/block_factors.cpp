@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <set>
 
-#include <petscblaslapack.h>
-
 #include "samara/petsc/handle.hpp"
+
+#include "blas.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -17,7 +18,9 @@ constexpr double least_pivot = 1e-13;
 
 }  // namespace
 
-BlockFactors::BlockFactors(const BlockMatrix& pattern) : size_(pattern.size), rows_(pattern.rows) {
+template <class Scalar>
+BlockFactors<Scalar>::BlockFactors(const BlockMatrix<Scalar>& pattern)
+    : size_(pattern.size), rows_(pattern.rows) {
   begin_.push_back(0);
   // Row i gets the columns of U of each row k that it eliminates.
   for (Index i = 0; i < rows_; ++i) {
@@ -40,54 +43,53 @@ BlockFactors::BlockFactors(const BlockMatrix& pattern) : size_(pattern.size), ro
 }
 
 /// Finds the rows of a block that are not zero throughout: elimination adds none to them.
-void BlockFactors::find_rows(Index entry) {
-  const Eigen::Map<const Eigen::MatrixXd> values(block(entry), size_, size_);
+template <class Scalar>
+void BlockFactors<Scalar>::find_rows(Index entry) {
+  const Eigen::Map<const Matrix> values(block(entry), size_, size_);
   Index first = 0;
   Index end = size_;
-  while (first < end && (values.row(first).array() == 0.0).all()) ++first;
-  while (first < end && (values.row(end - 1).array() == 0.0).all()) --end;
+  while (first < end && (values.row(first).array() == Scalar(0.0)).all()) ++first;
+  while (first < end && (values.row(end - 1).array() == Scalar(0.0)).all()) --end;
   filled_rows_[static_cast<std::size_t>(entry)] = {first, end};
 }
 
 /// C = C - A B with the block A of an entry; B and C of size x columns.
-void BlockFactors::subtract_product(Index entry, const double* b, double* c, Index columns) const {
+template <class Scalar>
+void BlockFactors<Scalar>::subtract_product(Index entry, const Scalar* b, Scalar* c,
+                                            Index columns) const {
   const auto [first, end] = filled_rows_[static_cast<std::size_t>(entry)];
   if (first == end) return;
-  const auto rows = static_cast<PetscBLASInt>(end - first);
-  const auto size = static_cast<PetscBLASInt>(size_);
-  const auto n = static_cast<PetscBLASInt>(columns);
-  const PetscScalar minus = -1.0;
-  const PetscScalar one = 1.0;
-  BLASgemm_("N", "N", &rows, &n, &size, &minus, block(entry) + first, &size, b, &size, &one,
-            c + first, &size);
+  const auto size = static_cast<blas::Integer>(size_);
+  blas::subtract_product(static_cast<blas::Integer>(end - first),
+                         static_cast<blas::Integer>(columns), size, block(entry) + first, size, b,
+                         size, c + first, size);
 }
 
-bool BlockFactors::factor_diagonal(Index i, double largest) {
-  const auto n = static_cast<PetscBLASInt>(size_);
-  double* values = block(diagonal_[static_cast<std::size_t>(i)]);
-  PetscBLASInt status = 0;
-  LAPACKgetrf_(&n, &n, values, &n, interchanges(i), &status);
-  if (status != 0) return false;
+template <class Scalar>
+bool BlockFactors<Scalar>::factor_diagonal(Index i, double largest) {
+  Scalar* values = block(diagonal_[static_cast<std::size_t>(i)]);
+  if (blas::factor(static_cast<blas::Integer>(size_), values, interchanges(i)) != 0) return false;
   double pivot = largest;
   for (Index k = 0; k < size_; ++k) pivot = std::min(pivot, std::abs(values[k * (size_ + 1)]));
   return pivot > least_pivot * largest;
 }
 
 /// A becomes A D^-1 with the diagonal block D = P^T L U of row k.
-void BlockFactors::divide(double* a, Index k) const {
-  const auto n = static_cast<PetscBLASInt>(size_);
-  const double* factors = block(diagonal_[static_cast<std::size_t>(k)]);
-  const PetscScalar one = 1.0;
-  BLAStrsm_("R", "U", "N", "N", &n, &n, &one, factors, &n, a, &n);
-  BLAStrsm_("R", "L", "N", "U", &n, &n, &one, factors, &n, a, &n);
+template <class Scalar>
+void BlockFactors<Scalar>::divide(Scalar* a, Index k) const {
+  const auto n = static_cast<blas::Integer>(size_);
+  const Scalar* factors = block(diagonal_[static_cast<std::size_t>(k)]);
+  blas::divide_by_triangle('U', n, factors, a);
+  blas::divide_by_triangle('L', n, factors, a);
   for (Index c = size_ - 1; c >= 0; --c)
     if (const Index other = interchanges(k)[c] - 1; other != c)
       std::swap_ranges(a + c * size_, a + (c + 1) * size_, a + other * size_);
 }
 
-bool BlockFactors::factor(const BlockMatrix& matrix) {
+template <class Scalar>
+bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix) {
   const Index area = size_ * size_;
-  std::fill(values_.begin(), values_.end(), 0.0);
+  std::fill(values_.begin(), values_.end(), Scalar(0.0));
   std::vector<Index> place(static_cast<std::size_t>(rows_), -1);
   for (Index i = 0; i < rows_; ++i) {
     const Index first = begin_[static_cast<std::size_t>(i)];
@@ -96,7 +98,7 @@ bool BlockFactors::factor(const BlockMatrix& matrix) {
       place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)])] = entry;
     double largest = 0.0;
     for (PetscInt k = matrix.begin[i]; k < matrix.begin[i + 1]; ++k) {
-      const Eigen::Map<const Eigen::VectorXd> one(matrix.values + k * area, area);
+      const Eigen::Map<const Vector> one(matrix.values + k * area, area);
       largest = std::max(largest, one.cwiseAbs().maxCoeff());
       std::copy_n(one.data(), area, block(place[static_cast<std::size_t>(matrix.columns[k])]));
     }
@@ -117,46 +119,147 @@ bool BlockFactors::factor(const BlockMatrix& matrix) {
   return true;
 }
 
-void BlockFactors::solve(const Eigen::Ref<const Eigen::MatrixXd>& right,
-                         const Eigen::Ref<const Eigen::VectorXd>& row_factors) {
-  right_sides_ = right.cols();
+template <class Scalar>
+void BlockFactors<Scalar>::resize(Index right_sides) {
+  right_sides_ = right_sides;
   packed_.resize(static_cast<std::size_t>(rows_ * size_ * right_sides_));
-  const auto n = static_cast<PetscBLASInt>(size_);
-  const auto m = static_cast<PetscBLASInt>(right_sides_);
+}
+
+/// Row i of (I + L)^-1, from the rows before it.
+template <class Scalar>
+void BlockFactors<Scalar>::eliminate(Index i) {
+  for (Index entry = begin_[static_cast<std::size_t>(i)];
+       entry < diagonal_[static_cast<std::size_t>(i)]; ++entry)
+    subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
+                     right_sides_);
+}
+
+/// Row i of (D + U)^-1, from the rows after it.
+template <class Scalar>
+void BlockFactors<Scalar>::substitute(Index i) {
+  const Index diagonal = diagonal_[static_cast<std::size_t>(i)];
+  for (Index entry = diagonal + 1; entry < begin_[static_cast<std::size_t>(i) + 1]; ++entry)
+    subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
+                     right_sides_);
+  blas::solve(static_cast<blas::Integer>(size_), static_cast<blas::Integer>(right_sides_),
+              block(diagonal), interchanges(i), rows_of(i));
+}
+
+template <class Scalar>
+void BlockFactors<Scalar>::solve(const Eigen::Ref<const Matrix>& right,
+                                 const Eigen::Ref<const Eigen::VectorXd>& row_factors) {
+  resize(right.cols());
   for (Index i = 0; i < rows_; ++i) {
-    Eigen::Map<Eigen::MatrixXd>(rows_of(i), size_, right_sides_) =
+    Eigen::Map<Matrix>(rows_of(i), size_, right_sides_) =
         right.middleRows(i * size_, size_).array().colwise() *
-        row_factors.segment(i * size_, size_).array();
-    for (Index entry = begin_[static_cast<std::size_t>(i)];
-         entry < diagonal_[static_cast<std::size_t>(i)]; ++entry)
-      subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
-                       right_sides_);
+        row_factors.segment(i * size_, size_).array().template cast<Scalar>();
+    eliminate(i);
+  }
+  for (Index i = rows_ - 1; i >= 0; --i) substitute(i);
+}
+
+template <class Scalar>
+void BlockFactors<Scalar>::solve(Matrix& right) {
+  resize(right.cols());
+  for (Index i = 0; i < rows_; ++i) {
+    Eigen::Map<Matrix>(rows_of(i), size_, right_sides_) = right.middleRows(i * size_, size_);
+    eliminate(i);
   }
   for (Index i = rows_ - 1; i >= 0; --i) {
-    const Index diagonal = diagonal_[static_cast<std::size_t>(i)];
-    for (Index entry = diagonal + 1; entry < begin_[static_cast<std::size_t>(i) + 1]; ++entry)
-      subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
-                       right_sides_);
-    PetscBLASInt status = 0;
-    LAPACKgetrs_("N", &n, &m, block(diagonal), &n, interchanges(i), rows_of(i), &n, &status);
+    substitute(i);
+    right.middleRows(i * size_, size_) = Eigen::Map<Matrix>(rows_of(i), size_, right_sides_);
   }
 }
 
-Eigen::VectorXd BlockFactors::column(Index c) const {
-  Eigen::VectorXd values(rows_ * size_);
+template <class Scalar>
+void BlockFactors<Scalar>::solve_part(Matrix& right, const std::vector<Index>& filled,
+                                      const std::vector<Index>& wanted) {
+  resize(right.cols());
+  // Rows of (I + L)^-1 `right` that are not zero.
+  std::vector<char> is_filled(static_cast<std::size_t>(rows_), 0);
+  for (const Index i : filled) is_filled[static_cast<std::size_t>(i)] = 1;
+  const auto is_in_row = [this](Index first, Index end, const std::vector<char>& rows) {
+    return std::any_of(columns_.begin() + first, columns_.begin() + end, [&rows](Index column) {
+      return rows[static_cast<std::size_t>(column)] != 0;
+    });
+  };
+  for (Index i = 0; i < rows_; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    Eigen::Map<Matrix> rows(rows_of(i), size_, right_sides_);
+    if (is_filled[at])
+      rows = right.middleRows(i * size_, size_);
+    else if (is_in_row(begin_[at], diagonal_[at], is_filled))
+      rows.setZero();
+    else
+      continue;
+    is_filled[at] = 1;
+    for (Index entry = begin_[at]; entry < diagonal_[at]; ++entry)
+      if (const Index k = columns_[static_cast<std::size_t>(entry)];
+          is_filled[static_cast<std::size_t>(k)])
+        subtract_product(entry, rows_of(k), rows_of(i), right_sides_);
+  }
+  // Rows on which the wanted ones depend.
+  std::vector<char> is_wanted(static_cast<std::size_t>(rows_), 0);
+  for (const Index i : wanted) is_wanted[static_cast<std::size_t>(i)] = 1;
+  for (std::size_t i = 0; i < is_wanted.size(); ++i)
+    if (is_wanted[i])
+      for (Index entry = diagonal_[i] + 1; entry < begin_[i + 1]; ++entry)
+        is_wanted[static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)])] = 1;
+  std::vector<char>& is_found = is_filled;  // of the solution that is not zero
+  for (Index i = rows_ - 1; i >= 0; --i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!is_wanted[at]) continue;
+    Eigen::Map<Matrix> rows(rows_of(i), size_, right_sides_);
+    if (!is_found[at]) {
+      if (!is_in_row(diagonal_[at] + 1, begin_[at + 1], is_found)) {
+        right.middleRows(i * size_, size_).setZero();
+        continue;
+      }
+      rows.setZero();
+      is_found[at] = 1;
+    }
+    for (Index entry = diagonal_[at] + 1; entry < begin_[at + 1]; ++entry)
+      if (const Index k = columns_[static_cast<std::size_t>(entry)];
+          is_found[static_cast<std::size_t>(k)])
+        subtract_product(entry, rows_of(k), rows_of(i), right_sides_);
+    blas::solve(static_cast<blas::Integer>(size_), static_cast<blas::Integer>(right_sides_),
+                block(diagonal_[at]), interchanges(i), rows_of(i));
+    right.middleRows(i * size_, size_) = rows;
+  }
+}
+
+template <class Scalar>
+typename BlockFactors<Scalar>::Vector BlockFactors<Scalar>::column(Index c) const {
+  Vector values(rows_ * size_);
   for (Index i = 0; i < rows_; ++i)
-    values.segment(i * size_, size_) =
-        Eigen::Map<const Eigen::VectorXd>(rows_of(i) + c * size_, size_);
+    values.segment(i * size_, size_) = Eigen::Map<const Vector>(rows_of(i) + c * size_, size_);
   return values;
 }
 
-void BlockFactors::copy(const Eigen::Ref<const Eigen::VectorXd>& factors,
-                        Eigen::MatrixXd& solution) const {
+template <class Scalar>
+void BlockFactors<Scalar>::copy(const Eigen::Ref<const Eigen::VectorXd>& factors,
+                                Matrix& solution) const {
   solution.resize(rows_ * size_, right_sides_);
   for (Index i = 0; i < rows_; ++i)
     solution.middleRows(i * size_, size_) =
-        Eigen::Map<const Eigen::MatrixXd>(rows_of(i), size_, right_sides_).array().colwise() *
-        factors.segment(i * size_, size_).array();
+        Eigen::Map<const Matrix>(rows_of(i), size_, right_sides_).array().colwise() *
+        factors.segment(i * size_, size_).array().template cast<Scalar>();
 }
+
+template <class Scalar>
+double BlockFactors<Scalar>::phase_of_determinant() const {
+  double phase = 0.0;
+  for (Index i = 0; i < rows_; ++i) {
+    const Scalar* values = block(diagonal_[static_cast<std::size_t>(i)]);
+    for (Index k = 0; k < size_; ++k) {
+      phase += std::arg(values[k * (size_ + 1)]);
+      if (interchanges(i)[k] != k + 1) phase += std::numbers::pi;
+    }
+  }
+  return std::remainder(phase, 2.0 * std::numbers::pi);
+}
+
+template class BlockFactors<double>;
+template class BlockFactors<std::complex<double>>;
 
 }  // namespace samara::analysis

@@ -1,6 +1,7 @@
 // LU factorization of a sparse matrix of square blocks, for many right-hand sides at once.
 #pragma once
 
+#include <complex>
 #include <utility>
 #include <vector>
 
@@ -10,47 +11,65 @@
 namespace samara::analysis {
 
 /// A sparse matrix of square blocks. Block row i has the blocks begin[i] to begin[i + 1] - 1.
+template <class Scalar>
 struct BlockMatrix {
   Eigen::Index size = 1;  ///< rows of a block
   Eigen::Index rows = 0;  ///< block rows
   const PetscInt* begin = nullptr;
   const PetscInt* columns = nullptr;  ///< block column of each block
-  const double* values = nullptr;     ///< blocks column by column
+  const Scalar* values = nullptr;     ///< blocks column by column
 };
 
 /// Factors A = (I + L) (D + U) block row by block row in the given order. Rows are interchanged in
 /// the diagonal blocks D only, which are factored by LAPACK. A solve multiplies each block with all
-/// right-hand sides. The unknowns of chains with a border at the end cause no fill-in.
+/// right-hand sides. The unknowns of chains with a border at the end cause no fill-in. `Scalar` is
+/// double or std::complex<double>.
+template <class Scalar>
 class BlockFactors {
  public:
+  using Index = Eigen::Index;
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+
   /// Finds the fill-in of a pattern, which all matrices have.
-  explicit BlockFactors(const BlockMatrix& pattern);
+  explicit BlockFactors(const BlockMatrix<Scalar>& pattern);
 
   /// @returns false where a diagonal block is singular to working precision.
-  bool factor(const BlockMatrix& matrix);
+  bool factor(const BlockMatrix<Scalar>& matrix);
 
   /// Solves for all columns of diag(`row_factors`) `right`.
-  void solve(const Eigen::Ref<const Eigen::MatrixXd>& right,
+  void solve(const Eigen::Ref<const Matrix>& right,
              const Eigen::Ref<const Eigen::VectorXd>& row_factors);
 
   /// Column c of the solution.
-  Eigen::VectorXd column(Eigen::Index c) const;
+  Vector column(Index c) const;
   /// diag(`factors`) times the solution.
-  void copy(const Eigen::Ref<const Eigen::VectorXd>& factors, Eigen::MatrixXd& solution) const;
+  void copy(const Eigen::Ref<const Eigen::VectorXd>& factors, Matrix& solution) const;
+
+  /// Solves for all columns of `right`, in place.
+  void solve(Matrix& right);
+  /// The same for `right` that is zero outside the block rows `filled`. Only the block rows `wanted`
+  /// are found; the others of the result have no meaning.
+  void solve_part(Matrix& right, const std::vector<Index>& filled,
+                  const std::vector<Index>& wanted);
+
+  /// Phase of the determinant [rad].
+  double phase_of_determinant() const;
 
  private:
-  using Index = Eigen::Index;
-
-  double* block(Index entry) { return values_.data() + entry * size_ * size_; }
-  const double* block(Index entry) const { return values_.data() + entry * size_ * size_; }
-  double* rows_of(Index i) { return packed_.data() + i * size_ * right_sides_; }
-  const double* rows_of(Index i) const { return packed_.data() + i * size_ * right_sides_; }
+  Scalar* block(Index entry) { return values_.data() + entry * size_ * size_; }
+  const Scalar* block(Index entry) const { return values_.data() + entry * size_ * size_; }
+  Scalar* rows_of(Index i) { return packed_.data() + i * size_ * right_sides_; }
+  const Scalar* rows_of(Index i) const { return packed_.data() + i * size_ * right_sides_; }
   PetscBLASInt* interchanges(Index i) { return interchanges_.data() + i * size_; }
   const PetscBLASInt* interchanges(Index i) const { return interchanges_.data() + i * size_; }
   void find_rows(Index entry);
-  void subtract_product(Index entry, const double* b, double* c, Index columns) const;
+  void subtract_product(Index entry, const Scalar* b, Scalar* c, Index columns) const;
   bool factor_diagonal(Index i, double largest);
-  void divide(double* a, Index k) const;
+  void divide(Scalar* a, Index k) const;
+  void resize(Index right_sides);
+  void eliminate(Index i);
+  void substitute(Index i);
 
   Index size_ = 1;  ///< rows of a block
   Index rows_ = 0;  ///< block rows
@@ -58,11 +77,14 @@ class BlockFactors {
   std::vector<Index> begin_;     ///< of each block row in columns_, with fill-in; rows_ + 1 entries
   std::vector<Index> diagonal_;  ///< entry of the diagonal block of each row
   std::vector<Index> columns_;   ///< ascending in each row
-  std::vector<double> values_;   ///< L, factors of D, U; blocks column by column
+  std::vector<Scalar> values_;   ///< L, factors of D, U; blocks column by column
   /// First row of each block off the diagonal that is not zero, and the row behind the last one.
   std::vector<std::pair<Index, Index>> filled_rows_;
-  std::vector<double> packed_;              ///< right-hand sides, block row by block row
+  std::vector<Scalar> packed_;              ///< right-hand sides, block row by block row
   std::vector<PetscBLASInt> interchanges_;  ///< of the rows of the diagonal blocks, from 1
 };
+
+extern template class BlockFactors<double>;
+extern template class BlockFactors<std::complex<double>>;
 
 }  // namespace samara::analysis

@@ -160,7 +160,7 @@ void CollocationStep::find_mass_entries() {
 
 void CollocationStep::make_matrix() {
   const MatrixEntries stiffness(jacobian_.get());
-  const BlockMatrix blocks = stiffness.blocks();
+  const BlockMatrix<double> blocks = stiffness.blocks();
   const auto n = static_cast<PetscInt>(system_.size() * stages_);
   petsc::check(MatCreate(PETSC_COMM_SELF, matrix_.fill()));
   petsc::check(MatSetSizes(matrix_.get(), n, n, n, n));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace samara::analysis {
@@ -16,6 +17,20 @@ constexpr double largest_border = 0.5;
 constexpr double least_coupling = 1e-4;
 /// Smallest pivot of the border's complement, relative to its largest.
 constexpr double least_pivot = 1e-14;
+
+/// Coefficients of exp(i k Omega t), k = -H ... H, from mean, cosines and sines by row.
+Eigen::MatrixXcd to_series(const Eigen::Ref<const Eigen::MatrixXd>& coefficients) {
+  using namespace std::complex_literals;
+  const Eigen::Index harmonics = (coefficients.rows() - 1) / 2;
+  Eigen::MatrixXcd series(coefficients.rows(), coefficients.cols());
+  series.row(harmonics) = coefficients.row(0).cast<std::complex<double>>();
+  for (Eigen::Index k = 1; k <= harmonics; ++k) {
+    series.row(harmonics + k) =
+        0.5 * (coefficients.row(2 * k - 1) - 1i * coefficients.row(2 * k));
+    series.row(harmonics - k) = series.row(harmonics + k).conjugate();
+  }
+  return series;
+}
 
 }  // namespace
 
@@ -66,7 +81,6 @@ void HarmonicPreconditioner::list_places() {
       rows_of_border_.push_back(place);
     } else if (in_border_[column]) {
       columns_of_border_[static_cast<std::size_t>(number_[column])].push_back(place);
-      all_columns_of_border_.push_back(place);
     } else {
       inner_.push_back(place);
       rows[static_cast<std::size_t>(number_[row] / block_)][number_[column] / block_] = 0;
@@ -86,112 +100,138 @@ void HarmonicPreconditioner::list_places() {
             number_[static_cast<std::size_t>(place.column)] / block_));
 }
 
-Eigen::MatrixXd HarmonicPreconditioner::scaled_block(const Place& place) const {
-  return row_factors_->segment(place.row * width_, width_).asDiagonal() * tangents_.block(place) *
-         column_factors_->segment(place.column * width_, width_).asDiagonal();
+/// Rows and columns: coefficients of exp(i k Omega t), k = -H ... H.
+Eigen::MatrixXcd HarmonicPreconditioner::scaled_block(const Place& place) const {
+  const HarmonicTangents::Coefficients tangents = tangents_.coefficients(place);
+  const int harmonics = tangents_.harmonics();
+  Eigen::MatrixXcd block(width_, width_);
+  for (int k = -harmonics; k <= harmonics; ++k) {
+    const Complex rate = shift_ + Complex(0.0, k * tangents_.rate());
+    block.col(k + harmonics) =
+        tangents.stiffness.segment(harmonics - k, width_) +
+        rate * tangents.mass.segment(harmonics - k, width_);
+  }
+  block *= (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_ + width_ - 1);
+  if (tangents_.is_held(place.column)) {
+    block.col(harmonics).setZero();
+    if (tangents_.holds(place.row, place.column))
+      block(harmonics, harmonics) =
+          (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_);
+  }
+  return block;
 }
 
-/// A node block of harmonic j > 0 has its cosines, then its sines.
-HarmonicPreconditioner::Index HarmonicPreconditioner::first_row(int harmonic,
-                                                                Index interior) const {
-  return harmonic == 0 ? interior : interior / block_ * 2 * block_ + interior % block_;
+BlockFactors<HarmonicPreconditioner::Complex>& HarmonicPreconditioner::factors_of(int harmonic) {
+  return factors_[static_cast<std::size_t>(harmonic - first_harmonic())];
 }
 
-bool HarmonicPreconditioner::factor_harmonic(int harmonic) {
-  const Index parts = harmonic == 0 ? 1 : 2;
-  const Index size = parts * block_;
-  const Eigen::MatrixXd entries = tangents_.harmonic_part(harmonic);
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Index>(columns_.size()) * size * size);
-  const Index first = harmonic == 0 ? 0 : 2 * harmonic - 1;
+/// `means`: of K and M at all places.
+bool HarmonicPreconditioner::factor_harmonic(int harmonic, const Eigen::MatrixXd& means) {
+  const Index area = block_ * block_;
+  Eigen::VectorXcd values = Eigen::VectorXcd::Zero(static_cast<Index>(columns_.size()) * area);
+  const Complex rate = shift_ + Complex(0.0, harmonic * tangents_.rate());
   for (std::size_t n = 0; n < inner_.size(); ++n) {
     const Place& place = inner_[n];
-    double* block = values.data() + block_of_[n] * size * size;
     const Index row = number_[static_cast<std::size_t>(place.row)] % block_;
     const Index column = number_[static_cast<std::size_t>(place.column)] % block_;
-    for (Index r = 0; r < parts; ++r)
-      for (Index c = 0; c < parts; ++c)
-        block[(c * block_ + column) * size + r * block_ + row] =
-            (*row_factors_)(place.row * width_ + first + r) *
-            (*column_factors_)(place.column * width_ + first + c) *
-            entries(r * parts + c, place.number);
+    values(block_of_[n] * area + column * block_ + row) =
+        (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_) *
+        (means(0, place.number) + rate * means(1, place.number));
   }
-  const BlockMatrix matrix{size, static_cast<Index>(interior_.size()) / block_, begin_.data(),
-                           columns_.data(), values.data()};
-  if (factors_.size() <= static_cast<std::size_t>(harmonic)) factors_.emplace_back(matrix);
-  return factors_[static_cast<std::size_t>(harmonic)].factor(matrix);
+  const BlockMatrix<Complex> matrix{block_, static_cast<Index>(interior_.size()) / block_,
+                                    begin_.data(), columns_.data(), values.data()};
+  const auto number = static_cast<std::size_t>(harmonic - first_harmonic());
+  if (factors_.size() <= number) factors_.emplace_back(matrix);
+  return factors_[number].factor(matrix);
 }
 
-void HarmonicPreconditioner::solve_harmonic(int harmonic, Eigen::MatrixXd& right) {
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(right.rows());
-  BlockFactors& factors = factors_[static_cast<std::size_t>(harmonic)];
-  factors.solve(right, ones);
-  factors.copy(ones, right);
-}
-
-/// `coefficients`: width x interior unknowns.
-void HarmonicPreconditioner::solve_interior(Eigen::MatrixXd& coefficients) {
-  const auto n = static_cast<Index>(interior_.size());
-  for (int harmonic = 0; harmonic <= tangents_.harmonics(); ++harmonic) {
-    const Index parts = harmonic == 0 ? 1 : 2;
-    const Index first = harmonic == 0 ? 0 : 2 * harmonic - 1;
-    Eigen::MatrixXd right(parts * n, 1);
-    for (Index i = 0; i < n; ++i)
-      for (Index p = 0; p < parts; ++p)
-        right(first_row(harmonic, i) + p * block_, 0) = coefficients(first + p, i);
-    solve_harmonic(harmonic, right);
-    for (Index i = 0; i < n; ++i)
-      for (Index p = 0; p < parts; ++p)
-        coefficients(first + p, i) = right(first_row(harmonic, i) + p * block_, 0);
+/// `coefficients`: width x interior unknowns; for a real shift only those of k >= 0 are found.
+void HarmonicPreconditioner::solve_interior(Eigen::MatrixXcd& coefficients) {
+  const int harmonics = tangents_.harmonics();
+  for (int k = first_harmonic(); k <= harmonics; ++k) {
+    Eigen::MatrixXcd right = coefficients.row(k + harmonics).transpose();
+    factors_of(k).solve(right);
+    coefficients.row(k + harmonics) = right.transpose();
   }
 }
 
-bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns) {
+/// Subtracts R C^-1 B from the border's corner: C the chains, R and B the rows and columns that
+/// couple them to the border.
+void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
+  const int harmonics = tangents_.harmonics();
+  const auto block_of = [this](Index interior) { return interior / block_; };
+  std::vector<Index> wanted;
+  for (const Coupling& coupling : couplings_) wanted.push_back(block_of(coupling.interior));
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  std::map<Index, std::vector<const Coupling*>> of_border;
+  for (const Coupling& coupling : couplings_back_)
+    of_border[coupling.border].push_back(&coupling);
+  Eigen::MatrixXcd right;
+  for (const auto& [border, couplings] : of_border) {
+    double largest = 0.0;
+    std::vector<Index> filled;
+    for (const Coupling* coupling : couplings) {
+      largest = std::max(largest, coupling->block.cwiseAbs().maxCoeff());
+      filled.push_back(block_of(coupling->interior));
+    }
+    for (int k = first_harmonic(); k <= harmonics; ++k) {
+      std::vector<Index> kept;
+      for (Index c = 0; c < width_; ++c)
+        if (std::any_of(couplings.begin(), couplings.end(), [&](const Coupling* coupling) {
+              return std::abs(coupling->block(k + harmonics, c)) > least_coupling * largest;
+            }))
+          kept.push_back(c);
+      if (kept.empty()) continue;
+      right.resize(static_cast<Index>(interior_.size()), static_cast<Index>(kept.size()));
+      for (const Index i : filled) right.middleRows(i * block_, block_).setZero();
+      for (const Coupling* coupling : couplings)
+        right.row(coupling->interior) += coupling->block(k + harmonics, kept);
+      factors_of(k).solve_part(right, filled, wanted);
+      for (const Coupling& coupling : couplings_) {
+        const auto values = right.row(coupling.interior);
+        for (std::size_t c = 0; c < kept.size(); ++c) {
+          const Complex value = values(static_cast<Index>(c));
+          if (value == 0.0) continue;
+          const Index column = border * width_ + kept[c];
+          schur.block(coupling.border * width_, column, width_, 1) -=
+              value * coupling.block.col(k + harmonics);
+          if (is_real() && k > 0)
+            schur.block(coupling.border * width_, border * width_ + width_ - 1 - kept[c], width_,
+                        1) -= std::conj(value) * coupling.block.col(harmonics - k);
+        }
+      }
+    }
+  }
+}
+
+bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns,
+                                    Complex shift) {
   row_factors_ = &rows;
   column_factors_ = &columns;
-  for (int harmonic = 0; harmonic <= tangents_.harmonics(); ++harmonic)
-    if (!factor_harmonic(harmonic)) return false;
+  if ((shift.imag() == 0.0) != is_real()) factors_.clear();
+  shift_ = shift;
+  const Eigen::MatrixXd means = tangents_.means();
+  for (int k = first_harmonic(); k <= tangents_.harmonics(); ++k)
+    if (!factor_harmonic(k, means)) return false;
   couplings_.clear();
   for (const Place& place : rows_of_border_)
     couplings_.push_back({number_[static_cast<std::size_t>(place.row)],
                           number_[static_cast<std::size_t>(place.column)], scaled_block(place)});
+  couplings_back_.clear();
+  for (std::size_t j = 0; j < columns_of_border_.size(); ++j)
+    for (const Place& place : columns_of_border_[j])
+      couplings_back_.push_back({static_cast<Index>(j),
+                                 number_[static_cast<std::size_t>(place.row)],
+                                 scaled_block(place)});
   const Index size = border_size() * width_;
-  Eigen::MatrixXd schur = Eigen::MatrixXd::Zero(size, size);
+  if (size == 0) return true;
+  Eigen::MatrixXcd schur = Eigen::MatrixXcd::Zero(size, size);
   for (const Place& place : corner_)
     schur.block(number_[static_cast<std::size_t>(place.row)] * width_,
                 number_[static_cast<std::size_t>(place.column)] * width_, width_, width_) =
         scaled_block(place);
-  const auto n = static_cast<Index>(interior_.size());
-  for (std::size_t j = 0; j < columns_of_border_.size(); ++j) {
-    const std::vector<Place>& places = columns_of_border_[j];
-    if (places.empty()) continue;
-    Eigen::MatrixXd column = Eigen::MatrixXd::Zero(n * width_, width_);
-    for (const Place& place : places)
-      column.middleRows(number_[static_cast<std::size_t>(place.row)] * width_, width_) =
-          scaled_block(place);
-    const double least = least_coupling * column.lpNorm<Eigen::Infinity>();
-    for (int harmonic = 0; harmonic <= tangents_.harmonics(); ++harmonic) {
-      const Index parts = harmonic == 0 ? 1 : 2;
-      const Index first = harmonic == 0 ? 0 : 2 * harmonic - 1;
-      Eigen::MatrixXd all(parts * n, width_);
-      for (Index i = 0; i < n; ++i)
-        for (Index p = 0; p < parts; ++p)
-          all.row(first_row(harmonic, i) + p * block_) = column.row(i * width_ + first + p);
-      std::vector<Index> kept;
-      for (Index c = 0; c < width_; ++c)
-        if (all.col(c).lpNorm<Eigen::Infinity>() > least) kept.push_back(c);
-      if (kept.empty()) continue;
-      Eigen::MatrixXd right = all(Eigen::all, kept);
-      solve_harmonic(harmonic, right);
-      for (const Coupling& coupling : couplings_)
-        for (Index p = 0; p < parts; ++p)
-          for (std::size_t c = 0; c < kept.size(); ++c)
-            schur.block(coupling.border * width_, static_cast<Index>(j) * width_ + kept[c], width_,
-                        1) -=
-                coupling.block.col(first + p) *
-                right(first_row(harmonic, coupling.interior) + p * block_, static_cast<Index>(c));
-    }
-  }
-  if (size == 0) return true;
+  eliminate_chains(schur);
   // Entries of about one, so that small pivots mean that the matrix is singular.
   const auto inverse = [](double largest) { return largest > 0.0 ? 1.0 / largest : 1.0; };
   schur_rows_ = schur.cwiseAbs().rowwise().maxCoeff().unaryExpr(inverse);
@@ -202,30 +242,53 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   return pivots.minCoeff() > least_pivot * pivots.maxCoeff();
 }
 
-void HarmonicPreconditioner::solve(const double* right, double* solution) {
-  const Eigen::Map<const Eigen::MatrixXd> in(right, width_, tangents_.size());
-  Eigen::Map<Eigen::MatrixXd> out(solution, width_, tangents_.size());
-  Eigen::MatrixXd between = in(Eigen::all, interior_);
+void HarmonicPreconditioner::solve(const Eigen::MatrixXcd& right, Eigen::MatrixXcd& solution) {
+  solution.resize(width_, tangents_.size());
+  Eigen::MatrixXcd between = right(Eigen::all, interior_);
   if (border_size() > 0) {
-    Eigen::MatrixXd border = in(Eigen::all, border_);
-    const Eigen::MatrixXd given = between;
+    Eigen::MatrixXcd border = right(Eigen::all, border_);
+    Eigen::MatrixXcd given = between;
     solve_interior(between);
+    if (is_real())
+      for (int k = 1; k <= tangents_.harmonics(); ++k)
+        between.row(tangents_.harmonics() - k) =
+            between.row(tangents_.harmonics() + k).conjugate();
     for (const Coupling& coupling : couplings_)
-      border.col(coupling.border) -= coupling.block * between.col(coupling.interior);
+      border.col(coupling.border).noalias() -= coupling.block * between.col(coupling.interior);
     border = schur_columns_
                  .cwiseProduct(schur_.solve(schur_rows_.cwiseProduct(border.reshaped().matrix())))
                  .reshaped(width_, border_size());
-    out(Eigen::all, border_) = border;
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(width_ * tangents_.size());
-    Eigen::VectorXd y(x.size());
-    x.reshaped(width_, tangents_.size())(Eigen::all, border_) = border;
-    x.array() *= column_factors_->array();
-    tangents_.multiply(all_columns_of_border_, x.data(), y.data());
-    y.array() *= row_factors_->array();
-    between = given - y.reshaped(width_, tangents_.size())(Eigen::all, interior_);
+    for (const Coupling& coupling : couplings_back_)
+      given.col(coupling.interior).noalias() -= coupling.block * border.col(coupling.border);
+    solution(Eigen::all, border_) = border;
+    between = std::move(given);
   }
   solve_interior(between);
-  out(Eigen::all, interior_) = between;
+  solution(Eigen::all, interior_) = between;
+}
+
+void HarmonicPreconditioner::solve(const double* right, double* solution) {
+  const Eigen::Map<const Eigen::MatrixXd> in(right, width_, tangents_.size());
+  Eigen::Map<Eigen::MatrixXd> out(solution, width_, tangents_.size());
+  const Eigen::MatrixXcd series = to_series(in);
+  Eigen::MatrixXcd result;
+  solve(series, result);
+  const Index harmonics = tangents_.harmonics();
+  out.row(0) = result.row(harmonics).real();
+  for (Index k = 1; k <= harmonics; ++k) {
+    out.row(2 * k - 1) = 2.0 * result.row(harmonics + k).real();
+    out.row(2 * k) = -2.0 * result.row(harmonics + k).imag();
+  }
+}
+
+double HarmonicPreconditioner::phase_of_determinant() const {
+  double phase = 0.0;
+  for (const BlockFactors<Complex>& factors : factors_) phase += factors.phase_of_determinant();
+  if (border_size() > 0) {
+    for (const Complex pivot : schur_.matrixLU().diagonal()) phase += std::arg(pivot);
+    if (schur_.permutationP().determinant() < 0) phase += std::numbers::pi;
+  }
+  return std::remainder(phase, 2.0 * std::numbers::pi);
 }
 
 }  // namespace samara::analysis

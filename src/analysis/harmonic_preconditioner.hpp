@@ -1,6 +1,8 @@
-// Preconditioner of harmonic balance: block-diagonal in the harmonics, with a border.
+// Approximate inverse of K + M d/dt + sigma M on Fourier series: block-diagonal in the harmonics,
+// with a border.
 #pragma once
 
+#include <complex>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,24 +13,33 @@
 
 namespace samara::analysis {
 
-/// Approximates the tangents of harmonic balance. Node blocks that many others refer to (joints,
-/// the top of a tower) are the border; their rows and columns are exact, with all couplings of the
-/// harmonics. Between the other blocks, chains of beam nodes in their own axes, harmonics are not
-/// coupled. Solved by the Schur complement of the border.
+/// Approximates the tangents of harmonic balance (sigma = 0) and of Hill's method. Node blocks that
+/// many others refer to (joints, the top of a tower) are the border; their rows and columns are
+/// exact, with all couplings of the harmonics. Between the other blocks, chains of beam nodes in
+/// their own axes, harmonics are not coupled: each has the mean tangents. Solved by the Schur
+/// complement of the border.
 class HarmonicPreconditioner {
  public:
+  using Complex = std::complex<double>;
+
   explicit HarmonicPreconditioner(const HarmonicTangents& tangents);
 
   /// Whether the tangents have blocks, and the border is a small part of them.
   bool is_useful() const;
   Eigen::Index border_size() const { return static_cast<Eigen::Index>(border_.size()); }
 
-  /// Factors diag(`rows`) J diag(`columns`) for the present samples.
+  /// Factors diag(`rows`) (J + `shift` M) diag(`columns`) for the present samples.
   /// @returns false where it is singular to working precision
-  bool factor(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns);
+  bool factor(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns, Complex shift = 0.0);
 
-  /// All coefficients of right-hand side and solution.
+  /// For a real shift: real coefficients of right-hand side and solution, as HarmonicTangents has
+  /// them.
   void solve(const double* right, double* solution);
+  /// For every shift: coefficients of exp(i k Omega t), k = -H ... H, (2 H + 1) x unknowns.
+  void solve(const Eigen::MatrixXcd& right, Eigen::MatrixXcd& solution);
+
+  /// Phase of the determinant [rad], up to multiples of 2 pi. For a shift with an imaginary part.
+  double phase_of_determinant() const;
 
  private:
   using Index = Eigen::Index;
@@ -37,16 +48,19 @@ class HarmonicPreconditioner {
   struct Coupling {
     Index border = 0;    ///< number in the border
     Index interior = 0;  ///< number in the interior
-    Eigen::MatrixXd block;
+    Eigen::MatrixXcd block;
   };
 
   void find_border();
   void list_places();
-  bool factor_harmonic(int harmonic);
-  Eigen::MatrixXd scaled_block(const Place& place) const;
-  Index first_row(int harmonic, Index interior) const;
-  void solve_interior(Eigen::MatrixXd& coefficients);
-  void solve_harmonic(int harmonic, Eigen::MatrixXd& right);
+  bool is_real() const { return shift_.imag() == 0.0; }
+  /// Harmonics k of the chains: for a real shift those of -k are conjugates.
+  int first_harmonic() const { return is_real() ? 0 : -tangents_.harmonics(); }
+  BlockFactors<Complex>& factors_of(int harmonic);
+  bool factor_harmonic(int harmonic, const Eigen::MatrixXd& means);
+  Eigen::MatrixXcd scaled_block(const Place& place) const;
+  void eliminate_chains(Eigen::MatrixXcd& schur);
+  void solve_interior(Eigen::MatrixXcd& coefficients);
 
   const HarmonicTangents& tangents_;
   Index width_;
@@ -60,16 +74,17 @@ class HarmonicPreconditioner {
   std::vector<Place> inner_;                           ///< interior rows and columns
   std::vector<Index> block_of_;                        ///< block of each inner place
   std::vector<std::vector<Place>> columns_of_border_;  ///< interior rows, for each border unknown
-  std::vector<Place> all_columns_of_border_;
-  std::vector<Place> rows_of_border_;  ///< interior columns
-  std::vector<Place> corner_;          ///< border rows and columns
+  std::vector<Place> rows_of_border_;                  ///< interior columns
+  std::vector<Place> corner_;                          ///< border rows and columns
   const Eigen::VectorXd* row_factors_ = nullptr;
   const Eigen::VectorXd* column_factors_ = nullptr;
-  std::vector<BlockFactors> factors_;  ///< of each harmonic
-  std::vector<Coupling> couplings_;
-  Eigen::VectorXd schur_rows_;  ///< factors of the border's complement
+  Complex shift_;
+  std::vector<BlockFactors<Complex>> factors_;         ///< of each harmonic from first_harmonic()
+  std::vector<Coupling> couplings_;                    ///< border rows, interior columns
+  std::vector<Coupling> couplings_back_;               ///< interior rows, border columns
+  Eigen::VectorXd schur_rows_;                         ///< factors of the border's complement
   Eigen::VectorXd schur_columns_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
+  Eigen::PartialPivLU<Eigen::MatrixXcd> schur_;
 };
 
 }  // namespace samara::analysis

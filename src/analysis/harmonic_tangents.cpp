@@ -1,6 +1,7 @@
 #include "harmonic_tangents.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -67,16 +68,15 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, const C
   values_of_.resize(samples, width_);
   rates_of_.resize(samples, width_);
   projection_.resize(width_, samples);
-  to_block_.resize(width_ * width_, 2 * samples);
+  to_coefficients_.resize(2 * width_ - 1, samples);
   for (int k = 0; k < samples; ++k) {
     const double t = period() * k / samples;
     values_of_.row(k) = PeriodicSolution::basis(harmonics, period(), t);
     rates_of_.row(k) = PeriodicSolution::basis_rate(harmonics, period(), t);
     projection_.col(k) = fourier_weights(harmonics, period(), t);
-    const Eigen::MatrixXd by_value = values_of_.row(k).transpose() * projection_.col(k).transpose();
-    const Eigen::MatrixXd by_rate = rates_of_.row(k).transpose() * projection_.col(k).transpose();
-    to_block_.col(k) = Eigen::Map<const Eigen::VectorXd>(by_value.data(), by_value.size());
-    to_block_.col(samples + k) = Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
+    for (int m = 1 - width_; m < width_; ++m)
+      to_coefficients_(m + width_ - 1, k) =
+          std::polar(1.0 / samples, -2.0 * std::numbers::pi * m * k / samples);
   }
   sampled_.resize(2 * samples, pattern_.nonZeros());
   for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i)
@@ -172,25 +172,32 @@ void HarmonicTangents::multiply(const std::vector<Place>& places, const double* 
     result(0, coordinate.row) += x[coordinate.unknown * width_];
 }
 
-Eigen::MatrixXd HarmonicTangents::block(const Place& place) const {
-  const Eigen::VectorXd values = to_block_ * sampled_.col(place.number);
-  Eigen::MatrixXd block =
-      Eigen::Map<const Eigen::MatrixXd>(values.data(), width_, width_).transpose();
-  if (is_held(place.column)) {
-    block.col(0).setZero();
-    if (holds(place.row, place.column)) block(0, 0) = 1.0;
-  }
-  return block;
+void HarmonicTangents::multiply_mass(const double* x, double* y) const {
+  const Eigen::Index samples = values_of_.rows();
+  const Eigen::MatrixXd values =
+      values_of_ * Eigen::Map<const Eigen::MatrixXd>(x, width_, size_);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, size_);
+  for (const Place& place : places_)
+    sums.col(place.row).array() += sampled_.col(place.number).tail(samples).array() *
+                                   values.col(place.column).array();
+  Eigen::Map<Eigen::MatrixXd>(y, width_, size_).noalias() = projection_ * sums;
 }
 
-Eigen::MatrixXd HarmonicTangents::harmonic_part(int harmonic) const {
-  if (harmonic == 0) return to_block_.row(0) * sampled_;
-  const Eigen::Index cosine = 2 * harmonic - 1;
-  Eigen::MatrixXd rows(4, to_block_.cols());
-  for (Eigen::Index i = 0; i < 4; ++i)
-    rows.row(i) = to_block_.row((cosine + i / 2) * width_ + cosine + i % 2);
-  return rows * sampled_;
+HarmonicTangents::Coefficients HarmonicTangents::coefficients(const Place& place) const {
+  const Eigen::Index samples = values_of_.rows();
+  const auto sampled = sampled_.col(place.number);
+  return {to_coefficients_ * sampled.head(samples), to_coefficients_ * sampled.tail(samples)};
 }
+
+Eigen::MatrixXd HarmonicTangents::means() const {
+  const Eigen::Index samples = values_of_.rows();
+  Eigen::MatrixXd means(2, sampled_.cols());
+  means.row(0) = sampled_.topRows(samples).colwise().mean();
+  means.row(1) = sampled_.bottomRows(samples).colwise().mean();
+  return means;
+}
+
+double HarmonicTangents::rate() const { return 2.0 * std::numbers::pi / period(); }
 
 void HarmonicTangents::scale(double loads, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const {
   const Eigen::Index samples = values_of_.rows();
@@ -233,7 +240,16 @@ petsc::Handle<Mat> HarmonicTangents::make_matrix() const {
 }
 
 void HarmonicTangents::fill(Mat matrix) const {
-  const Eigen::MatrixXd blocks = analysis::multiply(to_block_, sampled_);
+  const Eigen::Index samples = values_of_.rows();
+  // From the samples of an entry of K and M to its block, row by row.
+  Eigen::MatrixXd to_block(width_ * width_, 2 * samples);
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const Eigen::MatrixXd by_value = values_of_.row(k).transpose() * projection_.col(k).transpose();
+    const Eigen::MatrixXd by_rate = rates_of_.row(k).transpose() * projection_.col(k).transpose();
+    to_block.col(k) = Eigen::Map<const Eigen::VectorXd>(by_value.data(), by_value.size());
+    to_block.col(samples + k) = Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
+  }
+  const Eigen::MatrixXd blocks = analysis::multiply(to_block, sampled_);
   PetscScalar* values = nullptr;
   petsc::check(MatSeqAIJGetArrayWrite(matrix, &values));
   PetscScalar* next = values;  // in the order of make_matrix

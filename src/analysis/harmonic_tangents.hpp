@@ -37,6 +37,9 @@ class HarmonicTangents {
   int harmonics() const { return harmonics_; }
   PetscInt block_size() const { return block_size_; }  ///< of the system's tangents; 1: none
   const Coordinates& held() const { return held_; }
+  bool is_held(PetscInt unknown) const;
+  /// Whether the load of this row holds the unknown.
+  bool holds(PetscInt row, PetscInt unknown) const;
 
   struct Place {
     PetscInt row = 0;
@@ -48,12 +51,18 @@ class HarmonicTangents {
   /// y = J x, both of size() width() coefficients; `places`: those that count.
   void multiply(const std::vector<Place>& places, const double* x, double* y) const;
   void multiply(const double* x, double* y) const { multiply(places_, x, y); }
-  /// The width x width entries of J at a place of K and M.
-  Eigen::MatrixXd block(const Place& place) const;
-  /// Coefficients of the same harmonic: 1 x places for the mean, else 4 x places, in the order row
-  /// cosine column cosine, row cosine column sine, row sine column cosine, row sine column sine.
-  /// Without the loads that hold coordinates.
-  Eigen::MatrixXd harmonic_part(int harmonic) const;
+  /// y = M x of every sample, projected; both of size() width() coefficients.
+  void multiply_mass(const double* x, double* y) const;
+  /// Complex Fourier coefficients m = -2 H ... 2 H of K and M at a place.
+  struct Coefficients {
+    Eigen::VectorXcd stiffness;
+    Eigen::VectorXcd mass;
+  };
+  Coefficients coefficients(const Place& place) const;
+  /// Means of K and M over the period, 2 x places.
+  Eigen::MatrixXd means() const;
+  /// The base frequency [rad/s]; without a period 2 pi.
+  double rate() const;
 
   /// Row and column factors of all coefficients from the roles of unknowns (scale_by_role);
   /// `loads`: size of the internal loads, where inertia alone is less.
@@ -66,8 +75,6 @@ class HarmonicTangents {
 
  private:
   double period() const { return system_.period() > 0.0 ? system_.period() : 1.0; }
-  bool is_held(PetscInt unknown) const;
-  bool holds(PetscInt row, PetscInt unknown) const;
   /// Places of the entries of a tangent, in the order of MatrixEntries.
   std::vector<PetscInt> places_of(Mat tangent) const;
   void take_entries(Mat tangent, const std::vector<PetscInt>& places,
@@ -84,8 +91,7 @@ class HarmonicTangents {
   Eigen::MatrixXd values_of_;   ///< samples x width: the harmonics at the samples
   Eigen::MatrixXd rates_of_;    ///< samples x width: their rates
   Eigen::MatrixXd projection_;  ///< width x samples: Fourier weights
-  /// width^2 x 2 samples: from the samples of an entry of K and M to its block, row by row.
-  Eigen::MatrixXd to_block_;
+  Eigen::MatrixXcd to_coefficients_;  ///< (4 H + 1) x samples: complex Fourier weights
   Eigen::MatrixXd sampled_;  ///< 2 samples x places: K, then M
 };
 

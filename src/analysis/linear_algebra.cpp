@@ -281,7 +281,7 @@ void DirectSolver::factor(Mat matrix) {
   if (is_first) {
     scaling_ = scale_(matrix);
     if (const MatrixEntries entries(matrix); entries.has_blocks() && !is_solver_given())
-      blocks_ = std::make_unique<BlockFactors>(entries.blocks());
+      blocks_ = std::make_unique<BlockFactors<double>>(entries.blocks());
   }
   apply_scaling(scaling_, matrix);
   if (blocks_) {

@@ -49,7 +49,7 @@ class MatrixEntries {
   }
 
   bool has_blocks() const { return is_blocked_ != PETSC_FALSE; }
-  BlockMatrix blocks() const { return {size_, rows_, begin_, columns_, values_}; }
+  BlockMatrix<double> blocks() const { return {size_, rows_, begin_, columns_, values_}; }
 
   /// The order is the same for all matrices of a pattern. Blocks column by column.
   PetscScalar* values() { return values_; }

@@ -59,6 +59,7 @@ struct FactorFailure {
 /// @throws InternalError where there is not enough memory.
 FactorFailure set_up(KSP solver);
 
+template <class Scalar>
 class BlockFactors;
 
 /// LU factorization with fixed scaling: all later matrices of a pattern use that of the first one.
@@ -95,7 +96,7 @@ class DirectSolver {
 
   std::string prefix_;
   std::function<Equilibration(Mat)> scale_;
-  std::unique_ptr<BlockFactors> blocks_;  ///< null: PETSc solves
+  std::unique_ptr<BlockFactors<double>> blocks_;  ///< null: PETSc solves
   petsc::Handle<KSP> solver_;
   bool pivots_ = false;  ///< MUMPS interchanges rows, unless an option chooses another solver
   Equilibration scaling_;

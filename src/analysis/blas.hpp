@@ -1,0 +1,76 @@
+// BLAS and LAPACK for real and complex blocks under one name each.
+#pragma once
+
+#include <complex>
+
+#include <petscblaslapack.h>
+
+namespace samara::analysis::blas {
+
+using Integer = PetscBLASInt;
+using Complex = std::complex<double>;
+
+// PETSc's headers declare the routines of its own scalar type only, which is real here.
+extern "C" {
+void zgemm_(const char*, const char*, const Integer*, const Integer*, const Integer*,
+            const Complex*, const Complex*, const Integer*, const Complex*, const Integer*,
+            const Complex*, Complex*, const Integer*);
+void ztrsm_(const char*, const char*, const char*, const char*, const Integer*, const Integer*,
+            const Complex*, const Complex*, const Integer*, Complex*, const Integer*);
+void zgetrf_(const Integer*, const Integer*, Complex*, const Integer*, Integer*, Integer*);
+void zgetrs_(const char*, const Integer*, const Integer*, const Complex*, const Integer*,
+             const Integer*, Complex*, const Integer*, Integer*);
+}
+
+/// C = C - A B; A: m x k, B: k x n.
+inline void subtract_product(Integer m, Integer n, Integer k, const double* a, Integer lda,
+                             const double* b, Integer ldb, double* c, Integer ldc) {
+  const double minus = -1.0;
+  const double one = 1.0;
+  BLASgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
+}
+inline void subtract_product(Integer m, Integer n, Integer k, const Complex* a, Integer lda,
+                             const Complex* b, Integer ldb, Complex* c, Integer ldc) {
+  const Complex minus = -1.0;
+  const Complex one = 1.0;
+  zgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
+}
+
+/// B = B T^-1 with the upper (`part` 'U') or the unit lower ('L') triangle T of `a`; all n x n.
+inline void divide_by_triangle(char part, Integer n, const double* a, double* b) {
+  const double one = 1.0;
+  const char* diagonal = part == 'L' ? "U" : "N";
+  BLAStrsm_("R", &part, "N", diagonal, &n, &n, &one, a, &n, b, &n);
+}
+inline void divide_by_triangle(char part, Integer n, const Complex* a, Complex* b) {
+  const Complex one = 1.0;
+  const char* diagonal = part == 'L' ? "U" : "N";
+  ztrsm_("R", &part, "N", diagonal, &n, &n, &one, a, &n, b, &n);
+}
+
+/// Factors an n x n matrix. @returns 0 unless a pivot is zero
+inline Integer factor(Integer n, double* a, Integer* interchanges) {
+  Integer status = 0;
+  LAPACKgetrf_(&n, &n, a, &n, interchanges, &status);
+  return status;
+}
+inline Integer factor(Integer n, Complex* a, Integer* interchanges) {
+  Integer status = 0;
+  zgetrf_(&n, &n, a, &n, interchanges, &status);
+  return status;
+}
+
+/// Solves for the columns of the n x m matrix b.
+inline void solve(Integer n, Integer m, const double* factors, const Integer* interchanges,
+                  double* b) {
+  Integer status = 0;
+  LAPACKgetrs_("N", &n, &m, const_cast<double*>(factors), &n, const_cast<Integer*>(interchanges), b,
+               &n, &status);
+}
+inline void solve(Integer n, Integer m, const Complex* factors, const Integer* interchanges,
+                  Complex* b) {
+  Integer status = 0;
+  zgetrs_("N", &n, &m, factors, &n, interchanges, b, &n, &status);
+}
+
+}  // namespace samara::analysis::blas
