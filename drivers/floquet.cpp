@@ -17,15 +17,19 @@
 namespace samara::drivers {
 namespace {
 
-std::string headline(const io::Case& input, const analysis::Floquet& floquet) {
+std::string headline(const io::Case& input, const analysis::Floquet& floquet, PetscInt unknowns) {
   const double speed = floquet.set.rotor_speed;
+  const std::string title = (input.turbine.title.empty() ? input.path : input.turbine.title) +
+                            "\nrotor speed " + general(speed, 6) + " rad/s; ";
+  if (floquet.harmonics > 0)
+    return title + std::to_string(unknowns) + " unknowns; Hill's method, shapes of up to " +
+           count(floquet.harmonics, "harmonic") + "\n\n";
   const std::string span = floquet.sectors == 1
                                ? "one revolution"
                                : "1/" + std::to_string(floquet.sectors) + " revolution";
-  return (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n" + "rotor speed " +
-         general(speed, 6) + " rad/s; " + count(floquet.set.degrees_of_freedom, "degree") +
-         " of freedom; " + std::to_string(floquet.steps) + " steps of order " +
-         std::to_string(floquet.order) + " a revolution, integrated over " + span + "\n\n";
+  return title + count(floquet.set.degrees_of_freedom, "degree") + " of freedom; " +
+         std::to_string(floquet.steps) + " steps of order " + std::to_string(floquet.order) +
+         " a revolution, integrated over " + span + "\n\n";
 }
 
 }  // namespace
@@ -44,7 +48,7 @@ void run_floquet(const Job& job) {
   const simulation::StabilityAssessment assessment = simulation::assess_stability(floquet.set);
   deliver(
       job,
-      headline(job.input, floquet) +
+      headline(job.input, floquet, system.size()) +
           mode_table(floquet.set, assessment, {job.all_modes, job.first_modes}) + "\n" +
           verdict_text(floquet.set, assessment, job.all_modes),
       [&](io::ResultFile& file) {

@@ -164,6 +164,15 @@ std::string resolved_words(const StabilityAssessment& result, const std::string&
   return text;
 }
 
+/// The part of the spectrum that was searched.
+std::string searched_words(const ModeSet& set) {
+  const analysis::SearchedRegion& region = *set.searched;
+  return "searched: " +
+         (region.low > 0.0 ? "from " + hertz(region.low) + " to " : std::string("up to ")) +
+         hertz(region.high) + ", growth and decay up to " + general(region.decay, 3) + " 1/s" +
+         (region.is_counted ? "; none is missing there" : "") + "; other modes are not known";
+}
+
 std::string deflated_words(const ModeSet& set) {
   if (set.deflated == 0) return "";
   return ", except for " + count(set.deflated, "exponent") + " of " + std::to_string(set.states) +
@@ -191,13 +200,17 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   switch (result.doubt) {
     case Doubt::unresolved:
       return "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
-             (is_periodic(set) ? "; hint: more floquet.steps" : "");
+             (set.searched ? "; hint: fewer floquet.modes, or all modes without it"
+                           : (is_periodic(set) ? "; hint: more floquet.steps" : ""));
+    case Doubt::incomplete:
+      return "no verdict: modes may be missing in the range that was searched; hint: another "
+             "floquet.modes, or all modes without it";
     case Doubt::growing_alone:
       return "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; other modes: " + rest);
     default:
       return "no verdict: every mode has an error above " + general(100.0 * largest_error, 2) +
              " %; hint: a higher order of blades and tower, or more elements" +
-             (is_periodic(set) ? ", or more floquet.steps" : "");
+             (is_periodic(set) && !set.searched ? ", or more floquet.steps" : "");
   }
 }
 
@@ -215,13 +228,13 @@ std::string doubtful_words(const ModeSet& set, const StabilityAssessment& result
     text += count(result.rough, "mode") + (result.rough == 1 ? " has" : " have") +
             " too large an error and " + (result.rough == 1 ? "does" : "do") +
             " not count for the verdict\n(hint: a higher order of blades and tower, more elements" +
-            (is_periodic(set) ? ", more floquet.steps" : "") + ")\n";
+            (is_periodic(set) && !set.searched ? ", more floquet.steps" : "") + ")\n";
   if (result.unresolved > 0)
     text +=
         (all ? "* " : "") + std::to_string(result.unresolved) + " unresolved, " +
         (all ? "left out of the verdict: "
              : "not listed (--all lists them) and left out of the verdict:\n") +
-        (is_periodic(set)
+        (is_periodic(set) && !set.searched
              ? "too fast for the time step (hint: more floquet.steps), or a residual too large\n"
              : "a residual too large\n");
   return text;
@@ -259,6 +272,7 @@ std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment
 
 std::string verdict_text(const ModeSet& set, const StabilityAssessment& assessment, bool all) {
   std::string text = headline(set, assessment) + "\n";
+  if (set.searched) text += searched_words(set) + "\n";
   if (assessment.stability != Stability::unknown)
     text += resolved_words(assessment, deflated_words(set)) + "\n";
   return text + doubtful_words(set, assessment, all);

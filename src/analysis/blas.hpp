@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <utility>
 
 #include <petscblaslapack.h>
 
@@ -18,22 +19,40 @@ void zgemm_(const char*, const char*, const Integer*, const Integer*, const Inte
 void ztrsm_(const char*, const char*, const char*, const char*, const Integer*, const Integer*,
             const Complex*, const Complex*, const Integer*, Complex*, const Integer*);
 void zgetrf_(const Integer*, const Integer*, Complex*, const Integer*, Integer*, Integer*);
+void zgemv_(const char*, const Integer*, const Integer*, const Complex*, const Complex*,
+            const Integer*, const Complex*, const Integer*, const Complex*, Complex*,
+            const Integer*);
+void ztrsv_(const char*, const char*, const char*, const Integer*, const Complex*, const Integer*,
+            Complex*, const Integer*);
+void dtrsv_(const char*, const char*, const char*, const Integer*, const double*, const Integer*,
+            double*, const Integer*);
 void zgetrs_(const char*, const Integer*, const Integer*, const Complex*, const Integer*,
              const Integer*, Complex*, const Integer*, Integer*);
 }
+
+// Products with one column, and solves for one, do not pay for the copies that those with many
+// make.
 
 /// C = C - A B; A: m x k, B: k x n.
 inline void subtract_product(Integer m, Integer n, Integer k, const double* a, Integer lda,
                              const double* b, Integer ldb, double* c, Integer ldc) {
   const double minus = -1.0;
   const double one = 1.0;
-  BLASgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
+  const Integer step = 1;
+  if (n == 1)
+    BLASgemv_("N", &m, &k, &minus, a, &lda, b, &step, &one, c, &step);
+  else
+    BLASgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
 }
 inline void subtract_product(Integer m, Integer n, Integer k, const Complex* a, Integer lda,
                              const Complex* b, Integer ldb, Complex* c, Integer ldc) {
   const Complex minus = -1.0;
   const Complex one = 1.0;
-  zgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
+  const Integer step = 1;
+  if (n == 1)
+    zgemv_("N", &m, &k, &minus, a, &lda, b, &step, &one, c, &step);
+  else
+    zgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
 }
 
 /// B = B T^-1 with the upper (`part` 'U') or the unit lower ('L') triangle T of `a`; all n x n.
@@ -60,17 +79,34 @@ inline Integer factor(Integer n, Complex* a, Integer* interchanges) {
   return status;
 }
 
-/// Solves for the columns of the n x m matrix b.
-inline void solve(Integer n, Integer m, const double* factors, const Integer* interchanges,
-                  double* b) {
+inline void solve_triangle(char part, Integer n, const double* a, double* b) {
+  const Integer step = 1;
+  dtrsv_(&part, "N", part == 'L' ? "U" : "N", &n, a, &n, b, &step);
+}
+inline void solve_triangle(char part, Integer n, const Complex* a, Complex* b) {
+  const Integer step = 1;
+  ztrsv_(&part, "N", part == 'L' ? "U" : "N", &n, a, &n, b, &step);
+}
+inline void solve_columns(Integer n, Integer m, const double* factors, const Integer* interchanges,
+                          double* b) {
   Integer status = 0;
   LAPACKgetrs_("N", &n, &m, const_cast<double*>(factors), &n, const_cast<Integer*>(interchanges), b,
                &n, &status);
 }
-inline void solve(Integer n, Integer m, const Complex* factors, const Integer* interchanges,
-                  Complex* b) {
+inline void solve_columns(Integer n, Integer m, const Complex* factors, const Integer* interchanges,
+                          Complex* b) {
   Integer status = 0;
   zgetrs_("N", &n, &m, factors, &n, interchanges, b, &n, &status);
+}
+
+/// Solves for the columns of the n x m matrix b with the result of factor().
+template <class Scalar>
+void solve(Integer n, Integer m, const Scalar* factors, const Integer* interchanges, Scalar* b) {
+  if (m != 1) return solve_columns(n, m, factors, interchanges, b);
+  for (Integer i = 0; i < n; ++i)
+    if (const Integer other = interchanges[i] - 1; other != i) std::swap(b[i], b[other]);
+  solve_triangle('L', n, factors, b);
+  solve_triangle('U', n, factors, b);
 }
 
 }  // namespace samara::analysis::blas

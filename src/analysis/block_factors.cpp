@@ -247,16 +247,16 @@ void BlockFactors<Scalar>::copy(const Eigen::Ref<const Eigen::VectorXd>& factors
 }
 
 template <class Scalar>
-double BlockFactors<Scalar>::phase_of_determinant() const {
-  double phase = 0.0;
+std::complex<double> BlockFactors<Scalar>::log_determinant() const {
+  std::complex<double> sum = 0.0;
   for (Index i = 0; i < rows_; ++i) {
     const Scalar* values = block(diagonal_[static_cast<std::size_t>(i)]);
     for (Index k = 0; k < size_; ++k) {
-      phase += std::arg(values[k * (size_ + 1)]);
-      if (interchanges(i)[k] != k + 1) phase += std::numbers::pi;
+      sum += std::log(std::complex<double>(values[k * (size_ + 1)]));
+      if (interchanges(i)[k] != k + 1) sum += std::complex<double>(0.0, std::numbers::pi);
     }
   }
-  return std::remainder(phase, 2.0 * std::numbers::pi);
+  return sum;
 }
 
 template class BlockFactors<double>;

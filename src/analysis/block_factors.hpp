@@ -48,13 +48,13 @@ class BlockFactors {
 
   /// Solves for all columns of `right`, in place.
   void solve(Matrix& right);
-  /// The same for `right` that is zero outside the block rows `filled`. Only the block rows `wanted`
-  /// are found; the others of the result have no meaning.
+  /// The same for `right` that is zero outside the block rows `filled`. Only the block rows
+  /// `wanted` are found; the others of the result have no meaning.
   void solve_part(Matrix& right, const std::vector<Index>& filled,
                   const std::vector<Index>& wanted);
 
-  /// Phase of the determinant [rad].
-  double phase_of_determinant() const;
+  /// Logarithm of the determinant, up to multiples of 2 pi i.
+  std::complex<double> log_determinant() const;
 
  private:
   Scalar* block(Index entry) { return values_.data() + entry * size_ * size_; }

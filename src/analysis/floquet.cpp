@@ -11,6 +11,7 @@
 #include "samara/analysis/collocation_step.hpp"
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/constant_modes.hpp"
+#include "samara/analysis/hill.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/mode_error.hpp"
@@ -853,6 +854,8 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
                            const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
   if (system.period() == 0.0)
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
+  if (options.modes > 0 && has_hill_structure(system))
+    return find_hill_modes(system, solution, options, observer);
   const int repeats = system.symmetry().sectors;
   if (options.period == FloquetPeriod::blade && repeats < 2)
     throw InputError(

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
-#include <set>
+
+#include "blas.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -25,8 +26,7 @@ Eigen::MatrixXcd to_series(const Eigen::Ref<const Eigen::MatrixXd>& coefficients
   Eigen::MatrixXcd series(coefficients.rows(), coefficients.cols());
   series.row(harmonics) = coefficients.row(0).cast<std::complex<double>>();
   for (Eigen::Index k = 1; k <= harmonics; ++k) {
-    series.row(harmonics + k) =
-        0.5 * (coefficients.row(2 * k - 1) - 1i * coefficients.row(2 * k));
+    series.row(harmonics + k) = 0.5 * (coefficients.row(2 * k - 1) - 1i * coefficients.row(2 * k));
     series.row(harmonics - k) = series.row(harmonics + k).conjugate();
   }
   return series;
@@ -48,20 +48,19 @@ bool HarmonicPreconditioner::is_useful() const {
 
 /// Blocks with a coordinate that is held belong to the border, too.
 void HarmonicPreconditioner::find_border() {
-  const Index blocks = tangents_.size() / block_;
-  std::vector<std::set<Index>> users(static_cast<std::size_t>(blocks));
-  for (const Place& place : tangents_.places())
-    users[static_cast<std::size_t>(place.column / block_)].insert(place.row / block_);
-  std::vector<char> is_border(static_cast<std::size_t>(blocks), 0);
-  for (std::size_t b = 0; b < users.size(); ++b)
-    if (users[b].size() > most_neighbours) is_border[b] = 1;
+  std::vector<char> is_border;
+  for (const std::size_t users : tangents_.users())
+    is_border.push_back(users > most_neighbours ? 1 : 0);
+  const auto block = static_cast<std::size_t>(block_);
   for (const system::UnconstrainedCoordinate& held : tangents_.held())
-    for (const PetscInt i : {held.unknown, held.row})
-      is_border[static_cast<std::size_t>(i / block_)] = 1;
+    for (const PetscInt i : {held.unknown, held.row}) {
+      const std::size_t first = static_cast<std::size_t>(i) / block * block;
+      std::fill_n(is_border.begin() + static_cast<std::ptrdiff_t>(first), block_, char{1});
+    }
   number_.resize(static_cast<std::size_t>(tangents_.size()));
   in_border_.resize(number_.size());
   for (std::size_t i = 0; i < number_.size(); ++i) {
-    in_border_[i] = is_border[i / static_cast<std::size_t>(block_)];
+    in_border_[i] = is_border[i];
     std::vector<PetscInt>& group = in_border_[i] ? border_ : interior_;
     number_[i] = static_cast<Index>(group.size());
     group.push_back(static_cast<PetscInt>(i));
@@ -107,11 +106,15 @@ Eigen::MatrixXcd HarmonicPreconditioner::scaled_block(const Place& place) const 
   Eigen::MatrixXcd block(width_, width_);
   for (int k = -harmonics; k <= harmonics; ++k) {
     const Complex rate = shift_ + Complex(0.0, k * tangents_.rate());
-    block.col(k + harmonics) =
-        tangents.stiffness.segment(harmonics - k, width_) +
-        rate * tangents.mass.segment(harmonics - k, width_);
+    block.col(k + harmonics) = tangents.stiffness.segment(harmonics - k, width_) +
+                               rate * tangents.mass.segment(harmonics - k, width_);
   }
-  block *= (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_ + width_ - 1);
+  block *=
+      (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_ + width_ - 1);
+  for (int k = -harmonics; k <= harmonics; ++k) {
+    if (!tangents_.has(place.row, k)) block.row(k + harmonics).setZero();
+    if (!tangents_.has(place.column, k)) block.col(k + harmonics).setZero();
+  }
   if (tangents_.is_held(place.column)) {
     block.col(harmonics).setZero();
     if (tangents_.holds(place.row, place.column))
@@ -132,12 +135,19 @@ bool HarmonicPreconditioner::factor_harmonic(int harmonic, const Eigen::MatrixXd
   const Complex rate = shift_ + Complex(0.0, harmonic * tangents_.rate());
   for (std::size_t n = 0; n < inner_.size(); ++n) {
     const Place& place = inner_[n];
+    if (!tangents_.has(place.row, harmonic) || !tangents_.has(place.column, harmonic)) continue;
     const Index row = number_[static_cast<std::size_t>(place.row)] % block_;
     const Index column = number_[static_cast<std::size_t>(place.column)] % block_;
     values(block_of_[n] * area + column * block_ + row) =
         (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_) *
         (means(0, place.number) + rate * means(1, place.number));
   }
+  for (std::size_t n = 0; n < inner_.size(); ++n)  // absent unknowns are zero
+    if (const Place& place = inner_[n];
+        place.row == place.column && !tangents_.has(place.row, harmonic)) {
+      const Index at = number_[static_cast<std::size_t>(place.row)] % block_;
+      values(block_of_[n] * area + at * block_ + at) = 1.0;
+    }
   const BlockMatrix<Complex> matrix{block_, static_cast<Index>(interior_.size()) / block_,
                                     begin_.data(), columns_.data(), values.data()};
   const auto number = static_cast<std::size_t>(harmonic - first_harmonic());
@@ -165,8 +175,7 @@ void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::map<Index, std::vector<const Coupling*>> of_border;
-  for (const Coupling& coupling : couplings_back_)
-    of_border[coupling.border].push_back(&coupling);
+  for (const Coupling& coupling : couplings_back_) of_border[coupling.border].push_back(&coupling);
   Eigen::MatrixXcd right;
   for (const auto& [border, couplings] : of_border) {
     double largest = 0.0;
@@ -224,21 +233,31 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
       couplings_back_.push_back({static_cast<Index>(j),
                                  number_[static_cast<std::size_t>(place.row)],
                                  scaled_block(place)});
-  const Index size = border_size() * width_;
+  present_.clear();
+  for (Index j = 0; j < border_size(); ++j)
+    for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k)
+      if (tangents_.has(border_[static_cast<std::size_t>(j)], k))
+        present_.push_back(j * width_ + k + tangents_.harmonics());
+  const auto size = static_cast<Index>(present_.size());
   if (size == 0) return true;
-  Eigen::MatrixXcd schur = Eigen::MatrixXcd::Zero(size, size);
+  Eigen::MatrixXcd all = Eigen::MatrixXcd::Zero(border_size() * width_, border_size() * width_);
   for (const Place& place : corner_)
-    schur.block(number_[static_cast<std::size_t>(place.row)] * width_,
-                number_[static_cast<std::size_t>(place.column)] * width_, width_, width_) =
+    all.block(number_[static_cast<std::size_t>(place.row)] * width_,
+              number_[static_cast<std::size_t>(place.column)] * width_, width_, width_) =
         scaled_block(place);
-  eliminate_chains(schur);
+  eliminate_chains(all);
+  Eigen::MatrixXcd schur = all(present_, present_);
   // Entries of about one, so that small pivots mean that the matrix is singular.
   const auto inverse = [](double largest) { return largest > 0.0 ? 1.0 / largest : 1.0; };
   schur_rows_ = schur.cwiseAbs().rowwise().maxCoeff().unaryExpr(inverse);
   schur = schur_rows_.asDiagonal() * schur;
   schur_columns_ = schur.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(inverse);
-  schur_.compute(schur * schur_columns_.asDiagonal());
-  const auto pivots = schur_.matrixLU().diagonal().cwiseAbs();
+  schur_ = schur * schur_columns_.asDiagonal();
+  schur_interchanges_.resize(static_cast<std::size_t>(size));
+  if (blas::factor(static_cast<blas::Integer>(size), schur_.data(), schur_interchanges_.data()) !=
+      0)
+    return false;
+  const auto pivots = schur_.diagonal().cwiseAbs();
   return pivots.minCoeff() > least_pivot * pivots.maxCoeff();
 }
 
@@ -251,13 +270,15 @@ void HarmonicPreconditioner::solve(const Eigen::MatrixXcd& right, Eigen::MatrixX
     solve_interior(between);
     if (is_real())
       for (int k = 1; k <= tangents_.harmonics(); ++k)
-        between.row(tangents_.harmonics() - k) =
-            between.row(tangents_.harmonics() + k).conjugate();
+        between.row(tangents_.harmonics() - k) = between.row(tangents_.harmonics() + k).conjugate();
     for (const Coupling& coupling : couplings_)
       border.col(coupling.border).noalias() -= coupling.block * between.col(coupling.interior);
-    border = schur_columns_
-                 .cwiseProduct(schur_.solve(schur_rows_.cwiseProduct(border.reshaped().matrix())))
-                 .reshaped(width_, border_size());
+    Eigen::VectorXcd unknown =
+        schur_rows_.cwiseProduct(Eigen::VectorXcd(border.reshaped()(present_)));
+    blas::solve(static_cast<blas::Integer>(unknown.size()), 1, schur_.data(),
+                schur_interchanges_.data(), unknown.data());
+    border.setZero();
+    border.reshaped()(present_) = schur_columns_.cwiseProduct(unknown);
     for (const Coupling& coupling : couplings_back_)
       given.col(coupling.interior).noalias() -= coupling.block * border.col(coupling.border);
     solution(Eigen::all, border_) = border;
@@ -281,14 +302,15 @@ void HarmonicPreconditioner::solve(const double* right, double* solution) {
   }
 }
 
-double HarmonicPreconditioner::phase_of_determinant() const {
-  double phase = 0.0;
-  for (const BlockFactors<Complex>& factors : factors_) phase += factors.phase_of_determinant();
-  if (border_size() > 0) {
-    for (const Complex pivot : schur_.matrixLU().diagonal()) phase += std::arg(pivot);
-    if (schur_.permutationP().determinant() < 0) phase += std::numbers::pi;
+HarmonicPreconditioner::Complex HarmonicPreconditioner::log_determinant() const {
+  Complex sum = 0.0;
+  for (const BlockFactors<Complex>& factors : factors_) sum += factors.log_determinant();
+  for (Index i = 0; i < schur_.rows(); ++i) {
+    sum += std::log(schur_(i, i)) - std::log(schur_rows_(i)) - std::log(schur_columns_(i));
+    if (schur_interchanges_[static_cast<std::size_t>(i)] != i + 1)
+      sum += Complex(0.0, std::numbers::pi);
   }
-  return std::remainder(phase, 2.0 * std::numbers::pi);
+  return sum;
 }
 
 }  // namespace samara::analysis

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "block_factors.hpp"
 #include "harmonic_tangents.hpp"
@@ -38,8 +37,9 @@ class HarmonicPreconditioner {
   /// For every shift: coefficients of exp(i k Omega t), k = -H ... H, (2 H + 1) x unknowns.
   void solve(const Eigen::MatrixXcd& right, Eigen::MatrixXcd& solution);
 
-  /// Phase of the determinant [rad], up to multiples of 2 pi. For a shift with an imaginary part.
-  double phase_of_determinant() const;
+  /// Logarithm of the determinant of what it factors, up to multiples of 2 pi i and a constant that
+  /// does not depend on the shift. For a shift with an imaginary part.
+  Complex log_determinant() const;
 
  private:
   using Index = Eigen::Index;
@@ -79,12 +79,14 @@ class HarmonicPreconditioner {
   const Eigen::VectorXd* row_factors_ = nullptr;
   const Eigen::VectorXd* column_factors_ = nullptr;
   Complex shift_;
-  std::vector<BlockFactors<Complex>> factors_;         ///< of each harmonic from first_harmonic()
-  std::vector<Coupling> couplings_;                    ///< border rows, interior columns
-  std::vector<Coupling> couplings_back_;               ///< interior rows, border columns
-  Eigen::VectorXd schur_rows_;                         ///< factors of the border's complement
+  std::vector<BlockFactors<Complex>> factors_;  ///< of each harmonic from first_harmonic()
+  std::vector<Coupling> couplings_;             ///< border rows, interior columns
+  std::vector<Coupling> couplings_back_;        ///< interior rows, border columns
+  std::vector<Index> present_;                  ///< coefficients that the border's unknowns have
+  Eigen::VectorXd schur_rows_;                  ///< factors of the border's complement
   Eigen::VectorXd schur_columns_;
-  Eigen::PartialPivLU<Eigen::MatrixXcd> schur_;
+  Eigen::MatrixXcd schur_;  ///< its factors
+  std::vector<PetscBLASInt> schur_interchanges_;
 };
 
 }  // namespace samara::analysis

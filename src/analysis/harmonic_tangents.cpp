@@ -4,6 +4,7 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <string>
 
 #include "samara/analysis/linear_algebra.hpp"
@@ -15,6 +16,8 @@ namespace samara::analysis {
 namespace {
 
 constexpr int samples_at_once = 8;
+/// Place of an entry of rows or unknowns that are not in the map.
+constexpr PetscInt left_out = -2;
 
 HarmonicTangents::Pattern pattern_of(const system::PeriodicSystem& system,
                                      const HarmonicTangents::Coordinates& held) {
@@ -33,6 +36,11 @@ HarmonicTangents::Pattern pattern_of(const system::PeriodicSystem& system,
   HarmonicTangents::Pattern pattern(system.size(), system.size());
   pattern.setFromTriplets(places.begin(), places.end());
   return pattern;
+}
+
+/// Whether an unknown has no meaning but to fill up a block.
+bool fills_up(const system::Unknown& unknown) {
+  return unknown.owner.kind == system::PartKind::law && unknown.owner.part == "padding";
 }
 
 PetscInt block_size_of(Mat matrix) {
@@ -56,7 +64,7 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
 }
 
 HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, const Coordinates& held,
-                                   int harmonics)
+                                   int harmonics, bool by_sector)
     : system_(system),
       held_(held),
       harmonics_(harmonics),
@@ -64,15 +72,29 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, const C
       size_(static_cast<Eigen::Index>(system.size())),
       block_size_(block_size_of(system.make_jacobian().get())),
       pattern_(pattern_of(system, held)) {
+  kept_.resize(static_cast<std::size_t>(size_));
+  std::iota(kept_.begin(), kept_.end(), 0);
+  number_ = kept_;
+  remainder_.assign(kept_.size(), every);
+  if (by_sector && held.empty()) find_sectors(pattern_);
+  find_users(pattern_);
+  if (sectors_ > 1) {
+    std::vector<Eigen::Triplet<double, PetscInt>> places;
+    for (PetscInt i = 0; i < static_cast<PetscInt>(kept_.size()); ++i)
+      for (Pattern::InnerIterator it(pattern_, kept_[static_cast<std::size_t>(i)]); it; ++it)
+        if (const PetscInt j = number_[static_cast<std::size_t>(it.col())]; j >= 0)
+          places.emplace_back(i, j, 1.0);
+    size_ = static_cast<Eigen::Index>(kept_.size());
+    pattern_.resize(size_, size_);
+    pattern_.setFromTriplets(places.begin(), places.end());
+  }
   const int samples = sample_count(harmonics);
   values_of_.resize(samples, width_);
-  rates_of_.resize(samples, width_);
   projection_.resize(width_, samples);
   to_coefficients_.resize(2 * width_ - 1, samples);
   for (int k = 0; k < samples; ++k) {
     const double t = period() * k / samples;
     values_of_.row(k) = PeriodicSolution::basis(harmonics, period(), t);
-    rates_of_.row(k) = PeriodicSolution::basis_rate(harmonics, period(), t);
     projection_.col(k) = fourier_weights(harmonics, period(), t);
     for (int m = 1 - width_; m < width_; ++m)
       to_coefficients_(m + width_ - 1, k) =
@@ -82,6 +104,111 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, const C
   for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i)
     for (PetscInt e = pattern_.outerIndexPtr()[i]; e < pattern_.outerIndexPtr()[i + 1]; ++e)
       places_.push_back({i, pattern_.innerIndexPtr()[e], e});
+}
+
+/// Keeps the unknowns of the first blade and those that P does not move. All blades stay in the map
+/// where a row of the first blade refers to another blade.
+void HarmonicTangents::find_sectors(const Pattern& whole) {
+  const system::RotorSymmetry& symmetry = system_.symmetry();
+  if (symmetry.sectors < 2) return;
+  const auto size = static_cast<PetscInt>(symmetry.source.size());
+  std::vector<PetscInt> leader(symmetry.source.size());  // the same unknown of the first blade
+  std::vector<char> is_moved(symmetry.source.size(), 0);
+  for (PetscInt i = 0; i < size; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    int length = 1;
+    double sign = symmetry.sign[at];
+    leader[at] = i;
+    for (PetscInt j = symmetry.source[at]; j != i;
+         j = symmetry.source[static_cast<std::size_t>(j)]) {
+      ++length;
+      leader[at] = std::min(leader[at], j);
+      sign *= symmetry.sign[static_cast<std::size_t>(j)];
+    }
+    const bool is_known =
+        length == symmetry.sectors || (length == 1 && (sign == 1.0 || symmetry.sectors % 2 == 0));
+    if (!is_known || (length > 1 && sign != 1.0)) return;
+    is_moved[at] = length > 1 ? 1 : 0;
+  }
+  // What fills up the blocks of a blade goes with them.
+  for (PetscInt first = 0; first < size; first += block_size_) {
+    int moved = 0;
+    int kept = 0;
+    int filling = 0;
+    for (PetscInt i = first; i < first + block_size_; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      moved += is_moved[at];
+      kept += is_moved[at] && leader[at] == i ? 1 : 0;
+      filling += fills_up(system_.unknowns()[at]) ? 1 : 0;
+    }
+    if (moved + filling != block_size_ || (kept != 0 && kept != moved)) continue;
+    for (PetscInt i = first; i < first + block_size_; ++i)
+      if (const auto at = static_cast<std::size_t>(i); !is_moved[at]) {
+        is_moved[at] = 1;
+        leader[at] = kept > 0 ? i : -1;
+      }
+  }
+  std::vector<PetscInt> kept;
+  std::vector<PetscInt> number(symmetry.source.size(), -1);
+  std::vector<int> remainder;
+  for (PetscInt i = 0; i < size; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (leader[at] != i) continue;
+    number[at] = static_cast<PetscInt>(kept.size());
+    kept.push_back(i);
+    remainder.push_back(is_moved[at] ? every
+                                     : (symmetry.sign[at] > 0.0 ? 0 : symmetry.sectors / 2));
+  }
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    for (Pattern::InnerIterator it(whole, kept[i]); it && remainder[i] == every; ++it)
+      if (number[static_cast<std::size_t>(it.col())] < 0 &&
+          kept[i] / block_size_ != it.col() / block_size_)
+        return;
+  sectors_ = symmetry.sectors;
+  kept_ = std::move(kept);
+  number_ = std::move(number);
+  remainder_ = std::move(remainder);
+}
+
+/// A block of which a part is left out has the largest number.
+void HarmonicTangents::find_users(const Pattern& whole) {
+  const PetscInt block = block_size_;
+  std::vector<std::set<PetscInt>> users(number_.size() / static_cast<std::size_t>(block));
+  for (PetscInt i = 0; i < static_cast<PetscInt>(whole.rows()); ++i)
+    for (Pattern::InnerIterator it(whole, i); it; ++it)
+      users[static_cast<std::size_t>(it.col() / block)].insert(i / block);
+  for (const PetscInt i : kept_) {
+    const auto own = static_cast<std::size_t>(i / block);
+    const auto first = number_.begin() + static_cast<std::ptrdiff_t>(own) * block;
+    users_.push_back(std::count(first, first + block, -1) > 0 ? whole.rows() : users[own].size());
+  }
+}
+
+/// P Z_k = exp(-2 pi i k / Q) Z_k, where (P y)_i = sign_i y_source(i).
+Eigen::MatrixXcd HarmonicTangents::whole(const Eigen::MatrixXcd& series) const {
+  if (sectors_ == 1) return series;
+  const system::RotorSymmetry& symmetry = system_.symmetry();
+  Eigen::MatrixXcd all =
+      Eigen::MatrixXcd::Zero(series.rows(), static_cast<Eigen::Index>(number_.size()));
+  Eigen::ArrayXcd turn(series.rows());
+  const Eigen::Index harmonics = (series.rows() - 1) / 2;
+  for (Eigen::Index k = -harmonics; k <= harmonics; ++k)
+    turn(k + harmonics) =
+        std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k % sectors_) / sectors_);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const PetscInt first = kept_[i];
+    all.col(first) = series.col(static_cast<Eigen::Index>(i));
+    for (PetscInt j = first; symmetry.source[static_cast<std::size_t>(j)] != first;) {
+      const PetscInt next = symmetry.source[static_cast<std::size_t>(j)];
+      all.col(next) = symmetry.sign[static_cast<std::size_t>(j)] * turn * all.col(j).array();
+      j = next;
+    }
+  }
+  return all;
+}
+
+Eigen::MatrixXcd HarmonicTangents::part(const Eigen::MatrixXcd& whole) const {
+  return whole(Eigen::all, kept_);
 }
 
 bool HarmonicTangents::is_held(PetscInt unknown) const {
@@ -119,18 +246,47 @@ void HarmonicTangents::sample(const PeriodicSolution& solution) {
       take_entries(jacobian.get(), jacobian_places, K.col(n));
       take_entries(mass.get(), mass_places, M.col(n));
     }
+    if (sectors_ > 1)
+      for (const Place& place : places_)
+        if (!is_moved(place.row) && is_moved(place.column)) {
+          K.row(place.number) *= sectors_;
+          M.row(place.number) *= sectors_;
+        }
     sampled_.middleRows(first, count) = K.leftCols(count).transpose();
     sampled_.middleRows(samples + first, count) = M.leftCols(count).transpose();
   }
+  if (sectors_ > 1) find_followers();
+}
+
+/// An unknown that is not moved and that no other row refers to, such as the component of a
+/// velocity in axes of the rotor, only follows the others. It has all harmonics if its row has no
+/// blade, and not its own rate.
+void HarmonicTangents::find_followers() {
+  std::vector<char> is_used(kept_.size(), 0);
+  for (const Place& place : places_) {
+    const auto sampled = sampled_.col(place.number);
+    if (sampled.isZero(0.0)) continue;
+    if (place.row != place.column || !sampled.tail(sampled.size() / 2).isZero(0.0))
+      is_used[static_cast<std::size_t>(place.column)] = 1;
+    if (is_moved(place.column)) is_used[static_cast<std::size_t>(place.row)] = 1;
+  }
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (!is_used[i]) remainder_[i] = every;
 }
 
 std::vector<PetscInt> HarmonicTangents::places_of(Mat tangent) const {
   std::vector<PetscInt> places;
   MatrixEntries(tangent).for_each([&](PetscInt i, PetscInt j, PetscScalar&) {
-    const PetscInt* first = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[i];
-    const PetscInt* last = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[i + 1];
-    const PetscInt* found = std::lower_bound(first, last, j);
-    const bool is_there = found != last && *found == j;
+    const PetscInt row = number_[static_cast<std::size_t>(i)];
+    const PetscInt column = number_[static_cast<std::size_t>(j)];
+    if (row < 0 || column < 0) {
+      places.push_back(left_out);
+      return;
+    }
+    const PetscInt* first = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[row];
+    const PetscInt* last = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[row + 1];
+    const PetscInt* found = std::lower_bound(first, last, column);
+    const bool is_there = found != last && *found == column;
     places.push_back(is_there ? static_cast<PetscInt>(found - pattern_.innerIndexPtr()) : -1);
   });
   return places;
@@ -143,7 +299,7 @@ void HarmonicTangents::take_entries(Mat tangent, const std::vector<PetscInt>& pl
   for (std::size_t n = 0; n < places.size(); ++n)
     if (places[n] >= 0)
       sample(places[n]) = values[n];
-    else if (values[n] != 0.0)
+    else if (places[n] != left_out && values[n] != 0.0)
       entries.for_each([&](PetscInt i, PetscInt j, PetscScalar& value) {
         if (&value == values + n)
           throw InternalError("row " + std::to_string(i) +
@@ -152,35 +308,55 @@ void HarmonicTangents::take_entries(Mat tangent, const std::vector<PetscInt>& pl
       });
 }
 
-void HarmonicTangents::multiply(const std::vector<Place>& places, const double* x,
-                                double* y) const {
-  const Eigen::Index samples = values_of_.rows();
+void HarmonicTangents::multiply(const double* x, double* y) const {
   Eigen::MatrixXd coefficients = Eigen::Map<const Eigen::MatrixXd>(x, width_, size_);
   for (const system::UnconstrainedCoordinate& coordinate : held_)
     coefficients(0, coordinate.unknown) = 0.0;
-  const Eigen::MatrixXd values = values_of_ * coefficients;
-  const Eigen::MatrixXd rates = rates_of_ * coefficients;
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(width_, size_);
+  for (int k = 1; k <= harmonics_; ++k) {
+    rates.row(2 * k - 1) = k * rate() * coefficients.row(2 * k);
+    rates.row(2 * k) = -k * rate() * coefficients.row(2 * k - 1);
+  }
+  Eigen::MatrixXd result;
+  multiply(coefficients, rates, result);
+  for (const system::UnconstrainedCoordinate& coordinate : held_)
+    result(0, coordinate.row) += x[coordinate.unknown * width_];
+  Eigen::Map<Eigen::MatrixXd>(y, width_, size_) = result;
+}
+
+void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
+                                Eigen::MatrixXd& y) const {
+  const Eigen::Index samples = values_of_.rows();
+  const Eigen::MatrixXd values = values_of_ * x;
+  const Eigen::MatrixXd rates = values_of_ * w;
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, size_);
-  for (const Place& place : places) {
+  for (const Place& place : places_) {
     const auto sampled = sampled_.col(place.number).array();
     sums.col(place.row).array() += sampled.head(samples) * values.col(place.column).array() +
                                    sampled.tail(samples) * rates.col(place.column).array();
   }
-  Eigen::Map<Eigen::MatrixXd> result(y, width_, size_);
-  result.noalias() = projection_ * sums;
-  for (const system::UnconstrainedCoordinate& coordinate : held_)
-    result(0, coordinate.row) += x[coordinate.unknown * width_];
+  y.noalias() = projection_ * sums;
+  drop_absent(y);
 }
 
-void HarmonicTangents::multiply_mass(const double* x, double* y) const {
+void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
   const Eigen::Index samples = values_of_.rows();
-  const Eigen::MatrixXd values =
-      values_of_ * Eigen::Map<const Eigen::MatrixXd>(x, width_, size_);
+  const Eigen::MatrixXd rates = values_of_ * w;
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, size_);
   for (const Place& place : places_)
-    sums.col(place.row).array() += sampled_.col(place.number).tail(samples).array() *
-                                   values.col(place.column).array();
-  Eigen::Map<Eigen::MatrixXd>(y, width_, size_).noalias() = projection_ * sums;
+    sums.col(place.row).array() +=
+        sampled_.col(place.number).tail(samples).array() * rates.col(place.column).array();
+  y.noalias() = projection_ * sums;
+  drop_absent(y);
+}
+
+void HarmonicTangents::drop_absent(Eigen::MatrixXd& rows) const {
+  if (sectors_ == 1) return;
+  for (Eigen::Index i = 0; i < size_; ++i) {
+    if (!has(i, 0)) rows(0, i) = 0.0;
+    for (int k = 1; k <= harmonics_; ++k)
+      if (!has(i, k) && !has(i, -k)) rows.col(i).segment(2 * k - 1, 2).setZero();
+  }
 }
 
 HarmonicTangents::Coefficients HarmonicTangents::coefficients(const Place& place) const {
@@ -202,19 +378,35 @@ double HarmonicTangents::rate() const { return 2.0 * std::numbers::pi / period()
 void HarmonicTangents::scale(double loads, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const {
   const Eigen::Index samples = values_of_.rows();
   const double rate = harmonics_ > 0 ? 2.0 * std::numbers::pi * harmonics_ / period() : 1.0;
-  Pattern sizes = pattern_;
-  for (Eigen::Index e = 0; e < sizes.nonZeros(); ++e)
-    sizes.valuePtr()[e] = sampled_.col(e).head(samples).lpNorm<Eigen::Infinity>() +
-                          rate * sampled_.col(e).tail(samples).lpNorm<Eigen::Infinity>();
-  const Equilibration scaling =
-      scaling_by_role(system_, Eigen::SparseMatrix<double>(sizes), rate, loads);
+  // Entries of all blades, from those of the first one.
+  std::vector<Eigen::Triplet<double>> entries;
+  const std::vector<PetscInt>& source = system_.symmetry().source;
+  for (const Place& place : places_) {
+    const auto sampled = sampled_.col(place.number);
+    double entry = sampled.head(samples).lpNorm<Eigen::Infinity>() +
+                   rate * sampled.tail(samples).lpNorm<Eigen::Infinity>();
+    PetscInt row = kept_[static_cast<std::size_t>(place.row)];
+    PetscInt column = kept_[static_cast<std::size_t>(place.column)];
+    if (sectors_ > 1 && !is_moved(place.row) && is_moved(place.column)) entry /= sectors_;
+    for (int q = 0; q < sectors_; ++q) {
+      entries.emplace_back(row, column, entry);
+      if (sectors_ == 1) break;
+      row = source[static_cast<std::size_t>(row)];
+      column = source[static_cast<std::size_t>(column)];
+    }
+  }
+  Eigen::SparseMatrix<double> sizes(system_.size(), system_.size());
+  sizes.setFromTriplets(entries.begin(), entries.end(),
+                        [](double a, double b) { return std::max(a, b); });
+  const Equilibration scaling = scaling_by_role(system_, sizes, rate, loads);
   const petsc::ReadView row_factors(scaling.rows.get());
   const petsc::ReadView column_factors(scaling.columns.get());
   rows.resize(size_ * width_);
   columns.resize(size_ * width_);
   for (Eigen::Index i = 0; i < size_; ++i) {
-    rows.segment(i * width_, width_).setConstant(row_factors[static_cast<PetscInt>(i)]);
-    columns.segment(i * width_, width_).setConstant(column_factors[static_cast<PetscInt>(i)]);
+    const PetscInt unknown = kept_[static_cast<std::size_t>(i)];
+    rows.segment(i * width_, width_).setConstant(row_factors[unknown]);
+    columns.segment(i * width_, width_).setConstant(column_factors[unknown]);
   }
   for (const system::UnconstrainedCoordinate& coordinate : held_)
     columns(coordinate.unknown * width_) = 1.0 / rows(coordinate.row * width_);
@@ -241,11 +433,15 @@ petsc::Handle<Mat> HarmonicTangents::make_matrix() const {
 
 void HarmonicTangents::fill(Mat matrix) const {
   const Eigen::Index samples = values_of_.rows();
+  Eigen::MatrixXd rates_of(samples, width_);
+  for (Eigen::Index k = 0; k < samples; ++k)
+    rates_of.row(k) = PeriodicSolution::basis_rate(
+        harmonics_, period(), period() * static_cast<double>(k) / static_cast<double>(samples));
   // From the samples of an entry of K and M to its block, row by row.
   Eigen::MatrixXd to_block(width_ * width_, 2 * samples);
   for (Eigen::Index k = 0; k < samples; ++k) {
     const Eigen::MatrixXd by_value = values_of_.row(k).transpose() * projection_.col(k).transpose();
-    const Eigen::MatrixXd by_rate = rates_of_.row(k).transpose() * projection_.col(k).transpose();
+    const Eigen::MatrixXd by_rate = rates_of.row(k).transpose() * projection_.col(k).transpose();
     to_block.col(k) = Eigen::Map<const Eigen::VectorXd>(by_value.data(), by_value.size());
     to_block.col(samples + k) = Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
   }

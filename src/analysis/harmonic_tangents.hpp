@@ -22,18 +22,39 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t);
 /// The linear map from coefficients x to those of K(t) x(t) + M(t) x_dot(t). Coefficient c of
 /// unknown i has number i (2 H + 1) + c: mean, then cosine and sine of each harmonic. The load that
 /// holds a coordinate is in the place of the coordinate's mean.
+///
+/// Among Q identical blades, every Floquet motion z(t) = exp(lambda t) Z(t) has an exponent with
+/// P Z(t + T/Q) = Z(t), P of system::RotorSymmetry: each blade has the motion of the first one, T/Q
+/// later or earlier, and unknowns that P does not move have the harmonics k = 0, Q, -Q, ... only
+/// (k = Q/2, -Q/2, ... where P changes their sign). The map of such motions has the unknowns of the
+/// first blade and those that P does not move; in rows of the latter, each blade contributes as
+/// much as the first one. (The fast Floquet theory of docs/theory.md, section 5.4, for series.)
 class HarmonicTangents {
  public:
   using Coordinates = std::vector<system::UnconstrainedCoordinate>;
   using Pattern = Eigen::SparseMatrix<double, Eigen::RowMajor, PetscInt>;
 
-  HarmonicTangents(const system::PeriodicSystem& system, const Coordinates& held, int harmonics);
+  /// `by_sector`: motions as above, if the system has identical blades.
+  HarmonicTangents(const system::PeriodicSystem& system, const Coordinates& held, int harmonics,
+                   bool by_sector = false);
 
   /// Evaluates K and M along `solution`.
   void sample(const PeriodicSolution& solution);
 
-  Eigen::Index size() const { return size_; }  ///< unknowns of the system
-  int width() const { return width_; }         ///< coefficients of an unknown, 2 H + 1
+  Eigen::Index size() const { return size_; }  ///< unknowns of the map
+  int sectors() const { return sectors_; }     ///< Q; 1: all blades are in the map
+  /// Whether an unknown has a harmonic k.
+  bool has(Eigen::Index unknown, int harmonic) const {
+    const int remainder = remainder_[static_cast<std::size_t>(unknown)];
+    return remainder == every || (harmonic - remainder) % sectors_ == 0;
+  }
+  /// From a series of the map's unknowns, k = -H ... H by row, to all unknowns of the system; and
+  /// back.
+  Eigen::MatrixXcd whole(const Eigen::MatrixXcd& series) const;
+  Eigen::MatrixXcd part(const Eigen::MatrixXcd& whole) const;
+  /// Number of node blocks of the system whose rows refer to the block of each unknown.
+  const std::vector<std::size_t>& users() const { return users_; }
+  int width() const { return width_; }  ///< coefficients of an unknown, 2 H + 1
   int harmonics() const { return harmonics_; }
   PetscInt block_size() const { return block_size_; }  ///< of the system's tangents; 1: none
   const Coordinates& held() const { return held_; }
@@ -48,11 +69,12 @@ class HarmonicTangents {
   };
   const std::vector<Place>& places() const { return places_; }
 
-  /// y = J x, both of size() width() coefficients; `places`: those that count.
-  void multiply(const std::vector<Place>& places, const double* x, double* y) const;
-  void multiply(const double* x, double* y) const { multiply(places_, x, y); }
-  /// y = M x of every sample, projected; both of size() width() coefficients.
-  void multiply_mass(const double* x, double* y) const;
+  /// y = J x, both of size() width() coefficients.
+  void multiply(const double* x, double* y) const;
+  /// Coefficients of K(t) x(t) + M(t) w(t).
+  void multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
+  /// Coefficients of M(t) w(t).
+  void multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
   /// Complex Fourier coefficients m = -2 H ... 2 H of K and M at a place.
   struct Coefficients {
     Eigen::VectorXcd stiffness;
@@ -75,6 +97,14 @@ class HarmonicTangents {
 
  private:
   double period() const { return system_.period() > 0.0 ? system_.period() : 1.0; }
+  bool is_moved(PetscInt unknown) const {
+    return remainder_[static_cast<std::size_t>(unknown)] == every;
+  }
+  void find_sectors(const Pattern& whole);
+  void find_users(const Pattern& whole);
+  void find_followers();
+  /// Sets the coefficients of harmonics that an unknown's row does not have to zero.
+  void drop_absent(Eigen::MatrixXd& rows) const;
   /// Places of the entries of a tangent, in the order of MatrixEntries.
   std::vector<PetscInt> places_of(Mat tangent) const;
   void take_entries(Mat tangent, const std::vector<PetscInt>& places,
@@ -86,13 +116,19 @@ class HarmonicTangents {
   int width_;
   Eigen::Index size_;
   PetscInt block_size_ = 1;
+  int sectors_ = 1;
+  std::vector<PetscInt> kept_;    ///< unknowns of the system that are in the map
+  std::vector<PetscInt> number_;  ///< of each unknown of the system in the map; -1: none
+  static constexpr int every = -1;
+  /// k mod Q of the harmonics of each unknown of the map that P does not move; `every` for others.
+  std::vector<int> remainder_;
+  std::vector<std::size_t> users_;
   Pattern pattern_;  ///< of K and M together; its values have no meaning
   std::vector<Place> places_;
-  Eigen::MatrixXd values_of_;   ///< samples x width: the harmonics at the samples
-  Eigen::MatrixXd rates_of_;    ///< samples x width: their rates
-  Eigen::MatrixXd projection_;  ///< width x samples: Fourier weights
+  Eigen::MatrixXd values_of_;         ///< samples x width: the harmonics at the samples
+  Eigen::MatrixXd projection_;        ///< width x samples: Fourier weights
   Eigen::MatrixXcd to_coefficients_;  ///< (4 H + 1) x samples: complex Fourier weights
-  Eigen::MatrixXd sampled_;  ///< 2 samples x places: K, then M
+  Eigen::MatrixXd sampled_;           ///< 2 samples x places: K, then M; rows of all blades summed
 };
 
 }  // namespace samara::analysis

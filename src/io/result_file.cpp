@@ -172,6 +172,11 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
   file.set_attribute(group, "states_deflated", set.deflated);
   file.set_attribute(group, "deflated_rate", set.deflated_rate);
   file.set_attribute(group, "reach_hz", set.reach / (2.0 * std::numbers::pi));
+  if (!set.searched) return;
+  file.set_attribute(group, "searched_from_hz", set.searched->low / (2.0 * std::numbers::pi));
+  file.set_attribute(group, "searched_to_hz", set.searched->high / (2.0 * std::numbers::pi));
+  file.set_attribute(group, "searched_rate", set.searched->decay);
+  file.set_attribute(group, "searched_is_counted", set.searched->is_counted ? 1 : 0);
 }
 
 void write_shapes(Hdf5File& file, const std::string& group, const ModeSet& set) {
@@ -540,6 +545,7 @@ void ResultFile::write_floquet(const analysis::Floquet& floquet) {
   write_mode_set(file, "/floquet", set);
   write_participation(file, "/floquet", set);
   write_shapes(file, "/floquet", set);
+  if (floquet.harmonics > 0) file.set_attribute("/floquet", "harmonics", floquet.harmonics);
   file.set_attribute("/floquet", "steps", floquet.steps);
   file.set_attribute("/floquet", "order", floquet.order);
   file.set_attribute("/floquet", "sectors", floquet.sectors);

@@ -22,6 +22,7 @@ using fields::Visitor;
 constexpr int least_steps = 4;
 constexpr int most_steps = 10000000;
 constexpr int most_load_steps = 100000;
+constexpr int most_modes = 10000;
 constexpr int most_azimuths = 3600;
 constexpr int most_order = 100000;
 constexpr int least_growth_steps = 16;
@@ -77,6 +78,15 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
                  "counts as not resolved. Where `steps` is left out their number is raised until "
                  "the ten slowest modes are below it"},
                 floquet.accuracy);
+  fields.integer(
+      Field(
+          "modes", "", integers(1, most_modes),
+          "number of modes to find by Hill's method, for large meshes: the slowest ones, or those "
+          "nearest to `near_hz`. Other keys of `floquet` then do not count")
+          .none_at_zero("all modes"),
+      floquet.modes);
+  fields.number({"near_hz", "Hz", positive, "frequency next to which `modes` are searched"},
+                floquet.near_hz);
 }
 
 void declare_static(Visitor& fields, analysis::StaticOptions& statics) {

@@ -76,9 +76,16 @@ void sort_modes(const ModeSet& set, StabilityAssessment& result) {
   if (least != result.decaying.end()) result.least_damped = *least;
 }
 
+/// True if every mode in the part of the spectrum that was searched is resolved.
+bool result_of_search_is_known(const ModeSet& set) {
+  return std::all_of(set.modes.begin(), set.modes.end(),
+                     [](const Mode& mode) { return mode.resolved; });
+}
+
 /// True if all of the first modes are known: no mode that is not resolved can be among them.
 /// Deflated decays are known to decay.
 bool knows_first_modes(const ModeSet& set) {
+  if (set.searched) return result_of_search_is_known(set);
   std::size_t below = static_cast<std::size_t>(set.deflated) / 2;
   std::size_t others = 0;
   for (const Mode& mode : set.modes)
@@ -117,6 +124,8 @@ StabilityAssessment assess_stability(const ModeSet& set) {
     result.doubt = Doubt::unresolved;
   else if (!result.growing.empty())
     result.stability = Stability::unstable;
+  else if (set.searched && !set.searched->is_counted)
+    result.doubt = Doubt::incomplete;
   else if (!result.growing_alone.empty())
     result.doubt = Doubt::growing_alone;
   else if (result.undamped + result.rigid_body > 0)

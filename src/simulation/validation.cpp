@@ -100,6 +100,8 @@ class Validation {
           "must not be 0: a parked rotor has no period; hint: use samara modes, or "
           "--set "
           "shaft.speed=...");
+    if (scenario_.floquet.near_hz && scenario_.floquet.modes == 0)
+      add("floquet.near_hz", "needs floquet.modes, the number of modes to find");
   }
 
   /// Checks that loads and prescribed motions are constant or periodic with the rotor, and that the

@@ -39,8 +39,9 @@ struct Mode {
   double round_off_error = 0.0;
   double growth_error = 0.0;  ///< of the real part [rad/s]; a smaller growth is not significant
   double mesh_growth_error = 0.0;  ///< part of growth_error from the elements
-  /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; constant
-  /// tangents: relative difference of the exponent found with two shifts.
+  /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; Hill's method:
+  /// largest scaled residual over a period, relative to the inertia loads; constant tangents:
+  /// relative difference of the exponent found with two shifts.
   double residual = 0.0;
   std::vector<PartShare> parts;  ///< descending
   /// Part whose first-order states dominate the mode; empty for a mode of a motion.
@@ -60,15 +61,25 @@ inline double logarithmic_decrement(const Mode& mode) {
              : -2.0 * std::numbers::pi * mode.exponent.real() / mode.exponent.imag();
 }
 
+/// A part of the spectrum in which modes were searched: exponents with |Re| <= `decay` [1/s] and
+/// `low` <= |Im| <= `high` [rad/s].
+struct SearchedRegion {
+  double low = 0.0;
+  double high = 0.0;
+  double decay = 0.0;
+  /// Whether the number of modes in it was counted without finding them, and is right.
+  bool is_counted = false;
+};
+
 struct ModeSet {
-  std::vector<Mode> modes;  ///< in the order of arrange_modes (identification.hpp)
-  int degrees_of_freedom = 0;
-  int instances = 0;          ///< number of identical parts (the blades); 0: none
-  double rotor_speed = 0.0;   ///< Omega [rad/s]
-  double step = 0.0;          ///< time step of the integration [s]; 0: no integration
-  bool conservative = false;  ///< multipliers should come in pairs mu, 1/mu*
-  int states = 0;             ///< number of exponents; both of a pair count
-  int found = 0;              ///< number of these that belong to `modes`
+  std::vector<Mode> modes;     ///< in the order of arrange_modes (identification.hpp)
+  int degrees_of_freedom = 0;  ///< 0: not counted
+  int instances = 0;           ///< number of identical parts (the blades); 0: none
+  double rotor_speed = 0.0;    ///< Omega [rad/s]
+  double step = 0.0;           ///< time step of the integration [s]; 0: no integration
+  bool conservative = false;   ///< multipliers should come in pairs mu, 1/mu*
+  int states = 0;              ///< number of exponents; both of a pair count; 0: not counted
+  int found = 0;               ///< number of these that belong to `modes`
   /// Number of exponents that decay below round-off within the integration: their values are not
   /// known, and `modes` does not contain them. All of them decay at `deflated_rate` [1/s] or
   /// faster.
@@ -77,6 +88,8 @@ struct ModeSet {
   /// Smallest modulus of an exponent that is not resolved [rad/s], but not more than the largest
   /// modulus that the time step resolves. All modes below it are known, except deflated ones.
   double reach = std::numeric_limits<double>::infinity();
+  /// Set where not all modes were searched.
+  std::optional<SearchedRegion> searched;
   /// Share of the mean kinetic energy, mode x harmonic, harmonics from `first_harmonic`.
   Eigen::MatrixXd participation;
   int first_harmonic = 0;

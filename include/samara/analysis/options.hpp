@@ -27,6 +27,9 @@ struct FloquetOptions {
   int order = 6;  ///< of the steps: 2, 4 or 6; 2 is (19)
   /// Largest error by the time steps of a resolved mode, relative.
   std::optional<double> accuracy = {};
+  /// Number of modes, by Hill's method; 0: all modes, by integration over a period.
+  int modes = 0;
+  std::optional<double> near_hz = {};  ///< the modes nearest to this frequency, not the slowest
 };
 
 enum class StaticMethod { load, arc_length };

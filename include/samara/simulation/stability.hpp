@@ -35,6 +35,7 @@ enum class Stability {
 enum class Doubt {
   none,
   unresolved,     ///< the slowest modes are not all resolved
+  incomplete,     ///< modes may be missing in the part of the spectrum that was searched
   growing_alone,  ///< a mode of a conservative system grows, none decays with it: error of the mesh
   rough,          ///< all modes have too large an error
 };
@@ -59,7 +60,8 @@ struct StabilityAssessment {
 };
 
 /// Only resolved modes with small errors count. A verdict is given if the ten slowest modes, or all
-/// modes, are known.
+/// modes, are known. Where not all modes were searched, the verdict is that of the modes in
+/// ModeSet::searched.
 StabilityAssessment assess_stability(const analysis::ModeSet& set);
 
 }  // namespace samara::simulation

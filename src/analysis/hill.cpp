@@ -1,0 +1,620 @@
+#include "samara/analysis/hill.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "samara/analysis/harmonic_energy.hpp"
+#include "samara/analysis/identification.hpp"
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/mode_error.hpp"
+#include "samara/base/error.hpp"
+#include "samara/petsc/session.hpp"
+
+#include "hill_pencil.hpp"
+#include "hill_refinement.hpp"
+#include "hill_search.hpp"
+#include "state_parts.hpp"
+
+namespace samara::analysis {
+namespace {
+
+using Complex = std::complex<double>;
+using Index = Eigen::Index;
+using namespace std::complex_literals;
+
+/// Harmonics of the search, where they are not the multiblade coordinates of three identical blades
+/// or more: those that couple rotor and tower. The more there are, the more copies the search
+/// finds.
+constexpr int search_harmonics = 2;
+/// Harmonics of the modes: the first attempt, the largest factor from one attempt to the next and
+/// the last attempt.
+constexpr int least_harmonics = 4;
+constexpr double most_increase = 4.0;
+constexpr int most_harmonics = 60;
+/// Residual of a mode in the time domain that is wanted, and the largest one of a resolved mode.
+constexpr double wanted_residual = 1e-8;
+constexpr double largest_residual = 1e-6;
+/// Correlation of the largest harmonics of an eigenpair and of its copy.
+constexpr double same_shape = 0.7;
+/// Harmonics at the edges of a series, and their part in a copy.
+constexpr Index edge_harmonics = 2;
+constexpr double edge_part = 1e-3;
+/// Factor by which a residual falls with each harmonic, at least. (Cancellation in the tangents
+/// limits some residuals.)
+constexpr double slowest_decay = 0.93;
+/// Eigenpairs of a shift.
+constexpr int least_pairs = 24;
+constexpr int margin_pairs = 6;
+constexpr int most_pairs = 100;
+/// Relative to the rotor speed: distance of exponents that are refined together, of one exponent
+/// that two searches find, of a copy in the search from where it should be, and of refined
+/// exponents that are the same.
+constexpr double same_group = 0.03;
+constexpr double same_found = 1e-3;
+constexpr double same_copy = 0.25;
+constexpr double same_exponent = 1e-6;
+/// Relative to the rotor speed: distance of the edge of a region from the last mode.
+constexpr double edge_margin = 0.1;
+/// Relative to the rotor speed: an exponent below this, in the search, is that of a displacement.
+constexpr double at_rest = 2e-3;
+constexpr int shape_samples = 24;
+
+/// An eigenpair with its identification.
+struct Candidate {
+  HillPair pair;
+  Mode mode;
+  Eigen::VectorXd participation;
+  double residual = std::numeric_limits<double>::infinity();
+  bool is_found = false;  ///< an eigenpair of the truncated series
+};
+
+class Analysis {
+ public:
+  Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+           const FloquetOptions& options, Observer& observer)
+      : system_(system),
+        solution_(solution),
+        options_(options),
+        observer_(observer),
+        speed_(2.0 * std::numbers::pi / system.period()),
+        energy_(system),
+        parts_(find_state_parts(system)) {}
+
+  Floquet run() {
+    search();
+    refine();
+    choose();
+    return finish();
+  }
+
+ private:
+  /// Finds approximate exponents with few harmonics, from the real axis upwards, or from
+  /// `near_hz` to both sides.
+  void search() {
+    const int blades = system_.symmetry().sectors;
+    const int harmonics = blades > 2 ? blades / 2 : search_harmonics;
+    HillPencil pencil(system_, solution_, harmonics);
+    HillSearch search(pencil);
+    samples_ = std::max(shape_samples, 4 * harmonics + 2);
+    sectors_ = pencil.sectors();
+    nearest_ = sectors_ / 2;
+    if (options_.near_hz)
+      search_near(search, 2.0 * std::numbers::pi * *options_.near_hz);
+    else
+      search_upwards(search);
+    if (!options_.near_hz) lower_edge();
+    // An edge between two exponents is farther from both.
+    double above = std::numeric_limits<double>::infinity();
+    double below = 0.0;
+    for (const Complex exponent : all_found_)
+      if (exponent.imag() > region_.high)
+        above = std::min(above, exponent.imag());
+      else
+        below = std::max(below, exponent.imag());
+    region_.high = std::min(region_.high, 0.5 * (below + above));
+    std::erase_if(found_, [this](const Candidate& candidate) {
+      return candidate.pair.exponent.imag() > region_.high;
+    });
+    const HillSearch::Missing missing = search.count_missing(region_, all_found_);
+    region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
+  }
+
+  void search_upwards(HillSearch& search) {
+    region_.decay = std::numeric_limits<double>::infinity();
+    double frequency = speed_;
+    int count = std::max(least_pairs, std::min(options_.modes + margin_pairs, most_pairs));
+    while (centred() < options_.modes) {
+      const HillRegion region = search.find(frequency, count);
+      if (region.low > region_.high) {
+        frequency = 0.5 * (frequency + region_.high);
+        count += least_pairs / 2;
+        continue;
+      }
+      take(region, region_.high, region.high);
+      region_.decay = std::min(region_.decay, region.decay);
+      const double length = region.high - std::max(region_.high, region.low);
+      region_.high = region.high;
+      if (region.is_whole) break;
+      frequency = region_.high + 0.4 * length;
+    }
+  }
+
+  void search_near(HillSearch& search, double frequency) {
+    for (int count = std::max(least_pairs, options_.modes + margin_pairs);; count *= 2) {
+      found_.clear();
+      all_found_.clear();
+      const HillRegion region = search.find(frequency, count);
+      take(region, region.low, region.high);
+      region_ = {region.low, region.high, region.decay, region.is_whole, {}};
+      if (centred() >= options_.modes || region.is_whole) return;
+    }
+  }
+
+  /// Keeps the pairs of a region from `low` to `high`.
+  void take(const HillRegion& region, double low, double high) {
+    for (const HillPair& pair : region.pairs) {
+      const double frequency = pair.exponent.imag();
+      const bool is_new = std::none_of(all_found_.begin(), all_found_.end(), [&](Complex other) {
+        return low > 0.0 && other.imag() > low &&
+               std::abs(other - pair.exponent) < same_found * speed_;
+      });
+      if ((frequency > low || low == 0.0) && is_new) all_found_.push_back(pair.exponent);
+      if (frequency > high || (frequency <= low && low > 0.0)) continue;
+      Candidate candidate{pair, {}, {}};
+      describe(candidate);
+      if (std::abs(candidate.mode.harmonic) <= nearest_ + 1) found_.push_back(candidate);
+    }
+  }
+
+  /// Largest distance of the frequency of a mode from that of its eigenpair.
+  double margin() const { return (nearest_ + 1) * speed_; }
+
+  /// Approximate number of modes that the search has found, with frequencies from the lower edge to
+  /// `high`, as far as their eigenpairs are inside the region.
+  int centred(double high) const {
+    double count = 0.0;
+    for (const Candidate& candidate : found_) {
+      const double frequency = candidate.pair.exponent.imag();
+      if (is_centred(candidate) && frequency < high - margin() &&
+          (region_.low == 0.0 || frequency > region_.low + margin()))
+        count += 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
+    }
+    return static_cast<int>(count);
+  }
+  int centred() const { return centred(region_.high); }
+
+  /// Lowers the edge of the region to what the slowest modes need.
+  void lower_edge() {
+    std::vector<double> edges;
+    for (const Candidate& candidate : found_)
+      edges.push_back(candidate.pair.exponent.imag() + margin() + edge_margin * speed_);
+    std::sort(edges.begin(), edges.end());
+    for (const double edge : edges)
+      if (edge < region_.high && centred(edge) >= options_.modes) region_.high = edge;
+  }
+
+  /// Whether a pair is that of its copies that is identified next to its own harmonic. (With an
+  /// even number of blades there are two of them if the blades move in opposite directions.)
+  bool is_centred(const Candidate& candidate) const {
+    return std::abs(candidate.mode.harmonic) <= nearest_;
+  }
+
+  /// Groups of neighbouring exponents among those that `chosen` says.
+  template <class Chosen>
+  std::vector<std::vector<HillPair>> groups_of(const Chosen& chosen) const {
+    std::vector<HillPair> pairs;
+    for (const Candidate& candidate : found_) {
+      if (!chosen(candidate)) continue;
+      const HillPair& pair = candidate.pair;
+      pairs.push_back(pair);
+      // The conjugate of a slow motion belongs to its group: both may be a double zero.
+      if (pair.exponent.imag() > 0.0 && std::abs(pair.exponent) < same_group * speed_)
+        pairs.push_back({std::conj(pair.exponent), pair.series.colwise().reverse().conjugate()});
+    }
+    std::vector<std::vector<HillPair>> groups;
+    std::vector<char> taken(pairs.size(), 0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (taken[i]) continue;
+      std::vector<std::size_t> group{i};
+      taken[i] = 1;
+      for (std::size_t g = 0; g < group.size(); ++g)
+        for (std::size_t j = 0; j < pairs.size(); ++j)
+          if (!taken[j] &&
+              std::abs(pairs[j].exponent - pairs[group[g]].exponent) < same_group * speed_) {
+            taken[j] = 1;
+            group.push_back(j);
+          }
+      groups.emplace_back();
+      for (const std::size_t j : group) groups.back().push_back(pairs[j]);
+    }
+    return groups;
+  }
+
+  /// Refines the eigenpairs that are identified at their own harmonic, and those that should have a
+  /// copy with this property in the region but have none.
+  void refine() {
+    refine(groups_of([this](const Candidate& candidate) {
+      if (is_centred(candidate)) return true;
+      const int shift = candidate.mode.harmonic > 0 ? sectors_ : -sectors_;
+      const Complex copy = candidate.pair.exponent + Complex(0.0, shift * speed_);
+      return std::abs(copy.imag()) < region_.high - same_copy * speed_ &&
+             std::none_of(found_.begin(), found_.end(), [&](const Candidate& other) {
+               const Complex exponent = other.pair.exponent;
+               return is_centred(other) &&
+                      std::min(std::abs(copy - exponent), std::abs(copy - std::conj(exponent))) <
+                          same_copy * speed_;
+             });
+    }));
+  }
+
+  /// Adds harmonics until the residuals are small, or do not become smaller.
+  void refine(std::vector<std::vector<HillPair>> groups) {
+    std::vector<double> before(groups.size(), std::numeric_limits<double>::infinity());
+    std::vector<Candidate> doubtful;
+    harmonics_ = std::max(least_harmonics, solution_.harmonics());
+    int added = 0;  // harmonics, since the attempt before
+    while (!groups.empty()) {
+      HillPencil pencil(system_, solution_, harmonics_);
+      HillRefinement refinement(pencil);
+      samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
+      std::vector<Candidate> refined;
+      for (std::vector<HillPair>& group : groups) {
+        const bool is_found = refinement.refine(group) <= largest_residual;
+        for (const HillPair& pair : group) {
+          refined.push_back({pair, {}, {}});
+          refined.back().is_found = is_found;
+        }
+      }
+      find_residuals(refined);
+      double largest = 0.0;
+      std::vector<std::vector<HillPair>> left;
+      std::vector<double> residuals;
+      auto first = refined.begin();
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        const auto end = first + static_cast<std::ptrdiff_t>(groups[g].size());
+        const double residual =
+            std::max_element(first, end, [](const Candidate& a, const Candidate& b) {
+              return a.residual < b.residual;
+            })->residual;
+        bool is_own = false;  // next to its own harmonic
+        for (auto it = first; it != end; ++it) {
+          describe(*it);
+          is_own = is_own || is_centred(*it);
+        }
+        const bool is_last =
+            harmonics_ == most_harmonics || !is_own || !first->is_found ||
+            (residual <= largest_residual && residual > std::pow(slowest_decay, added) * before[g]);
+        if (residual <= wanted_residual || is_last) {
+          for (auto it = first; it != end; ++it)
+            (it->residual <= largest_residual ? modes_ : doubtful).push_back(std::move(*it));
+        } else {
+          largest = std::max(largest, residual);
+          left.push_back(groups[g]);
+          residuals.push_back(residual);
+        }
+        first = end;
+      }
+      groups = std::move(left);
+      before = std::move(residuals);
+      // The residual falls by the same factor with each harmonic.
+      if (!groups.empty()) {
+        const double factor = std::log(0.3 * wanted_residual) / std::log(std::min(largest, 0.9));
+        const int next = std::min(
+            most_harmonics,
+            static_cast<int>(
+                std::ceil(std::clamp(factor, 1.0 + 1.0 / harmonics_, most_increase) * harmonics_)));
+        added = next - harmonics_;
+        harmonics_ = next;
+      }
+    }
+    for (Candidate& candidate : doubtful)
+      if (!candidate.is_found || (is_centred(candidate) && !is_copy(candidate)))
+        modes_.push_back(std::move(candidate));
+  }
+
+  /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut
+  /// off: the positions in the largest harmonics are the same.
+  bool is_copy(const Candidate& candidate) const {
+    const auto largest = [this](const Candidate& one) {
+      const Index harmonics = (one.pair.series.rows() - 1) / 2;
+      Eigen::VectorXcd positions = Eigen::VectorXcd::Zero(system_.size());
+      for (Index i = 0; i < system_.size(); ++i)
+        if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
+          positions(i) = one.pair.series(
+              harmonics + std::clamp<Index>(one.mode.harmonic, -harmonics, harmonics), i);
+      return Eigen::VectorXcd(positions.normalized());
+    };
+    const Eigen::MatrixXcd& series = candidate.pair.series;
+    const double tail =
+        series.topRows(edge_harmonics).norm() + series.bottomRows(edge_harmonics).norm();
+    if (tail < edge_part * series.norm()) return false;
+    const Eigen::VectorXcd own = largest(candidate);
+    return std::any_of(modes_.begin(), modes_.end(), [&](const Candidate& mode) {
+      const Eigen::VectorXcd other = largest(mode);
+      return std::max(std::abs(other.dot(own)), std::abs(other.conjugate().dot(own))) > same_shape;
+    });
+  }
+
+  /// Values of a series at equal distances over a period.
+  Eigen::MatrixXcd shape_of(const Eigen::MatrixXcd& series) const {
+    const Index harmonics = (series.rows() - 1) / 2;
+    Eigen::MatrixXcd waves(series.rows(), samples_);
+    for (Index i = 0; i < samples_; ++i)
+      for (Index k = -harmonics; k <= harmonics; ++k)
+        waves(k + harmonics, i) =
+            std::polar(1.0, 2.0 * std::numbers::pi * static_cast<double>(k * i % samples_) /
+                                static_cast<double>(samples_));
+    return series.transpose() * waves;
+  }
+
+  void describe(Candidate& candidate) {
+    const Eigen::MatrixXcd shape = shape_of(candidate.pair.series);
+    Eigen::MatrixXd real(energy_.signals(), samples_);
+    Eigen::MatrixXd imaginary(energy_.signals(), samples_);
+    energy_.take(shape.real(), real);
+    energy_.take(shape.imag(), imaginary);
+    const int state = leading_state(shape);
+    describe_energy(
+        energy_.energies(real.data(), imaginary.data(), Eigen::VectorXcd::Ones(samples_)),
+        energy_.part_names(), state, candidate.mode, candidate.participation);
+    candidate.mode.state.reset();
+    if (state >= 0) candidate.mode.state = parts_.owners[static_cast<std::size_t>(state)];
+    // A displacement at rest has no energy.
+    const Index at = largest_harmonic(candidate.pair.series);
+    if (std::abs(candidate.pair.exponent + Complex(0.0, static_cast<double>(at) * speed_)) <
+        at_rest * speed_)
+      candidate.mode.harmonic = static_cast<int>(at);
+  }
+
+  /// Place in `parts_.owners` of the part with the largest state, relative to its scale, where this
+  /// is more than the largest position; else -1. (It stands in place of the participation factors,
+  /// which need the left eigenvectors.)
+  int leading_state(const Eigen::MatrixXcd& shape) const {
+    double largest = 0.0;
+    int leading = -1;
+    std::size_t state = 0;
+    for (Index i = 0; i < system_.size() && !parts_.owners.empty(); ++i) {
+      const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(i)];
+      const bool is_state = unknown.role == system::UnknownRole::state;
+      const std::size_t number = state;
+      if (is_state) ++state;
+      if (!is_state && unknown.role != system::UnknownRole::position) continue;
+      const double size = shape.row(i).cwiseAbs().maxCoeff() / unknown.scale;
+      if (size <= largest) continue;
+      largest = size;
+      leading = is_state ? static_cast<int>(parts_.part_of[number]) : -1;
+    }
+    return leading;
+  }
+
+  /// The harmonic with the largest positions.
+  Index largest_harmonic(const Eigen::MatrixXcd& series) const {
+    Eigen::VectorXd sizes = Eigen::VectorXd::Zero(series.rows());
+    for (Index i = 0; i < system_.size(); ++i)
+      if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
+        sizes += series.col(i).cwiseAbs2();
+    Index largest = 0;
+    sizes.maxCoeff(&largest);
+    return largest - (series.rows() - 1) / 2;
+  }
+
+  /// The exponent up to multiples of i Q Omega and up to its conjugate.
+  Complex principal(Complex exponent) const {
+    return {exponent.real(), std::abs(std::remainder(exponent.imag(), sectors_ * speed_))};
+  }
+
+  /// Keeps one eigenpair of each mode among copies. Copies of one mode, or of modes with equal
+  /// exponents, lie at the same places: the place with most eigenpairs is kept, and among these the
+  /// one with the lowest harmonics.
+  void choose() {
+    std::erase_if(modes_, [this](const Candidate& mode) {
+      return mode.pair.exponent.imag() < -zero_exponent * speed_;
+    });
+    for (Candidate& mode : modes_)  // round-off has split a double zero
+      if (std::abs(mode.pair.exponent) < zero_exponent * speed_) mode.pair.exponent.imag(0.0);
+    for (Candidate& mode : modes_) describe(mode);  // with the samples of all
+    std::vector<Candidate> chosen;
+    std::vector<char> taken(modes_.size(), 0);
+    for (std::size_t i = 0; i < modes_.size(); ++i) {
+      if (taken[i]) continue;
+      std::vector<std::vector<std::size_t>> places;
+      for (std::size_t j = i; j < modes_.size(); ++j) {
+        const Complex exponent = modes_[j].pair.exponent;
+        if (taken[j] || !is_same(principal(exponent), principal(modes_[i].pair.exponent))) continue;
+        taken[j] = 1;
+        auto place = std::find_if(places.begin(), places.end(), [&](const auto& other) {
+          return is_same(modes_[other.front()].pair.exponent, exponent);
+        });
+        if (place == places.end()) place = places.insert(places.end(), std::vector<std::size_t>{});
+        place->push_back(j);
+      }
+      const auto cost = [&](const std::vector<std::size_t>& place) {
+        int sum = 0;
+        for (const std::size_t j : place) sum += std::abs(modes_[j].mode.harmonic);
+        return std::pair(-static_cast<int>(place.size()), sum);
+      };
+      const auto best =
+          std::min_element(places.begin(), places.end(),
+                           [&](const auto& a, const auto& b) { return cost(a) < cost(b); });
+      for (const std::size_t j : *best) chosen.push_back(std::move(modes_[j]));
+    }
+    modes_ = std::move(chosen);
+  }
+
+  bool is_same(Complex a, Complex b) const { return std::abs(a - b) < same_exponent * speed_; }
+
+  /// Largest scaled residual of each mode at instants that are not those of the series, relative to
+  /// the largest inertia load, or, where it is less, that of the same motion at the rotor speed.
+  void find_residuals(std::vector<Candidate>& modes) const {
+    if (modes.empty()) return;
+    const auto count = static_cast<Index>(modes.size());
+    const int harmonics = static_cast<int>((modes.front().pair.series.rows() - 1) / 2);
+    const int instants = 4 * harmonics + 5;
+    const petsc::Handle<Vec> z = system_.make_state();
+    const petsc::Handle<Vec> z_dot = system_.make_state();
+    const petsc::Handle<Mat> jacobian = system_.make_jacobian();
+    const petsc::Handle<Mat> mass = system_.make_mass();
+    Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
+    Eigen::VectorXd scale = Eigen::VectorXd::Zero(count);
+    Eigen::VectorXd rows;
+    Eigen::MatrixXcd values(system_.size(), count);
+    Eigen::MatrixXcd rates(system_.size(), count);
+    for (int j = 0; j < instants; ++j) {
+      const double t = system_.period() * (j + 0.37) / instants;
+      solution_.evaluate(t, z.get(), z_dot.get());
+      system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+      const Eigen::SparseMatrix<double> K = to_sparse(jacobian.get());
+      const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
+      if (rows.size() == 0) rows = row_factors(K, M);
+      for (Index m = 0; m < count; ++m) {
+        const HillPair& mode = modes[static_cast<std::size_t>(m)].pair;
+        Eigen::VectorXcd waves(2 * harmonics + 1);
+        Eigen::VectorXcd wave_rates(2 * harmonics + 1);
+        for (int k = -harmonics; k <= harmonics; ++k) {
+          waves(k + harmonics) = std::polar(1.0, k * speed_ * t);
+          wave_rates(k + harmonics) =
+              waves(k + harmonics) * (mode.exponent + Complex(0.0, k * speed_));
+        }
+        values.col(m) = mode.series.transpose() * waves;
+        rates.col(m) = mode.series.transpose() * wave_rates;
+      }
+      const Eigen::MatrixXcd inertia = rows.asDiagonal() * (M * rates);
+      const Eigen::MatrixXcd residual = inertia + rows.asDiagonal() * (K * values);
+      const Eigen::MatrixXcd at_speed = speed_ * (rows.asDiagonal() * (M * values));
+      for (Index m = 0; m < count; ++m) {
+        largest(m) = std::max(largest(m), residual.col(m).norm());
+        scale(m) = std::max({scale(m), inertia.col(m).norm(), at_speed.col(m).norm()});
+      }
+    }
+    for (Index m = 0; m < count; ++m)
+      modes[static_cast<std::size_t>(m)].residual = largest(m) / scale(m);
+  }
+
+  Eigen::VectorXd row_factors(const Eigen::SparseMatrix<double>& K,
+                              const Eigen::SparseMatrix<double>& M) const {
+    const Eigen::SparseMatrix<double> sizes = K.cwiseAbs() + speed_ * M.cwiseAbs();
+    const Equilibration scaling = scaling_by_role(system_, sizes, speed_);
+    const petsc::ReadView view(scaling.rows.get());
+    return Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
+  }
+
+  // ---- the result ------------------------------------------------------------------------------
+
+  /// Adds the identified harmonic to the exponent, and chooses the conjugate with Im >= 0.
+  void settle(std::size_t m) {
+    Mode& mode = set_.modes[m];
+    mode.exponent = modes_[m].pair.exponent + Complex(0.0, mode.harmonic * speed_);
+    if (mode.exponent.imag() < -zero_exponent * speed_) {
+      modes_[m].pair.exponent = std::conj(modes_[m].pair.exponent);
+      mode.exponent = std::conj(mode.exponent);
+      mode.harmonic = -mode.harmonic;
+      mode.multiplier = std::conj(mode.multiplier);
+      set_.shapes[m] = set_.shapes[m].conjugate().eval();
+      const auto row = static_cast<Index>(m);
+      const Eigen::RowVectorXd shares = set_.participation.row(row);
+      for (Index i = 0; i < samples_; ++i) {
+        const Index mirrored = 2 * (samples_ / 2) - i;
+        set_.participation(row, i) = mirrored >= 0 && mirrored < samples_ ? shares(mirrored) : 0.0;
+      }
+    }
+    if (std::abs(mode.exponent.imag()) < zero_exponent * speed_) mode.exponent.imag(0.0);
+    mode.step_exponent = mode.exponent;
+    const double size = std::abs(mode.exponent);
+    const bool is_zero = size < zero_exponent * speed_;
+    mode.damping_ratio = is_zero ? 0.0 : -mode.exponent.real() / size;
+    mode.step_error = is_zero ? 0.0 : mode.residual;
+    set_growth_error(mode, {}, modes_[m].pair.exponent);
+  }
+
+  Floquet finish() {
+    const auto count = static_cast<Index>(modes_.size());
+    set_ = {};
+    set_.rotor_speed = speed_;
+    set_.conservative = system_.is_conservative();
+    set_.first_harmonic = -static_cast<int>(samples_ / 2);
+    set_.participation.resize(count, samples_);
+    for (Index i = 0; i < samples_; ++i)
+      set_.shape_times.push_back(system_.period() * static_cast<double>(i) /
+                                 static_cast<double>(samples_));
+    for (std::size_t m = 0; m < modes_.size(); ++m) {
+      const Candidate& found = modes_[m];
+      Mode mode = found.mode;
+      mode.residual = found.residual;
+      mode.resolved = found.residual <= largest_residual;
+      mode.multiplier = std::exp(found.pair.exponent * system_.period());
+      std::stable_sort(mode.parts.begin(), mode.parts.end(),
+                       [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
+      set_.shapes.push_back(shape_of(found.pair.series));
+      set_.participation.row(static_cast<Index>(m)) = found.participation;
+      const bool is_real = std::abs(found.pair.exponent.imag()) < zero_exponent * speed_;
+      mode.exponent = found.pair.exponent;
+      if (is_real && !mode.state && is_rigid_body(system_, set_.shapes.back(), mode))
+        mode.harmonic = 0;
+      set_.modes.push_back(mode);
+      settle(m);
+    }
+    const std::vector<LeadingMotion> leading = find_leading_motions(system_, solution_, set_);
+    for (std::size_t m = 0; m < leading.size(); ++m) {
+      if (leading[m].harmonic == set_.modes[m].harmonic) continue;
+      set_.modes[m].harmonic = leading[m].harmonic;
+      settle(m);
+    }
+    const std::vector<system::MeshError> elements = system_.mesh_errors();
+    for (std::size_t m = 0; m < set_.modes.size(); ++m) {
+      Mode& mode = set_.modes[m];
+      if (mode.resolved && std::abs(mode.exponent) > zero_exponent * speed_)
+        add_mesh_error(mode, find_mesh_error(elements, set_.shapes[m], mode.exponent,
+                                             std::max(mode.kinetic_energy,
+                                                      strain_energy_of(system_, set_.shapes[m]))));
+    }
+    name_modes(system_, leading, set_, sectors_);
+    arrange_modes(set_);
+    scale_shapes(system_, set_);
+    // In terms of the modes' frequencies, which differ from those of the eigenpairs.
+    const double low = region_.low > 0.0 ? region_.low + margin() : 0.0;
+    const double high = region_.high - margin();
+    set_.reach = high;
+    for (const Mode& mode : set_.modes)
+      if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
+    set_.searched = SearchedRegion{low, high, region_.decay, region_is_counted_};
+    for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;
+    Floquet result;
+    result.harmonics = harmonics_;
+    result.set = std::move(set_);
+    return result;
+  }
+
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  const FloquetOptions& options_;
+  Observer& observer_;
+  double speed_;
+  HarmonicEnergy energy_;
+  StateParts parts_;
+  Index samples_ = 0;             ///< of a shape
+  int sectors_ = 1;               ///< copies of an eigenpair are this number of harmonics apart
+  int nearest_ = 0;               ///< harmonics of a pair that belong to no other copy
+  std::vector<Candidate> found_;  ///< by the search
+  std::vector<Candidate> modes_;
+  int harmonics_ = 0;  ///< of modes_, at most
+  HillRegion region_;
+  bool region_is_counted_ = false;
+  std::vector<Complex> all_found_;  ///< exponents by the search, also outside the region
+  ModeSet set_;
+};
+
+}  // namespace
+
+bool has_hill_structure(const system::PeriodicSystem& system) {
+  const HarmonicTangents tangents(system, {}, 0);
+  return HarmonicPreconditioner(tangents).is_useful();
+}
+
+Floquet find_hill_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                        const FloquetOptions& options, Observer& observer) {
+  return Analysis(system, solution, options, observer).run();
+}
+
+}  // namespace samara::analysis

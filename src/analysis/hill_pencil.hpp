@@ -1,0 +1,73 @@
+// Hill's eigenproblem of a linearized periodic system, truncated (docs/theory.md, section 5.10).
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/analysis/periodic_solution.hpp"
+#include "samara/petsc/handle.hpp"
+#include "samara/system/periodic_system.hpp"
+
+#include "harmonic_preconditioner.hpp"
+#include "harmonic_tangents.hpp"
+
+namespace samara::analysis {
+
+/// z(t) = exp(lambda t) sum_k z_k exp(i k Omega t), k = -H ... H, fulfils K z + M z_dot = 0 where
+/// (A + lambda B) z = 0: A is K + M d/dt on Fourier series, B is M on them. Vectors have the
+/// coefficients of all unknowns of HarmonicTangents (of one blade among identical ones), (2 H + 1)
+/// x unknowns by column, from k = -H. Rows and unknowns are scaled by their roles.
+class HillPencil {
+ public:
+  using Complex = std::complex<double>;
+  using Vector = Eigen::VectorXcd;
+
+  HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution, int harmonics);
+
+  int harmonics() const { return tangents_.harmonics(); }
+  Eigen::Index width() const { return tangents_.width(); }
+  Eigen::Index unknowns() const { return tangents_.size(); }
+  Eigen::Index size() const { return width() * unknowns(); }
+  double speed() const { return tangents_.rate(); }
+  /// Whether the tangents have the structure that precondition() needs.
+  bool is_solvable() const { return preconditioner_.is_useful(); }
+
+  /// y = (A + s B) x.
+  void multiply(Complex s, const Vector& x, Vector& y);
+  /// y = B x.
+  void multiply_mass(const Vector& x, Vector& y);
+  /// The exponent that fits a vector best: (A + lambda B) x is least in the 2-norm.
+  Complex exponent_of(const Vector& x);
+
+  /// Approximates (A + s B)^-1 from now on.
+  /// @returns false where it is singular to working precision
+  bool set_shift(Complex s) { return preconditioner_.factor(rows_, columns_, s); }
+  void precondition(const Vector& right, Vector& x);
+  /// Of the approximation at a complex shift, up to a constant and multiples of 2 pi i.
+  Complex log_determinant() const { return preconditioner_.log_determinant(); }
+
+  /// Harmonics between two copies of an eigenpair, exponents lambda and lambda + i Q Omega.
+  int sectors() const { return tangents_.sectors(); }
+  /// Sets the coefficients that an unknown does not have to zero.
+  void drop_absent(Vector& x) const;
+  /// Series of all unknowns of the system without scaling, (2 H + 1) x system size.
+  Eigen::MatrixXcd series_of(const Vector& x) const;
+  /// The inverse, for a series of any number of harmonics: others are zero or left out.
+  Vector vector_of(const Eigen::MatrixXcd& whole) const;
+
+ private:
+  /// Coefficients of mean, cosines and sines, unscaled: of x and of (s + d/dt) x.
+  void to_coefficients(Complex s, const Vector& x);
+
+  HarmonicTangents tangents_;
+  HarmonicPreconditioner preconditioner_;
+  Eigen::VectorXd rows_, columns_;
+  struct Parts {
+    Eigen::MatrixXd real, imaginary;
+  };
+  Parts values_, rates_, products_;
+};
+
+}  // namespace samara::analysis

@@ -1,0 +1,301 @@
+#include "hill_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+#include <slepceps.h>
+
+#include "samara/base/error.hpp"
+
+#include "complex_solver.hpp"
+
+namespace samara::analysis {
+namespace {
+
+using Complex = std::complex<double>;
+using Index = Eigen::Index;
+using Vector = Eigen::VectorXcd;
+
+/// Relative tolerances of the linear solves and of the eigensolver.
+constexpr double linear_tolerance = 1e-7;
+constexpr double eigenvalue_tolerance = 1e-6;
+
+/// Real part of the shifts, relative to the rotor speed. Undamped motions, whose exponents are
+/// imaginary, have real eigenvalues for an imaginary shift, equal to those of their conjugates.
+constexpr double real_part_of_shift = 0.3;
+
+/// Solves (A + sigma B) y = B x for real x.
+struct ShiftInvert {
+  HillPencil& pencil;
+  ComplexSolver& solver;
+  Vector in = {};
+  Vector right = {};
+  Vector out = {};
+  long solves = 0;
+  long iterations = 0;
+  std::exception_ptr error = {};
+};
+
+/// Step of the difference quotient of the determinant's logarithm, relative to the rotor speed.
+constexpr double difference_step = 1e-3;
+/// Difference of numbers of eigenvalues that are the same.
+constexpr double same_number = 0.1;
+constexpr int most_points = 600;
+constexpr int contraction_steps = 8;
+/// Gauss rule on [-1, 1].
+constexpr std::array<double, 4> gauss_points{-0.8611363115940526, -0.3399810435848563,
+                                             0.3399810435848563, 0.8611363115940526};
+constexpr std::array<double, 4> gauss_weights{0.3478548451374538, 0.6521451548625461,
+                                              0.6521451548625461, 0.3478548451374538};
+
+/// Real vectors of the eigensolver: mean, then sqrt(2) times real and negative imaginary part of
+/// z_k, k > 0, for each unknown, which keeps the norm of the series.
+void from_real(const PetscScalar* values, Index width, Vector& x) {
+  const Index H = (width - 1) / 2;
+  for (Index first = 0; first < x.size(); first += width) {
+    x(first + H) = values[first];
+    for (Index k = 1; k <= H; ++k) {
+      const Complex z =
+          std::numbers::sqrt2 / 2.0 * Complex(values[first + 2 * k - 1], -values[first + 2 * k]);
+      x(first + H + k) = z;
+      x(first + H - k) = std::conj(z);
+    }
+  }
+}
+
+/// The imaginary part of the function of time that has the series y.
+void imaginary_to_real(const Vector& y, Index width, PetscScalar* values) {
+  const Index H = (width - 1) / 2;
+  for (Index first = 0; first < y.size(); first += width) {
+    values[first] = y(first + H).imag();
+    for (Index k = 1; k <= H; ++k) {
+      const Complex z = Complex(0.0, -0.5) * (y(first + H + k) - std::conj(y(first + H - k)));
+      values[first + 2 * k - 1] = std::numbers::sqrt2 * z.real();
+      values[first + 2 * k] = -std::numbers::sqrt2 * z.imag();
+    }
+  }
+}
+
+PetscErrorCode apply_inverse(Mat matrix, Vec x, Vec y) {
+  ShiftInvert* context = nullptr;
+  PetscCall(MatShellGetContext(matrix, &context));
+  try {
+    const Index width = context->pencil.width();
+    {
+      const petsc::ReadView view(x);
+      context->in.resize(context->pencil.size());
+      from_real(view.data(), width, context->in);
+    }
+    context->pencil.drop_absent(context->in);
+    context->pencil.multiply_mass(context->in, context->right);
+    context->iterations += context->solver.solve(context->right, context->out);
+    ++context->solves;
+    const petsc::WriteView view(y);
+    imaginary_to_real(context->out, width, view.data());
+  } catch (...) {
+    context->error = std::current_exception();
+    return PETSC_ERR_USER;
+  }
+  return 0;
+}
+
+/// Half the width at height y of the region |s^2 + omega^2| <= rho; 0 outside.
+double half_width(double omega, double rho, double y) {
+  // |x^2 + omega^2 - y^2 + 2 i x y|^2 = rho^2, a quadratic equation for x^2.
+  const double a = omega * omega - y * y;
+  const double b = a + 2.0 * y * y;
+  const double c = a * a - rho * rho;
+  return c > 0.0 ? 0.0 : std::sqrt(std::max(0.0, -b + std::sqrt(b * b - c)));
+}
+
+}  // namespace
+
+HillRegion HillSearch::find(double frequency, int count) {
+  const Index size = pencil_.size();
+  const auto n = static_cast<PetscInt>(size);
+  const double beside = real_part_of_shift * pencil_.speed();
+  const Complex shift(beside, frequency);
+  if (!pencil_.set_shift(shift))
+    throw ConvergenceError("floquet: Hill's method has no factors at " + std::to_string(frequency) +
+                           " rad/s");
+  ComplexSolver linear(
+      size, [&](const Vector& x, Vector& y) { pencil_.multiply(shift, x, y); },
+      [&](const Vector& x, Vector& y) { pencil_.precondition(x, y); }, linear_tolerance, "hill_");
+  ShiftInvert context{pencil_, linear};
+  petsc::Handle<Mat> inverse;
+  petsc::check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &context, inverse.fill()));
+  petsc::check(
+      MatShellSetOperation(inverse.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply_inverse)));
+  petsc::Handle<EPS> solver;
+  petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
+  petsc::check(EPSSetOptionsPrefix(solver.get(), "hill_"));
+  petsc::check(EPSSetOperators(solver.get(), inverse.get(), nullptr));
+  petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
+  petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_MAGNITUDE));
+  petsc::check(EPSSetDimensions(solver.get(), 2 * count, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc::check(EPSSetTolerances(solver.get(), eigenvalue_tolerance, PETSC_DEFAULT));
+  petsc::check(EPSSetFromOptions(solver.get()));
+  EPSWhich which = EPS_LARGEST_MAGNITUDE;
+  petsc::check(EPSGetWhichEigenpairs(solver.get(), &which));
+  if (which != EPS_LARGEST_MAGNITUDE)
+    throw InputError(
+        "floquet: Hill's method needs the largest eigenvalues of the inverse; hint: no -hill_eps_ "
+        "option for other ones; floquet.near_hz chooses the modes");
+  const PetscErrorCode code = EPSSolve(solver.get());
+  solves_ += context.solves;
+  iterations_ += context.iterations;
+  if (context.error) std::rethrow_exception(context.error);
+  petsc::check(code);
+  PetscInt converged = 0;
+  petsc::check(EPSGetConverged(solver.get(), &converged));
+  if (converged < 2) throw ConvergenceError("floquet: Hill's method finds no modes");
+
+  HillRegion region;
+  double least = 0.0;
+  const petsc::Handle<Vec> re = petsc::make_vector(PETSC_COMM_SELF, n, n);
+  const petsc::Handle<Vec> im = petsc::make_vector(PETSC_COMM_SELF, n, n);
+  Vector x(size);
+  Vector y(size);
+  for (PetscInt i = 0; i < converged; ++i) {
+    PetscScalar value_re = 0.0;
+    PetscScalar value_im = 0.0;
+    petsc::check(EPSGetEigenpair(solver.get(), i, &value_re, &value_im, re.get(), im.get()));
+    const double modulus = std::hypot(value_re, value_im);
+    if (least == 0.0) least = modulus;
+    {
+      const petsc::ReadView view(re.get());
+      from_real(view.data(), pencil_.width(), x);
+    }
+    {
+      const petsc::ReadView view(im.get());
+      from_real(view.data(), pencil_.width(), y);
+    }
+    x += Complex(0.0, 1.0) * y;
+    const Complex exponent = pencil_.exponent_of(x);
+    const double expected =
+        frequency / std::abs((shift - exponent) * (std::conj(shift) - exponent));
+    if (std::abs(expected - modulus) > 0.5 * modulus) {  // of an infinite exponent
+      region.is_whole = true;
+      break;
+    }
+    least = std::min(least, modulus);
+    if (value_im != 0.0 && exponent.imag() < 0.0) continue;  // its conjugate is kept
+    region.pairs.push_back({exponent, pencil_.series_of(x / x.norm())});
+  }
+  // All eigenvalues with larger moduli have converged.
+  const double rho = frequency / least * (1.0 - 1e-6);
+  constexpr double part = 0.85;  // of the range on the axis, so that the rectangle has a width
+  const double omega2 = frequency * frequency;
+  region.high = std::sqrt(omega2 + part * rho);
+  region.low = part * rho >= omega2 ? 0.0 : std::sqrt(omega2 - part * rho);
+  region.decay =
+      std::min(half_width(frequency, rho, region.low), half_width(frequency, rho, region.high)) -
+      beside;
+  return region;
+}
+
+/// d/ds log det of the preconditioner, by central differences; not a number where it is singular.
+Complex HillSearch::log_derivative(Complex s) {
+  const double step = difference_step * pencil_.speed();
+  Complex difference = 0.0;
+  for (const double sign : {1.0, -1.0}) {
+    if (!pencil_.set_shift(s + Complex(0.0, sign * step)))
+      return std::numeric_limits<double>::quiet_NaN();
+    difference += sign * pencil_.log_determinant();
+  }
+  difference.imag(std::remainder(difference.imag(), 2.0 * std::numbers::pi));
+  return difference / Complex(0.0, 2.0 * step);
+}
+
+/// By Arnoldi's method from a vector of all harmonics, with the factors at s.
+double HillSearch::contraction_at(Complex s) {
+  if (!pencil_.set_shift(s)) return std::numeric_limits<double>::infinity();
+  Eigen::MatrixXcd basis(pencil_.size(), contraction_steps + 1);
+  Eigen::MatrixXcd small = Eigen::MatrixXcd::Zero(contraction_steps, contraction_steps);
+  Vector x = Vector::Constant(pencil_.size(), Complex(1.0, 0.5));
+  for (Index i = 0; i < x.size(); ++i) x(i) *= 1.0 + 0.5 * std::sin(static_cast<double>(i));
+  pencil_.drop_absent(x);
+  Vector product;
+  Vector y;
+  // The first vector has the components that the preconditioner changes.
+  for (int step = -1; step < contraction_steps; ++step) {
+    if (step >= 0) x = basis.col(step);
+    pencil_.multiply(s, x, product);
+    pencil_.precondition(product, y);
+    y = x - y;
+    if (step < 0) {
+      if (!(y.norm() > 0.0)) return 0.0;
+      basis.col(0) = y.normalized();
+      continue;
+    }
+    for (Index j = 0; j <= step; ++j) {
+      small(j, step) = basis.col(j).dot(y);
+      y -= small(j, step) * basis.col(j);
+    }
+    const double norm = y.norm();
+    if (step + 1 < contraction_steps) {
+      if (norm < 1e-14)
+        return small.topLeftCorner(step + 1, step + 1).eigenvalues().cwiseAbs().maxCoeff();
+      small(step + 1, step) = norm;
+    }
+    basis.col(step + 1) = y / norm;
+  }
+  return small.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
+                                              const std::vector<Complex>& found) {
+  Missing result;
+  const double a = region.decay;
+  std::vector<Complex> corners{
+      {a, region.low}, {a, region.high}, {-a, region.high}, {-a, region.low}};
+  const bool is_closed = region.low > 0.0;
+  if (is_closed) corners.push_back(corners.front());
+  const auto integrand = [&](Complex s) {
+    Complex sum = log_derivative(s);
+    for (const Complex exponent : found) {
+      sum -= 1.0 / (s - exponent);
+      if (exponent.imag() > 0.0) sum -= 1.0 / (s - std::conj(exponent));
+    }
+    return sum;
+  };
+  std::optional<double> last;
+  for (int panels = 1; result.points <= most_points; panels *= 2) {
+    Complex integral = 0.0;
+    for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
+      const Complex begin = corners[side];
+      const Complex length = corners[side + 1] - begin;
+      // The integrand is smooth on the scale of the region's width.
+      const auto parts = static_cast<int>(std::ceil(
+          panels * std::max(1.0, std::abs(length) / (2.0 * std::max(a, pencil_.speed())))));
+      for (int part = 0; part < parts; ++part)
+        for (std::size_t i = 0; i < gauss_points.size(); ++i) {
+          const Complex s = begin + length * ((part + 0.5 + 0.5 * gauss_points[i]) / parts);
+          integral += 0.5 * gauss_weights[i] / parts * length * integrand(s);
+          ++result.points;
+        }
+    }
+    // The part below the real axis has the conjugate integral, in the opposite direction.
+    const double number =
+        is_closed ? integral.imag() / (2.0 * std::numbers::pi) : integral.imag() / std::numbers::pi;
+    if (last && std::abs(number - *last) < same_number &&
+        std::abs(number - std::round(number)) < same_number) {
+      result.eigenvalues = static_cast<int>(std::lround(number));
+      break;
+    }
+    last = number;
+  }
+  for (std::size_t side = 0; side + 1 < corners.size(); ++side)
+    for (const double part : {0.02, 0.25, 0.5, 0.75, 0.98})
+      result.contraction =
+          std::max(result.contraction,
+                   contraction_at(corners[side] + part * (corners[side + 1] - corners[side])));
+  return result;
+}
+
+}  // namespace samara::analysis

@@ -1,0 +1,69 @@
+// Eigenpairs of Hill's eigenproblem near the imaginary axis (docs/theory.md, section 5.10).
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "hill_pencil.hpp"
+
+namespace samara::analysis {
+
+/// An exponent and the series of its motion, (2 H + 1) x unknowns.
+struct HillPair {
+  std::complex<double> exponent;
+  Eigen::MatrixXcd series;
+};
+
+/// The eigenpairs in a rectangle of the upper half plane, |Re| <= `decay`, low <= Im <= high.
+struct HillRegion {
+  double low = 0.0;    ///< [rad/s]; 0 includes the real exponents
+  double high = 0.0;   ///< [rad/s]
+  double decay = 0.0;  ///< [1/s]
+  /// True where all others are as good as infinite.
+  bool is_whole = false;
+  /// Exponents with Im >= 0, also some outside the rectangle.
+  std::vector<HillPair> pairs;
+};
+
+/// Finds eigenpairs next to shifts on the imaginary axis by Krylov-Schur with shift and invert
+/// (SLEPc, options prefix `hill_`). Real vectors serve a complex shift sigma: the imaginary part of
+/// (A + sigma B)^-1 B is a real map with the eigenvalues -Im(sigma) / ((sigma - lambda)
+/// (conj(sigma)
+/// - lambda)).
+class HillSearch {
+ public:
+  explicit HillSearch(HillPencil& pencil) : pencil_(pencil) {}
+
+  /// At least `count` pairs next to i `frequency` [rad/s] > 0, and the rectangle in which they are
+  /// all that the eigensolver has found.
+  /// @throws ConvergenceError
+  HillRegion find(double frequency, int count);
+
+  /// Number of eigenvalues in a region, and below the real axis in the mirror image of one that
+  /// starts there, less those of `found`. By the argument principle for the determinant of the
+  /// preconditioner. The pencil has the same number where `contraction` is less than one on the
+  /// edge: on the way from one matrix to the other, none is singular there. Empty where the
+  /// integral is not close to an integer.
+  struct Missing {
+    std::optional<int> eigenvalues;
+    double contraction = 0.0;  ///< largest estimated |1 - eigenvalue| of the preconditioned pencil
+    int points = 0;            ///< of the edge, with three factorizations each
+  };
+  Missing count_missing(const HillRegion& region, const std::vector<std::complex<double>>& found);
+
+  long solves() const { return solves_; }
+  long iterations() const { return iterations_; }
+
+ private:
+  std::complex<double> log_derivative(std::complex<double> s);
+  double contraction_at(std::complex<double> s);
+
+  HillPencil& pencil_;
+  long solves_ = 0;
+  long iterations_ = 0;
+};
+
+}  // namespace samara::analysis

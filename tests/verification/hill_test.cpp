@@ -1,0 +1,203 @@
+// Hill's method against integration over a period, on turbines.
+#include <set>
+
+#include <boost/test/unit_test.hpp>
+
+#include "samara/simulation/stability.hpp"
+
+#include "../../src/analysis/hill_search.hpp"
+#include "cases.hpp"
+
+using namespace samara;
+using namespace samara::test;
+
+namespace {
+
+struct Turning {
+  Turning(const std::string& name, const std::vector<std::string>& settings)
+      : input(
+            io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings)),
+        system(model::build_turbine(input.turbine), PETSC_COMM_SELF),
+        trim(analysis::find_trim(system, input.trim, observer)) {}
+
+  analysis::Floquet modes(const analysis::FloquetOptions& options) {
+    return analysis::find_floquet_modes(system, trim.solution, options, PETSC_COMM_SELF, observer);
+  }
+  analysis::Floquet by_hill(int modes, std::optional<double> near_hz = {}) {
+    analysis::FloquetOptions options;
+    options.modes = modes;
+    options.near_hz = near_hz;
+    return this->modes(options);
+  }
+  analysis::ModeSet by_steps(int steps) {
+    analysis::FloquetOptions options;
+    options.steps = steps;
+    return modes(options).set;
+  }
+
+  analysis::Observer observer;
+  io::Case input;
+  turbine::TurbineSystem system;
+  analysis::Trim trim;
+};
+
+/// The last word of a name is a number where there are several modes of the name.
+std::string without_number(const std::string& label) {
+  return label.substr(0, label.find_last_not_of(" 0123456789") + 1);
+}
+
+/// Each mode of `some` has its own mode in `all`, with the same exponent, name and damping, and
+/// each resolved mode of `all` below `some.searched` has one in `some`.
+void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& all,
+                       const std::string& place) {
+  BOOST_REQUIRE(some.searched);
+  BOOST_TEST(some.searched->is_counted, place);
+  std::set<std::size_t> used;
+  for (const analysis::Mode& mode : some.modes) {
+    BOOST_TEST(mode.resolved, place << ": " << mode.label);
+    BOOST_TEST(mode.residual < 1e-7, place << ": " << mode.label << " " << mode.residual);
+    double best = std::numeric_limits<double>::infinity();
+    std::size_t at = 0;
+    for (std::size_t m = 0; m < all.modes.size(); ++m) {
+      // Among equal exponents the one with the same name.
+      const bool same_name = without_number(all.modes[m].label) == without_number(mode.label);
+      const double distance = std::abs(all.modes[m].exponent - mode.exponent) +
+                              (same_name ? 0.0 : 1e-7 * some.rotor_speed);
+      if (used.count(m) == 0 && distance < best) {
+        best = distance;
+        at = m;
+      }
+    }
+    used.insert(at);
+    const analysis::Mode& other = all.modes[at];
+    best = std::abs(other.exponent - mode.exponent);
+    const double size = std::max(std::abs(mode.exponent), some.rotor_speed);
+    // A double zero is known up to the square root of round-off.
+    const double zero = std::abs(mode.exponent) < 1e-5 * size ? 1e-6 : 0.0;
+    BOOST_TEST(best / size < 1e-8 + zero + other.step_error,
+               place << ": " << mode.label << " " << mode.exponent << " " << other.label << " "
+                     << other.exponent << " " << best / size << " " << other.step_error);
+    BOOST_TEST(std::abs(std::abs(mode.multiplier) / std::abs(other.multiplier) - 1.0) < 1e-5,
+               place << ": " << mode.label << " " << mode.multiplier << " " << other.multiplier);
+    if (other.resolved)
+      BOOST_TEST(without_number(mode.label) == without_number(other.label),
+                 place << ": " << mode.label << " " << other.label);
+  }
+  for (std::size_t m = 0; m < all.modes.size(); ++m) {
+    const analysis::Mode& mode = all.modes[m];
+    const bool is_inside = mode.resolved && mode.exponent.imag() > some.searched->low &&
+                           mode.exponent.imag() < some.searched->high &&
+                           std::abs(mode.exponent.real()) < some.searched->decay;
+    BOOST_TEST((!is_inside || used.count(m) == 1),
+               place << ": " << mode.label << " " << mode.exponent << " is missing");
+  }
+}
+
+struct Example {
+  std::string name;
+  std::vector<std::string> settings;
+  int modes;
+  int steps;
+};
+
+const std::vector<std::string> coarse{"blades.elements=1", "blades.order=3", "tower.elements=1",
+                                      "tower.order=3"};
+
+/// Three, two and four blades; gravity, free yaw and teeter; a growing motion; unlike blades; a
+/// rotating beam; constant coefficients.
+std::vector<Example> examples() {
+  return {
+      {"nrel5mw/land", coarse, 8, 180},
+      {"nrel5mw/land", with(coarse, {"nacelle.yaw={joint: free}", "trim.harmonics=6"}), 8, 180},
+      {"nrel5mw/land", with(coarse, {"gravity=0"}), 8, 180},
+      {"nrel5mw/land", with(coarse, {"shaft.speed=4.0", "trim.harmonics=6"}), 6, 180},
+      {"nrel5mw/land", with(coarse, {"blades.pitch_actuator={frequency: 4, damping_ratio: 0.6}"}),
+       9, 180},
+      {"iea15mw/land", coarse, 6, 180},
+      {"two_bladed/teetering", coarse, 6, 180},
+      {"lee2002/rigid_tower", {"blades.elements=2", "gravity=9.81", "trim.harmonics=6"}, 6, 180},
+      {"ground_resonance/hammond", {}, 6, 180},
+      {"beam/rotating", {}, 4, 180},
+  };
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(hill_agrees_with_integration) {
+  for (const Example& example : examples()) {
+    std::string place = example.name;
+    for (const std::string& setting : example.settings) place += " " + setting;
+    BOOST_TEST_CONTEXT(place) {
+      Turning turbine(example.name, example.settings);
+      const analysis::Floquet found = turbine.by_hill(example.modes);
+      BOOST_TEST(found.harmonics > 0);
+      BOOST_TEST(static_cast<int>(found.set.modes.size()) >= std::min(example.modes, 6));
+      require_agreement(found.set, turbine.by_steps(example.steps), place);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(hill_finds_modes_next_to_a_frequency) {
+  Turning turbine("nrel5mw/land", coarse);
+  const analysis::Floquet found = turbine.by_hill(3, 2.0);
+  BOOST_TEST(found.set.modes.size() >= 3U);
+  BOOST_REQUIRE(found.set.searched);
+  BOOST_TEST(found.set.searched->low < 2.0 * 2.0 * std::numbers::pi);
+  BOOST_TEST(found.set.searched->high > 2.0 * 2.0 * std::numbers::pi);
+  for (const analysis::Mode& mode : turbine.by_steps(180).modes) {
+    if (!mode.resolved || std::abs(mode.exponent.imag() / (2.0 * std::numbers::pi) - 2.0) > 0.3)
+      continue;
+    double best = std::numeric_limits<double>::infinity();
+    for (const analysis::Mode& other : found.set.modes)
+      best = std::min(best, std::abs(other.exponent - mode.exponent));
+    BOOST_TEST(best < (1e-8 + mode.step_error) * std::abs(mode.exponent), mode.label);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(hill_finds_a_growing_motion) {
+  // Hammond's helicopter with one damper out of work (its blades are unlike then).
+  Turning turbine("ground_resonance/hammond", {"blades.each={1: {hinges: {lag: {damping: 0}}}}"});
+  const analysis::Floquet found = turbine.by_hill(6);
+  const simulation::StabilityAssessment some = simulation::assess_stability(found.set);
+  const simulation::StabilityAssessment all = simulation::assess_stability(turbine.by_steps(180));
+  BOOST_TEST((some.stability == all.stability));
+  BOOST_TEST((some.stability == simulation::Stability::unstable));
+  require_agreement(found.set, turbine.by_steps(180), "one damper out");
+}
+
+BOOST_AUTO_TEST_CASE(count_notices_a_missing_exponent) {
+  for (const auto& [name, harmonics] :
+       {std::pair{"nrel5mw/land", 1}, std::pair{"two_bladed/teetering", 2}}) {
+    Turning turbine(name, coarse);
+    analysis::HillPencil pencil(turbine.system, turbine.trim.solution, harmonics);
+    analysis::HillSearch search(pencil);
+    analysis::HillRegion region = search.find(pencil.speed(), 16);
+    region.decay *= 0.8;
+    std::vector<Complex> found;
+    for (const analysis::HillPair& pair : region.pairs) found.push_back(pair.exponent);
+    const analysis::HillSearch::Missing none = search.count_missing(region, found);
+    BOOST_REQUIRE(none.eigenvalues);
+    BOOST_TEST(*none.eigenvalues == 0);
+    BOOST_TEST(none.contraction < 0.2);
+    for (std::size_t i = 0; i < found.size(); i += 5) {
+      const Complex left_out = found[i];
+      if (left_out.imag() > region.high || std::abs(left_out.real()) > region.decay) continue;
+      std::vector<Complex> others = found;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const analysis::HillSearch::Missing one = search.count_missing(region, others);
+      BOOST_REQUIRE(one.eigenvalues);
+      BOOST_TEST(*one.eigenvalues == (left_out.imag() > 0.0 ? 2 : 1), name << " " << left_out);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(verdict_of_a_search_needs_its_count) {
+  Turning turbine("nrel5mw/land", coarse);
+  analysis::ModeSet set = turbine.by_hill(6).set;
+  BOOST_TEST((simulation::assess_stability(set).stability == simulation::Stability::stable));
+  set.searched->is_counted = false;
+  BOOST_TEST((simulation::assess_stability(set).doubt == simulation::Doubt::incomplete));
+  set.searched->is_counted = true;
+  set.modes.front().resolved = false;
+  BOOST_TEST((simulation::assess_stability(set).doubt == simulation::Doubt::unresolved));
+}
