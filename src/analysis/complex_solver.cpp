@@ -89,8 +89,9 @@ int ComplexSolver::solve(const Vector& right, Vector& x) {
   petsc::check(KSPGetConvergedReason(solver_.get(), &reason));
   petsc::check(KSPGetIterationNumber(solver_.get(), &iterations));
   if (reason < 0)
-    throw ConvergenceError(std::string("a linear solve does not converge (") +
-                           KSPConvergedReasons[reason] + ")");
+    throw ConvergenceError(
+        std::string("floquet: a linear solve of Hill's method does not converge (") +
+        KSPConvergedReasons[reason] + ")");
   x.resize(in_.size());
   read(solution_.get(), x);
   return static_cast<int>(iterations);

@@ -39,9 +39,7 @@ HarmonicTangents::Pattern pattern_of(const system::PeriodicSystem& system,
 }
 
 /// Whether an unknown has no meaning but to fill up a block.
-bool fills_up(const system::Unknown& unknown) {
-  return unknown.owner.kind == system::PartKind::law && unknown.owner.part == "padding";
-}
+bool fills_up(const system::Unknown& unknown) { return unknown.quantity.empty(); }
 
 PetscInt block_size_of(Mat matrix) {
   PetscBool is_blocked = PETSC_FALSE;

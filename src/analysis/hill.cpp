@@ -55,8 +55,9 @@ constexpr double same_group = 0.03;
 constexpr double same_found = 1e-3;
 constexpr double same_copy = 0.25;
 constexpr double same_exponent = 1e-6;
-/// Relative to the rotor speed: distance of the edge of a region from the last mode.
-constexpr double edge_margin = 0.1;
+/// Relative to the rotor speed: distance of two exponents between which the edge of a region may
+/// be.
+constexpr double least_gap = 0.01;
 /// Relative to the rotor speed: an exponent below this, in the search, is that of a displacement.
 constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
@@ -93,8 +94,8 @@ class Analysis {
   /// Finds approximate exponents with few harmonics, from the real axis upwards, or from
   /// `near_hz` to both sides.
   void search() {
-    const int blades = system_.symmetry().sectors;
-    const int harmonics = blades > 2 ? blades / 2 : search_harmonics;
+    const int sectors = system_.symmetry().sectors;
+    const int harmonics = sectors > 2 ? sectors / 2 : search_harmonics;
     HillPencil pencil(system_, solution_, harmonics);
     HillSearch search(pencil);
     samples_ = std::max(shape_samples, 4 * harmonics + 2);
@@ -105,15 +106,6 @@ class Analysis {
     else
       search_upwards(search);
     if (!options_.near_hz) lower_edge();
-    // An edge between two exponents is farther from both.
-    double above = std::numeric_limits<double>::infinity();
-    double below = 0.0;
-    for (const Complex exponent : all_found_)
-      if (exponent.imag() > region_.high)
-        above = std::min(above, exponent.imag());
-      else
-        below = std::max(below, exponent.imag());
-    region_.high = std::min(region_.high, 0.5 * (below + above));
     std::erase_if(found_, [this](const Candidate& candidate) {
       return candidate.pair.exponent.imag() > region_.high;
     });
@@ -171,12 +163,17 @@ class Analysis {
   /// Largest distance of the frequency of a mode from that of its eigenpair.
   double margin() const { return (nearest_ + 1) * speed_; }
 
+  /// Frequency of the mode of an eigenpair, by its energy.
+  double frequency_of(const Candidate& candidate) const {
+    return std::abs(candidate.pair.exponent.imag() + candidate.mode.harmonic * speed_);
+  }
+
   /// Approximate number of modes that the search has found, with frequencies from the lower edge to
-  /// `high`, as far as their eigenpairs are inside the region.
+  /// `high`, less the margin.
   int centred(double high) const {
     double count = 0.0;
     for (const Candidate& candidate : found_) {
-      const double frequency = candidate.pair.exponent.imag();
+      const double frequency = frequency_of(candidate);
       if (is_centred(candidate) && frequency < high - margin() &&
           (region_.low == 0.0 || frequency > region_.low + margin()))
         count += 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
@@ -185,14 +182,20 @@ class Analysis {
   }
   int centred() const { return centred(region_.high); }
 
-  /// Lowers the edge of the region to what the slowest modes need.
+  /// Lowers the edge of the region to what the slowest modes need, to the middle between two
+  /// exponents.
   void lower_edge() {
-    std::vector<double> edges;
-    for (const Candidate& candidate : found_)
-      edges.push_back(candidate.pair.exponent.imag() + margin() + edge_margin * speed_);
-    std::sort(edges.begin(), edges.end());
-    for (const double edge : edges)
-      if (edge < region_.high && centred(edge) >= options_.modes) region_.high = edge;
+    std::vector<double> frequencies;
+    for (const Complex exponent : all_found_) frequencies.push_back(exponent.imag());
+    std::sort(frequencies.begin(), frequencies.end());
+    for (std::size_t i = 1; i < frequencies.size(); ++i) {
+      const double edge = 0.5 * (frequencies[i - 1] + frequencies[i]);
+      if (frequencies[i] - frequencies[i - 1] < least_gap * speed_ || edge > region_.high ||
+          centred(edge) < options_.modes)
+        continue;
+      region_.high = edge;
+      return;
+    }
   }
 
   /// Whether a pair is that of its copies that is identified next to its own harmonic. (With an

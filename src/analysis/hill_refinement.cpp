@@ -70,8 +70,8 @@ double HillRefinement::refine(std::vector<HillPair>& pairs) {
   to_schur_form(X, T);
   Eigen::MatrixXcd stiffness(n, m);
   Eigen::MatrixXcd mass(n, m);
-  Eigen::MatrixXcd best_X;
-  Eigen::MatrixXcd best_T;
+  Eigen::MatrixXcd best_X = X;
+  Eigen::MatrixXcd best_T = T;
   double best = std::numeric_limits<double>::infinity();
   Vector product;
   int failures = 0;
@@ -92,7 +92,8 @@ double HillRefinement::refine(std::vector<HillPair>& pairs) {
       best_T = T;
     }
     if (!is_better) ++failures;
-    if (size <= enough || failures > most_failures || step == most_steps) break;
+    if (!std::isfinite(size) || size <= enough || failures > most_failures || step == most_steps)
+      break;
     if (best <= small && !is_better) break;  // round-off
     if (!take_shift(T.diagonal().mean())) break;
     Eigen::MatrixXcd Y(n, m);
@@ -122,16 +123,20 @@ double HillRefinement::refine(std::vector<HillPair>& pairs) {
     Eigen::MatrixXcd changes(m, m);
     Vector right = Vector::Zero(n + m);
     Vector solution;
-    for (Index j = 0; j < m; ++j) {
-      exponent = T(j, j);
-      right.head(n) = -residual.col(j);
-      if (j > 0) {
-        pencil_.multiply_mass(corrections.leftCols(j) * T.col(j).head(j), product);
-        right.head(n) -= product;
+    try {
+      for (Index j = 0; j < m; ++j) {
+        exponent = T(j, j);
+        right.head(n) = -residual.col(j);
+        if (j > 0) {
+          pencil_.multiply_mass(corrections.leftCols(j) * T.col(j).head(j), product);
+          right.head(n) -= product;
+        }
+        iterations_ += solver.solve(right, solution);
+        corrections.col(j) = solution.head(n);
+        changes.col(j) = solution.tail(m);
       }
-      iterations_ += solver.solve(right, solution);
-      corrections.col(j) = solution.head(n);
-      changes.col(j) = solution.tail(m);
+    } catch (const ConvergenceError&) {
+      break;  // the residual says how far it came
     }
     X += corrections;
     T += changes;

@@ -41,6 +41,8 @@ struct ShiftInvert {
   std::exception_ptr error = {};
 };
 
+/// Factor of a region beyond all finite exponents.
+constexpr double beyond_all = 25.0;
 /// Step of the difference quotient of the determinant's logarithm, relative to the rotor speed.
 constexpr double difference_step = 1e-3;
 /// Difference of numbers of eigenvalues that are the same.
@@ -188,7 +190,8 @@ HillRegion HillSearch::find(double frequency, int count) {
     region.pairs.push_back({exponent, pencil_.series_of(x / x.norm())});
   }
   // All eigenvalues with larger moduli have converged.
-  const double rho = frequency / least * (1.0 - 1e-6);
+  double rho = frequency / least * (1.0 - 1e-6);
+  if (region.is_whole) rho = beyond_all * (rho + std::norm(10.0 * pencil_.speed()));
   constexpr double part = 0.85;  // of the range on the axis, so that the rectangle has a width
   const double omega2 = frequency * frequency;
   region.high = std::sqrt(omega2 + part * rho);

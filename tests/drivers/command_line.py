@@ -6,6 +6,9 @@ import subprocess
 import sys
 import unittest
 
+import h5py
+import numpy
+
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
 from program import (  # noqa: E402
     BASELINE,
@@ -278,6 +281,49 @@ class Inputs(ProgramTest):
             for mode, omega in (("flap", 7.3604), ("lead-lag", (7.3604**2 - 36) ** 0.5)):
                 found = float(re.search(rf"(?m)blade {mode} 1 +(\S+)", text).group(1))
                 self.assertAlmostEqual(found, omega / 6, delta=2e-4)
+
+    def test_some_modes_by_hills_method(self):
+        case = SOURCE / "inputs/nrel5mw/land.yaml"
+        coarse = [part for key in ("blades.elements=1", "blades.order=3", "tower.elements=1",
+                                   "tower.order=3") for part in ("--set", key)]
+        text = self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", "-o",
+                            "some.h5").stdout
+        self.assertRegex(text, r"(?m)^rotor speed .*; 324 unknowns; Hill's method, ")
+        self.assertRegex(text, r"(?m)^stable: all \d+ modes decay; ")
+        self.assertRegex(text, r"(?m)^searched: up to \S+ Hz, growth and decay up to \S+ 1/s; none is "
+                               r"missing there; other modes are not known$")
+        self.succeed("floquet", case, *coarse, "-o", "all.h5")
+        with h5py.File(self.folder / "some.h5") as some, h5py.File(self.folder / "all.h5") as every:
+            group = some["/floquet"]
+            self.assertEqual(group.attrs["searched_is_counted"], 1)
+            self.assertEqual(group.attrs["searched_from_hz"], 0)
+            self.assertGreater(group.attrs["searched_rate"], 0)
+            self.assertGreater(group.attrs["harmonics"], 1)
+            self.assertLess(group["residual"][:].max(), 1e-7)
+            found = group["exponents"][:] @ [1, 1j]
+            others = every["/floquet/exponents"][:] @ [1, 1j]
+            distances = abs(found[:, None] - others).min(axis=1) / abs(found)
+            self.assertGreaterEqual(len(found), 4)
+            self.assertLess(found.imag[3], 2 * numpy.pi * group.attrs["searched_to_hz"])
+            self.assertLess(distances[:4].max(), 1e-6)
+            below = others[abs(others.imag) < 2 * numpy.pi * group.attrs["searched_to_hz"]]
+            self.assertTrue(all(abs(found - one).min() < 1e-4 * abs(one) for one in below))
+        for ranks in (2, 3):
+            self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", "-o", "ranks.h5",
+                         ranks=ranks)
+            with h5py.File(self.folder / "ranks.h5") as file:
+                other = file["/floquet/exponents"][:] @ [1, 1j]
+            self.assertLess((abs(other - found) / abs(found)).max(), 1e-9)
+        # Far from all modes; few eigenpairs a shift.
+        self.assertIn(self.samara("floquet", case, *coarse, "--set", "floquet.modes=4", "--set",
+                                  "floquet.near_hz=1000").returncode, (0, 3))
+        text = self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4",
+                            "-hill_eps_ncv", "60").stdout
+        self.assertIn("none is missing there", text)
+        self.refuse("floquet", case, *coarse, "--set", "floquet.near_hz=2",
+                    words=["floquet.near_hz", "needs floquet.modes"])
+        self.refuse("floquet", case, *coarse, "--set", "floquet.modes=4",
+                    "-hill_eps_smallest_magnitude", words=["largest eigenvalues"])
 
     def test_the_teetering_turbine_is_stable(self):
         case = SOURCE / "inputs/two_bladed/teetering.yaml"
