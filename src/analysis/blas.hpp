@@ -12,6 +12,7 @@ using Integer = PetscBLASInt;
 using Complex = std::complex<double>;
 
 // PETSc's headers declare the routines of its own scalar type only, which is real here.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 void zgemm_(const char*, const char*, const Integer*, const Integer*, const Integer*,
             const Complex*, const Complex*, const Integer*, const Complex*, const Integer*,
@@ -29,6 +30,7 @@ void dtrsv_(const char*, const char*, const char*, const Integer*, const double*
 void zgetrs_(const char*, const Integer*, const Integer*, const Complex*, const Integer*,
              const Integer*, Complex*, const Integer*, Integer*);
 }
+// NOLINTEND(readability-identifier-naming)
 
 // Products with one column, and solves for one, do not pay for the copies that those with many
 // make.
