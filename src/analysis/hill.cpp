@@ -163,19 +163,19 @@ class Analysis {
   /// Largest distance of the frequency of a mode from that of its eigenpair.
   double margin() const { return (nearest_ + 1) * speed_; }
 
-  /// Frequency of the mode of an eigenpair, by its energy.
-  double frequency_of(const Candidate& candidate) const {
-    return std::abs(candidate.pair.exponent.imag() + candidate.mode.harmonic * speed_);
+  /// Modulus of the exponent of the mode of an eigenpair, by its energy.
+  double modulus_of(const Candidate& candidate) const {
+    return std::abs(candidate.pair.exponent + Complex(0.0, candidate.mode.harmonic * speed_));
   }
 
-  /// Approximate number of modes that the search has found, with frequencies from the lower edge to
-  /// `high`, less the margin.
+  /// Approximate number of modes that the search has found, with moduli of exponents from the lower
+  /// edge to `high`, less the margin.
   int centred(double high) const {
     double count = 0.0;
     for (const Candidate& candidate : found_) {
-      const double frequency = frequency_of(candidate);
-      if (is_centred(candidate) && frequency < high - margin() &&
-          (region_.low == 0.0 || frequency > region_.low + margin()))
+      const double modulus = modulus_of(candidate);
+      if (is_centred(candidate) && modulus < high - margin() &&
+          (region_.low == 0.0 || modulus > region_.low + margin()))
         count += 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
     }
     return static_cast<int>(count);
@@ -578,7 +578,7 @@ class Analysis {
     // In terms of the modes' frequencies, which differ from those of the eigenpairs.
     const double low = region_.low > 0.0 ? region_.low + margin() : 0.0;
     const double high = region_.high - margin();
-    set_.reach = high;
+    set_.reach = std::min(high, region_.decay);
     for (const Mode& mode : set_.modes)
       if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
     set_.searched = SearchedRegion{low, high, region_.decay, region_is_counted_};
