@@ -79,22 +79,19 @@ ComplexSolver::ComplexSolver(Eigen::Index size, Map matrix, Map preconditioner, 
   petsc::check(KSPSetFromOptions(solver));
 }
 
-int ComplexSolver::solve(const Vector& right, Vector& x) {
+void ComplexSolver::solve(const Vector& right, Vector& x) {
   write(right, right_.get());
   const PetscErrorCode code = KSPSolve(solver_.get(), right_.get(), solution_.get());
   if (code != 0 && error_) std::rethrow_exception(error_);
   petsc::check(code);
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  PetscInt iterations = 0;
   petsc::check(KSPGetConvergedReason(solver_.get(), &reason));
-  petsc::check(KSPGetIterationNumber(solver_.get(), &iterations));
   if (reason < 0)
     throw ConvergenceError(
         std::string("floquet: a linear solve of Hill's method does not converge (") +
         KSPConvergedReasons[reason] + ")");
   x.resize(in_.size());
   read(solution_.get(), x);
-  return static_cast<int>(iterations);
 }
 
 }  // namespace samara::analysis

@@ -27,9 +27,8 @@ class ComplexSolver {
   ComplexSolver& operator=(const ComplexSolver&) = delete;
   ~ComplexSolver() = default;
 
-  /// @returns the number of iterations
   /// @throws ConvergenceError
-  int solve(const Vector& right, Vector& x);
+  void solve(const Vector& right, Vector& x);
 
  private:
   template <class Call>

@@ -854,8 +854,11 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
                            const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
   if (system.period() == 0.0)
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
-  if (options.modes > 0 && has_hill_structure(system))
-    return find_hill_modes(system, solution, options, observer);
+  if (options.modes > 0) {
+    if (std::optional<Floquet> found = find_hill_modes(system, solution, options))
+      return std::move(*found);
+    observer.note("floquet: all modes, because the mesh is too coarse for Hill's method");
+  }
   const int repeats = system.symmetry().sectors;
   if (options.period == FloquetPeriod::blade && repeats < 2)
     throw InputError(

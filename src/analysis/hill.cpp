@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
@@ -74,17 +75,16 @@ struct Candidate {
 class Analysis {
  public:
   Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-           const FloquetOptions& options, Observer& observer)
+           const FloquetOptions& options)
       : system_(system),
         solution_(solution),
         options_(options),
-        observer_(observer),
         speed_(2.0 * std::numbers::pi / system.period()),
         energy_(system),
         parts_(find_state_parts(system)) {}
 
-  Floquet run() {
-    search();
+  std::optional<Floquet> run() {
+    if (!search()) return std::nullopt;
     refine();
     choose();
     return finish();
@@ -93,10 +93,12 @@ class Analysis {
  private:
   /// Finds approximate exponents with few harmonics, from the real axis upwards, or from
   /// `near_hz` to both sides.
-  void search() {
+  /// @returns false where the structure of the system does not serve
+  bool search() {
     const int sectors = system_.symmetry().sectors;
     const int harmonics = sectors > 2 ? sectors / 2 : search_harmonics;
     HillPencil pencil(system_, solution_, harmonics);
+    if (!pencil.is_solvable()) return false;
     HillSearch search(pencil);
     samples_ = std::max(shape_samples, 4 * harmonics + 2);
     sectors_ = pencil.sectors();
@@ -111,6 +113,7 @@ class Analysis {
     });
     const HillSearch::Missing missing = search.count_missing(region_, all_found_);
     region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
+    return true;
   }
 
   void search_upwards(HillSearch& search) {
@@ -119,8 +122,8 @@ class Analysis {
     int count = std::max(least_pairs, std::min(options_.modes + margin_pairs, most_pairs));
     while (centred() < options_.modes) {
       const HillRegion region = search.find(frequency, count);
-      if (region.low > region_.high) {
-        frequency = 0.5 * (frequency + region_.high);
+      if (region.low > region_.high || region.decay <= 0.0) {
+        if (region.low > region_.high) frequency = 0.5 * (frequency + region_.high);
         count += least_pairs / 2;
         continue;
       }
@@ -140,18 +143,18 @@ class Analysis {
       const HillRegion region = search.find(frequency, count);
       take(region, region.low, region.high);
       region_ = {region.low, region.high, region.decay, region.is_whole, {}};
-      if (centred() >= options_.modes || region.is_whole) return;
+      if ((centred() >= options_.modes && region.decay > 0.0) || region.is_whole) return;
     }
   }
 
   /// Keeps the pairs of a region from `low` to `high`.
   void take(const HillRegion& region, double low, double high) {
+    const auto known = static_cast<std::ptrdiff_t>(all_found_.size());  // of regions before
     for (const HillPair& pair : region.pairs) {
       const double frequency = pair.exponent.imag();
-      const bool is_new = std::none_of(all_found_.begin(), all_found_.end(), [&](Complex other) {
-        return low > 0.0 && other.imag() > low &&
-               std::abs(other - pair.exponent) < same_found * speed_;
-      });
+      const bool is_new = std::none_of(
+          all_found_.begin(), all_found_.begin() + known,
+          [&](Complex other) { return std::abs(other - pair.exponent) < same_found * speed_; });
       if ((frequency > low || low == 0.0) && is_new) all_found_.push_back(pair.exponent);
       if (frequency > high || (frequency <= low && low > 0.0)) continue;
       Candidate candidate{pair, {}, {}};
@@ -592,7 +595,6 @@ class Analysis {
   const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;
   const FloquetOptions& options_;
-  Observer& observer_;
   double speed_;
   HarmonicEnergy energy_;
   StateParts parts_;
@@ -610,14 +612,10 @@ class Analysis {
 
 }  // namespace
 
-bool has_hill_structure(const system::PeriodicSystem& system) {
-  const HarmonicTangents tangents(system, {}, 0);
-  return HarmonicPreconditioner(tangents).is_useful();
-}
-
-Floquet find_hill_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                        const FloquetOptions& options, Observer& observer) {
-  return Analysis(system, solution, options, observer).run();
+std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
+                                       const PeriodicSolution& solution,
+                                       const FloquetOptions& options) {
+  return Analysis(system, solution, options).run();
 }
 
 }  // namespace samara::analysis

@@ -52,7 +52,6 @@ bool HillRefinement::take_shift(Complex exponent) {
   const double speed = pencil_.speed();
   if (shift_ && std::abs(*shift_ - exponent) < largest_distance * speed) return true;
   shift_ = exponent + Complex(beside * speed, exponent.imag() == 0.0 ? beside * speed : 0.0);
-  ++factorizations_;
   if (pencil_.set_shift(*shift_)) return true;
   shift_.reset();
   return false;
@@ -131,7 +130,7 @@ double HillRefinement::refine(std::vector<HillPair>& pairs) {
           pencil_.multiply_mass(corrections.leftCols(j) * T.col(j).head(j), product);
           right.head(n) -= product;
         }
-        iterations_ += solver.solve(right, solution);
+        solver.solve(right, solution);
         corrections.col(j) = solution.head(n);
         changes.col(j) = solution.tail(m);
       }

@@ -21,9 +21,6 @@ class HillRefinement {
   /// @returns the relative residual that is left in the pencil
   double refine(std::vector<HillPair>& pairs);
 
-  long iterations() const { return iterations_; }
-  int factorizations() const { return factorizations_; }
-
  private:
   using Complex = std::complex<double>;
 
@@ -31,8 +28,6 @@ class HillRefinement {
 
   HillPencil& pencil_;
   std::optional<Complex> shift_;
-  long iterations_ = 0;
-  int factorizations_ = 0;
 };
 
 }  // namespace samara::analysis

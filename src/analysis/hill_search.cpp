@@ -36,8 +36,6 @@ struct ShiftInvert {
   Vector in = {};
   Vector right = {};
   Vector out = {};
-  long solves = 0;
-  long iterations = 0;
   std::exception_ptr error = {};
 };
 
@@ -95,8 +93,7 @@ PetscErrorCode apply_inverse(Mat matrix, Vec x, Vec y) {
     }
     context->pencil.drop_absent(context->in);
     context->pencil.multiply_mass(context->in, context->right);
-    context->iterations += context->solver.solve(context->right, context->out);
-    ++context->solves;
+    context->solver.solve(context->right, context->out);
     const petsc::WriteView view(y);
     imaginary_to_real(context->out, width, view.data());
   } catch (...) {
@@ -149,8 +146,6 @@ HillRegion HillSearch::find(double frequency, int count) {
         "floquet: Hill's method needs the largest eigenvalues of the inverse; hint: no -hill_eps_ "
         "option for other ones; floquet.near_hz chooses the modes");
   const PetscErrorCode code = EPSSolve(solver.get());
-  solves_ += context.solves;
-  iterations_ += context.iterations;
   if (context.error) std::rethrow_exception(context.error);
   petsc::check(code);
   PetscInt converged = 0;
@@ -192,13 +187,16 @@ HillRegion HillSearch::find(double frequency, int count) {
   // All eigenvalues with larger moduli have converged.
   double rho = frequency / least * (1.0 - 1e-6);
   if (region.is_whole) rho = beyond_all * (rho + std::norm(10.0 * pencil_.speed()));
-  constexpr double part = 0.85;  // of the range on the axis, so that the rectangle has a width
   const double omega2 = frequency * frequency;
-  region.high = std::sqrt(omega2 + part * rho);
-  region.low = part * rho >= omega2 ? 0.0 : std::sqrt(omega2 - part * rho);
-  region.decay =
-      std::min(half_width(frequency, rho, region.low), half_width(frequency, rho, region.high)) -
-      beside;
+  // A part of the range on the axis, so that the rectangle has a width.
+  for (double part = 0.85; part > 0.1; part -= 0.15) {
+    region.high = std::sqrt(omega2 + part * rho);
+    region.low = part * rho >= omega2 ? 0.0 : std::sqrt(omega2 - part * rho);
+    region.decay =
+        std::min(half_width(frequency, rho, region.low), half_width(frequency, rho, region.high)) -
+        beside;
+    if (region.decay > beside) break;
+  }
   return region;
 }
 

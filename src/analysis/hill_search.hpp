@@ -21,7 +21,7 @@ struct HillPair {
 struct HillRegion {
   double low = 0.0;    ///< [rad/s]; 0 includes the real exponents
   double high = 0.0;   ///< [rad/s]
-  double decay = 0.0;  ///< [1/s]
+  double decay = 0.0;  ///< [1/s]; not above zero where too few pairs were found for a width
   /// True where all others are as good as infinite.
   bool is_whole = false;
   /// Exponents with Im >= 0, also some outside the rectangle.
@@ -54,16 +54,11 @@ class HillSearch {
   };
   Missing count_missing(const HillRegion& region, const std::vector<std::complex<double>>& found);
 
-  long solves() const { return solves_; }
-  long iterations() const { return iterations_; }
-
  private:
   std::complex<double> log_derivative(std::complex<double> s);
   double contraction_at(std::complex<double> s);
 
   HillPencil& pencil_;
-  long solves_ = 0;
-  long iterations_ = 0;
 };
 
 }  // namespace samara::analysis

@@ -1,17 +1,18 @@
 // Some Floquet modes of a large system by Hill's method (docs/theory.md, section 5.10).
 #pragma once
 
+#include <optional>
+
 #include "samara/analysis/floquet.hpp"
 
 namespace samara::analysis {
 
-/// Whether the structure of a system serves Hill's method: chains of nodes with a small border.
-bool has_hill_structure(const system::PeriodicSystem& system);
-
-/// The `options.modes` slowest modes, or those nearest to `options.near`. Every rank computes the
-/// same.
-/// @throws ConvergenceError where modes are missing, or their residuals do not become small
-Floquet find_hill_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                        const FloquetOptions& options, Observer& observer);
+/// The `options.modes` slowest modes, or those nearest to `options.near_hz`. Every rank computes
+/// the same. Empty where the structure of the system does not serve: chains of nodes with a small
+/// border.
+/// @throws ConvergenceError
+std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
+                                       const PeriodicSolution& solution,
+                                       const FloquetOptions& options);
 
 }  // namespace samara::analysis
