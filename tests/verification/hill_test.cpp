@@ -6,40 +6,12 @@
 #include "samara/simulation/stability.hpp"
 
 #include "../../src/analysis/hill_search.hpp"
-#include "cases.hpp"
+#include "turning.hpp"
 
 using namespace samara;
 using namespace samara::test;
 
 namespace {
-
-struct Turning {
-  Turning(const std::string& name, const std::vector<std::string>& settings)
-      : input(
-            io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings)),
-        system(model::build_turbine(input.turbine), PETSC_COMM_SELF),
-        trim(analysis::find_trim(system, input.trim, observer)) {}
-
-  analysis::Floquet modes(const analysis::FloquetOptions& options) {
-    return analysis::find_floquet_modes(system, trim.solution, options, PETSC_COMM_SELF, observer);
-  }
-  analysis::Floquet by_hill(int modes, std::optional<double> near_hz = {}) {
-    analysis::FloquetOptions options;
-    options.modes = modes;
-    options.near_hz = near_hz;
-    return this->modes(options);
-  }
-  analysis::ModeSet by_steps(int steps) {
-    analysis::FloquetOptions options;
-    options.steps = steps;
-    return modes(options).set;
-  }
-
-  analysis::Observer observer;
-  io::Case input;
-  turbine::TurbineSystem system;
-  analysis::Trim trim;
-};
 
 /// The last word of a name is a number where there are several modes of the name.
 std::string without_number(const std::string& label) {

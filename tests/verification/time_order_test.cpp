@@ -1,35 +1,12 @@
 // Orders of the time steps of Floquet on turbines, and agreement of blade and full period.
-#include <optional>
-
 #include <boost/test/unit_test.hpp>
 
-#include "cases.hpp"
+#include "turning.hpp"
 
 using namespace samara;
 using namespace samara::test;
 
 namespace {
-
-/// A turbine with its steady state.
-struct Turning {
-  Turning(const std::string& name, const std::vector<std::string>& settings)
-      : input(
-            io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings)),
-        system(model::build_turbine(input.turbine), PETSC_COMM_SELF),
-        trim(analysis::find_trim(system, input.trim, observer)) {}
-
-  analysis::ModeSet modes(int order, int steps,
-                          analysis::FloquetPeriod period = analysis::FloquetPeriod::automatic) {
-    return analysis::find_floquet_modes(system, trim.solution, {steps, period, order, {}},
-                                        PETSC_COMM_SELF, observer)
-        .set;
-  }
-
-  analysis::Observer observer;
-  io::Case input;
-  turbine::TurbineSystem system;
-  analysis::Trim trim;
-};
 
 /// Two blades under gravity with rigid strains; the same with damping; three blades whose yaw turns
 /// as prescribed; constant coefficients in rotor axes.
@@ -72,10 +49,10 @@ double distance(const analysis::ModeSet& set, const analysis::ModeSet& reference
 BOOST_AUTO_TEST_CASE(errors_of_modes_fall_with_the_order_of_the_steps) {
   for (const auto& [name, settings] : turnings()) {
     Turning turbine(name, settings);
-    const analysis::ModeSet reference = turbine.modes(6, 300);
+    const analysis::ModeSet reference = turbine.by_steps(300, 6);
     for (const auto& [order, steps] : {std::pair{2, 192}, std::pair{4, 96}, std::pair{6, 60}}) {
-      const double coarse = distance(turbine.modes(order, steps), reference, 7);
-      const double fine = distance(turbine.modes(order, 2 * steps), reference, 7);
+      const double coarse = distance(turbine.by_steps(steps, order), reference, 7);
+      const double fine = distance(turbine.by_steps(2 * steps, order), reference, 7);
       BOOST_TEST_MESSAGE(name << " order " << order << ": " << coarse << " " << fine << " slope "
                               << std::log2(coarse / fine));
       BOOST_TEST(fine > 1e-10);
@@ -89,8 +66,8 @@ BOOST_AUTO_TEST_CASE(blade_and_full_period_agree_for_every_order) {
   for (const auto& [name, settings] : turnings()) {
     Turning turbine(name, settings);
     for (const int order : {2, 4, 6}) {
-      const analysis::ModeSet blade = turbine.modes(order, 36, analysis::FloquetPeriod::blade);
-      const analysis::ModeSet full = turbine.modes(order, 36, analysis::FloquetPeriod::full);
+      const analysis::ModeSet blade = turbine.by_steps(36, order, analysis::FloquetPeriod::blade);
+      const analysis::ModeSet full = turbine.by_steps(36, order, analysis::FloquetPeriod::full);
       std::vector<Complex> multipliers;
       for (const analysis::Mode& mode : full.modes) {
         multipliers.push_back(mode.multiplier);
@@ -111,8 +88,8 @@ BOOST_AUTO_TEST_CASE(blade_and_full_period_agree_for_every_order) {
 BOOST_AUTO_TEST_CASE(four_and_six_agree_within_their_estimates) {
   for (const auto& [name, settings] : turnings()) {
     Turning turbine(name, settings);
-    const analysis::ModeSet four = turbine.modes(4, 96);
-    const analysis::ModeSet six = turbine.modes(6, 60);
+    const analysis::ModeSet four = turbine.by_steps(96, 4);
+    const analysis::ModeSet six = turbine.by_steps(60, 6);
     std::vector<Complex> exact;
     for (const analysis::Mode& mode : six.modes) exact.push_back(mode.exponent);
     std::size_t seen = 0;
