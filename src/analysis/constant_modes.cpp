@@ -272,8 +272,6 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     if (state >= 0) mode.state = state_parts.owners[static_cast<std::size_t>(state)];
     describe_energy(energy.energies(real.data(), imaginary.data(), one), energy.part_names(), state,
                     mode, participation);
-    std::stable_sort(mode.parts.begin(), mode.parts.end(),
-                     [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
     mode.exponent = exponents_found[i];
     if (std::abs(mode.exponent) < std::max(zero, zero_to_shift * found.spectrum->sigma))
       mode.exponent = 0.0;
@@ -289,9 +287,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     mode.round_off_error = mode.residual;
     set_growth_error(mode, {}, mode.exponent);
     if (mode.resolved && mode.exponent != 0.0)
-      add_mesh_error(
-          mode, find_mesh_error(elements, shape, mode.exponent,
-                                std::max(mode.kinetic_energy, strain_energy_of(system, shape))));
+      add_mesh_error(mode, find_mesh_error(system, elements, mode, shape));
     if (!mode.resolved) set.reach = std::min(set.reach, std::abs(mode.exponent));
     set.found += found.exponent.imag() != 0.0 ? 2 : 1;
     const double size = std::abs(mode.exponent);

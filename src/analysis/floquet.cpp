@@ -620,28 +620,13 @@ class Analysis {
     set_growth_error(mode, spread, may_be_free(m) ? exponents_[m] : far_from_zero);
     mode.resolved = slow && in_reach_at(exponents_[m], mode.harmonic) &&
                     mode.residual <= largest_residual && mode.step_error <= accuracy_;
-    std::stable_sort(mode.parts.begin(), mode.parts.end(),
-                     [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
   }
 
   /// Replaces mode m by its conjugate, which represents the pair from then on.
   void conjugate(std::size_t m) {
-    Mode& mode = set_.modes[m];
     exponents_[m] = std::conj(exponents_[m]);
-    mode.exponent = std::conj(mode.exponent);
-    mode.step_exponent = std::conj(mode.step_exponent);
-    mode.harmonic = -mode.harmonic;
-    mode.multiplier = std::conj(mode.multiplier);
-    const auto row = static_cast<Eigen::Index>(m);
-    const Eigen::Index half = samples_ / 2;
-    for (Eigen::MatrixXd* all : {&set_.participation, &sampled_shares_}) {
-      const Eigen::RowVectorXd shares = all->row(row);
-      for (Eigen::Index i = 0; i < samples_; ++i) {
-        const Eigen::Index mirrored = half - (i - half);
-        (*all)(row, i) = mirrored >= 0 && mirrored < samples_ ? shares(mirrored) : 0.0;
-      }
-    }
-    if (!set_.shapes.empty()) set_.shapes[m] = set_.shapes[m].conjugate().eval();
+    conjugate_mode(set_, m);
+    mirror_harmonics(static_cast<Eigen::Index>(m), sampled_shares_);
   }
 
   /// Whether a mode may be a motion that nothing restores: its multiplier is among those nearest to
@@ -751,9 +736,8 @@ class Analysis {
     Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(2, static_cast<Eigen::Index>(set_.modes.size()));
     for (std::size_t m = 0; m < set_.shapes.size(); ++m)
       if (set_.modes[m].resolved && !is_zero(set_.modes[m].exponent))
-        errors.col(static_cast<Eigen::Index>(m)) = find_mesh_error(
-            elements, set_.shapes[m], set_.modes[m].exponent,
-            std::max(set_.modes[m].kinetic_energy, strain_energy_of(system_, set_.shapes[m])));
+        errors.col(static_cast<Eigen::Index>(m)) =
+            find_mesh_error(system_, elements, set_.modes[m], set_.shapes[m]);
     ranks_.sum(errors);
     for (std::size_t m = 0; m < set_.modes.size(); ++m)
       add_mesh_error(set_.modes[m], errors.col(static_cast<Eigen::Index>(m)));

@@ -191,6 +191,8 @@ void describe_energy(const Eigen::MatrixXd& energies, const std::vector<std::str
   const double share = mode.kinetic_energy > 0.0 ? 1.0 / mode.kinetic_energy : 0.0;
   for (Eigen::Index p = 0; p < count; ++p)
     mode.parts.push_back({parts[static_cast<std::size_t>(p)], share * energies.col(p).sum()});
+  std::stable_sort(mode.parts.begin(), mode.parts.end(),
+                   [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
   // The energies that name the mode.
   const auto leading = energies.middleCols(state < 0 ? 0 : count + state, state < 0 ? count : 1);
   const double total = leading.sum();

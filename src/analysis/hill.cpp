@@ -514,16 +514,7 @@ class Analysis {
     mode.exponent = modes_[m].pair.exponent + Complex(0.0, mode.harmonic * speed_);
     if (mode.exponent.imag() < -zero_exponent * speed_) {
       modes_[m].pair.exponent = std::conj(modes_[m].pair.exponent);
-      mode.exponent = std::conj(mode.exponent);
-      mode.harmonic = -mode.harmonic;
-      mode.multiplier = std::conj(mode.multiplier);
-      set_.shapes[m] = set_.shapes[m].conjugate().eval();
-      const auto row = static_cast<Index>(m);
-      const Eigen::RowVectorXd shares = set_.participation.row(row);
-      for (Index i = 0; i < samples_; ++i) {
-        const Index mirrored = 2 * (samples_ / 2) - i;
-        set_.participation(row, i) = mirrored >= 0 && mirrored < samples_ ? shares(mirrored) : 0.0;
-      }
+      conjugate_mode(set_, m);
     }
     if (std::abs(mode.exponent.imag()) < zero_exponent * speed_) mode.exponent.imag(0.0);
     mode.step_exponent = mode.exponent;
@@ -550,8 +541,6 @@ class Analysis {
       mode.residual = found.residual;
       mode.resolved = found.residual <= largest_residual;
       mode.multiplier = std::exp(found.pair.exponent * system_.period());
-      std::stable_sort(mode.parts.begin(), mode.parts.end(),
-                       [](const PartShare& a, const PartShare& b) { return a.share > b.share; });
       set_.shapes.push_back(shape_of(found.pair.series));
       set_.participation.row(static_cast<Index>(m)) = found.participation;
       const bool is_real = std::abs(found.pair.exponent.imag()) < zero_exponent * speed_;
@@ -571,9 +560,7 @@ class Analysis {
     for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       Mode& mode = set_.modes[m];
       if (mode.resolved && std::abs(mode.exponent) > zero_exponent * speed_)
-        add_mesh_error(mode, find_mesh_error(elements, set_.shapes[m], mode.exponent,
-                                             std::max(mode.kinetic_energy,
-                                                      strain_energy_of(system_, set_.shapes[m]))));
+        add_mesh_error(mode, find_mesh_error(system_, elements, mode, set_.shapes[m]));
     }
     name_modes(system_, leading, set_, sectors_);
     arrange_modes(set_);

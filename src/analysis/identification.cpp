@@ -236,6 +236,24 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
   return strained < elastic_share * (strained + mode.kinetic_energy);
 }
 
+void conjugate_mode(ModeSet& set, std::size_t m) {
+  Mode& mode = set.modes[m];
+  mode.exponent = std::conj(mode.exponent);
+  mode.step_exponent = std::conj(mode.step_exponent);
+  mode.harmonic = -mode.harmonic;
+  mode.multiplier = std::conj(mode.multiplier);
+  mirror_harmonics(static_cast<Eigen::Index>(m), set.participation);
+  if (!set.shapes.empty()) set.shapes[m] = set.shapes[m].conjugate().eval();
+}
+
+void mirror_harmonics(Eigen::Index m, Eigen::MatrixXd& shares) {
+  const Eigen::RowVectorXd own = shares.row(m);
+  for (Eigen::Index i = 0; i < own.size(); ++i) {
+    const Eigen::Index mirrored = own.size() / 2 * 2 - i;
+    shares(m, i) = mirrored < own.size() ? own(mirrored) : 0.0;
+  }
+}
+
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     Eigen::MatrixXcd& shape = set.shapes[m];

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "samara/analysis/identification.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -88,14 +90,15 @@ WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVec
   return spread;
 }
 
-Eigen::Vector2d find_mesh_error(const std::vector<system::MeshError>& elements,
-                                const Eigen::MatrixXcd& shape, std::complex<double> exponent,
-                                double energy_of_mode) {
+Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
+                                const std::vector<system::MeshError>& elements, const Mode& mode,
+                                const Eigen::MatrixXcd& shape) {
+  const double energy_of_mode = std::max(mode.kinetic_energy, strain_energy_of(system, shape));
   if (!(energy_of_mode > 0.0)) return Eigen::Vector2d::Zero();
   double energy = 0.0;
   double between = 0.0;
   for (const system::MeshError& element : elements) {
-    const Eigen::MatrixXd signals = element.constant + std::abs(exponent) * element.rate;
+    const Eigen::MatrixXd signals = element.constant + std::abs(mode.exponent) * element.rate;
     const Eigen::MatrixXcd values = shape(element.unknowns, Eigen::all);
     energy += 0.5 * (signals * values).squaredNorm();
     between += 0.5 * values.conjugate().cwiseProduct(element.remainder * values).sum().real();

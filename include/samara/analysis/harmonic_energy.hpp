@@ -60,8 +60,8 @@ class HarmonicEnergy {
 /// signals; half the sum of their squares is the energy.
 Eigen::MatrixXd energy_root(const system::EnergyGroup& group);
 
-/// Finds, from energies by harmonic and column, the mode's energy, the shares of its parts (in the
-/// order of the names), the dominant harmonic of the part with most energy, and `participation`,
+/// Finds, from energies by harmonic and column, the mode's energy, the shares of its parts
+/// (descending), the dominant harmonic of the part with most energy, and `participation`,
 /// the share of every harmonic k = -floor(n/2) ... If `state` is not negative, the last two are
 /// those of this part of first-order states.
 void describe_energy(const Eigen::MatrixXd& energies, const std::vector<std::string>& parts,

@@ -28,6 +28,12 @@ void choose_shapes(const system::PeriodicSystem& system,
                    std::vector<std::complex<double>>& exponents,
                    std::vector<Eigen::MatrixXcd>& shapes);
 
+/// Replaces mode m by its conjugate, which represents the pair from then on.
+void conjugate_mode(ModeSet& set, std::size_t m);
+
+/// Mirrors row m of shares by harmonic k = -floor(n/2) ...: those of the conjugate.
+void mirror_harmonics(Eigen::Index m, Eigen::MatrixXd& shares);
+
 /// Scales every shape so that its largest position is 1, and its kinetic energy accordingly.
 void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
 

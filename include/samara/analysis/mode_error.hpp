@@ -40,12 +40,12 @@ WarpingSpread warping_spread(std::complex<double> principal, const Eigen::RowVec
                              int first, int harmonic, double speed, const TimeRule& rule);
 
 /// Relative errors of the exponent by the mesh, in its modulus and in its real part: twice the
-/// first term of the elements' errors. `shape`: size x samples; `energy_of_mode`: the larger of its
-/// mean kinetic and strain energy, in the same scale. The two are equal in vibrations without
-/// stiffening by rotation; in overdamped motions the strain energy is larger.
-Eigen::Vector2d find_mesh_error(const std::vector<system::MeshError>& elements,
-                                const Eigen::MatrixXcd& shape, std::complex<double> exponent,
-                                double energy_of_mode);
+/// first term of the elements' errors over the larger of its mean kinetic and strain energy.
+/// `shape`: size x samples, in the scale of Mode::kinetic_energy. The two energies are equal in
+/// vibrations without stiffening by rotation; in overdamped motions the strain energy is larger.
+Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
+                                const std::vector<system::MeshError>& elements, const Mode& mode,
+                                const Eigen::MatrixXcd& shape);
 
 /// Sets the error of the growth by step and round-off. `spread`: error by the step; `principal`:
 /// the exponent without multiples of the rotor speed, to be distinguished from zero.
