@@ -108,8 +108,11 @@ class Analysis {
     else
       search_upwards(search);
     if (!options_.near_hz) lower_edge();
+    // Slow modes have no larger decay: those of strong damping are left out.
+    region_.decay = std::min(region_.decay, region_.high);
     std::erase_if(found_, [this](const Candidate& candidate) {
-      return candidate.pair.exponent.imag() > region_.high;
+      const Complex exponent = candidate.pair.exponent;
+      return exponent.imag() > region_.high || std::abs(exponent.real()) > region_.decay;
     });
     const HillSearch::Missing missing = search.count_missing(region_, all_found_);
     region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
@@ -522,7 +525,8 @@ class Analysis {
     const bool is_zero = size < zero_exponent * speed_;
     mode.damping_ratio = is_zero ? 0.0 : -mode.exponent.real() / size;
     mode.step_error = is_zero ? 0.0 : mode.residual;
-    set_growth_error(mode, {}, modes_[m].pair.exponent);
+    const double error = is_zero ? 0.0 : mode.residual * size;
+    set_growth_error(mode, {error, error}, modes_[m].pair.exponent);
   }
 
   Floquet finish() {
