@@ -55,6 +55,10 @@ void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& a
       BOOST_TEST(without_number(mode.label) == without_number(other.label),
                  place << ": " << mode.label << " " << other.label);
   }
+  for (std::size_t m = 0; m < some.modes.size(); ++m)
+    if (std::abs(some.modes[m].exponent) > 1e-5 * some.rotor_speed)
+      BOOST_TEST(std::abs(some.participation.row(static_cast<Eigen::Index>(m)).sum() - 1.0) < 1e-9,
+                 place << ": " << some.modes[m].label);
   for (std::size_t m = 0; m < all.modes.size(); ++m) {
     const analysis::Mode& mode = all.modes[m];
     const bool is_inside = mode.resolved && mode.exponent.imag() > some.searched->low &&
