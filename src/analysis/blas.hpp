@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <utility>
+#include <vector>
 
 #include <petscblaslapack.h>
 
@@ -29,6 +30,8 @@ void dtrsv_(const char*, const char*, const char*, const Integer*, const double*
             double*, const Integer*);
 void zgetrs_(const char*, const Integer*, const Integer*, const Complex*, const Integer*,
              const Integer*, Complex*, const Integer*, Integer*);
+void zgetri_(const Integer*, Complex*, const Integer*, const Integer*, Complex*, const Integer*,
+             Integer*);
 }
 // NOLINTEND(readability-identifier-naming)
 
@@ -79,6 +82,15 @@ inline Integer factor(Integer n, Complex* a, Integer* interchanges) {
   Integer status = 0;
   zgetrf_(&n, &n, a, &n, interchanges, &status);
   return status;
+}
+
+/// The inverse of an n x n matrix, in place of the result of factor().
+inline void invert(Integer n, Complex* factors, const Integer* interchanges) {
+  constexpr Integer block = 32;
+  std::vector<Complex> work(static_cast<std::size_t>(block * n));
+  const auto length = static_cast<Integer>(work.size());
+  Integer status = 0;
+  zgetri_(&n, factors, &n, interchanges, work.data(), &length, &status);
 }
 
 inline void solve_triangle(char part, Integer n, const double* a, double* b) {

@@ -70,11 +70,17 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
   }
 }
 
+/// (sigma - A)^-1 of the states, in energy coordinates, and the shapes that it leads to.
+struct ShiftedInverse {
+  Eigen::MatrixXd map;     ///< states x states
+  Eigen::MatrixXd shapes;  ///< size x states
+};
+
 /// If x is a consistent state, y of (K + sigma M) y = M x is one, too, with the rate sigma y - x.
 /// In (eta, eta_dot, xi) the map from x to y is (sigma - A)^-1; it multiplies a state with exponent
 /// lambda by 1 / (sigma - lambda). `rate`: of the energy coordinates.
-Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                       const ConsistentSubspace& subspace, double sigma, double rate) {
+ShiftedInverse invert_at(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                         const ConsistentSubspace& subspace, double sigma, double rate) {
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Mat> jacobian = system.make_jacobian();
@@ -89,15 +95,22 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   Eigen::MatrixXd states = subspace.basis(0.0);
   const EnergyCoordinates coordinates(system, states, d, rate);
   coordinates.divide(states);
-  Eigen::MatrixXd shapes = M * states;
-  solver.solve(shapes);
+  ShiftedInverse inverse{{}, M * states};
+  solver.solve(inverse.shapes);
   Eigen::MatrixXd images(subspace.size(), subspace.size());
-  images.topRows(d) = subspace.coordinates_of(shapes);
+  images.topRows(d) = subspace.coordinates_of(inverse.shapes);
   images.middleRows(d, d) = sigma * images.topRows(d) - subspace.coordinates_of(states);
-  images.bottomRows(subspace.first_order()) = subspace.states_of(shapes);
-  const Eigen::MatrixXd map = coordinates.of(images);
+  images.bottomRows(subspace.first_order()) = subspace.states_of(inverse.shapes);
+  inverse.map = coordinates.of(images);
+  return inverse;
+}
+
+Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                       const ConsistentSubspace& subspace, double sigma, double rate) {
+  const auto [map, shapes] = invert_at(system, solution, subspace, sigma, rate);
   const Eigenpairs pairs = dense_eigenpairs(map, "modes_");
-  const std::vector<int> states_of_pairs = leading_states(pairs, 2 * d, find_state_parts(system));
+  const std::vector<int> states_of_pairs =
+      leading_states(pairs, 2 * subspace.degrees_of_freedom(), find_state_parts(system));
   Spectrum spectrum;
   spectrum.shapes.resize(system.size(), 0);
   for (std::size_t i = 0; i < pairs.values.size(); ++i) {
@@ -122,11 +135,11 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
   return spectrum;
 }
 
-/// Moduli of the exponents that are not zero, ascending.
-std::vector<double> moduli_of(const Spectrum& spectrum, double zero) {
+/// Moduli of the exponents that are not zero, one of a conjugate pair, ascending.
+std::vector<double> moduli_of(const std::vector<Complex>& exponents, double zero) {
   std::vector<double> moduli;
-  for (const Complex& exponent : spectrum.exponents)
-    if (std::abs(exponent) > zero) moduli.push_back(std::abs(exponent));
+  for (const Complex& exponent : exponents)
+    if (exponent.imag() >= 0.0 && std::abs(exponent) > zero) moduli.push_back(std::abs(exponent));
   std::sort(moduli.begin(), moduli.end());
   return moduli;
 }
@@ -169,6 +182,16 @@ double distance(Complex exponent, const Spectrum& other, double zero) {
   return nearest / std::max(std::abs(exponent), zero);
 }
 
+/// Moduli of the exponents of the tangents at t = 0, found with the shift `rate`.
+std::vector<double> find_moduli(const system::PeriodicSystem& system,
+                                const PeriodicSolution& solution,
+                                const ConsistentSubspace& subspace, double rate) {
+  std::vector<Complex> exponents =
+      dense_eigenvalues(invert_at(system, solution, subspace, rate, rate).map);
+  for (Complex& exponent : exponents) exponent = rate - 1.0 / exponent;
+  return moduli_of(exponents, zero_exponent * rate);
+}
+
 }  // namespace
 
 std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
@@ -176,7 +199,7 @@ std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
   const ConsistentSubspace subspace(system, solution);
   if (subspace.size() == 0) return {};
   const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 1.0;
-  return moduli_of(find_spectrum(system, solution, subspace, rate, rate), zero_exponent * rate);
+  return find_moduli(system, solution, subspace, rate);
 }
 
 ModeSet find_constant_modes(const system::PeriodicSystem& system,
@@ -195,8 +218,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   // modes, which are of interest, and the fast modes, which a fine mesh adds, therefore have a
   // shift each, and so have modes that are much slower than the other slow ones.
   const double zero = zero_exponent * rate;
-  const std::vector<double> moduli =
-      moduli_of(find_spectrum(system, solution, subspace, rate, rate), zero);
+  const std::vector<double> moduli = find_moduli(system, solution, subspace, rate);
   const auto first_above = [&moduli](double limit) {
     return static_cast<std::size_t>(std::lower_bound(moduli.begin(), moduli.end(), limit) -
                                     moduli.begin());
@@ -212,8 +234,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   for (const double shift : shifts) spectra.push_back(checked(shift));
   std::vector<double> borders;  // above each spectrum but the last
   for (std::size_t i = 0; i + 1 < spectra.size(); ++i)
-    borders.push_back(
-        widest_gap(moduli_of(spectra[i].found, zero), spectra[i].sigma, spectra[i + 1].sigma));
+    borders.push_back(widest_gap(moduli_of(spectra[i].found.exponents, zero), spectra[i].sigma,
+                                 spectra[i + 1].sigma));
 
   struct Found {
     Complex exponent;

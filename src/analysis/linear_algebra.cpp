@@ -6,11 +6,11 @@
 #include <limits>
 #include <sstream>
 
-#include <Eigen/LU>
 #include <petscblaslapack.h>
 
 #include "samara/base/error.hpp"
 
+#include "blas.hpp"
 #include "block_factors.hpp"
 #include "matrix_entries.hpp"
 
@@ -605,8 +605,37 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
   return pairs;
 }
 
+std::vector<std::complex<double>> dense_eigenvalues(Eigen::MatrixXd matrix) {
+  const auto n = static_cast<PetscBLASInt>(matrix.rows());
+  std::vector<std::complex<double>> values;
+  if (n == 0) return values;
+  Eigen::VectorXd re(n);
+  Eigen::VectorXd im(n);
+  const PetscBLASInt no_vectors = 1;
+  PetscBLASInt length = -1;  // asks for the length of the workspace
+  PetscBLASInt status = 0;
+  std::vector<PetscScalar> work(1);
+  for (int call = 0; call < 2; ++call) {
+    LAPACKgeev_("N", "N", &n, matrix.data(), &n, re.data(), im.data(), nullptr, &no_vectors,
+                nullptr, &no_vectors, work.data(), &length, &status);
+    length = static_cast<PetscBLASInt>(work.front());
+    if (call == 0) work.resize(static_cast<std::size_t>(length));
+  }
+  if (status != 0)
+    throw ConvergenceError("eigenvalues: LAPACK's QR iteration does not converge (" +
+                           std::to_string(status) + ")");
+  for (Eigen::Index i = 0; i < n; ++i) values.emplace_back(re(i), im(i));
+  return values;
+}
+
 Eigen::VectorXd condition_numbers(const Eigenpairs& pairs) {
-  const Eigen::MatrixXcd left = pairs.vectors.partialPivLu().inverse();
+  // The rows of the inverse are left eigenvectors.
+  Eigen::MatrixXcd left = pairs.vectors;
+  const auto n = static_cast<blas::Integer>(left.rows());
+  std::vector<blas::Integer> interchanges(static_cast<std::size_t>(n));
+  if (blas::factor(n, left.data(), interchanges.data()) != 0)
+    return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+  blas::invert(n, left.data(), interchanges.data());
   const Eigen::VectorXd sizes =
       left.rowwise().norm().cwiseProduct(pairs.vectors.colwise().norm().transpose());
   return sizes.unaryExpr([](double size) {

@@ -137,6 +137,10 @@ void require_whole_spectrum(const std::string& prefix);
 /// @throws InputError as above, ConvergenceError where eigenpairs are missing.
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& prefix);
 
+/// Eigenvalues of a dense real matrix, without eigenvectors, by LAPACK.
+/// @throws ConvergenceError
+std::vector<std::complex<double>> dense_eigenvalues(Eigen::MatrixXd matrix);
+
 /// |y| |x| / |y.x| of left and right eigenvectors: the largest factor from an error of the matrix
 /// to the error of an eigenvalue. It is 1 for a normal matrix, and infinite where eigenvectors
 /// coincide.
