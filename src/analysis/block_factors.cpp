@@ -16,6 +16,14 @@ namespace {
 /// Relative to the largest entry of a block row before elimination: a smaller pivot is round-off.
 constexpr double least_pivot = 1e-13;
 
+/// Largest real or imaginary part, without the square roots of the absolute values.
+template <class Scalar>
+double largest_part(const Scalar* values, Eigen::Index count) {
+  const Eigen::Index reals = count * static_cast<Eigen::Index>(sizeof(Scalar) / sizeof(double));
+  return Eigen::Map<const Eigen::VectorXd>(reinterpret_cast<const double*>(values), reals)
+      .lpNorm<Eigen::Infinity>();
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -98,9 +106,9 @@ bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix) {
       place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)])] = entry;
     double largest = 0.0;
     for (PetscInt k = matrix.begin[i]; k < matrix.begin[i + 1]; ++k) {
-      const Eigen::Map<const Vector> one(matrix.values + k * area, area);
-      largest = std::max(largest, one.cwiseAbs().maxCoeff());
-      std::copy_n(one.data(), area, block(place[static_cast<std::size_t>(matrix.columns[k])]));
+      const Scalar* one = matrix.values + k * area;
+      largest = std::max(largest, largest_part(one, area));
+      std::copy_n(one, area, block(place[static_cast<std::size_t>(matrix.columns[k])]));
     }
     for (Index entry = first; entry < diagonal_[static_cast<std::size_t>(i)]; ++entry) {
       const auto k = static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <set>
 
 #include "blas.hpp"
 
@@ -69,8 +71,6 @@ void HarmonicPreconditioner::find_border() {
 
 void HarmonicPreconditioner::list_places() {
   columns_of_border_.resize(border_.size());
-  const Index blocks = static_cast<Index>(interior_.size()) / block_;
-  std::vector<std::map<Index, Index>> rows(static_cast<std::size_t>(blocks));
   for (const Place& place : tangents_.places()) {
     const auto row = static_cast<std::size_t>(place.row);
     const auto column = static_cast<std::size_t>(place.column);
@@ -82,21 +82,57 @@ void HarmonicPreconditioner::list_places() {
       columns_of_border_[static_cast<std::size_t>(number_[column])].push_back(place);
     } else {
       inner_.push_back(place);
-      rows[static_cast<std::size_t>(number_[row] / block_)][number_[column] / block_] = 0;
     }
   }
-  begin_.push_back(0);
+}
+
+/// For harmonics with this remainder. A block is absent if all its unknowns are.
+void HarmonicPreconditioner::find_chains(int remainder) {
+  Chains chains;
+  const auto blocks = static_cast<Index>(interior_.size()) / block_;
+  chains.local.assign(static_cast<std::size_t>(blocks), -1);
+  for (Index i = 0; i < blocks; ++i) {
+    const auto first = interior_.begin() + i * block_;
+    if (std::none_of(first, first + block_,
+                     [&](PetscInt unknown) { return tangents_.has(unknown, remainder); }))
+      continue;
+    chains.local[static_cast<std::size_t>(i)] = static_cast<Index>(chains.blocks.size());
+    chains.blocks.push_back(i);
+  }
+  const auto local_of = [&](PetscInt unknown) {
+    return chains
+        .local[static_cast<std::size_t>(number_[static_cast<std::size_t>(unknown)] / block_)];
+  };
+  std::vector<std::map<Index, Index>> rows(chains.blocks.size());
+  const auto is_present = [&](const Place& place) {
+    return local_of(place.row) >= 0 && local_of(place.column) >= 0;
+  };
+  for (const Place& place : inner_)
+    if (is_present(place))
+      rows[static_cast<std::size_t>(local_of(place.row))][local_of(place.column)] = 0;
+  chains.begin.push_back(0);
   for (std::map<Index, Index>& row : rows) {
     for (auto& [column, number] : row) {
-      number = static_cast<Index>(columns_.size());
-      columns_.push_back(static_cast<PetscInt>(column));
+      number = static_cast<Index>(chains.columns.size());
+      chains.columns.push_back(static_cast<PetscInt>(column));
     }
-    begin_.push_back(static_cast<PetscInt>(columns_.size()));
+    chains.begin.push_back(static_cast<PetscInt>(chains.columns.size()));
   }
   for (const Place& place : inner_)
-    block_of_.push_back(
-        rows[static_cast<std::size_t>(number_[static_cast<std::size_t>(place.row)] / block_)].at(
-            number_[static_cast<std::size_t>(place.column)] / block_));
+    chains.block_of.push_back(
+        is_present(place)
+            ? rows[static_cast<std::size_t>(local_of(place.row))].at(local_of(place.column))
+            : -1);
+  std::set<Index> coupled;
+  for (const Place& place : rows_of_border_)
+    if (const Index block = local_of(place.column); block >= 0) coupled.insert(block);
+  chains.coupled.assign(coupled.begin(), coupled.end());
+  chains_.push_back(std::move(chains));
+}
+
+const HarmonicPreconditioner::Chains& HarmonicPreconditioner::chains_of(int harmonic) const {
+  const int sectors = tangents_.sectors();
+  return chains_[static_cast<std::size_t>((harmonic % sectors + sectors) % sectors)];
 }
 
 /// Rows and columns: coefficients of exp(i k Omega t), k = -H ... H.
@@ -131,37 +167,60 @@ BlockFactors<HarmonicPreconditioner::Complex>& HarmonicPreconditioner::factors_o
 /// `means`: of K and M at all places.
 bool HarmonicPreconditioner::factor_harmonic(int harmonic, const Eigen::MatrixXd& means) {
   const Index area = block_ * block_;
-  Eigen::VectorXcd values = Eigen::VectorXcd::Zero(static_cast<Index>(columns_.size()) * area);
+  const Chains& chains = chains_of(harmonic);
+  Eigen::VectorXcd values =
+      Eigen::VectorXcd::Zero(static_cast<Index>(chains.columns.size()) * area);
   const Complex rate = shift_ + Complex(0.0, harmonic * tangents_.rate());
   for (std::size_t n = 0; n < inner_.size(); ++n) {
     const Place& place = inner_[n];
     if (!tangents_.has(place.row, harmonic) || !tangents_.has(place.column, harmonic)) continue;
     const Index row = number_[static_cast<std::size_t>(place.row)] % block_;
     const Index column = number_[static_cast<std::size_t>(place.column)] % block_;
-    values(block_of_[n] * area + column * block_ + row) =
+    values(chains.block_of[n] * area + column * block_ + row) =
         (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_) *
         (means(0, place.number) + rate * means(1, place.number));
   }
   for (std::size_t n = 0; n < inner_.size(); ++n)  // absent unknowns are zero
-    if (const Place& place = inner_[n];
-        place.row == place.column && !tangents_.has(place.row, harmonic)) {
+    if (const Place& place = inner_[n]; place.row == place.column && chains.block_of[n] >= 0 &&
+                                        !tangents_.has(place.row, harmonic)) {
       const Index at = number_[static_cast<std::size_t>(place.row)] % block_;
-      values(block_of_[n] * area + at * block_ + at) = 1.0;
+      values(chains.block_of[n] * area + at * block_ + at) = 1.0;
     }
-  const BlockMatrix<Complex> matrix{block_, static_cast<Index>(interior_.size()) / block_,
-                                    begin_.data(), columns_.data(), values.data()};
+  const BlockMatrix<Complex> matrix{block_, static_cast<Index>(chains.blocks.size()),
+                                    chains.begin.data(), chains.columns.data(), values.data()};
   const auto number = static_cast<std::size_t>(harmonic - first_harmonic());
   if (factors_.size() <= number) factors_.emplace_back(matrix);
   return factors_[number].factor(matrix);
 }
 
-/// `coefficients`: width x interior unknowns; for a real shift only those of k >= 0 are found.
-void HarmonicPreconditioner::solve_interior(Eigen::MatrixXcd& coefficients) {
+/// `coefficients`: width x interior unknowns of each right-hand side; for a real shift only those
+/// of k >= 0 are found, for `only_coupled` those in blocks that rows of the border refer to. Absent
+/// coefficients stay as they are.
+void HarmonicPreconditioner::solve_interior(Eigen::MatrixXcd& coefficients, bool only_coupled) {
   const int harmonics = tangents_.harmonics();
+  const auto interior = static_cast<Index>(interior_.size());
+  const Index columns = coefficients.cols() / interior;
+  Eigen::MatrixXcd right;
   for (int k = first_harmonic(); k <= harmonics; ++k) {
-    Eigen::MatrixXcd right = coefficients.row(k + harmonics).transpose();
-    factors_of(k).solve(right);
-    coefficients.row(k + harmonics) = right.transpose();
+    const Chains& chains = chains_of(k);
+    const std::vector<Index>& blocks = chains.blocks;
+    right.resize(static_cast<Index>(blocks.size()) * block_, columns);
+    const auto each_row = [&](const auto& call) {
+      for (Index c = 0; c < columns; ++c)
+        for (std::size_t i = 0; i < blocks.size(); ++i)
+          for (Index at = 0; at < block_; ++at)
+            call(right(static_cast<Index>(i) * block_ + at, c),
+                 coefficients(k + harmonics, c * interior + blocks[i] * block_ + at));
+    };
+    each_row([](Complex& row, const Complex& coefficient) { row = coefficient; });
+    if (only_coupled) {
+      std::vector<Index> all(blocks.size());
+      std::iota(all.begin(), all.end(), Index{0});
+      factors_of(k).solve_part(right, all, chains.coupled);
+    } else {
+      factors_of(k).solve(right);
+    }
+    each_row([](const Complex& row, Complex& coefficient) { coefficient = row; });
   }
 }
 
@@ -169,46 +228,53 @@ void HarmonicPreconditioner::solve_interior(Eigen::MatrixXcd& coefficients) {
 /// couple them to the border.
 void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
   const int harmonics = tangents_.harmonics();
-  const auto block_of = [this](Index interior) { return interior / block_; };
-  std::vector<Index> wanted;
-  for (const Coupling& coupling : couplings_) wanted.push_back(block_of(coupling.interior));
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::map<Index, std::vector<const Coupling*>> of_border;
-  for (const Coupling& coupling : couplings_back_) of_border[coupling.border].push_back(&coupling);
+  std::map<Index, double> least;
+  for (const Coupling& coupling : couplings_back_) {
+    of_border[coupling.border].push_back(&coupling);
+    double& limit = least[coupling.border];
+    limit = std::max(limit, least_coupling * coupling.block.cwiseAbs().maxCoeff());
+  }
   Eigen::MatrixXcd right;
-  for (const auto& [border, couplings] : of_border) {
-    double largest = 0.0;
-    std::vector<Index> filled;
-    for (const Coupling* coupling : couplings) {
-      largest = std::max(largest, coupling->block.cwiseAbs().maxCoeff());
-      filled.push_back(block_of(coupling->interior));
-    }
-    for (int k = first_harmonic(); k <= harmonics; ++k) {
-      std::vector<Index> kept;
+  for (int k = first_harmonic(); k <= harmonics; ++k) {
+    const Chains& chains = chains_of(k);
+    const auto row_of = [&](Index interior) {  // -1: absent
+      const Index at = chains.local[static_cast<std::size_t>(interior / block_)];
+      return at < 0 ? at : at * block_ + interior % block_;
+    };
+    std::vector<std::pair<Index, Index>> kept;  // border and harmonic's number
+    std::set<Index> filled;
+    for (const auto& [border, couplings] : of_border) {
       for (Index c = 0; c < width_; ++c)
         if (std::any_of(couplings.begin(), couplings.end(), [&](const Coupling* coupling) {
-              return std::abs(coupling->block(k + harmonics, c)) > least_coupling * largest;
+              return std::abs(coupling->block(k + harmonics, c)) > least[border];
             }))
-          kept.push_back(c);
-      if (kept.empty()) continue;
-      right.resize(static_cast<Index>(interior_.size()), static_cast<Index>(kept.size()));
-      for (const Index i : filled) right.middleRows(i * block_, block_).setZero();
-      for (const Coupling* coupling : couplings)
-        right.row(coupling->interior) += coupling->block(k + harmonics, kept);
-      factors_of(k).solve_part(right, filled, wanted);
-      for (const Coupling& coupling : couplings_) {
-        const auto values = right.row(coupling.interior);
-        for (std::size_t c = 0; c < kept.size(); ++c) {
-          const Complex value = values(static_cast<Index>(c));
-          if (value == 0.0) continue;
-          const Index column = border * width_ + kept[c];
-          schur.block(coupling.border * width_, column, width_, 1) -=
-              value * coupling.block.col(k + harmonics);
-          if (is_real() && k > 0)
-            schur.block(coupling.border * width_, border * width_ + width_ - 1 - kept[c], width_,
-                        1) -= std::conj(value) * coupling.block.col(harmonics - k);
-        }
+          kept.emplace_back(border, c);
+      if (!kept.empty() && kept.back().first == border)
+        for (const Coupling* coupling : couplings)
+          if (const Index row = row_of(coupling->interior); row >= 0) filled.insert(row / block_);
+    }
+    if (filled.empty()) continue;
+    right.resize(static_cast<Index>(chains.blocks.size()) * block_,
+                 static_cast<Index>(kept.size()));
+    for (const Index i : filled) right.middleRows(i * block_, block_).setZero();
+    for (std::size_t n = 0; n < kept.size(); ++n)
+      for (const Coupling* coupling : of_border[kept[n].first])
+        if (const Index row = row_of(coupling->interior); row >= 0)
+          right(row, static_cast<Index>(n)) += coupling->block(k + harmonics, kept[n].second);
+    factors_of(k).solve_part(right, {filled.begin(), filled.end()}, chains.coupled);
+    for (const Coupling& coupling : couplings_) {
+      const Index row = row_of(coupling.interior);
+      if (row < 0) continue;
+      for (std::size_t n = 0; n < kept.size(); ++n) {
+        const Complex value = right(row, static_cast<Index>(n));
+        if (value == 0.0) continue;
+        const Index first = kept[n].first * width_;
+        schur.block(coupling.border * width_, first + kept[n].second, width_, 1) -=
+            value * coupling.block.col(k + harmonics);
+        if (is_real() && k > 0)
+          schur.block(coupling.border * width_, first + width_ - 1 - kept[n].second, width_, 1) -=
+              std::conj(value) * coupling.block.col(harmonics - k);
       }
     }
   }
@@ -220,6 +286,9 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   column_factors_ = &columns;
   if ((shift.imag() == 0.0) != is_real()) factors_.clear();
   shift_ = shift;
+  // Samples say which harmonics the unknowns have; they come after the construction.
+  if (chains_.empty())
+    for (int remainder = 0; remainder < tangents_.sectors(); ++remainder) find_chains(remainder);
   const Eigen::MatrixXd means = tangents_.means();
   for (int k = first_harmonic(); k <= tangents_.harmonics(); ++k)
     if (!factor_harmonic(k, means)) return false;
@@ -261,38 +330,59 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   return pivots.minCoeff() > least_pivot * pivots.maxCoeff();
 }
 
-void HarmonicPreconditioner::solve(const Eigen::MatrixXcd& right, Eigen::MatrixXcd& solution) {
-  solution.resize(width_, tangents_.size());
-  Eigen::MatrixXcd between = right(Eigen::all, interior_);
+void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& right,
+                                   Eigen::Ref<Eigen::MatrixXcd> solution) {
+  const Index unknowns = tangents_.size();
+  const Index columns = right.cols() / unknowns;
+  const auto interior = static_cast<Index>(interior_.size());
+  Eigen::MatrixXcd between(width_, interior * columns);
+  for (Index c = 0; c < columns; ++c)
+    between.middleCols(c * interior, interior) =
+        right.middleCols(c * unknowns, unknowns)(Eigen::all, interior_);
   if (border_size() > 0) {
-    Eigen::MatrixXcd border = right(Eigen::all, border_);
+    using Columns = Eigen::Map<Eigen::MatrixXcd, Eigen::Unaligned, Eigen::OuterStride<>>;
+    const auto of_unknown = [&](Eigen::MatrixXcd& from, Index number, Index all) {
+      return Columns(from.col(number).data(), width_, columns, Eigen::OuterStride<>(all * width_));
+    };
+    Eigen::MatrixXcd border(width_, border_size() * columns);
+    for (Index c = 0; c < columns; ++c)
+      border.middleCols(c * border_size(), border_size()) =
+          right.middleCols(c * unknowns, unknowns)(Eigen::all, border_);
     Eigen::MatrixXcd given = between;
-    solve_interior(between);
+    solve_interior(between, true);
     if (is_real())
       for (int k = 1; k <= tangents_.harmonics(); ++k)
         between.row(tangents_.harmonics() - k) = between.row(tangents_.harmonics() + k).conjugate();
     for (const Coupling& coupling : couplings_)
-      border.col(coupling.border).noalias() -= coupling.block * between.col(coupling.interior);
-    Eigen::VectorXcd unknown =
-        schur_rows_.cwiseProduct(Eigen::VectorXcd(border.reshaped()(present_)));
-    blas::solve(static_cast<blas::Integer>(unknown.size()), 1, schur_.data(),
-                schur_interchanges_.data(), unknown.data());
-    border.setZero();
-    border.reshaped()(present_) = schur_columns_.cwiseProduct(unknown);
+      of_unknown(border, coupling.border, border_size()).noalias() -=
+          coupling.block * of_unknown(between, coupling.interior, interior);
+    Eigen::MatrixXcd of_border = border.reshaped(border_size() * width_, columns);
+    Eigen::MatrixXcd unknown = schur_rows_.asDiagonal() * of_border(present_, Eigen::all);
+    if (unknown.rows() > 0)
+      blas::solve(static_cast<blas::Integer>(unknown.rows()), static_cast<blas::Integer>(columns),
+                  schur_.data(), schur_interchanges_.data(), unknown.data());
+    of_border.setZero();
+    of_border(present_, Eigen::all) = schur_columns_.asDiagonal() * unknown;
+    border = of_border.reshaped(width_, border_size() * columns);
     for (const Coupling& coupling : couplings_back_)
-      given.col(coupling.interior).noalias() -= coupling.block * border.col(coupling.border);
-    solution(Eigen::all, border_) = border;
+      of_unknown(given, coupling.interior, interior).noalias() -=
+          coupling.block * of_unknown(border, coupling.border, border_size());
+    for (Index c = 0; c < columns; ++c)
+      solution.middleCols(c * unknowns, unknowns)(Eigen::all, border_) =
+          border.middleCols(c * border_size(), border_size());
     between = std::move(given);
   }
-  solve_interior(between);
-  solution(Eigen::all, interior_) = between;
+  solve_interior(between, false);
+  for (Index c = 0; c < columns; ++c)
+    solution.middleCols(c * unknowns, unknowns)(Eigen::all, interior_) =
+        between.middleCols(c * interior, interior);
 }
 
 void HarmonicPreconditioner::solve(const double* right, double* solution) {
   const Eigen::Map<const Eigen::MatrixXd> in(right, width_, tangents_.size());
   Eigen::Map<Eigen::MatrixXd> out(solution, width_, tangents_.size());
   const Eigen::MatrixXcd series = to_series(in);
-  Eigen::MatrixXcd result;
+  Eigen::MatrixXcd result(width_, tangents_.size());
   solve(series, result);
   const Index harmonics = tangents_.harmonics();
   out.row(0) = result.row(harmonics).real();

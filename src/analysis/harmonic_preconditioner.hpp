@@ -34,8 +34,10 @@ class HarmonicPreconditioner {
   /// For a real shift: real coefficients of right-hand side and solution, as HarmonicTangents has
   /// them.
   void solve(const double* right, double* solution);
-  /// For every shift: coefficients of exp(i k Omega t), k = -H ... H, (2 H + 1) x unknowns.
-  void solve(const Eigen::MatrixXcd& right, Eigen::MatrixXcd& solution);
+  /// For every shift: coefficients of exp(i k Omega t), k = -H ... H, (2 H + 1) x unknowns, of one
+  /// or several right-hand sides next to each other.
+  void solve(const Eigen::Ref<const Eigen::MatrixXcd>& right,
+             Eigen::Ref<Eigen::MatrixXcd> solution);
 
   /// Logarithm of the determinant of what it factors, up to multiples of 2 pi i and a constant that
   /// does not depend on the shift. For a shift with an imaginary part.
@@ -51,16 +53,28 @@ class HarmonicPreconditioner {
     Eigen::MatrixXcd block;
   };
 
+  /// Node blocks of the interior that have a harmonic.
+  struct Chains {
+    std::vector<Index> blocks;    ///< numbers in the interior
+    std::vector<Index> local;     ///< number of each block of the interior among them; -1: none
+    std::vector<PetscInt> begin;  ///< block pattern
+    std::vector<PetscInt> columns;
+    std::vector<Index> block_of;  ///< block of each inner place; -1: absent
+    std::vector<Index> coupled;   ///< blocks that rows of the border refer to
+  };
+
   void find_border();
   void list_places();
   bool is_real() const { return shift_.imag() == 0.0; }
   /// Harmonics k of the chains: for a real shift those of -k are conjugates.
   int first_harmonic() const { return is_real() ? 0 : -tangents_.harmonics(); }
   BlockFactors<Complex>& factors_of(int harmonic);
+  void find_chains(int remainder);
+  const Chains& chains_of(int harmonic) const;
   bool factor_harmonic(int harmonic, const Eigen::MatrixXd& means);
   Eigen::MatrixXcd scaled_block(const Place& place) const;
   void eliminate_chains(Eigen::MatrixXcd& schur);
-  void solve_interior(Eigen::MatrixXcd& coefficients);
+  void solve_interior(Eigen::MatrixXcd& coefficients, bool only_coupled);
 
   const HarmonicTangents& tangents_;
   Index width_;
@@ -69,10 +83,8 @@ class HarmonicPreconditioner {
   std::vector<char> in_border_;
   std::vector<PetscInt> border_;    ///< unknowns
   std::vector<PetscInt> interior_;  ///< unknowns, whole blocks in the order of the system
-  std::vector<PetscInt> begin_;     ///< block pattern of the interior
-  std::vector<PetscInt> columns_;
-  std::vector<Place> inner_;                           ///< interior rows and columns
-  std::vector<Index> block_of_;                        ///< block of each inner place
+  std::vector<Chains> chains_;      ///< for the remainders of the harmonics by the sectors
+  std::vector<Place> inner_;        ///< interior rows and columns
   std::vector<std::vector<Place>> columns_of_border_;  ///< interior rows, for each border unknown
   std::vector<Place> rows_of_border_;                  ///< interior columns
   std::vector<Place> corner_;                          ///< border rows and columns

@@ -327,11 +327,13 @@ void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd&
   const Eigen::Index samples = values_of_.rows();
   const Eigen::MatrixXd values = values_of_ * x;
   const Eigen::MatrixXd rates = values_of_ * w;
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, size_);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, x.cols());
   for (const Place& place : places_) {
     const auto sampled = sampled_.col(place.number).array();
-    sums.col(place.row).array() += sampled.head(samples) * values.col(place.column).array() +
-                                   sampled.tail(samples) * rates.col(place.column).array();
+    for (Eigen::Index first = 0; first < x.cols(); first += size_)
+      sums.col(first + place.row).array() +=
+          sampled.head(samples) * values.col(first + place.column).array() +
+          sampled.tail(samples) * rates.col(first + place.column).array();
   }
   y.noalias() = projection_ * sums;
   drop_absent(y);
@@ -340,20 +342,23 @@ void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd&
 void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
   const Eigen::Index samples = values_of_.rows();
   const Eigen::MatrixXd rates = values_of_ * w;
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, size_);
-  for (const Place& place : places_)
-    sums.col(place.row).array() +=
-        sampled_.col(place.number).tail(samples).array() * rates.col(place.column).array();
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, w.cols());
+  for (const Place& place : places_) {
+    const auto sampled = sampled_.col(place.number).tail(samples).array();
+    for (Eigen::Index first = 0; first < w.cols(); first += size_)
+      sums.col(first + place.row).array() += sampled * rates.col(first + place.column).array();
+  }
   y.noalias() = projection_ * sums;
   drop_absent(y);
 }
 
 void HarmonicTangents::drop_absent(Eigen::MatrixXd& rows) const {
   if (sectors_ == 1) return;
-  for (Eigen::Index i = 0; i < size_; ++i) {
-    if (!has(i, 0)) rows(0, i) = 0.0;
+  for (Eigen::Index at = 0; at < rows.cols(); ++at) {
+    const Eigen::Index i = at % size_;
+    if (!has(i, 0)) rows(0, at) = 0.0;
     for (int k = 1; k <= harmonics_; ++k)
-      if (!has(i, k) && !has(i, -k)) rows.col(i).segment(2 * k - 1, 2).setZero();
+      if (!has(i, k) && !has(i, -k)) rows.col(at).segment(2 * k - 1, 2).setZero();
   }
 }
 

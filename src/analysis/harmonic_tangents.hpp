@@ -71,9 +71,9 @@ class HarmonicTangents {
 
   /// y = J x, both of size() width() coefficients.
   void multiply(const double* x, double* y) const;
-  /// Coefficients of K(t) x(t) + M(t) w(t).
+  /// Coefficients of K(t) x(t) + M(t) w(t), for one or several x and w: each has size() columns.
   void multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
-  /// Coefficients of M(t) w(t).
+  /// Coefficients of M(t) w(t), in the same way.
   void multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
   /// Complex Fourier coefficients m = -2 H ... 2 H of K and M at a place.
   struct Coefficients {

@@ -37,6 +37,12 @@ constexpr int most_harmonics = 60;
 /// Residual of a mode in the time domain that is wanted, and the largest one of a resolved mode.
 constexpr double wanted_residual = 1e-8;
 constexpr double largest_residual = 1e-6;
+/// Relative residual of eigenpairs in their truncated series: with the first number of harmonics,
+/// which may not be the last, and the one that is wanted. Harmonics are missing where the residual
+/// in the time domain is larger by a factor.
+constexpr double first_tolerance = 1e-7;
+constexpr double last_tolerance = 1e-10;
+constexpr double of_missing_harmonics = 10.0;
 /// Correlation of the largest harmonics of an eigenpair and of its copy.
 constexpr double same_shape = 0.7;
 /// Harmonics at the edges of a series, and their part in a copy.
@@ -69,7 +75,10 @@ struct Candidate {
   Mode mode;
   Eigen::VectorXd participation;
   double residual = std::numeric_limits<double>::infinity();
-  bool is_found = false;  ///< an eigenpair of the truncated series
+  double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
+
+  /// An eigenpair of the truncated series.
+  bool is_found() const { return truncated_residual <= largest_residual; }
 };
 
 class Analysis {
@@ -264,19 +273,14 @@ class Analysis {
     std::vector<Candidate> doubtful;
     harmonics_ = std::max(least_harmonics, solution_.harmonics());
     int added = 0;  // harmonics, since the attempt before
+    double tolerance = first_tolerance;
     while (!groups.empty()) {
       HillPencil pencil(system_, solution_, harmonics_);
       HillRefinement refinement(pencil);
       samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
-      std::vector<Candidate> refined;
-      for (std::vector<HillPair>& group : groups) {
-        const bool is_found = refinement.refine(group) <= largest_residual;
-        for (const HillPair& pair : group) {
-          refined.push_back({pair, {}, {}});
-          refined.back().is_found = is_found;
-        }
-      }
-      find_residuals(refined);
+      std::vector<Candidate> refined = refine(refinement, groups, tolerance);
+      if (tolerance > last_tolerance) refine_further(refinement, groups, refined);
+      tolerance = last_tolerance;
       double largest = 0.0;
       std::vector<std::vector<HillPair>> left;
       std::vector<double> residuals;
@@ -293,7 +297,7 @@ class Analysis {
           is_own = is_own || is_centred(*it);
         }
         const bool is_last =
-            harmonics_ == most_harmonics || !is_own || !first->is_found ||
+            harmonics_ == most_harmonics || !is_own || !first->is_found() ||
             (residual <= largest_residual && residual > std::pow(slowest_decay, added) * before[g]);
         if (residual <= wanted_residual || is_last) {
           for (auto it = first; it != end; ++it)
@@ -319,8 +323,51 @@ class Analysis {
       }
     }
     for (Candidate& candidate : doubtful)
-      if (!candidate.is_found || (is_centred(candidate) && !is_copy(candidate)))
+      if (!candidate.is_found() || (is_centred(candidate) && !is_copy(candidate)))
         modes_.push_back(std::move(candidate));
+  }
+
+  /// Eigenpairs of all groups, with their residuals in the time domain.
+  std::vector<Candidate> refine(HillRefinement& refinement,
+                                std::vector<std::vector<HillPair>>& groups, double tolerance) {
+    std::vector<Candidate> refined;
+    for (std::vector<HillPair>& group : groups) {
+      const double left = refinement.refine(group, tolerance);
+      for (const HillPair& pair : group) {
+        refined.push_back({pair, {}, {}});
+        refined.back().truncated_residual = left;
+      }
+    }
+    find_residuals(refined);
+    return refined;
+  }
+
+  /// Refines the groups with enough harmonics to the last tolerance.
+  void refine_further(HillRefinement& refinement, std::vector<std::vector<HillPair>>& groups,
+                      std::vector<Candidate>& refined) {
+    std::vector<std::size_t> numbers;
+    std::vector<std::vector<HillPair>> chosen;
+    std::vector<std::size_t> begins;
+    std::size_t begin = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const auto first = refined.begin() + static_cast<std::ptrdiff_t>(begin);
+      if (std::all_of(first, first + static_cast<std::ptrdiff_t>(groups[g].size()),
+                      [](const Candidate& one) {
+                        return one.residual <= of_missing_harmonics * one.truncated_residual;
+                      })) {
+        numbers.push_back(g);
+        chosen.push_back(groups[g]);
+        begins.push_back(begin);
+      }
+      begin += groups[g].size();
+    }
+    std::vector<Candidate> better = refine(refinement, chosen, last_tolerance);
+    auto next = better.begin();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      groups[numbers[i]] = chosen[i];
+      for (std::size_t j = 0; j < chosen[i].size(); ++j)
+        refined[begins[i] + j] = std::move(*next++);
+    }
   }
 
   /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut

@@ -14,97 +14,89 @@ HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolut
 }
 
 /// exp(i k Omega t) = cos + i sin: the coefficient of cos is z_k + z_-k, that of sin i (z_k -
-/// z_-k).
-void HillPencil::to_coefficients(Complex s, const Vector& x) {
-  const Eigen::Map<const Eigen::MatrixXcd> series(x.data(), width(), unknowns());
+/// z_-k). Real parts come first, then imaginary parts.
+void HillPencil::to_coefficients(Input x, bool is_rate, Eigen::MatrixXd& to) const {
   const Index H = harmonics();
-  for (Parts* parts : {&values_, &rates_}) {
-    parts->real.resize(width(), unknowns());
-    parts->imaginary.resize(width(), unknowns());
-  }
-  const auto put = [](Complex forward, Complex backward, Index k, Index i, Parts& parts) {
-    const Complex sum = forward + backward;
-    const Complex difference = forward - backward;
-    parts.real(2 * k - 1, i) = sum.real();
-    parts.imaginary(2 * k - 1, i) = sum.imag();
-    parts.real(2 * k, i) = -difference.imag();
-    parts.imaginary(2 * k, i) = difference.real();
-  };
-  for (Index i = 0; i < unknowns(); ++i) {
-    const double factor = columns_(i * width());
-    const Complex mean = factor * series(H, i);
-    values_.real(0, i) = mean.real();
-    values_.imaginary(0, i) = mean.imag();
-    rates_.real(0, i) = (s * mean).real();
-    rates_.imaginary(0, i) = (s * mean).imag();
+  const Index count = x.cols() * unknowns();
+  const Eigen::Map<const Eigen::MatrixXcd> series(x.data(), width(), count);
+  for (Index i = 0; i < count; ++i) {
+    const double factor = columns_(i % unknowns() * width());
+    auto real = to.col(i);
+    auto imaginary = to.col(count + i);
+    if (!is_rate) {
+      real(0) += factor * series(H, i).real();
+      imaginary(0) += factor * series(H, i).imag();
+    }
     for (Index k = 1; k <= H; ++k) {
-      const Complex turn(0.0, static_cast<double>(k) * speed());
-      const Complex forward = factor * series(H + k, i);
-      const Complex backward = factor * series(H - k, i);
-      put(forward, backward, k, i, values_);
-      put((s + turn) * forward, (s - turn) * backward, k, i, rates_);
+      // d/dt is i k Omega for z_k and -i k Omega for z_-k.
+      const double scale = is_rate ? factor * static_cast<double>(k) * speed() : factor;
+      const Complex plus = scale * (series(H + k, i) + series(H - k, i));
+      const Complex minus = scale * (series(H + k, i) - series(H - k, i));
+      const Complex cosine = is_rate ? Complex(-minus.imag(), minus.real()) : plus;
+      const Complex sine = is_rate ? -plus : Complex(-minus.imag(), minus.real());
+      real(2 * k - 1) += cosine.real();
+      imaginary(2 * k - 1) += cosine.imag();
+      real(2 * k) += sine.real();
+      imaginary(2 * k) += sine.imag();
     }
   }
 }
 
-namespace {
-
-/// Series from coefficients of mean, cosines and sines: z_k = (c - i s) / 2, z_-k = (c + i s) / 2.
-void add_series(const Eigen::MatrixXd& real, const Eigen::MatrixXd& imaginary,
-                const Eigen::VectorXd& rows, std::complex<double> factor, Eigen::VectorXcd& y) {
-  const Index width = real.rows();
-  const Index H = (width - 1) / 2;
-  for (Index i = 0; i < real.cols(); ++i) {
-    const std::complex<double> scale = factor * rows(i * width);
-    auto series = y.segment(i * width, width);
-    series(H) += scale * std::complex<double>(real(0, i), imaginary(0, i));
+/// z_k = (c - i s) / 2, z_-k = (c + i s) / 2.
+void HillPencil::to_series(const Eigen::MatrixXd& coefficients, Output y) const {
+  const Index H = harmonics();
+  const Index count = coefficients.cols() / 2;
+  Eigen::Map<Eigen::MatrixXcd> series(y.data(), width(), count);
+  for (Index i = 0; i < count; ++i) {
+    const double scale = rows_(i % unknowns() * width());
+    const auto real = coefficients.col(i);
+    const auto imaginary = coefficients.col(count + i);
+    series(H, i) = scale * Complex(real(0), imaginary(0));
     for (Index k = 1; k <= H; ++k) {
-      const std::complex<double> cosine(real(2 * k - 1, i), imaginary(2 * k - 1, i));
-      const std::complex<double> turned(-imaginary(2 * k, i), real(2 * k, i));  // i times the sine
-      series(H + k) += scale * 0.5 * (cosine - turned);
-      series(H - k) += scale * 0.5 * (cosine + turned);
+      const Complex cosine(real(2 * k - 1), imaginary(2 * k - 1));
+      const Complex turned(-imaginary(2 * k), real(2 * k));  // i times the sine
+      series(H + k, i) = scale * 0.5 * (cosine - turned);
+      series(H - k, i) = scale * 0.5 * (cosine + turned);
     }
   }
 }
 
-}  // namespace
-
-void HillPencil::multiply(Complex s, const Vector& x, Vector& y) {
-  to_coefficients(s, x);
-  tangents_.multiply(values_.real, rates_.real, products_.real);
-  tangents_.multiply(values_.imaginary, rates_.imaginary, products_.imaginary);
-  y.setZero(size());
-  add_series(products_.real, products_.imaginary, rows_, 1.0, y);
+void HillPencil::multiply(Input x, Input w, Output y) {
+  values_.setZero(width(), 2 * x.cols() * unknowns());
+  rates_.setZero(values_.rows(), values_.cols());
+  to_coefficients(x, false, values_);
+  to_coefficients(x, true, rates_);
+  to_coefficients(w, false, rates_);
+  tangents_.multiply(values_, rates_, products_);
+  to_series(products_, y);
 }
 
-void HillPencil::multiply_mass(const Vector& x, Vector& y) {
-  to_coefficients(0.0, x);
-  tangents_.multiply_mass(values_.real, products_.real);
-  tangents_.multiply_mass(values_.imaginary, products_.imaginary);
-  y.setZero(size());
-  add_series(products_.real, products_.imaginary, rows_, 1.0, y);
+void HillPencil::multiply_mass(Input w, Output y) {
+  rates_.setZero(width(), 2 * w.cols() * unknowns());
+  to_coefficients(w, false, rates_);
+  tangents_.multiply_mass(rates_, products_);
+  to_series(products_, y);
 }
 
 HillPencil::Complex HillPencil::exponent_of(const Vector& x) {
-  Vector stiffness;
-  Vector mass;
-  multiply(0.0, x, stiffness);
+  Vector stiffness(size());
+  Vector mass(size());
+  multiply(x, Vector::Zero(size()), stiffness);
   multiply_mass(x, mass);
   return -mass.dot(stiffness) / mass.squaredNorm();
 }
 
-void HillPencil::precondition(const Vector& right, Vector& x) {
-  Eigen::MatrixXcd solution;
-  preconditioner_.solve(Eigen::Map<const Eigen::MatrixXcd>(right.data(), width(), unknowns()),
-                        solution);
-  x = Eigen::Map<const Vector>(solution.data(), solution.size());
+void HillPencil::precondition(Input right, Output x) {
+  preconditioner_.solve(Eigen::Map<const Matrix>(right.data(), width(), right.cols() * unknowns()),
+                        Eigen::Map<Matrix>(x.data(), width(), right.cols() * unknowns()));
 }
 
-void HillPencil::drop_absent(Vector& x) const {
+void HillPencil::drop_absent(Output x) const {
   if (sectors() == 1) return;
-  for (Index i = 0; i < unknowns(); ++i)
-    for (int k = -harmonics(); k <= harmonics(); ++k)
-      if (!tangents_.has(i, k)) x(i * width() + k + harmonics()) = 0.0;
+  for (Index column = 0; column < x.cols(); ++column)
+    for (Index i = 0; i < unknowns(); ++i)
+      for (int k = -harmonics(); k <= harmonics(); ++k)
+        if (!tangents_.has(i, k)) x(i * width() + k + harmonics(), column) = 0.0;
 }
 
 Eigen::MatrixXcd HillPencil::series_of(const Vector& x) const {

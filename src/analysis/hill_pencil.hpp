@@ -18,11 +18,16 @@ namespace samara::analysis {
 /// z(t) = exp(lambda t) sum_k z_k exp(i k Omega t), k = -H ... H, fulfils K z + M z_dot = 0 where
 /// (A + lambda B) z = 0: A is K + M d/dt on Fourier series, B is M on them. Vectors have the
 /// coefficients of all unknowns of HarmonicTangents (of one blade among identical ones), (2 H + 1)
-/// x unknowns by column, from k = -H. Rows and unknowns are scaled by their roles.
+/// x unknowns by column, from k = -H. Rows and unknowns are scaled by their roles. A matrix has a
+/// vector in each column; all of them are multiplied, or solved for, at once.
 class HillPencil {
  public:
   using Complex = std::complex<double>;
   using Vector = Eigen::VectorXcd;
+  using Matrix = Eigen::MatrixXcd;
+  /// Columns are next to each other in memory.
+  using Input = const Eigen::Ref<const Matrix>&;
+  using Output = Eigen::Ref<Matrix>;
 
   HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution, int harmonics);
 
@@ -34,40 +39,39 @@ class HillPencil {
   /// Whether the tangents have the structure that precondition() needs.
   bool is_solvable() const { return preconditioner_.is_useful(); }
 
-  /// y = (A + s B) x.
-  void multiply(Complex s, const Vector& x, Vector& y);
-  /// y = B x.
-  void multiply_mass(const Vector& x, Vector& y);
+  /// y = A x + B w.
+  void multiply(Input x, Input w, Output y);
+  /// y = B w.
+  void multiply_mass(Input w, Output y);
   /// The exponent that fits a vector best: (A + lambda B) x is least in the 2-norm.
   Complex exponent_of(const Vector& x);
 
   /// Approximates (A + s B)^-1 from now on.
   /// @returns false where it is singular to working precision
   bool set_shift(Complex s) { return preconditioner_.factor(rows_, columns_, s); }
-  void precondition(const Vector& right, Vector& x);
+  void precondition(Input right, Output x);
   /// Of the approximation at a complex shift, up to a constant and multiples of 2 pi i.
   Complex log_determinant() const { return preconditioner_.log_determinant(); }
 
   /// Harmonics between two copies of an eigenpair, exponents lambda and lambda + i Q Omega.
   int sectors() const { return tangents_.sectors(); }
   /// Sets the coefficients that an unknown does not have to zero.
-  void drop_absent(Vector& x) const;
+  void drop_absent(Output x) const;
   /// Series of all unknowns of the system without scaling, (2 H + 1) x system size.
   Eigen::MatrixXcd series_of(const Vector& x) const;
   /// The inverse, for a series of any number of harmonics: others are zero or left out.
   Vector vector_of(const Eigen::MatrixXcd& whole) const;
 
  private:
-  /// Coefficients of mean, cosines and sines, unscaled: of x and of (s + d/dt) x.
-  void to_coefficients(Complex s, const Vector& x);
+  /// Adds the coefficients of mean, cosines and sines, unscaled, of x or its rate d/dt x to
+  /// those of `to`.
+  void to_coefficients(Input x, bool is_rate, Eigen::MatrixXd& to) const;
+  void to_series(const Eigen::MatrixXd& coefficients, Output y) const;
 
   HarmonicTangents tangents_;
   HarmonicPreconditioner preconditioner_;
   Eigen::VectorXd rows_, columns_;
-  struct Parts {
-    Eigen::MatrixXd real, imaginary;
-  };
-  Parts values_, rates_, products_;
+  Eigen::MatrixXd values_, rates_, products_;  ///< real parts, then imaginary parts
 };
 
 }  // namespace samara::analysis

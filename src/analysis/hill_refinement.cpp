@@ -19,19 +19,19 @@ using Complex = std::complex<double>;
 using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
-/// Relative residual at which the subspace counts as found, least factor by which a step must
-/// reduce it, and number of steps that may fail to.
-constexpr double enough = 1e-11;
+/// Least factor by which a step must reduce the relative residual, the residual below which a step
+/// that fails to means round-off, and number of steps that may fail above it.
 constexpr double least_reduction = 0.5;
 constexpr double small = 1e-9;
 constexpr int most_failures = 3;
 constexpr int most_steps = 20;
-constexpr double linear_tolerance = 1e-5;
+/// Relative residual of the linear solves: what Newton's step can use, between these.
+constexpr double finest_solve = 1e-6;
+constexpr double coarsest_solve = 3e-2;
 /// Distance of the shift from the exponents, and largest one at which factors are used again,
 /// relative to the rotor speed.
 constexpr double beside = 0.02;
 constexpr double largest_distance = 0.5;
-
 /// X with orthonormal columns and T with an upper triangle, of the same subspace.
 void to_schur_form(Eigen::MatrixXcd& X, Eigen::MatrixXcd& T) {
   const Index m = X.cols();
@@ -57,91 +57,98 @@ bool HillRefinement::take_shift(Complex exponent) {
   return false;
 }
 
-double HillRefinement::refine(std::vector<HillPair>& pairs) {
-  const auto m = static_cast<Index>(pairs.size());
-  const Index n = pencil_.size();
-  Eigen::MatrixXcd X(n, m);
-  Eigen::MatrixXcd T = Eigen::MatrixXcd::Zero(m, m);
-  for (Index j = 0; j < m; ++j) {
-    X.col(j) = pencil_.vector_of(pairs[static_cast<std::size_t>(j)].series).normalized();
-    T(j, j) = pairs[static_cast<std::size_t>(j)].exponent;
+void HillRefinement::find_residual(Subspace& subspace) {
+  subspace.residual.resize(subspace.X.rows(), subspace.X.cols());
+  subspace.mass.resize(subspace.X.rows(), subspace.X.cols());
+  pencil_.multiply(subspace.X, subspace.X * subspace.T, subspace.residual);
+  pencil_.multiply_mass(subspace.X, subspace.mass);
+  const double scale =
+      std::max((subspace.mass * subspace.T).norm(), pencil_.speed() * subspace.mass.norm());
+  subspace.size = subspace.residual.norm() / scale;
+}
+
+/// Adds C to X and D to T, A C + B (C T + X D) = -residual, X^H C = 0.
+/// @returns false where the linear solves fail
+bool HillRefinement::correct(Subspace& subspace, double tolerance) {
+  auto& [X, T, residual, mass, size] = subspace;
+  if (!take_shift(T.diagonal().mean())) return false;
+  const Index n = X.rows();
+  const Index m = X.cols();
+  Matrix Y(n, m);
+  pencil_.precondition(mass, Y);
+  const Eigen::PartialPivLU<Matrix> complement(X.adjoint() * Y);
+  // A vector has C by column, then D.
+  const auto main_part = [&](auto& vector) { return Eigen::Map<Matrix>(vector.data(), n, m); };
+  const auto border = [&](auto& vector) { return Eigen::Map<Matrix>(vector.data() + n * m, m, m); };
+  const auto in_main_part = [&](const Vector& vector) {
+    return Eigen::Map<const Matrix>(vector.data(), n, m);
+  };
+  const auto in_border = [&](const Vector& vector) {
+    return Eigen::Map<const Matrix>(vector.data() + n * m, m, m);
+  };
+  // A step leaves about the square of the residual.
+  const double accuracy =
+      std::clamp(std::max(0.1 * size, 0.3 * tolerance / size), finest_solve, coarsest_solve);
+  ComplexSolver solver(
+      n * m + m * m,
+      [&](const Vector& x, Vector& y) {
+        y.resize(x.size());
+        const auto C = in_main_part(x);
+        pencil_.multiply(C, C * T + X * in_border(x), main_part(y));
+        border(y) = X.adjoint() * C;
+      },
+      [&](const Vector& x, Vector& y) {
+        y.resize(x.size());
+        auto C = main_part(y);
+        auto D = border(y);
+        pencil_.precondition(in_main_part(x), C);
+        D = complement.solve(X.adjoint() * C - in_border(x));
+        C -= Y * D;
+      },
+      accuracy, "hill_refine_");
+  Vector right = Vector::Zero(n * m + m * m);
+  main_part(right) = -residual;
+  Vector solution;
+  try {
+    solver.solve(right, solution);
+  } catch (const ConvergenceError&) {
+    return false;
   }
+  X += main_part(solution);
+  T += border(solution);
   to_schur_form(X, T);
-  Eigen::MatrixXcd stiffness(n, m);
-  Eigen::MatrixXcd mass(n, m);
-  Eigen::MatrixXcd best_X = X;
-  Eigen::MatrixXcd best_T = T;
+  return true;
+}
+
+double HillRefinement::refine(std::vector<HillPair>& pairs, double tolerance) {
+  const auto m = static_cast<Index>(pairs.size());
+  Subspace subspace{Matrix(pencil_.size(), m), Matrix::Zero(m, m), {}, {}, 0.0};
+  for (Index j = 0; j < m; ++j) {
+    const HillPair& pair = pairs[static_cast<std::size_t>(j)];
+    subspace.X.col(j) = pencil_.vector_of(pair.series).normalized();
+    subspace.T(j, j) = pair.exponent;
+  }
+  to_schur_form(subspace.X, subspace.T);
+  Matrix best_X = subspace.X;
+  Matrix best_T = subspace.T;
   double best = std::numeric_limits<double>::infinity();
-  Vector product;
   int failures = 0;
   for (int step = 0;; ++step) {
-    for (Index j = 0; j < m; ++j) {
-      pencil_.multiply(0.0, X.col(j), product);
-      stiffness.col(j) = product;
-      pencil_.multiply_mass(X.col(j), product);
-      mass.col(j) = product;
-    }
-    const Eigen::MatrixXcd residual = stiffness + mass * T;
-    const double scale = std::max((mass * T).norm(), pencil_.speed() * mass.norm());
-    const double size = residual.norm() / scale;
+    find_residual(subspace);
+    const double size = subspace.size;
     const bool is_better = size < least_reduction * best;
     if (size < best) {
       best = size;
-      best_X = X;
-      best_T = T;
+      best_X = subspace.X;
+      best_T = subspace.T;
     }
     if (!is_better) ++failures;
-    if (!std::isfinite(size) || size <= enough || failures > most_failures || step == most_steps)
+    if (!std::isfinite(size) || size <= tolerance || failures > most_failures || step == most_steps)
       break;
-    if (best <= small && !is_better) break;  // round-off
-    if (!take_shift(T.diagonal().mean())) break;
-    Eigen::MatrixXcd Y(n, m);
-    for (Index j = 0; j < m; ++j) {
-      pencil_.precondition(mass.col(j), product);
-      Y.col(j) = product;
-    }
-    const Eigen::PartialPivLU<Eigen::MatrixXcd> border(X.adjoint() * Y);
-    Complex exponent;
-    Vector inner;
-    ComplexSolver solver(
-        n + m,
-        [&](const Vector& x, Vector& y) {
-          pencil_.multiply(exponent, x.head(n), inner);
-          y.resize(n + m);
-          y.head(n) = inner + mass * x.tail(m);
-          y.tail(m) = X.adjoint() * x.head(n);
-        },
-        [&](const Vector& x, Vector& y) {
-          pencil_.precondition(x.head(n), inner);
-          y.resize(n + m);
-          y.tail(m) = border.solve(X.adjoint() * inner - x.tail(m));
-          y.head(n) = inner - Y * y.tail(m);
-        },
-        linear_tolerance, "hill_refine_");
-    Eigen::MatrixXcd corrections(n, m);
-    Eigen::MatrixXcd changes(m, m);
-    Vector right = Vector::Zero(n + m);
-    Vector solution;
-    try {
-      for (Index j = 0; j < m; ++j) {
-        exponent = T(j, j);
-        right.head(n) = -residual.col(j);
-        if (j > 0) {
-          pencil_.multiply_mass(corrections.leftCols(j) * T.col(j).head(j), product);
-          right.head(n) -= product;
-        }
-        solver.solve(right, solution);
-        corrections.col(j) = solution.head(n);
-        changes.col(j) = solution.tail(m);
-      }
-    } catch (const ConvergenceError&) {
-      break;  // the residual says how far it came
-    }
-    X += corrections;
-    T += changes;
-    to_schur_form(X, T);
+    if (best <= small && !is_better) break;    // round-off
+    if (!correct(subspace, tolerance)) break;  // the residual says how far it came
   }
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(best_T);
+  const Eigen::ComplexEigenSolver<Matrix> solver(best_T);
   for (Index j = 0; j < m; ++j)
     pairs[static_cast<std::size_t>(j)] = {solver.eigenvalues()(j),
                                           pencil_.series_of(best_X * solver.eigenvectors().col(j))};

@@ -18,13 +18,22 @@ class HillRefinement {
  public:
   explicit HillRefinement(HillPencil& pencil) : pencil_(pencil) {}
 
-  /// @returns the relative residual that is left in the pencil
-  double refine(std::vector<HillPair>& pairs);
+  /// Ends as soon as the relative residual in the pencil is below `tolerance`.
+  /// @returns the residual that is left
+  double refine(std::vector<HillPair>& pairs, double tolerance);
 
  private:
   using Complex = std::complex<double>;
+  using Matrix = Eigen::MatrixXcd;
+  struct Subspace {
+    Matrix X, T;
+    Matrix residual, mass;  ///< A X + B X T, B X
+    double size = 0.0;      ///< of the residual, relative
+  };
 
   bool take_shift(Complex exponent);
+  void find_residual(Subspace& subspace);
+  bool correct(Subspace& subspace, double tolerance);
 
   HillPencil& pencil_;
   std::optional<Complex> shift_;

@@ -92,6 +92,7 @@ PetscErrorCode apply_inverse(Mat matrix, Vec x, Vec y) {
       from_real(view.data(), width, context->in);
     }
     context->pencil.drop_absent(context->in);
+    context->right.resize(context->in.size());
     context->pencil.multiply_mass(context->in, context->right);
     context->solver.solve(context->right, context->out);
     const petsc::WriteView view(y);
@@ -123,7 +124,7 @@ HillRegion HillSearch::find(double frequency, int count) {
     throw ConvergenceError("floquet: Hill's method has no factors at " + std::to_string(frequency) +
                            " rad/s");
   ComplexSolver linear(
-      size, [&](const Vector& x, Vector& y) { pencil_.multiply(shift, x, y); },
+      size, [&](const Vector& x, Vector& y) { pencil_.multiply(x, shift * x, y); },
       [&](const Vector& x, Vector& y) { pencil_.precondition(x, y); }, linear_tolerance, "hill_");
   ShiftInvert context{pencil_, linear};
   petsc::Handle<Mat> inverse;
@@ -221,12 +222,12 @@ double HillSearch::contraction_at(Complex s) {
   Vector x = Vector::Constant(pencil_.size(), Complex(1.0, 0.5));
   for (Index i = 0; i < x.size(); ++i) x(i) *= 1.0 + 0.5 * std::sin(static_cast<double>(i));
   pencil_.drop_absent(x);
-  Vector product;
-  Vector y;
+  Vector product(x.size());
+  Vector y(x.size());
   // The first vector has the components that the preconditioner changes.
   for (int step = -1; step < contraction_steps; ++step) {
     if (step >= 0) x = basis.col(step);
-    pencil_.multiply(s, x, product);
+    pencil_.multiply(x, s * x, product);
     pencil_.precondition(product, y);
     y = x - y;
     if (step < 0) {
