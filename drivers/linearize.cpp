@@ -24,7 +24,8 @@ std::string summary(const io::Case& input, const linear::Linearization& linear) 
   return text + "\n\n";
 }
 
-std::string form_table(const linear::Linearization& linear) {
+std::string form_table(const linear::Linearization& linear,
+                       const linear::SeriesResolution& options) {
   Table table;
   table.add_column("form", "", Align::left);
   for (const char* name : {"states", "inputs", "outputs", "harmonics", "residual"})
@@ -38,8 +39,11 @@ std::string form_table(const linear::Linearization& linear) {
                        : scientific(form.series.residual(), 1)});
   if (linear.rotor_speed == 0.0) return table.text();
   return table.text() +
-         "residual: relative residual of the series midway between the azimuths; if it is not "
-         "small,\nmore linearize.azimuths and harmonics are needed\n";
+         "residual: relative residual of the series midway between the azimuths" +
+         (options.automatic_azimuths && options.automatic_harmonics
+              ? "\n"
+              : "; if it is not small,\nlinearize.azimuths and harmonics: auto choose their numbers "
+                "by it\n");
 }
 
 }  // namespace
@@ -70,7 +74,7 @@ void run_linearize(const Job& job) {
                                                          turbine.azimuth, asked.options, progress);
   progress.finish();
   if (!is_first) return;
-  std::string text = summary(job.input, linear) + form_table(linear);
+  std::string text = summary(job.input, linear) + form_table(linear, asked.options.series);
   if (!job.input.linearize.mat_path.empty()) {
     io::write_mat_file(job.input.linearize.mat_path, linear);
     text += "MAT-file: " + job.input.linearize.mat_path + "\n";

@@ -587,12 +587,13 @@ class Analysis {
       set_.shape_times.push_back(system_.period() * static_cast<double>(i) /
                                  static_cast<double>(samples_));
     for (std::size_t m = 0; m < modes_.size(); ++m) {
-      const Candidate& found = modes_[m];
+      Candidate& found = modes_[m];
       Mode mode = found.mode;
       mode.residual = found.residual;
       mode.resolved = found.residual <= largest_residual;
       mode.multiplier = std::exp(found.pair.exponent * system_.period());
       set_.shapes.push_back(shape_of(found.pair.series));
+      found.pair.series.resize(0, 0);  // of a large mesh as large as the shape
       set_.participation.row(static_cast<Index>(m)) = found.participation;
       const bool is_real = std::abs(found.pair.exponent.imag()) < zero_exponent * speed_;
       mode.exponent = found.pair.exponent;

@@ -94,6 +94,48 @@ AzimuthSeries::AzimuthSeries(const std::function<StateSpace(double)>& form, int 
   }
 }
 
+namespace {
+
+constexpr int first_azimuths = 12;
+/// Part of the tolerance that harmonics may take which are left out.
+constexpr double part_of_tail = 0.1;
+
+}  // namespace
+
+AzimuthSeries AzimuthSeries::resolve(const std::function<StateSpace(double)>& form,
+                                     const SeriesResolution& resolution) {
+  const bool all = resolution.automatic_harmonics;
+  int azimuths = resolution.azimuths;
+  if (resolution.automatic_azimuths) {
+    azimuths = first_azimuths;
+    while (!all && azimuths < 2 * resolution.harmonics + 1) azimuths *= 2;
+  }
+  for (;; azimuths *= 2) {
+    const int resolved = (azimuths - 1) / 2;
+    AzimuthSeries series(form, azimuths, all ? resolved : std::min(resolved, resolution.harmonics));
+    const bool is_enough = !resolution.automatic_azimuths ||
+                           series.residual() <= resolution.tolerance ||
+                           2 * azimuths > most_azimuths;
+    if (!is_enough) continue;
+    int harmonics = series.harmonics();
+    if (all)
+      while (harmonics > 0 && series.tail(harmonics - 1) <= part_of_tail * resolution.tolerance)
+        --harmonics;
+    if (harmonics < series.harmonics()) return {form, azimuths, harmonics};
+    return series;
+  }
+}
+
+double AzimuthSeries::tail(int harmonics) const {
+  const StateSpace largest = largest_of(samples_);
+  StateSpace zero;
+  add(zero, 0.0, largest);
+  double sum = 0.0;
+  for (auto i = static_cast<std::size_t>(2 * harmonics + 1); i < coefficients_.size(); ++i)
+    sum += compare(coefficients_[i], zero, largest);
+  return sum;
+}
+
 StateSpace AzimuthSeries::at(double psi) const {
   StateSpace sum = coefficients_.front();
   for (int k = 1; k <= harmonics(); ++k) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
 #include "samara/linear/hill.hpp"
 #include "samara/linear/multiblade.hpp"
 
@@ -108,20 +109,30 @@ class Linearizer {
         observer_(observer),
         has_period_(model.system().period() > 0.0),
         speed_(has_period_ ? 2.0 * std::numbers::pi / model.system().period() : 0.0),
-        azimuths_(has_period_ ? options.azimuths : 1),
-        harmonics_(std::min(options.harmonics, (azimuths_ - 1) / 2)),
+        resolution_(has_period_ ? options.series : SeriesResolution{1, false, 0, false}),
         forms_([this](double psi) { return compute(psi); }),
         periodic_(over_azimuth("state_space", "x_dot = A x + B u, y = C x + D u over the azimuth",
                                model.states(), column_signals(model),
                                model.input_output().outputs(),
-                               [this](double psi) { return forms_.at(psi); })) {}
+                               [this](double psi) { return forms_.at(psi); })) {
+    // All other forms have the same azimuths.
+    resolution_.azimuths = static_cast<int>(periodic_.series.azimuths().size());
+    resolution_.automatic_azimuths = false;
+  }
 
   Linearizer(const Linearizer&) = delete;
   Linearizer& operator=(const Linearizer&) = delete;
 
   Linearization run() {
     result_.rotor_speed = speed_;
-    result_.series_azimuths = azimuths_;
+    result_.series_azimuths = resolution_.azimuths;
+    if (const double residual = periodic_.series.residual();
+        has_period_ && options_.series.automatic_azimuths && residual > resolution_.tolerance)
+      observer_.note("note: the residual of the series, " + general(residual, 2) +
+                     ", is above linearize.auto_tolerance with " +
+                     std::to_string(resolution_.azimuths) + " azimuths" +
+                     (options_.series.automatic_harmonics ? ", the most that `auto` takes"
+                                                          : "; hint: linearize.harmonics: auto"));
     result_.azimuths = azimuths();
     result_.is_constant =
         std::max(periodic_.series.variation(), periodic_.series.residual()) < constant_tolerance;
@@ -139,8 +150,10 @@ class Linearizer {
   double time_of(double psi) const { return has_period_ ? (psi - start_azimuth_) / speed_ : 0.0; }
 
   StateSpace compute(double psi) const {
-    const auto all = static_cast<long>(azimuths_) + static_cast<long>(options_.at.size());
-    observer_.progress("linearize", std::min(static_cast<long>(forms_.size()) + 1, all), all);
+    const auto done = static_cast<long>(forms_.size()) + 1;
+    const auto all =
+        static_cast<long>(resolution_.azimuths) + static_cast<long>(options_.at.size());
+    observer_.progress("linearize", done, std::max(done, all));
     return model_.state_space(time_of(psi));
   }
 
@@ -158,7 +171,7 @@ class Linearizer {
                          const std::vector<system::Signal>& outputs,
                          const std::function<StateSpace(double)>& form_at) const {
     NamedForm form{name,   description, states,
-                   inputs, outputs,     AzimuthSeries(form_at, azimuths_, harmonics_)};
+                   inputs, outputs,     AzimuthSeries::resolve(form_at, resolution_)};
     if (!has_own_azimuths()) form.at_azimuths = form.series.samples();
     if (has_own_azimuths())
       for (const double psi : options_.at) form.at_azimuths.push_back(form_at(psi));
@@ -204,7 +217,7 @@ class Linearizer {
   }
 
   void add_lyapunov_floquet() {
-    const LyapunovFloquet floquet(periodic_.series, speed_, azimuths_,
+    const LyapunovFloquet floquet(periodic_.series, speed_, resolution_.azimuths,
                                   options_.lyapunov_floquet_states, options_.lyapunov_floquet_steps,
                                   model_.subspace().first_order());
     if (!floquet.remark().empty()) observer_.note("note: " + floquet.remark());
@@ -243,8 +256,7 @@ class Linearizer {
   analysis::Observer& observer_;
   bool has_period_;
   double speed_;
-  int azimuths_;
-  int harmonics_;
+  SeriesResolution resolution_;
   Remembered forms_;
   NamedForm periodic_;
   Linearization result_;

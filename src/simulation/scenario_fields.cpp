@@ -380,21 +380,25 @@ void declare_forms(Visitor& fields, linear::LinearizeOptions& options) {
 void declare_linearize(Visitor& fields, const model::TurbineDefinition& turbine,
                        LinearizeSetup& linearize) {
   linear::LinearizeOptions& options = linearize.options;
-  fields.integer(
-      {"azimuths", "", integers(1, most_azimuths),
-       "azimuths, equally spaced, from which the series are made; a parked rotor has one"},
-      options.azimuths);
+  linear::SeriesResolution& series = options.series;
+  fields.integer({"azimuths", "", integers(1, most_azimuths),
+                  "azimuths, equally spaced, from which the series are made, or `auto`: 12, 24, 48 "
+                  "... 768, until the residual of the series midway between them is small enough; "
+                  "a parked rotor has one"},
+                 series.azimuths, {{"auto", &series.automatic_azimuths}});
   fields.integer({"harmonics", "", integers(0, fields::most_harmonics),
-                  "of the series in the azimuth; at most (azimuths - 1)/2. The table shows the "
-                  "error of the series between the azimuths"},
-                 options.harmonics);
-  if (2 * options.harmonics + 1 > options.azimuths) {
-    if (fields.given("harmonics"))
-      fields.refuse("harmonics", "need at least " + std::to_string(2 * options.harmonics + 1) +
-                                     " linearize.azimuths, there are " +
-                                     std::to_string(options.azimuths));
-    if (fields.reads()) options.harmonics = (options.azimuths - 1) / 2;
-  }
+                  "of the series in the azimuth, at most (azimuths - 1)/2, or `auto`: all that are "
+                  "not small. The table shows the residual of the series"},
+                 series.harmonics, {{"auto", &series.automatic_harmonics}});
+  fields.number({"auto_tolerance", "", fields::tolerance,
+                 "of `azimuths: auto` and `harmonics: auto`: the residual that is small enough, "
+                 "relative to the largest entries of row and column"},
+                series.tolerance);
+  if (!series.automatic_azimuths && !series.automatic_harmonics &&
+      2 * series.harmonics + 1 > series.azimuths)
+    fields.refuse("harmonics", "need at least " + std::to_string(2 * series.harmonics + 1) +
+                                   " linearize.azimuths, there are " +
+                                   std::to_string(series.azimuths));
   fields.name_list(Field("inputs", "names of the table below").or_else("all"), linearize.inputs);
   fields.name_list(Field("outputs", "[channels](channels.md) in their units")
                        .or_else("all but those of stations"),

@@ -10,6 +10,15 @@
 
 namespace samara::linear {
 
+/// Sampling and length of a series.
+struct SeriesResolution {
+  int azimuths = 24;
+  bool automatic_azimuths = true;   ///< as many as the residual needs, instead
+  int harmonics = 8;                ///< at most (azimuths - 1)/2
+  bool automatic_harmonics = true;  ///< all that are not small, instead
+  double tolerance = 1e-6;          ///< residual that is small enough
+};
+
 /// A0 + sum_k Ac_k cos(k psi) + As_k sin(k psi), and likewise B, C, D.
 class AzimuthSeries {
  public:
@@ -17,6 +26,13 @@ class AzimuthSeries {
   /// between some of them for the residual. For a form that does not change, 1 azimuth and 0
   /// harmonics are enough.
   AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths, int harmonics);
+
+  /// Chooses what `resolution` leaves open. Azimuths: 12, 24, ... at most `most_azimuths`, until
+  /// the residual is at most the tolerance. Harmonics: the fewest of those that the azimuths
+  /// resolve whose tail is below a tenth of it. `form` is asked for the same azimuths again.
+  static AzimuthSeries resolve(const std::function<StateSpace(double)>& form,
+                               const SeriesResolution& resolution);
+  static constexpr int most_azimuths = 768;
 
   /// Series of given coefficients, A0 Ac_1 As_1 Ac_2 ..., with the residual of their fit.
   explicit AzimuthSeries(std::vector<StateSpace> coefficients, double residual = 0.0)
@@ -46,6 +62,9 @@ class AzimuthSeries {
   std::vector<StateSpace> samples_;
   std::vector<StateSpace> coefficients_;
   double residual_ = 0.0;
+
+  /// Sum of the sizes of all harmonics beyond a number, measured as the residual is.
+  double tail(int harmonics) const;
 };
 
 }  // namespace samara::linear

@@ -13,8 +13,7 @@
 namespace samara::linear {
 
 struct LinearizeOptions {
-  int azimuths = 24;  ///< equally spaced, from which the series are made
-  int harmonics = 8;  ///< of the series, at most (azimuths - 1)/2
+  SeriesResolution series = {};  ///< of the equally spaced azimuths and of the harmonics
   bool descriptor = false;
   bool state_space = true;
   bool multiblade = false;
