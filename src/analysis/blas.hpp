@@ -1,4 +1,5 @@
-// BLAS and LAPACK for real and complex blocks under one name each.
+// BLAS and LAPACK for real and complex blocks under one name each. They count operations for
+// PETSc's -log_view.
 #pragma once
 
 #include <complex>
@@ -35,12 +36,20 @@ void zgetri_(const Integer*, Complex*, const Integer*, const Integer*, Complex*,
 }
 // NOLINTEND(readability-identifier-naming)
 
+/// Multiplications and additions of two numbers each.
+template <class Scalar>
+void count_operations(double pairs) {
+  constexpr double in_reals = sizeof(Scalar) == sizeof(double) ? 2.0 : 8.0;
+  PetscLogFlops(in_reals * pairs);
+}
+
 // Products with one column, and solves for one, do not pay for the copies that those with many
 // make.
 
 /// C = C - A B; A: m x k, B: k x n.
 inline void subtract_product(Integer m, Integer n, Integer k, const double* a, Integer lda,
                              const double* b, Integer ldb, double* c, Integer ldc) {
+  count_operations<double>(1.0 * m * n * k);
   const double minus = -1.0;
   const double one = 1.0;
   const Integer step = 1;
@@ -51,6 +60,7 @@ inline void subtract_product(Integer m, Integer n, Integer k, const double* a, I
 }
 inline void subtract_product(Integer m, Integer n, Integer k, const Complex* a, Integer lda,
                              const Complex* b, Integer ldb, Complex* c, Integer ldc) {
+  count_operations<Complex>(1.0 * m * n * k);
   const Complex minus = -1.0;
   const Complex one = 1.0;
   const Integer step = 1;
@@ -62,11 +72,13 @@ inline void subtract_product(Integer m, Integer n, Integer k, const Complex* a, 
 
 /// B = B T^-1 with the upper (`part` 'U') or the unit lower ('L') triangle T of `a`; all n x n.
 inline void divide_by_triangle(char part, Integer n, const double* a, double* b) {
+  count_operations<double>(0.5 * n * n * n);
   const double one = 1.0;
   const char* diagonal = part == 'L' ? "U" : "N";
   BLAStrsm_("R", &part, "N", diagonal, &n, &n, &one, a, &n, b, &n);
 }
 inline void divide_by_triangle(char part, Integer n, const Complex* a, Complex* b) {
+  count_operations<Complex>(0.5 * n * n * n);
   const Complex one = 1.0;
   const char* diagonal = part == 'L' ? "U" : "N";
   ztrsm_("R", &part, "N", diagonal, &n, &n, &one, a, &n, b, &n);
@@ -74,11 +86,13 @@ inline void divide_by_triangle(char part, Integer n, const Complex* a, Complex* 
 
 /// Factors an n x n matrix. @returns 0 unless a pivot is zero
 inline Integer factor(Integer n, double* a, Integer* interchanges) {
+  count_operations<double>(1.0 / 3.0 * n * n * n);
   Integer status = 0;
   LAPACKgetrf_(&n, &n, a, &n, interchanges, &status);
   return status;
 }
 inline Integer factor(Integer n, Complex* a, Integer* interchanges) {
+  count_operations<Complex>(1.0 / 3.0 * n * n * n);
   Integer status = 0;
   zgetrf_(&n, &n, a, &n, interchanges, &status);
   return status;
@@ -86,6 +100,7 @@ inline Integer factor(Integer n, Complex* a, Integer* interchanges) {
 
 /// The inverse of an n x n matrix, in place of the result of factor().
 inline void invert(Integer n, Complex* factors, const Integer* interchanges) {
+  count_operations<Complex>(2.0 / 3.0 * n * n * n);
   constexpr Integer block = 32;
   std::vector<Complex> work(static_cast<std::size_t>(block * n));
   const auto length = static_cast<Integer>(work.size());
@@ -116,6 +131,7 @@ inline void solve_columns(Integer n, Integer m, const Complex* factors, const In
 /// Solves for the columns of the n x m matrix b with the result of factor().
 template <class Scalar>
 void solve(Integer n, Integer m, const Scalar* factors, const Integer* interchanges, Scalar* b) {
+  count_operations<Scalar>(1.0 * n * n * m);
   if (m != 1) return solve_columns(n, m, factors, interchanges, b);
   for (Integer i = 0; i < n; ++i)
     if (const Integer other = interchanges[i] - 1; other != i) std::swap(b[i], b[other]);

@@ -39,6 +39,10 @@ constexpr double largest_round_off = 1e-2;
 /// Largest share of the kinetic energy of a resolved mode in harmonics beyond that phase. A mode
 /// with a larger share is a mixture of very fast modes, whose multipliers are all near -1 or 1.
 constexpr double largest_fast_share = 0.01;
+/// Error by the step of a resolved mode, relative to the distance of the exponents of a multiplier,
+/// i Q Omega. Where the error is larger, modes mix whose exponents are next to each other up to this
+/// distance, and neither their harmonics nor their number below a frequency are known.
+constexpr double largest_branch_error = 0.05;
 /// Relative to an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
 constexpr double least_imaginary = 1e-6;
 /// Replaces an exponent that belongs to no free motion.
@@ -619,7 +623,8 @@ class Analysis {
     }
     set_growth_error(mode, spread, may_be_free(m) ? exponents_[m] : far_from_zero);
     mode.resolved = slow && in_reach_at(exponents_[m], mode.harmonic) &&
-                    mode.residual <= largest_residual && mode.step_error <= accuracy_;
+                    mode.residual <= largest_residual && mode.step_error <= accuracy_ &&
+                    spread.modulus <= largest_branch_error * sectors_ * speed_;
   }
 
   /// Replaces mode m by its conjugate, which represents the pair from then on.

@@ -336,6 +336,7 @@ void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd&
           sampled.tail(samples) * rates.col(first + place.column).array();
   }
   y.noalias() = projection_ * sums;
+  count_operations(2, x.cols());
   drop_absent(y);
 }
 
@@ -349,7 +350,16 @@ void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& 
       sums.col(first + place.row).array() += sampled * rates.col(first + place.column).array();
   }
   y.noalias() = projection_ * sums;
+  count_operations(1, w.cols());
   drop_absent(y);
+}
+
+/// Of products with K and M (2 parts) or M alone, for so many columns of coefficients.
+void HarmonicTangents::count_operations(int parts, Eigen::Index columns) const {
+  const auto samples = static_cast<double>(values_of_.rows());
+  const auto entries = static_cast<double>(places_.size()) / static_cast<double>(size_);
+  PetscLogFlops(2.0 * samples * static_cast<double>(columns) *
+                (parts * (entries + width_) + width_));
 }
 
 void HarmonicTangents::drop_absent(Eigen::MatrixXd& rows) const {

@@ -103,6 +103,7 @@ class HarmonicTangents {
   void find_sectors(const Pattern& whole);
   void find_users(const Pattern& whole);
   void find_followers();
+  void count_operations(int parts, Eigen::Index columns) const;
   /// Sets the coefficients of harmonics that an unknown's row does not have to zero.
   void drop_absent(Eigen::MatrixXd& rows) const;
   /// Places of the entries of a tangent, in the order of MatrixEntries.

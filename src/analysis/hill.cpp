@@ -93,8 +93,15 @@ class Analysis {
         parts_(find_state_parts(system)) {}
 
   std::optional<Floquet> run() {
-    if (!search()) return std::nullopt;
-    refine();
+    {
+      const petsc::Stage stage("Hill: search");
+      if (!search()) return std::nullopt;
+    }
+    {
+      const petsc::Stage stage("Hill: refinement");
+      refine();
+    }
+    const petsc::Stage stage("Hill: identification");
     choose();
     return finish();
   }

@@ -444,6 +444,7 @@ void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd&
   const auto lda = static_cast<PetscBLASInt>(a.outerStride());
   const PetscScalar one = 1.0;
   const PetscScalar zero = 0.0;
+  PetscLogFlops(2.0 * m * n * k);
   BLASgemm_("N", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &k, &zero, c.data(), &m);
 }
 
@@ -455,6 +456,7 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 
 void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c) {
+  PetscLogFlops(2.0 * static_cast<double>(a.nonZeros() * b.cols()));
   constexpr int group = 8;  // columns at once
   using Group = Eigen::Array<double, group, 1>;
   std::vector<Group> values(static_cast<std::size_t>(b.rows()), Group::Zero());

@@ -1,5 +1,6 @@
 // Floquet's modes are the same at every time step and damping, within their estimates: none is lost
 // where a step annihilates a decay (lambda dt / 2 = -1), none is invented.
+#include <algorithm>
 #include <cstdlib>
 
 #include <boost/test/unit_test.hpp>
@@ -124,6 +125,43 @@ BOOST_AUTO_TEST_CASE(modes_are_the_same_at_two_time_steps_with_any_damping) {
         const std::string setting = "blades.damping=" + damping;
         require_same(run(scan, 300, {setting}), run(scan, 800, {setting}));
       }
+}
+
+BOOST_AUTO_TEST_CASE(modes_that_a_coarse_step_mixes_are_not_resolved) {
+  // One blade: modes have wide spectra of harmonics. With 36 steps three exponents that are next to
+  // each other up to multiples of i Omega mix, and one of them had the harmonic of another.
+  const ScanCase scan{
+      "IEA 15 MW with one blade",
+      std::string(SAMARA_SOURCE_DIR) + "/inputs/iea15mw/land.yaml",
+      {"blades.count=1", "shaft.tilt_deg=20", "shaft.speed_rpm=12", "trim.harmonics=24"}};
+  const auto below = [](const analysis::Floquet& floquet, double limit) {
+    std::vector<const analysis::Mode*> modes;
+    for (const analysis::Mode& mode : floquet.set.modes)
+      if (mode.resolved && std::abs(mode.exponent) < limit) modes.push_back(&mode);
+    std::sort(modes.begin(), modes.end(), [](const analysis::Mode* a, const analysis::Mode* b) {
+      return std::abs(a->exponent) < std::abs(b->exponent);
+    });
+    return modes;
+  };
+  const auto run_with_order_6 = [&scan](int steps) {
+    const io::Case input = io::read_case(scan.path, scan.settings);
+    return floquet_of(input.turbine, steps, input.floquet.period, input.trim, PETSC_COMM_SELF, 6);
+  };
+  const analysis::Floquet fine = run_with_order_6(200);
+  for (const int steps : {36, 50, 72}) {
+    const analysis::Floquet found = run_with_order_6(steps);
+    const double limit = 0.97 * found.set.reach;
+    const std::vector<const analysis::Mode*> modes = below(found, limit);
+    const std::vector<const analysis::Mode*> wanted = below(fine, limit);
+    BOOST_TEST_CONTEXT(steps << " steps, " << modes.size() << " modes") {
+      BOOST_TEST(modes.size() >= 6u);
+      BOOST_REQUIRE(modes.size() == wanted.size());
+      for (std::size_t i = 0; i < modes.size(); ++i)
+        BOOST_TEST(std::abs(modes[i]->exponent - wanted[i]->exponent) <
+                       error_of(*modes[i]) + error_of(*wanted[i]),
+                   modes[i]->label << " " << modes[i]->exponent << " and " << wanted[i]->exponent);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(velocities_that_constraints_forbid_make_no_multiplier) {
