@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include <Eigen/QR>
+
 #include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
@@ -43,6 +45,16 @@ constexpr double largest_residual = 1e-6;
 constexpr double first_tolerance = 1e-7;
 constexpr double last_tolerance = 1e-10;
 constexpr double of_missing_harmonics = 10.0;
+/// Least cosine of the angle between the eigenvectors of a mode with two numbers of harmonics, and
+/// the distance, relative to the rotor speed, in which other eigenpairs are searched where it is
+/// less; their number.
+constexpr double least_overlap = 0.95;
+constexpr double neighbourhood = 0.3;
+constexpr int neighbours = 8;
+/// Least correlation of an eigenvector with one that is a mixture of several.
+constexpr double part_of_mixture = 0.1;
+/// Correlation of equal eigenvectors.
+constexpr double same_vector = 0.9;
 /// Correlation of the largest harmonics of an eigenpair and of its copy.
 constexpr double same_shape = 0.7;
 /// Harmonics at the edges of a series, and their part in a copy.
@@ -79,6 +91,14 @@ struct Candidate {
 
   /// An eigenpair of the truncated series.
   bool is_found() const { return truncated_residual <= largest_residual; }
+};
+
+/// Eigenpairs with neighbouring exponents.
+struct Group {
+  std::vector<HillPair> pairs;
+  double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
+  double residual = std::numeric_limits<double>::infinity();            ///< in the time domain
+  bool is_neighbour = false;  ///< found with the present harmonics: may be a copy of another
 };
 
 class Analysis {
@@ -226,19 +246,15 @@ class Analysis {
     return std::abs(candidate.mode.harmonic) <= nearest_;
   }
 
-  /// Groups of neighbouring exponents among those that `chosen` says.
-  template <class Chosen>
-  std::vector<std::vector<HillPair>> groups_of(const Chosen& chosen) const {
-    std::vector<HillPair> pairs;
-    for (const Candidate& candidate : found_) {
-      if (!chosen(candidate)) continue;
-      const HillPair& pair = candidate.pair;
-      pairs.push_back(pair);
-      // The conjugate of a slow motion belongs to its group: both may be a double zero.
+  /// Groups of neighbouring exponents.
+  std::vector<Group> groups_of(std::vector<HillPair> pairs) const {
+    // The conjugate of a slow motion belongs to its group: both may be a double zero.
+    for (std::size_t i = 0, count = pairs.size(); i < count; ++i) {
+      const HillPair pair = pairs[i];
       if (pair.exponent.imag() > 0.0 && std::abs(pair.exponent) < same_group * speed_)
         pairs.push_back({std::conj(pair.exponent), pair.series.colwise().reverse().conjugate()});
     }
-    std::vector<std::vector<HillPair>> groups;
+    std::vector<Group> groups;
     std::vector<char> taken(pairs.size(), 0);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (taken[i]) continue;
@@ -252,7 +268,7 @@ class Analysis {
             group.push_back(j);
           }
       groups.emplace_back();
-      for (const std::size_t j : group) groups.back().push_back(pairs[j]);
+      for (const std::size_t j : group) groups.back().pairs.push_back(pairs[j]);
     }
     return groups;
   }
@@ -260,7 +276,7 @@ class Analysis {
   /// Refines the eigenpairs that are identified at their own harmonic, and those that should have a
   /// copy with this property in the region but have none.
   void refine() {
-    refine(groups_of([this](const Candidate& candidate) {
+    const auto is_chosen = [this](const Candidate& candidate) {
       if (is_centred(candidate)) return true;
       const int shift = candidate.mode.harmonic > 0 ? sectors_ : -sectors_;
       const Complex copy = candidate.pair.exponent + Complex(0.0, shift * speed_);
@@ -271,29 +287,31 @@ class Analysis {
                       std::min(std::abs(copy - exponent), std::abs(copy - std::conj(exponent))) <
                           same_copy * speed_;
              });
-    }));
+    };
+    std::vector<HillPair> pairs;
+    for (const Candidate& candidate : found_)
+      if (is_chosen(candidate)) pairs.push_back(candidate.pair);
+    found_.clear();
+    refine(groups_of(std::move(pairs)));
   }
 
   /// Adds harmonics until the residuals are small, or do not become smaller.
-  void refine(std::vector<std::vector<HillPair>> groups) {
-    std::vector<double> before(groups.size(), std::numeric_limits<double>::infinity());
+  void refine(std::vector<Group> groups) {
     std::vector<Candidate> doubtful;
     harmonics_ = std::max(least_harmonics, solution_.harmonics());
     int added = 0;  // harmonics, since the attempt before
     double tolerance = first_tolerance;
     while (!groups.empty()) {
       HillPencil pencil(system_, solution_, harmonics_);
-      HillRefinement refinement(pencil);
       samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
-      std::vector<Candidate> refined = refine(refinement, groups, tolerance);
-      if (tolerance > last_tolerance) refine_further(refinement, groups, refined);
+      std::vector<Candidate> refined = refine(pencil, groups, tolerance);
+      if (tolerance > last_tolerance) refine_further(pencil, groups, refined);
       tolerance = last_tolerance;
       double largest = 0.0;
-      std::vector<std::vector<HillPair>> left;
-      std::vector<double> residuals;
+      std::vector<Group> left;
       auto first = refined.begin();
-      for (std::size_t g = 0; g < groups.size(); ++g) {
-        const auto end = first + static_cast<std::ptrdiff_t>(groups[g].size());
+      for (Group& group : groups) {
+        const auto end = first + static_cast<std::ptrdiff_t>(group.pairs.size());
         const double residual =
             std::max_element(first, end, [](const Candidate& a, const Candidate& b) {
               return a.residual < b.residual;
@@ -303,21 +321,22 @@ class Analysis {
           describe(*it);
           is_own = is_own || is_centred(*it);
         }
-        const bool is_last =
-            harmonics_ == most_harmonics || !is_own || !first->is_found() ||
-            (residual <= largest_residual && residual > std::pow(slowest_decay, added) * before[g]);
+        // A neighbour is known by its harmonic as soon as it is resolved.
+        const bool is_copy = !is_own && (!group.is_neighbour || residual <= largest_residual);
+        const bool is_last = harmonics_ == most_harmonics || is_copy || !first->is_found() ||
+                             (residual <= largest_residual &&
+                              residual > std::pow(slowest_decay, added) * group.residual);
         if (residual <= wanted_residual || is_last) {
           for (auto it = first; it != end; ++it)
             (it->residual <= largest_residual ? modes_ : doubtful).push_back(std::move(*it));
         } else {
           largest = std::max(largest, residual);
-          left.push_back(groups[g]);
-          residuals.push_back(residual);
+          group.residual = residual;
+          left.push_back(std::move(group));
         }
         first = end;
       }
       groups = std::move(left);
-      before = std::move(residuals);
       // The residual falls by the same factor with each harmonic.
       if (!groups.empty()) {
         const double factor = std::log(0.3 * wanted_residual) / std::log(std::min(largest, 0.9));
@@ -334,47 +353,111 @@ class Analysis {
         modes_.push_back(std::move(candidate));
   }
 
-  /// Eigenpairs of all groups, with their residuals in the time domain.
-  std::vector<Candidate> refine(HillRefinement& refinement,
-                                std::vector<std::vector<HillPair>>& groups, double tolerance) {
-    std::vector<Candidate> refined;
-    for (std::vector<HillPair>& group : groups) {
-      const double left = refinement.refine(group, tolerance);
-      for (const HillPair& pair : group) {
-        refined.push_back({pair, {}, {}});
-        refined.back().truncated_residual = left;
-      }
+  /// Refines all groups. Where the eigenvectors change much, another eigenpair next to it may have
+  /// taken the place of the one that was meant: all that are near take the place of the group.
+  /// @returns their eigenpairs with residuals in the time domain
+  std::vector<Candidate> refine(HillPencil& pencil, std::vector<Group>& groups, double tolerance) {
+    HillRefinement refinement(pencil);
+    std::vector<Group> kept;
+    std::vector<Group> changed;
+    for (Group& group : groups) {
+      const Group before = group;
+      const HillRefinement::Result result = refinement.refine(group.pairs, tolerance);
+      group.truncated_residual = result.residual;
+      if (result.overlap >= least_overlap)
+        kept.push_back(std::move(group));
+      else
+        changed.push_back(before);
     }
-    find_residuals(refined);
-    return refined;
+    for (const Group& group : changed)
+      for (Group& near : neighbours_of(pencil, group)) {
+        near.truncated_residual = refinement.refine(near.pairs, tolerance).residual;
+        if (std::all_of(near.pairs.begin(), near.pairs.end(), [&](const HillPair& pair) {
+              return std::any_of(kept.begin(), kept.end(),
+                                 [&](const Group& other) { return has(other, pair); });
+            }))
+          continue;
+        std::erase_if(kept, [&](const Group& other) {
+          return std::any_of(near.pairs.begin(), near.pairs.end(),
+                             [&](const HillPair& pair) { return has(other, pair); });
+        });
+        kept.push_back(std::move(near));
+      }
+    groups = std::move(kept);
+    return candidates_of(groups);
+  }
+
+  /// Eigenpairs next to those of a group that have a part in them.
+  std::vector<Group> neighbours_of(HillPencil& pencil, const Group& group) {
+    const auto distance = [&group](const HillPair& pair) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const HillPair& own : group.pairs)
+        nearest = std::min(nearest, std::abs(pair.exponent - own.exponent));
+      return nearest;
+    };
+    const double frequency = std::max(group.pairs.front().exponent.imag(), neighbourhood * speed_);
+    std::vector<HillPair> near = HillSearch(pencil).find(frequency, neighbours).pairs;
+    std::erase_if(near, [&](const HillPair& pair) {
+      if (distance(pair) > neighbourhood * speed_) return true;
+      const Eigen::VectorXcd vector = pencil.vector_of(pair.series).normalized();
+      return std::none_of(group.pairs.begin(), group.pairs.end(), [&](const HillPair& own) {
+        return std::abs(vector.dot(pencil.vector_of(own.series).normalized())) > part_of_mixture;
+      });
+    });
+    std::vector<Group> groups = groups_of(std::move(near));
+    for (Group& one : groups) one.is_neighbour = true;
+    return groups;
+  }
+
+  /// Whether a group has an eigenpair.
+  bool has(const Group& group, const HillPair& pair) const {
+    if (std::none_of(group.pairs.begin(), group.pairs.end(), [&](const HillPair& own) {
+          return std::abs(own.exponent - pair.exponent) < same_found * speed_;
+        }))
+      return false;
+    Eigen::MatrixXcd own(pair.series.size(), static_cast<Index>(group.pairs.size()));
+    for (std::size_t j = 0; j < group.pairs.size(); ++j)
+      own.col(static_cast<Index>(j)) = group.pairs[j].series.reshaped();
+    const Eigen::VectorXcd vector = pair.series.reshaped();
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(own);
+    return (own * qr.solve(vector)).norm() > same_vector * vector.norm();
+  }
+
+  std::vector<Candidate> candidates_of(const std::vector<Group>& groups) const {
+    std::vector<Candidate> candidates;
+    for (const Group& group : groups)
+      for (const HillPair& pair : group.pairs) {
+        candidates.push_back({pair, {}, {}});
+        candidates.back().truncated_residual = group.truncated_residual;
+      }
+    find_residuals(candidates);
+    return candidates;
   }
 
   /// Refines the groups with enough harmonics to the last tolerance.
-  void refine_further(HillRefinement& refinement, std::vector<std::vector<HillPair>>& groups,
+  void refine_further(HillPencil& pencil, std::vector<Group>& groups,
                       std::vector<Candidate>& refined) {
-    std::vector<std::size_t> numbers;
-    std::vector<std::vector<HillPair>> chosen;
+    HillRefinement refinement(pencil);
+    std::vector<Group> chosen;
     std::vector<std::size_t> begins;
     std::size_t begin = 0;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (Group& group : groups) {
       const auto first = refined.begin() + static_cast<std::ptrdiff_t>(begin);
-      if (std::all_of(first, first + static_cast<std::ptrdiff_t>(groups[g].size()),
+      if (std::all_of(first, first + static_cast<std::ptrdiff_t>(group.pairs.size()),
                       [](const Candidate& one) {
                         return one.residual <= of_missing_harmonics * one.truncated_residual;
                       })) {
-        numbers.push_back(g);
-        chosen.push_back(groups[g]);
+        group.truncated_residual = refinement.refine(group.pairs, last_tolerance).residual;
+        chosen.push_back(group);
         begins.push_back(begin);
       }
-      begin += groups[g].size();
+      begin += group.pairs.size();
     }
-    std::vector<Candidate> better = refine(refinement, chosen, last_tolerance);
+    std::vector<Candidate> better = candidates_of(chosen);
     auto next = better.begin();
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      groups[numbers[i]] = chosen[i];
-      for (std::size_t j = 0; j < chosen[i].size(); ++j)
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      for (std::size_t j = 0; j < chosen[i].pairs.size(); ++j)
         refined[begins[i] + j] = std::move(*next++);
-    }
   }
 
   /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut

@@ -86,6 +86,12 @@ HillPencil::Complex HillPencil::exponent_of(const Vector& x) {
   return -mass.dot(stiffness) / mass.squaredNorm();
 }
 
+bool HillPencil::set_shift(Complex s) {
+  shift_.reset();
+  if (preconditioner_.factor(rows_, columns_, s)) shift_ = s;
+  return shift_.has_value();
+}
+
 void HillPencil::precondition(Input right, Output x) {
   preconditioner_.solve(Eigen::Map<const Matrix>(right.data(), width(), right.cols() * unknowns()),
                         Eigen::Map<Matrix>(x.data(), width(), right.cols() * unknowns()));

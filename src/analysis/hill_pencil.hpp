@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,7 +49,9 @@ class HillPencil {
 
   /// Approximates (A + s B)^-1 from now on.
   /// @returns false where it is singular to working precision
-  bool set_shift(Complex s) { return preconditioner_.factor(rows_, columns_, s); }
+  bool set_shift(Complex s);
+  /// The shift of precondition(), if there is one.
+  std::optional<Complex> shift() const { return shift_; }
   void precondition(Input right, Output x);
   /// Of the approximation at a complex shift, up to a constant and multiples of 2 pi i.
   Complex log_determinant() const { return preconditioner_.log_determinant(); }
@@ -70,6 +73,7 @@ class HillPencil {
 
   HarmonicTangents tangents_;
   HarmonicPreconditioner preconditioner_;
+  std::optional<Complex> shift_;
   Eigen::VectorXd rows_, columns_;
   Eigen::MatrixXd values_, rates_, products_;  ///< real parts, then imaginary parts
 };

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include "samara/base/error.hpp"
 
@@ -50,11 +51,10 @@ void to_schur_form(Eigen::MatrixXcd& X, Eigen::MatrixXcd& T) {
 /// @returns false where the preconditioner has no factors
 bool HillRefinement::take_shift(Complex exponent) {
   const double speed = pencil_.speed();
-  if (shift_ && std::abs(*shift_ - exponent) < largest_distance * speed) return true;
-  shift_ = exponent + Complex(beside * speed, exponent.imag() == 0.0 ? beside * speed : 0.0);
-  if (pencil_.set_shift(*shift_)) return true;
-  shift_.reset();
-  return false;
+  const std::optional<Complex> shift = pencil_.shift();
+  if (shift && std::abs(*shift - exponent) < largest_distance * speed) return true;
+  return pencil_.set_shift(exponent +
+                           Complex(beside * speed, exponent.imag() == 0.0 ? beside * speed : 0.0));
 }
 
 void HillRefinement::find_residual(Subspace& subspace) {
@@ -120,7 +120,7 @@ bool HillRefinement::correct(Subspace& subspace, double tolerance) {
   return true;
 }
 
-double HillRefinement::refine(std::vector<HillPair>& pairs, double tolerance) {
+HillRefinement::Result HillRefinement::refine(std::vector<HillPair>& pairs, double tolerance) {
   const auto m = static_cast<Index>(pairs.size());
   Subspace subspace{Matrix(pencil_.size(), m), Matrix::Zero(m, m), {}, {}, 0.0};
   for (Index j = 0; j < m; ++j) {
@@ -129,6 +129,7 @@ double HillRefinement::refine(std::vector<HillPair>& pairs, double tolerance) {
     subspace.T(j, j) = pair.exponent;
   }
   to_schur_form(subspace.X, subspace.T);
+  const Matrix before = subspace.X;
   Matrix best_X = subspace.X;
   Matrix best_T = subspace.T;
   double best = std::numeric_limits<double>::infinity();
@@ -152,7 +153,7 @@ double HillRefinement::refine(std::vector<HillPair>& pairs, double tolerance) {
   for (Index j = 0; j < m; ++j)
     pairs[static_cast<std::size_t>(j)] = {solver.eigenvalues()(j),
                                           pencil_.series_of(best_X * solver.eigenvectors().col(j))};
-  return best;
+  return {best, Eigen::JacobiSVD<Matrix>(before.adjoint() * best_X).singularValues().minCoeff()};
 }
 
 }  // namespace samara::analysis

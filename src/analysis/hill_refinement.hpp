@@ -2,7 +2,6 @@
 #pragma once
 
 #include <complex>
-#include <optional>
 #include <vector>
 
 #include "hill_pencil.hpp"
@@ -18,9 +17,14 @@ class HillRefinement {
  public:
   explicit HillRefinement(HillPencil& pencil) : pencil_(pencil) {}
 
+  struct Result {
+    double residual = 0.0;  ///< relative, in the pencil
+    /// Smallest cosine of the angles between the subspaces before and after. Where it is small,
+    /// another eigenpair may have been found.
+    double overlap = 0.0;
+  };
   /// Ends as soon as the relative residual in the pencil is below `tolerance`.
-  /// @returns the residual that is left
-  double refine(std::vector<HillPair>& pairs, double tolerance);
+  Result refine(std::vector<HillPair>& pairs, double tolerance);
 
  private:
   using Complex = std::complex<double>;
@@ -36,7 +40,6 @@ class HillRefinement {
   bool correct(Subspace& subspace, double tolerance);
 
   HillPencil& pencil_;
-  std::optional<Complex> shift_;
 };
 
 }  // namespace samara::analysis
