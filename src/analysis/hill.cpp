@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include <Eigen/QR>
 
@@ -49,8 +50,8 @@ constexpr double of_missing_harmonics = 10.0;
 /// the distance, relative to the rotor speed, in which other eigenpairs are searched where it is
 /// less; their number.
 constexpr double least_overlap = 0.95;
-constexpr double neighbourhood = 0.3;
-constexpr int neighbours = 8;
+constexpr double neighbourhood = 1.0;
+constexpr int neighbours = 12;
 /// Least correlation of an eigenvector with one that is a mixture of several.
 constexpr double part_of_mixture = 0.1;
 /// Correlation of equal eigenvectors.
@@ -150,6 +151,7 @@ class Analysis {
       const Complex exponent = candidate.pair.exponent;
       return exponent.imag() > region_.high || std::abs(exponent.real()) > region_.decay;
     });
+    expected_ = centred(region_.high - neighbourhood * speed_);
     const HillSearch::Missing missing = search.count_missing(region_, all_found_);
     region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
     return true;
@@ -396,14 +398,23 @@ class Analysis {
       return nearest;
     };
     const double frequency = std::max(group.pairs.front().exponent.imag(), neighbourhood * speed_);
-    std::vector<HillPair> near = HillSearch(pencil).find(frequency, neighbours).pairs;
-    std::erase_if(near, [&](const HillPair& pair) {
-      if (distance(pair) > neighbourhood * speed_) return true;
+    std::vector<HillPair> found = HillSearch(pencil).find(frequency, neighbours).pairs;
+    const auto part_of = [&](const HillPair& pair) {
       const Eigen::VectorXcd vector = pencil.vector_of(pair.series).normalized();
-      return std::none_of(group.pairs.begin(), group.pairs.end(), [&](const HillPair& own) {
-        return std::abs(vector.dot(pencil.vector_of(own.series).normalized())) > part_of_mixture;
-      });
-    });
+      double largest = 0.0;
+      for (const HillPair& own : group.pairs)
+        largest =
+            std::max(largest, std::abs(vector.dot(pencil.vector_of(own.series).normalized())));
+      return largest;
+    };
+    std::vector<HillPair> near;
+    for (const HillPair& pair : found)
+      if (distance(pair) < neighbourhood * speed_ && part_of(pair) > part_of_mixture)
+        near.push_back(pair);
+    if (near.empty())
+      near.push_back(*std::max_element(
+          found.begin(), found.end(),
+          [&](const HillPair& a, const HillPair& b) { return part_of(a) < part_of(b); }));
     std::vector<Group> groups = groups_of(std::move(near));
     for (Group& one : groups) one.is_neighbour = true;
     return groups;
@@ -579,7 +590,9 @@ class Analysis {
       const auto cost = [&](const std::vector<std::size_t>& place) {
         int sum = 0;
         for (const std::size_t j : place) sum += std::abs(modes_[j].mode.harmonic);
-        return std::pair(-static_cast<int>(place.size()), sum);
+        // Of an exponent halfway between two places, the one nearest to the real axis.
+        const double frequency = std::abs(modes_[place.front()].pair.exponent.imag());
+        return std::tuple(-static_cast<int>(place.size()), sum, frequency);
       };
       const auto best =
           std::min_element(places.begin(), places.end(),
@@ -713,7 +726,13 @@ class Analysis {
     set_.reach = std::min(high, region_.decay);
     for (const Mode& mode : set_.modes)
       if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
-    set_.searched = SearchedRegion{low, high, region_.decay, region_is_counted_};
+    // The search and the refinement may differ in what lies at the edges, but no mode gets lost.
+    const auto kept = std::count_if(set_.modes.begin(), set_.modes.end(), [&](const Mode& mode) {
+      const double modulus = std::abs(mode.exponent);
+      return modulus < high && modulus > low - neighbourhood * speed_;
+    });
+    set_.searched =
+        SearchedRegion{low, high, region_.decay, region_is_counted_ && kept >= expected_};
     for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;
     Floquet result;
     result.harmonics = harmonics_;
@@ -735,6 +754,7 @@ class Analysis {
   int harmonics_ = 0;  ///< of modes_, at most
   HillRegion region_;
   bool region_is_counted_ = false;
+  int expected_ = 0;                ///< modes, by the search, not next to the edge of the region
   std::vector<Complex> all_found_;  ///< exponents by the search, also outside the region
   ModeSet set_;
 };
