@@ -182,24 +182,24 @@ double distance(Complex exponent, const Spectrum& other, double zero) {
   return nearest / std::max(std::abs(exponent), zero);
 }
 
-/// Moduli of the exponents of the tangents at t = 0, found with the shift `rate`.
-std::vector<double> find_moduli(const system::PeriodicSystem& system,
-                                const PeriodicSolution& solution,
-                                const ConsistentSubspace& subspace, double rate) {
-  std::vector<Complex> exponents =
-      dense_eigenvalues(invert_at(system, solution, subspace, rate, rate).map);
-  for (Complex& exponent : exponents) exponent = rate - 1.0 / exponent;
-  return moduli_of(exponents, zero_exponent * rate);
+/// Moduli of exponents of the tangents at t = 0, from eigenvalues of the inverse at the shift
+/// `rate`.
+std::vector<double> moduli_at(double rate, std::vector<Complex> of_inverse) {
+  for (Complex& value : of_inverse) value = rate - 1.0 / value;
+  return moduli_of(of_inverse, zero_exponent * rate);
 }
 
 }  // namespace
 
 std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
-                                         const PeriodicSolution& solution) {
+                                         const PeriodicSolution& solution, int count) {
   const ConsistentSubspace subspace(system, solution);
   if (subspace.size() == 0) return {};
   const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 1.0;
-  return find_moduli(system, solution, subspace, rate);
+  // Both of a pair, and some that count as zero.
+  const int values = 3 * count;
+  return moduli_at(
+      rate, largest_eigenvalues(invert_at(system, solution, subspace, rate, rate).map, values));
 }
 
 ModeSet find_constant_modes(const system::PeriodicSystem& system,
@@ -218,7 +218,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   // modes, which are of interest, and the fast modes, which a fine mesh adds, therefore have a
   // shift each, and so have modes that are much slower than the other slow ones.
   const double zero = zero_exponent * rate;
-  const std::vector<double> moduli = find_moduli(system, solution, subspace, rate);
+  const std::vector<double> moduli =
+      moduli_at(rate, dense_eigenvalues(invert_at(system, solution, subspace, rate, rate).map));
   const auto first_above = [&moduli](double limit) {
     return static_cast<std::size_t>(std::lower_bound(moduli.begin(), moduli.end(), limit) -
                                     moduli.begin());

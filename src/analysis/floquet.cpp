@@ -40,8 +40,8 @@ constexpr double largest_round_off = 1e-2;
 /// with a larger share is a mixture of very fast modes, whose multipliers are all near -1 or 1.
 constexpr double largest_fast_share = 0.01;
 /// Error by the step of a resolved mode, relative to the distance of the exponents of a multiplier,
-/// i Q Omega. Where the error is larger, modes mix whose exponents are next to each other up to this
-/// distance, and neither their harmonics nor their number below a frequency are known.
+/// i Q Omega. Where the error is larger, modes mix whose exponents are next to each other up to
+/// this distance, and neither their harmonics nor their number below a frequency are known.
 constexpr double largest_branch_error = 0.05;
 /// Relative to an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
 constexpr double least_imaginary = 1e-6;
@@ -806,7 +806,7 @@ namespace {
 /// start have them.
 double choose_steps(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                     int order) {
-  const std::vector<double> moduli = find_moduli_at_start(system, solution);
+  const std::vector<double> moduli = find_moduli_at_start(system, solution, first_modes);
   if (moduli.empty()) return least_steps;
   const double speed = 2.0 * std::numbers::pi / system.period();
   const double last = moduli[std::min(moduli.size(), first_modes) - 1];

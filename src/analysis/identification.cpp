@@ -331,15 +331,19 @@ void arrange_modes(ModeSet& set) {
     };
     return key(a) < key(b);
   });
-  ModeSet sorted = set;
+  std::vector<Mode> modes;
+  std::vector<Eigen::MatrixXcd> shapes;  // large: moved, not copied
+  Eigen::MatrixXd participation = set.participation;
   for (std::size_t i = 0; i < count; ++i) {
-    sorted.modes[i] = std::move(set.modes[order[i]]);
-    if (!set.shapes.empty()) sorted.shapes[i] = std::move(set.shapes[order[i]]);
-    if (set.participation.rows() > 0)
-      sorted.participation.row(static_cast<Eigen::Index>(i)) =
+    modes.push_back(std::move(set.modes[order[i]]));
+    if (!set.shapes.empty()) shapes.push_back(std::move(set.shapes[order[i]]));
+    if (participation.rows() > 0)
+      participation.row(static_cast<Eigen::Index>(i)) =
           set.participation.row(static_cast<Eigen::Index>(order[i]));
   }
-  set = std::move(sorted);
+  set.modes = std::move(modes);
+  set.shapes = std::move(shapes);
+  set.participation = std::move(participation);
   // Modes that are not resolved come after the others and take the last numbers; they do not change
   // the names of resolved modes.
   std::map<std::string, int> alike;

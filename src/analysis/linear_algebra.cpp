@@ -630,6 +630,35 @@ std::vector<std::complex<double>> dense_eigenvalues(Eigen::MatrixXd matrix) {
   return values;
 }
 
+std::vector<std::complex<double>> largest_eigenvalues(const Eigen::MatrixXd& matrix, int count) {
+  constexpr double tolerance = 1e-7;
+  constexpr int whole_below = 12;  // times the number that is wanted
+  if (matrix.rows() < whole_below * count) return dense_eigenvalues(matrix);
+  const auto n = static_cast<PetscInt>(matrix.rows());
+  Eigen::MatrixXd copy = matrix;
+  petsc::Handle<Mat> dense;
+  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, copy.data(), dense.fill()));
+  petsc::Handle<EPS> solver;
+  petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
+  petsc::check(EPSSetOperators(solver.get(), dense.get(), nullptr));
+  petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
+  petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_MAGNITUDE));
+  petsc::check(EPSSetDimensions(solver.get(), count, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc::check(EPSSetTolerances(solver.get(), tolerance, PETSC_DEFAULT));
+  petsc::check(EPSSolve(solver.get()));
+  PetscInt converged = 0;
+  petsc::check(EPSGetConverged(solver.get(), &converged));
+  if (converged < count) return dense_eigenvalues(matrix);
+  std::vector<std::complex<double>> values;
+  for (PetscInt i = 0; i < converged; ++i) {
+    PetscScalar re = 0.0;
+    PetscScalar im = 0.0;
+    petsc::check(EPSGetEigenvalue(solver.get(), i, &re, &im));
+    values.emplace_back(re, im);
+  }
+  return values;
+}
+
 Eigen::VectorXd condition_numbers(const Eigenpairs& pairs) {
   // The rows of the inverse are left eigenvectors.
   Eigen::MatrixXcd left = pairs.vectors;

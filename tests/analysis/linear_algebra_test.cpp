@@ -248,6 +248,37 @@ BOOST_AUTO_TEST_CASE(eigenpairs_of_random_matrices_are_those_of_eigen) {
   BOOST_TEST(analysis::dense_eigenpairs(Eigen::MatrixXd(0, 0), "test_").values.empty());
 }
 
+BOOST_AUTO_TEST_CASE(largest_eigenvalues_are_those_of_the_whole_spectrum) {
+  // Eigenvalues 1/(1 - i omega) of an inverse, as those of modes are, in coordinates that are not
+  // orthogonal; few of many, and all of few.
+  for (const auto& [size, count] : {std::pair{500, 30}, std::pair{60, 30}, std::pair{2, 30}}) {
+    const Eigen::Index n = size;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> entry(-0.2, 0.2);
+    Eigen::MatrixXd vectors = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) vectors(i, j) += entry(random) / std::sqrt(1.0 * size);
+    Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(n, n);
+    std::vector<double> wanted;
+    for (Eigen::Index i = 0; i + 1 < n; i += 2) {
+      const double omega = 0.3 * std::pow(1.02, static_cast<double>(i));
+      const Complex value = 1.0 / Complex(1.0 + 0.01 * omega, -omega);
+      blocks.block(i, i, 2, 2) << value.real(), value.imag(), -value.imag(), value.real();
+      wanted.insert(wanted.end(), 2, std::abs(value));
+    }
+    const Eigen::MatrixXd matrix = vectors * blocks * vectors.inverse();
+    std::vector<double> found;
+    for (const Complex value : analysis::largest_eigenvalues(matrix, count))
+      found.push_back(std::abs(value));
+    std::sort(found.rbegin(), found.rend());
+    BOOST_REQUIRE(found.size() >= static_cast<std::size_t>(std::min(size, count)));
+    BOOST_TEST(found.size() <= wanted.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+      BOOST_TEST(std::abs(found[i] / wanted[i] - 1.0) < 1e-6);
+    if (size == 500) BOOST_TEST(found.size() < 60u);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(equal_complex_pairs_of_identical_blades_have_independent_vectors) {
   // Two, then four copies of one block, hidden by a random basis: complete eigenvectors exist and
   // must be found, or the modes of one blade are lost.

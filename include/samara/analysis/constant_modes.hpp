@@ -15,9 +15,10 @@ namespace samara::analysis {
 /// @throws InputError where the tangents depend on time (hint: samara floquet)
 ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution);
 
-/// Moduli of the exponents that the tangents at t = 0 have, ascending [rad/s]; without those that
-/// count as zero. A guide to the frequencies of a periodic system, in rotor axes.
+/// The smallest moduli of the exponents that the tangents at t = 0 have, ascending [rad/s], at
+/// least `count` if there are; without those that count as zero. A guide to the frequencies of a
+/// periodic system, in rotor axes.
 std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
-                                         const PeriodicSolution& solution);
+                                         const PeriodicSolution& solution, int count);
 
 }  // namespace samara::analysis

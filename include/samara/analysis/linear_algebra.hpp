@@ -141,6 +141,11 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
 /// @throws ConvergenceError
 std::vector<std::complex<double>> dense_eigenvalues(Eigen::MatrixXd matrix);
 
+/// At least `count` eigenvalues of a dense real matrix, those of largest modulus, to about six
+/// digits; all of a small matrix. By Krylov-Schur (SLEPc) where that takes less time.
+/// @throws ConvergenceError
+std::vector<std::complex<double>> largest_eigenvalues(const Eigen::MatrixXd& matrix, int count);
+
 /// |y| |x| / |y.x| of left and right eigenvectors: the largest factor from an error of the matrix
 /// to the error of an eigenvalue. It is 1 for a normal matrix, and infinite where eigenvectors
 /// coincide.
