@@ -51,7 +51,7 @@ constexpr double of_missing_harmonics = 10.0;
 /// less; their number.
 constexpr double least_overlap = 0.95;
 constexpr double neighbourhood = 1.0;
-constexpr int neighbours = 12;
+constexpr int most_neighbours = 12;
 /// Least correlation of an eigenvector with one that is a mixture of several.
 constexpr double part_of_mixture = 0.1;
 /// Correlation of equal eigenvectors.
@@ -324,8 +324,9 @@ class Analysis {
           is_own = is_own || is_centred(*it);
         }
         // A neighbour is known by its harmonic as soon as it is resolved.
-        const bool is_copy = !is_own && (!group.is_neighbour || residual <= largest_residual);
-        const bool is_last = harmonics_ == most_harmonics || is_copy || !first->is_found() ||
+        const bool is_known = !group.is_neighbour || residual <= largest_residual;
+        const bool is_last = harmonics_ == most_harmonics || (!is_own && is_known) ||
+                             !first->is_found() ||
                              (residual <= largest_residual &&
                               residual > std::pow(slowest_decay, added) * group.residual);
         if (residual <= wanted_residual || is_last) {
@@ -361,18 +362,20 @@ class Analysis {
   std::vector<Candidate> refine(HillPencil& pencil, std::vector<Group>& groups, double tolerance) {
     HillRefinement refinement(pencil);
     std::vector<Group> kept;
-    std::vector<Group> changed;
+    std::vector<std::pair<Group, Group>> changed;  // before and after
     for (Group& group : groups) {
-      const Group before = group;
+      Group before = group;
       const HillRefinement::Result result = refinement.refine(group.pairs, tolerance);
       group.truncated_residual = result.residual;
       if (result.overlap >= least_overlap)
         kept.push_back(std::move(group));
       else
-        changed.push_back(before);
+        changed.emplace_back(std::move(before), std::move(group));
     }
-    for (const Group& group : changed)
-      for (Group& near : neighbours_of(pencil, group)) {
+    for (auto& [before, after] : changed) {
+      std::vector<Group> neighbours = neighbours_of(pencil, before);
+      if (neighbours.empty()) kept.push_back(std::move(after));
+      for (Group& near : neighbours) {
         near.truncated_residual = refinement.refine(near.pairs, tolerance).residual;
         if (std::all_of(near.pairs.begin(), near.pairs.end(), [&](const HillPair& pair) {
               return std::any_of(kept.begin(), kept.end(),
@@ -385,11 +388,12 @@ class Analysis {
         });
         kept.push_back(std::move(near));
       }
+    }
     groups = std::move(kept);
     return candidates_of(groups);
   }
 
-  /// Eigenpairs next to those of a group that have a part in them.
+  /// Eigenpairs next to those of a group that have a part in them; none where the search fails.
   std::vector<Group> neighbours_of(HillPencil& pencil, const Group& group) {
     const auto distance = [&group](const HillPair& pair) {
       double nearest = std::numeric_limits<double>::infinity();
@@ -398,7 +402,13 @@ class Analysis {
       return nearest;
     };
     const double frequency = std::max(group.pairs.front().exponent.imag(), neighbourhood * speed_);
-    std::vector<HillPair> found = HillSearch(pencil).find(frequency, neighbours).pairs;
+    std::vector<HillPair> found;
+    try {
+      found = HillSearch(pencil).find(frequency, most_neighbours).pairs;
+    } catch (const ConvergenceError&) {
+      return {};
+    }
+    if (found.empty()) return {};
     const auto part_of = [&](const HillPair& pair) {
       const Eigen::VectorXcd vector = pencil.vector_of(pair.series).normalized();
       double largest = 0.0;
