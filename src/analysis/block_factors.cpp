@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numbers>
 #include <set>
+#include <type_traits>
 
 #include "samara/petsc/handle.hpp"
 
@@ -19,7 +20,7 @@ constexpr double least_pivot = 1e-13;
 /// Largest real or imaginary part, without the square roots of the absolute values.
 template <class Scalar>
 double largest_part(const Scalar* values, Eigen::Index count) {
-  const Eigen::Index reals = count * static_cast<Eigen::Index>(sizeof(Scalar) / sizeof(double));
+  const Eigen::Index reals = std::is_same_v<Scalar, double> ? count : 2 * count;
   return Eigen::Map<const Eigen::VectorXd>(reinterpret_cast<const double*>(values), reals)
       .lpNorm<Eigen::Infinity>();
 }

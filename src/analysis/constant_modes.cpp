@@ -107,8 +107,8 @@ ShiftedInverse invert_at(const system::PeriodicSystem& system, const PeriodicSol
 
 Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                        const ConsistentSubspace& subspace, double sigma, double rate) {
-  const auto [map, shapes] = invert_at(system, solution, subspace, sigma, rate);
-  const Eigenpairs pairs = dense_eigenpairs(map, "modes_");
+  const ShiftedInverse inverse = invert_at(system, solution, subspace, sigma, rate);
+  const Eigenpairs pairs = dense_eigenpairs(inverse.map, "modes_");
   const std::vector<int> states_of_pairs =
       leading_states(pairs, 2 * subspace.degrees_of_freedom(), find_state_parts(system));
   Spectrum spectrum;
@@ -121,7 +121,7 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
       spectrum.exponents.push_back(value);
       spectrum.states.push_back(states_of_pairs[i]);
       spectrum.shapes.conservativeResize(system.size(), spectrum.shapes.cols() + 1);
-      spectrum.shapes.col(spectrum.shapes.cols() - 1) = shapes * combination;
+      spectrum.shapes.col(spectrum.shapes.cols() - 1) = inverse.shapes * combination;
     };
     if (exponent.imag() > 0.0 && std::abs(exponent) < zero_to_shift * sigma) {
       // Round-off has split a double zero into a complex pair. It is kept as two real modes, like a

@@ -245,9 +245,10 @@ void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
     std::vector<std::pair<Index, Index>> kept;  // border and harmonic's number
     std::set<Index> filled;
     for (const auto& [border, couplings] : of_border) {
+      const double limit = least[border];
       for (Index c = 0; c < width_; ++c)
         if (std::any_of(couplings.begin(), couplings.end(), [&](const Coupling* coupling) {
-              return std::abs(coupling->block(k + harmonics, c)) > least[border];
+              return std::abs(coupling->block(k + harmonics, c)) > limit;
             }))
           kept.emplace_back(border, c);
       if (!kept.empty() && kept.back().first == border)

@@ -61,6 +61,7 @@ void HillPencil::to_series(const Eigen::MatrixXd& coefficients, Output y) const 
   }
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply(Input x, Input w, Output y) {
   values_.setZero(width(), 2 * x.cols() * unknowns());
   rates_.setZero(values_.rows(), values_.cols());
@@ -71,6 +72,7 @@ void HillPencil::multiply(Input x, Input w, Output y) {
   to_series(products_, y);
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply_mass(Input w, Output y) {
   rates_.setZero(width(), 2 * w.cols() * unknowns());
   to_coefficients(w, false, rates_);

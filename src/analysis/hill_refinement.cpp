@@ -70,12 +70,13 @@ void HillRefinement::find_residual(Subspace& subspace) {
 /// Adds C to X and D to T, A C + B (C T + X D) = -residual, X^H C = 0.
 /// @returns false where the linear solves fail
 bool HillRefinement::correct(Subspace& subspace, double tolerance) {
-  auto& [X, T, residual, mass, size] = subspace;
+  Matrix& X = subspace.X;
+  Matrix& T = subspace.T;
   if (!take_shift(T.diagonal().mean())) return false;
   const Index n = X.rows();
   const Index m = X.cols();
   Matrix Y(n, m);
-  pencil_.precondition(mass, Y);
+  pencil_.precondition(subspace.mass, Y);
   const Eigen::PartialPivLU<Matrix> complement(X.adjoint() * Y);
   // A vector has C by column, then D.
   const auto main_part = [&](auto& vector) { return Eigen::Map<Matrix>(vector.data(), n, m); };
@@ -87,8 +88,8 @@ bool HillRefinement::correct(Subspace& subspace, double tolerance) {
     return Eigen::Map<const Matrix>(vector.data() + n * m, m, m);
   };
   // A step leaves about the square of the residual.
-  const double accuracy =
-      std::clamp(std::max(0.1 * size, 0.3 * tolerance / size), finest_solve, coarsest_solve);
+  const double accuracy = std::clamp(std::max(0.1 * subspace.size, 0.3 * tolerance / subspace.size),
+                                     finest_solve, coarsest_solve);
   ComplexSolver solver(
       n * m + m * m,
       [&](const Vector& x, Vector& y) {
@@ -107,7 +108,7 @@ bool HillRefinement::correct(Subspace& subspace, double tolerance) {
       },
       accuracy, "hill_refine_");
   Vector right = Vector::Zero(n * m + m * m);
-  main_part(right) = -residual;
+  main_part(right) = -subspace.residual;
   Vector solution;
   try {
     solver.solve(right, solution);
