@@ -276,9 +276,15 @@ class Analysis {
   }
 
   /// Refines the eigenpairs that are identified at their own harmonic, and those that should have a
-  /// copy with this property in the region but have none.
+  /// copy with this property in the region but have none. Modes beyond the part of the region that
+  /// is reported are left out.
   void refine() {
     const auto is_chosen = [this](const Candidate& candidate) {
+      const double modulus = modulus_of(candidate);
+      const double slack = neighbourhood * speed_;  // few harmonics give it approximately
+      if (modulus > region_.high - margin() + slack ||
+          (region_.low > 0.0 && modulus < region_.low + margin() - slack))
+        return false;
       if (is_centred(candidate)) return true;
       const int shift = candidate.mode.harmonic > 0 ? sectors_ : -sectors_;
       const Complex copy = candidate.pair.exponent + Complex(0.0, shift * speed_);

@@ -21,13 +21,13 @@ std::string without_number(const std::string& label) {
 /// Each mode of `some` has its own mode in `all`, with the same exponent, name and damping, and
 /// each resolved mode of `all` below `some.searched` has one in `some`.
 void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& all,
-                       const std::string& place) {
+                       const std::string& place, double residual = 1e-7) {
   BOOST_REQUIRE(some.searched);
   BOOST_TEST(some.searched->is_counted, place);
   std::set<std::size_t> used;
   for (const analysis::Mode& mode : some.modes) {
     BOOST_TEST(mode.resolved, place << ": " << mode.label);
-    BOOST_TEST(mode.residual < 5e-7, place << ": " << mode.label << " " << mode.residual);
+    BOOST_TEST(mode.residual < residual, place << ": " << mode.label << " " << mode.residual);
     double best = std::numeric_limits<double>::infinity();
     std::size_t at = 0;
     for (std::size_t m = 0; m < all.modes.size(); ++m) {
@@ -74,6 +74,7 @@ struct Example {
   std::vector<std::string> settings;
   int modes;
   int steps;
+  double residual = 1e-7;  ///< of the modes, at most
 };
 
 const std::vector<std::string> coarse{"blades.elements=1", "blades.order=3", "tower.elements=1",
@@ -92,12 +93,14 @@ std::vector<Example> examples() {
       {"iea15mw/land", coarse, 6, 180},
       {"two_bladed/teetering", coarse, 6, 180},
       {"lee2002/rigid_tower", {"blades.elements=2", "gravity=9.81", "trim.harmonics=6"}, 6, 180},
-      // The shapes of its modes change much with the number of harmonics.
+      // The shapes of its modes change much with the number of harmonics. They need 20 to 40, with
+      // which cancellation limits the residuals.
       {"lee2002/ratio10",
        {"shaft.speed_rpm=30.9", "shaft.tilt_deg=14.4", "blades.damping=0.0001",
         "trim.harmonics=auto"},
        8,
-       400},
+       400,
+       1e-6},
       {"ground_resonance/hammond", {}, 6, 180},
       {"beam/rotating", {}, 4, 180},
   };
@@ -117,7 +120,7 @@ BOOST_AUTO_TEST_CASE(hill_agrees_with_integration) {
       if (found.set.modes.size() >= static_cast<std::size_t>(example.modes))
         BOOST_TEST(found.set.modes[static_cast<std::size_t>(example.modes) - 1].exponent.imag() <
                    found.set.searched->high);
-      require_agreement(found.set, turbine.by_steps(example.steps), place);
+      require_agreement(found.set, turbine.by_steps(example.steps), place, example.residual);
     }
   }
 }
