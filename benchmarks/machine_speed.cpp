@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <vector>
 
+// The header of BLAS needs it first.
 #include <petscsys.h>
-
+// clang-format off
 #include <petscblaslapack.h>
+// clang-format on
 
 extern "C" {
 // NOLINTNEXTLINE(readability-identifier-naming)
