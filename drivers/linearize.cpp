@@ -38,11 +38,11 @@ std::string form_table(const linear::Linearization& linear,
                        ? ""
                        : scientific(form.series.residual(), 1)});
   if (linear.rotor_speed == 0.0) return table.text();
-  return table.text() +
-         "residual: relative residual of the series midway between the azimuths" +
+  return table.text() + "residual: relative residual of the series midway between the azimuths" +
          (options.automatic_azimuths && options.automatic_harmonics
               ? "\n"
-              : "; if it is not small,\nlinearize.azimuths and harmonics: auto choose their numbers "
+              : "; if it is not small,\nlinearize.azimuths and harmonics: auto choose their "
+                "numbers "
                 "by it\n");
 }
 

@@ -72,10 +72,9 @@ BOOST_AUTO_TEST_CASE(what_is_given_is_kept) {
   BOOST_TEST(few.azimuths().size() == 10u);
   BOOST_TEST(few.harmonics() == 4);
   BOOST_TEST(few.residual() > 1e-3);
-  const AzimuthSeries both = AzimuthSeries::resolve(form, {.azimuths = 40,
-                                                           .automatic_azimuths = false,
-                                                           .harmonics = 7,
-                                                           .automatic_harmonics = false});
+  const AzimuthSeries both = AzimuthSeries::resolve(
+      form,
+      {.azimuths = 40, .automatic_azimuths = false, .harmonics = 7, .automatic_harmonics = false});
   BOOST_TEST(both.azimuths().size() == 40u);
   BOOST_TEST(both.harmonics() == 7);
   // More azimuths do not help where harmonics are missing: all are tried.
