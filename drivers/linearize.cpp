@@ -38,12 +38,11 @@ std::string form_table(const linear::Linearization& linear,
                        ? ""
                        : scientific(form.series.residual(), 1)});
   if (linear.rotor_speed == 0.0) return table.text();
-  return table.text() + "residual: relative residual of the series midway between the azimuths" +
-         (options.automatic_azimuths && options.automatic_harmonics
-              ? "\n"
-              : "; if it is not small,\nlinearize.azimuths and harmonics: auto choose their "
-                "numbers "
-                "by it\n");
+  std::string text =
+      table.text() + "residual: relative residual of the series midway between the azimuths";
+  if (!options.automatic_azimuths || !options.automatic_harmonics)
+    text += "; if it is not small,\nlinearize.azimuths and harmonics: auto choose enough of them";
+  return text + "\n";
 }
 
 }  // namespace

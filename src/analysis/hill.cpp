@@ -11,13 +11,13 @@
 
 #include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
-#include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/mode_error.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
 #include "hill_pencil.hpp"
 #include "hill_refinement.hpp"
+#include "hill_residual.hpp"
 #include "hill_search.hpp"
 #include "state_parts.hpp"
 
@@ -88,18 +88,18 @@ struct Candidate {
   Mode mode;
   Eigen::VectorXd participation;
   double residual = std::numeric_limits<double>::infinity();
-  double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
-
-  /// An eigenpair of the truncated series.
-  bool is_found() const { return truncated_residual <= largest_residual; }
+  bool is_found = false;  ///< an eigenpair of the truncated series
 };
 
 /// Eigenpairs with neighbouring exponents.
 struct Group {
   std::vector<HillPair> pairs;
   double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
-  double residual = std::numeric_limits<double>::infinity();            ///< in the time domain
+  std::vector<double> residuals;                            ///< of each pair in the time domain
+  double before = std::numeric_limits<double>::infinity();  ///< residual with less harmonics
   bool is_neighbour = false;  ///< found with the present harmonics: may be a copy of another
+
+  double residual() const { return *std::max_element(residuals.begin(), residuals.end()); }
 };
 
 class Analysis {
@@ -312,38 +312,34 @@ class Analysis {
     while (!groups.empty()) {
       HillPencil pencil(system_, solution_, harmonics_);
       samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
-      std::vector<Candidate> refined = refine(pencil, groups, tolerance);
-      if (tolerance > last_tolerance) refine_further(pencil, groups, refined);
+      refine(pencil, groups, tolerance);
+      if (tolerance > last_tolerance) refine_further(pencil, groups);
       tolerance = last_tolerance;
       double largest = 0.0;
       std::vector<Group> left;
-      auto first = refined.begin();
       for (Group& group : groups) {
-        const auto end = first + static_cast<std::ptrdiff_t>(group.pairs.size());
-        const double residual =
-            std::max_element(first, end, [](const Candidate& a, const Candidate& b) {
-              return a.residual < b.residual;
-            })->residual;
+        const double residual = group.residual();
+        const bool is_found = group.truncated_residual <= largest_residual;
+        std::vector<Candidate> members;
         bool is_own = false;  // next to its own harmonic
-        for (auto it = first; it != end; ++it) {
-          describe(*it);
-          is_own = is_own || is_centred(*it);
+        for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+          members.push_back({group.pairs[i], {}, {}, group.residuals[i], is_found});
+          describe(members.back());
+          is_own = is_own || is_centred(members.back());
         }
         // A neighbour is known by its harmonic as soon as it is resolved.
         const bool is_known = !group.is_neighbour || residual <= largest_residual;
-        const bool is_last = harmonics_ == most_harmonics || (!is_own && is_known) ||
-                             !first->is_found() ||
+        const bool is_last = harmonics_ == most_harmonics || (!is_own && is_known) || !is_found ||
                              (residual <= largest_residual &&
-                              residual > std::pow(slowest_decay, added) * group.residual);
+                              residual > std::pow(slowest_decay, added) * group.before);
         if (residual <= wanted_residual || is_last) {
-          for (auto it = first; it != end; ++it)
-            (it->residual <= largest_residual ? modes_ : doubtful).push_back(std::move(*it));
+          for (Candidate& member : members)
+            (member.residual <= largest_residual ? modes_ : doubtful).push_back(std::move(member));
         } else {
           largest = std::max(largest, residual);
-          group.residual = residual;
+          group.before = residual;
           left.push_back(std::move(group));
         }
-        first = end;
       }
       groups = std::move(left);
       // The residual falls by the same factor with each harmonic.
@@ -358,14 +354,13 @@ class Analysis {
       }
     }
     for (Candidate& candidate : doubtful)
-      if (!candidate.is_found() || (is_centred(candidate) && !is_copy(candidate)))
+      if (!candidate.is_found || (is_centred(candidate) && !is_copy(candidate)))
         modes_.push_back(std::move(candidate));
   }
 
   /// Refines all groups. Where the eigenvectors change much, another eigenpair next to it may have
   /// taken the place of the one that was meant: all that are near take the place of the group.
-  /// @returns their eigenpairs with residuals in the time domain
-  std::vector<Candidate> refine(HillPencil& pencil, std::vector<Group>& groups, double tolerance) {
+  void refine(HillPencil& pencil, std::vector<Group>& groups, double tolerance) {
     HillRefinement refinement(pencil);
     std::vector<Group> kept;
     std::vector<std::pair<Group, Group>> changed;  // before and after
@@ -396,7 +391,9 @@ class Analysis {
       }
     }
     groups = std::move(kept);
-    return candidates_of(groups);
+    std::vector<Group*> all;
+    for (Group& group : groups) all.push_back(&group);
+    find_residuals(all);
   }
 
   /// Eigenpairs next to those of a group that have a part in them; none where the search fails.
@@ -450,41 +447,30 @@ class Analysis {
     return (own * qr.solve(vector)).norm() > same_vector * vector.norm();
   }
 
-  std::vector<Candidate> candidates_of(const std::vector<Group>& groups) const {
-    std::vector<Candidate> candidates;
-    for (const Group& group : groups)
-      for (const HillPair& pair : group.pairs) {
-        candidates.push_back({pair, {}, {}});
-        candidates.back().truncated_residual = group.truncated_residual;
-      }
-    find_residuals(candidates);
-    return candidates;
+  /// Refines the groups with enough harmonics to the last tolerance.
+  void refine_further(HillPencil& pencil, std::vector<Group>& groups) {
+    HillRefinement refinement(pencil);
+    std::vector<Group*> chosen;
+    for (Group& group : groups) {
+      if (!(group.residual() <= of_missing_harmonics * group.truncated_residual)) continue;
+      group.truncated_residual = refinement.refine(group.pairs, last_tolerance).residual;
+      chosen.push_back(&group);
+    }
+    find_residuals(chosen);
   }
 
-  /// Refines the groups with enough harmonics to the last tolerance.
-  void refine_further(HillPencil& pencil, std::vector<Group>& groups,
-                      std::vector<Candidate>& refined) {
-    HillRefinement refinement(pencil);
-    std::vector<Group> chosen;
-    std::vector<std::size_t> begins;
-    std::size_t begin = 0;
-    for (Group& group : groups) {
-      const auto first = refined.begin() + static_cast<std::ptrdiff_t>(begin);
-      if (std::all_of(first, first + static_cast<std::ptrdiff_t>(group.pairs.size()),
-                      [](const Candidate& one) {
-                        return one.residual <= of_missing_harmonics * one.truncated_residual;
-                      })) {
-        group.truncated_residual = refinement.refine(group.pairs, last_tolerance).residual;
-        chosen.push_back(group);
-        begins.push_back(begin);
-      }
-      begin += group.pairs.size();
+  /// In the time domain.
+  void find_residuals(const std::vector<Group*>& groups) const {
+    std::vector<const HillPair*> pairs;
+    for (const Group* group : groups)
+      for (const HillPair& pair : group->pairs) pairs.push_back(&pair);
+    const std::vector<double> residuals = find_hill_residuals(system_, solution_, pairs);
+    auto next = residuals.begin();
+    for (Group* group : groups) {
+      const auto end = next + static_cast<std::ptrdiff_t>(group->pairs.size());
+      group->residuals.assign(next, end);
+      next = end;
     }
-    std::vector<Candidate> better = candidates_of(chosen);
-    auto next = better.begin();
-    for (std::size_t i = 0; i < chosen.size(); ++i)
-      for (std::size_t j = 0; j < chosen[i].pairs.size(); ++j)
-        refined[begins[i] + j] = std::move(*next++);
   }
 
   /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut
@@ -619,61 +605,6 @@ class Analysis {
   }
 
   bool is_same(Complex a, Complex b) const { return std::abs(a - b) < same_exponent * speed_; }
-
-  /// Largest scaled residual of each mode at instants that are not those of the series, relative to
-  /// the largest inertia load, or, where it is less, that of the same motion at the rotor speed.
-  void find_residuals(std::vector<Candidate>& modes) const {
-    if (modes.empty()) return;
-    const auto count = static_cast<Index>(modes.size());
-    const int harmonics = static_cast<int>((modes.front().pair.series.rows() - 1) / 2);
-    const int instants = 4 * harmonics + 5;
-    const petsc::Handle<Vec> z = system_.make_state();
-    const petsc::Handle<Vec> z_dot = system_.make_state();
-    const petsc::Handle<Mat> jacobian = system_.make_jacobian();
-    const petsc::Handle<Mat> mass = system_.make_mass();
-    Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
-    Eigen::VectorXd scale = Eigen::VectorXd::Zero(count);
-    Eigen::VectorXd rows;
-    Eigen::MatrixXcd values(system_.size(), count);
-    Eigen::MatrixXcd rates(system_.size(), count);
-    for (int j = 0; j < instants; ++j) {
-      const double t = system_.period() * (j + 0.37) / instants;
-      solution_.evaluate(t, z.get(), z_dot.get());
-      system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-      const Eigen::SparseMatrix<double> K = to_sparse(jacobian.get());
-      const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
-      if (rows.size() == 0) rows = row_factors(K, M);
-      for (Index m = 0; m < count; ++m) {
-        const HillPair& mode = modes[static_cast<std::size_t>(m)].pair;
-        Eigen::VectorXcd waves(2 * harmonics + 1);
-        Eigen::VectorXcd wave_rates(2 * harmonics + 1);
-        for (int k = -harmonics; k <= harmonics; ++k) {
-          waves(k + harmonics) = std::polar(1.0, k * speed_ * t);
-          wave_rates(k + harmonics) =
-              waves(k + harmonics) * (mode.exponent + Complex(0.0, k * speed_));
-        }
-        values.col(m) = mode.series.transpose() * waves;
-        rates.col(m) = mode.series.transpose() * wave_rates;
-      }
-      const Eigen::MatrixXcd inertia = rows.asDiagonal() * (M * rates);
-      const Eigen::MatrixXcd residual = inertia + rows.asDiagonal() * (K * values);
-      const Eigen::MatrixXcd at_speed = speed_ * (rows.asDiagonal() * (M * values));
-      for (Index m = 0; m < count; ++m) {
-        largest(m) = std::max(largest(m), residual.col(m).norm());
-        scale(m) = std::max({scale(m), inertia.col(m).norm(), at_speed.col(m).norm()});
-      }
-    }
-    for (Index m = 0; m < count; ++m)
-      modes[static_cast<std::size_t>(m)].residual = largest(m) / scale(m);
-  }
-
-  Eigen::VectorXd row_factors(const Eigen::SparseMatrix<double>& K,
-                              const Eigen::SparseMatrix<double>& M) const {
-    const Eigen::SparseMatrix<double> sizes = K.cwiseAbs() + speed_ * M.cwiseAbs();
-    const Equilibration scaling = scaling_by_role(system_, sizes, speed_);
-    const petsc::ReadView view(scaling.rows.get());
-    return Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
-  }
 
   // ---- the result ------------------------------------------------------------------------------
 

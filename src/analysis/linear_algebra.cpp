@@ -511,6 +511,21 @@ Eigen::SparseMatrix<double> to_sparse(Mat matrix) {
 
 namespace {
 
+/// SLEPc's eigenproblem of a dense real matrix.
+struct DenseProblem {
+  explicit DenseProblem(const Eigen::MatrixXd& matrix) : copy(matrix) {
+    const auto n = static_cast<PetscInt>(copy.rows());
+    petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, copy.data(), operators.fill()));
+    petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
+    petsc::check(EPSSetOperators(solver.get(), operators.get(), nullptr));
+    petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
+  }
+
+  Eigen::MatrixXd copy;
+  petsc::Handle<Mat> operators;
+  petsc::Handle<EPS> solver;
+};
+
 /// SLEPc's types that find only a few eigenvalues end with an error if all are requested.
 void solve_whole(EPS solver, const std::string& prefix) {
   const PetscErrorCode code = EPSSolve(solver);
@@ -559,26 +574,21 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
   Eigenpairs pairs;
   pairs.vectors.resize(n, n);
   if (n == 0) return pairs;
-  Eigen::MatrixXd copy = matrix;
-  petsc::Handle<Mat> dense;
-  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, copy.data(), dense.fill()));
-  petsc::Handle<EPS> solver;
-  petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
-  petsc::check(EPSSetOptionsPrefix(solver.get(), prefix.c_str()));
-  petsc::check(EPSSetOperators(solver.get(), dense.get(), nullptr));
-  petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
-  petsc::check(EPSSetType(solver.get(), EPSLAPACK));
-  petsc::check(EPSSetDimensions(solver.get(), n, PETSC_DEFAULT, PETSC_DEFAULT));
-  petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_WHICH_USER));
-  petsc::check(EPSSetEigenvalueComparison(solver.get(), keep_order, nullptr));
-  petsc::check(EPSSetFromOptions(solver.get()));
+  DenseProblem problem(matrix);
+  EPS solver = problem.solver.get();
+  petsc::check(EPSSetOptionsPrefix(solver, prefix.c_str()));
+  petsc::check(EPSSetType(solver, EPSLAPACK));
+  petsc::check(EPSSetDimensions(solver, n, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc::check(EPSSetWhichEigenpairs(solver, EPS_WHICH_USER));
+  petsc::check(EPSSetEigenvalueComparison(solver, keep_order, nullptr));
+  petsc::check(EPSSetFromOptions(solver));
   require_whole_spectrum(prefix);
-  solve_whole(solver.get(), prefix);
+  solve_whole(solver, prefix);
   PetscInt converged = 0;
-  petsc::check(EPSGetConverged(solver.get(), &converged));
+  petsc::check(EPSGetConverged(solver, &converged));
   if (converged < n) {
     EPSConvergedReason reason = EPS_CONVERGED_ITERATING;
-    petsc::check(EPSGetConvergedReason(solver.get(), &reason));
+    petsc::check(EPSGetConvergedReason(solver, &reason));
     throw ConvergenceError("eigenproblem (" + prefix + "): " + std::to_string(converged) + " of " +
                            std::to_string(n) + " eigenvalues converged (" +
                            EPSConvergedReasons[reason] + "); hint: -" + prefix + "eps_type lapack");
@@ -588,7 +598,7 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
   for (PetscInt i = 0; i < n; ++i) {
     PetscScalar value_re = 0.0;
     PetscScalar value_im = 0.0;
-    petsc::check(EPSGetEigenpair(solver.get(), i, &value_re, &value_im, re.get(), im.get()));
+    petsc::check(EPSGetEigenpair(solver, i, &value_re, &value_im, re.get(), im.get()));
     pairs.values.emplace_back(value_re, value_im);
     const petsc::ReadView a(re.get());
     const petsc::ReadView b(im.get());
@@ -634,26 +644,20 @@ std::vector<std::complex<double>> largest_eigenvalues(const Eigen::MatrixXd& mat
   constexpr double tolerance = 1e-7;
   constexpr int whole_below = 12;  // times the number that is wanted
   if (matrix.rows() < whole_below * count) return dense_eigenvalues(matrix);
-  const auto n = static_cast<PetscInt>(matrix.rows());
-  Eigen::MatrixXd copy = matrix;
-  petsc::Handle<Mat> dense;
-  petsc::check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, copy.data(), dense.fill()));
-  petsc::Handle<EPS> solver;
-  petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
-  petsc::check(EPSSetOperators(solver.get(), dense.get(), nullptr));
-  petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
-  petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_MAGNITUDE));
-  petsc::check(EPSSetDimensions(solver.get(), count, PETSC_DEFAULT, PETSC_DEFAULT));
-  petsc::check(EPSSetTolerances(solver.get(), tolerance, PETSC_DEFAULT));
-  petsc::check(EPSSolve(solver.get()));
+  DenseProblem problem(matrix);
+  EPS solver = problem.solver.get();
+  petsc::check(EPSSetWhichEigenpairs(solver, EPS_LARGEST_MAGNITUDE));
+  petsc::check(EPSSetDimensions(solver, count, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc::check(EPSSetTolerances(solver, tolerance, PETSC_DEFAULT));
+  petsc::check(EPSSolve(solver));
   PetscInt converged = 0;
-  petsc::check(EPSGetConverged(solver.get(), &converged));
+  petsc::check(EPSGetConverged(solver, &converged));
   if (converged < count) return dense_eigenvalues(matrix);
   std::vector<std::complex<double>> values;
   for (PetscInt i = 0; i < converged; ++i) {
     PetscScalar re = 0.0;
     PetscScalar im = 0.0;
-    petsc::check(EPSGetEigenvalue(solver.get(), i, &re, &im));
+    petsc::check(EPSGetEigenvalue(solver, i, &re, &im));
     values.emplace_back(re, im);
   }
   return values;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "samara/base/error.hpp"
@@ -97,6 +98,10 @@ AzimuthSeries::AzimuthSeries(const std::function<StateSpace(double)>& form, int 
 namespace {
 
 constexpr int first_azimuths = 12;
+/// A residual below the first value that twice as many azimuths do not reduce by the second one is
+/// round-off of the matrices.
+constexpr double largest_round_off = 1e-7;
+constexpr double least_reduction = 0.5;
 /// Part of the tolerance that harmonics may take which are left out.
 constexpr double part_of_tail = 0.1;
 
@@ -110,30 +115,34 @@ AzimuthSeries AzimuthSeries::resolve(const std::function<StateSpace(double)>& fo
     azimuths = first_azimuths;
     while (!all && azimuths < 2 * resolution.harmonics + 1) azimuths *= 2;
   }
-  for (;; azimuths *= 2) {
+  for (double before = std::numeric_limits<double>::infinity();; azimuths *= 2) {
     const int resolved = (azimuths - 1) / 2;
     AzimuthSeries series(form, azimuths, all ? resolved : std::min(resolved, resolution.harmonics));
-    const bool is_enough = !resolution.automatic_azimuths ||
-                           series.residual() <= resolution.tolerance ||
-                           2 * azimuths > most_azimuths;
+    const double residual = series.residual();
+    const bool is_round_off = residual <= largest_round_off && residual > least_reduction * before;
+    before = residual;
+    const bool is_enough = !resolution.automatic_azimuths || residual <= resolution.tolerance ||
+                           is_round_off || 2 * azimuths > most_azimuths;
     if (!is_enough) continue;
-    int harmonics = series.harmonics();
-    if (all)
-      while (harmonics > 0 && series.tail(harmonics - 1) <= part_of_tail * resolution.tolerance)
-        --harmonics;
+    const int harmonics =
+        all ? series.harmonics_above(part_of_tail * resolution.tolerance) : series.harmonics();
     if (harmonics < series.harmonics()) return {form, azimuths, harmonics};
     return series;
   }
 }
 
-double AzimuthSeries::tail(int harmonics) const {
+int AzimuthSeries::harmonics_above(double limit) const {
   const StateSpace largest = largest_of(samples_);
   StateSpace zero;
   add(zero, 0.0, largest);
-  double sum = 0.0;
-  for (auto i = static_cast<std::size_t>(2 * harmonics + 1); i < coefficients_.size(); ++i)
-    sum += compare(coefficients_[i], zero, largest);
-  return sum;
+  int harmonics = this->harmonics();
+  for (double sum = 0.0; harmonics > 0; --harmonics) {
+    const auto cosine = static_cast<std::size_t>(2 * harmonics - 1);
+    sum += compare(coefficients_[cosine], zero, largest) +
+           compare(coefficients_[cosine + 1], zero, largest);
+    if (sum > limit) break;
+  }
+  return harmonics;
 }
 
 StateSpace AzimuthSeries::at(double psi) const {

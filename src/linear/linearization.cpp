@@ -127,12 +127,15 @@ class Linearizer {
     result_.rotor_speed = speed_;
     result_.series_azimuths = resolution_.azimuths;
     if (const double residual = periodic_.series.residual();
-        has_period_ && options_.series.automatic_azimuths && residual > resolution_.tolerance)
+        has_period_ && options_.series.automatic_azimuths && residual > resolution_.tolerance) {
+      const bool is_most = 2 * resolution_.azimuths > AzimuthSeries::most_azimuths;
       observer_.note("note: the residual of the series, " + general(residual, 2) +
                      ", is above linearize.auto_tolerance with " +
                      std::to_string(resolution_.azimuths) + " azimuths" +
-                     (options_.series.automatic_harmonics ? ", the most that `auto` takes"
-                                                          : "; hint: linearize.harmonics: auto"));
+                     (!options_.series.automatic_harmonics ? "; hint: linearize.harmonics: auto"
+                      : is_most                            ? ", the most that `auto` takes"
+                                                           : ": it is round-off of the matrices"));
+    }
     result_.azimuths = azimuths();
     result_.is_constant =
         std::max(periodic_.series.variation(), periodic_.series.residual()) < constant_tolerance;

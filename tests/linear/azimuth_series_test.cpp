@@ -2,6 +2,7 @@
 #include "samara/linear/azimuth_series.hpp"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 #include <set>
@@ -63,6 +64,24 @@ BOOST_AUTO_TEST_CASE(the_error_at_any_azimuth_is_below_the_tolerance) {
         BOOST_TEST(static_cast<int>(asked.size()) <= azimuths + 4);
       }
     }
+}
+
+BOOST_AUTO_TEST_CASE(round_off_ends_the_choice_of_azimuths) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> noise(-1e-9, 1e-9);
+  std::map<double, StateSpace> known;
+  const AzimuthSeries series = AzimuthSeries::resolve(
+      [&](double psi) {
+        const auto found = known.find(psi);
+        if (found != known.end()) return found->second;
+        StateSpace form = geometric(0.5, psi);
+        form.A(0, 0) += noise(random);
+        return known.emplace(psi, form).first->second;
+      },
+      {.tolerance = 1e-12});
+  BOOST_TEST(series.azimuths().size() <= 96u);
+  BOOST_TEST(series.residual() < 1e-8);
+  BOOST_TEST(series.residual() > 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_given_is_kept) {

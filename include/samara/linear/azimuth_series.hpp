@@ -28,8 +28,9 @@ class AzimuthSeries {
   AzimuthSeries(const std::function<StateSpace(double)>& form, int azimuths, int harmonics);
 
   /// Chooses what `resolution` leaves open. Azimuths: 12, 24, ... at most `most_azimuths`, until
-  /// the residual is at most the tolerance. Harmonics: the fewest of those that the azimuths
-  /// resolve whose tail is below a tenth of it. `form` is asked for the same azimuths again.
+  /// the residual is at most the tolerance, or round-off. Harmonics: the fewest of those that the
+  /// azimuths resolve whose tail is below a tenth of it. `form` is asked for the same azimuths
+  /// again.
   static AzimuthSeries resolve(const std::function<StateSpace(double)>& form,
                                const SeriesResolution& resolution);
   static constexpr int most_azimuths = 768;
@@ -63,8 +64,9 @@ class AzimuthSeries {
   std::vector<StateSpace> coefficients_;
   double residual_ = 0.0;
 
-  /// Sum of the sizes of all harmonics beyond a number, measured as the residual is.
-  double tail(int harmonics) const;
+  /// Number of harmonics without those at the end whose sizes, measured as the residual is, add up
+  /// to at most `limit`.
+  int harmonics_above(double limit) const;
 };
 
 }  // namespace samara::linear

@@ -1,0 +1,79 @@
+#include "hill_residual.hpp"
+
+#include <algorithm>
+#include <complex>
+#include <numbers>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/petsc/handle.hpp"
+
+namespace samara::analysis {
+namespace {
+
+using Complex = std::complex<double>;
+using Index = Eigen::Index;
+
+Eigen::VectorXd row_factors(const system::PeriodicSystem& system, double speed,
+                            const Eigen::SparseMatrix<double>& K,
+                            const Eigen::SparseMatrix<double>& M) {
+  const Eigen::SparseMatrix<double> sizes = K.cwiseAbs() + speed * M.cwiseAbs();
+  const Equilibration scaling = scaling_by_role(system, sizes, speed);
+  const petsc::ReadView view(scaling.rows.get());
+  return Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+}
+
+}  // namespace
+
+std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
+                                        const PeriodicSolution& solution,
+                                        const std::vector<const HillPair*>& pairs) {
+  if (pairs.empty()) return {};
+  const double speed = 2.0 * std::numbers::pi / system.period();
+  const auto count = static_cast<Index>(pairs.size());
+  const int harmonics = static_cast<int>((pairs.front()->series.rows() - 1) / 2);
+  const int instants = 4 * harmonics + 5;
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Mat> jacobian = system.make_jacobian();
+  const petsc::Handle<Mat> mass = system.make_mass();
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd rows;
+  Eigen::MatrixXcd values(system.size(), count);
+  Eigen::MatrixXcd rates(system.size(), count);
+  for (int j = 0; j < instants; ++j) {
+    const double t = system.period() * (j + 0.37) / instants;
+    solution.evaluate(t, z.get(), z_dot.get());
+    system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+    const Eigen::SparseMatrix<double> K = to_sparse(jacobian.get());
+    const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
+    if (rows.size() == 0) rows = row_factors(system, speed, K, M);
+    for (Index m = 0; m < count; ++m) {
+      const HillPair& pair = *pairs[static_cast<std::size_t>(m)];
+      Eigen::VectorXcd waves(2 * harmonics + 1);
+      Eigen::VectorXcd wave_rates(2 * harmonics + 1);
+      for (int k = -harmonics; k <= harmonics; ++k) {
+        waves(k + harmonics) = std::polar(1.0, k * speed * t);
+        wave_rates(k + harmonics) =
+            waves(k + harmonics) * (pair.exponent + Complex(0.0, k * speed));
+      }
+      values.col(m) = pair.series.transpose() * waves;
+      rates.col(m) = pair.series.transpose() * wave_rates;
+    }
+    const Eigen::MatrixXcd inertia = rows.asDiagonal() * (M * rates);
+    const Eigen::MatrixXcd residual = inertia + rows.asDiagonal() * (K * values);
+    const Eigen::MatrixXcd at_speed = speed * (rows.asDiagonal() * (M * values));
+    for (Index m = 0; m < count; ++m) {
+      largest(m) = std::max(largest(m), residual.col(m).norm());
+      scale(m) = std::max({scale(m), inertia.col(m).norm(), at_speed.col(m).norm()});
+    }
+  }
+  std::vector<double> residuals;
+  for (Index m = 0; m < count; ++m) residuals.push_back(largest(m) / scale(m));
+  return residuals;
+}
+
+}  // namespace samara::analysis
