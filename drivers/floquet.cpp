@@ -40,7 +40,7 @@ void run_floquet(const Job& job) {
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  const analysis::Trim trim = simulation::find_trim(job.input, system, progress);
+  const analysis::Trim trim = simulation::find_trim(job.input, system, progress, PETSC_COMM_WORLD);
   const analysis::Floquet floquet = analysis::find_floquet_modes(
       system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
   progress.finish();

@@ -68,7 +68,7 @@ void run_linearize(const Job& job) {
   const turbine::TurbineInputOutput input_output = make_input_output(job.input, system);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  const analysis::Trim trim = simulation::find_trim(job.input, system, progress);
+  const analysis::Trim trim = simulation::find_trim(job.input, system, progress, PETSC_COMM_WORLD);
   const linear::Linearization linear = linear::linearize(system, input_output, trim.solution,
                                                          turbine.azimuth, asked.options, progress);
   progress.finish();

@@ -35,7 +35,8 @@ void run_modes(const Job& job) {
   Progress progress(is_first);
   analysis::TrimOptions options = simulation::trim_options(job.input);
   if (turbine.speed == 0.0) options.harmonics = 0;
-  const analysis::Trim trim = simulation::solve_trim(job.input, system, options, progress);
+  const analysis::Trim trim =
+      simulation::solve_trim(job.input, system, options, progress, PETSC_COMM_WORLD);
   if (!trim.solution.is_constant())
     throw InputError(
         job.input.path +

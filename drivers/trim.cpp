@@ -220,8 +220,8 @@ void run_trim(const Job& job) {
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  const Trim trim =
-      simulation::solve_trim(job.input, system, simulation::trim_options(job.input), progress);
+  const Trim trim = simulation::solve_trim(job.input, system, simulation::trim_options(job.input),
+                                           progress, PETSC_COMM_WORLD);
   progress.finish();
   if (!is_first) return;
   deliver(

@@ -53,6 +53,9 @@ class BlockFactors {
   void solve_part(Matrix& right, const std::vector<Index>& filled,
                   const std::vector<Index>& wanted);
 
+  /// Frees the memory of right-hand sides.
+  void release() { packed_ = {}; }
+
   /// Logarithm of the determinant, up to multiples of 2 pi i.
   std::complex<double> log_determinant() const;
 

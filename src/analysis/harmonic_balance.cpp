@@ -14,6 +14,7 @@
 
 #include "harmonic_preconditioner.hpp"
 #include "harmonic_tangents.hpp"
+#include "mesh_partition.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -44,63 +45,66 @@ constexpr NewtonLimits full_steps{SNESLINESEARCHBASIC, 15};
 /// Smallest part of the loads on free coordinates that one step removes.
 constexpr double least_release = 1.0 / 64.0;
 
-using Coordinates = std::vector<system::UnconstrainedCoordinate>;
-
 /// A constant load in a row.
 struct RowLoad {
   PetscInt row = 0;
   double load = 0.0;
 };
 
-/// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i and has number
-/// i (2 H + 1) + c; the load that holds a coordinate takes the place of the coordinate's mean.
+/// The equations of harmonic balance. Unknown (i, c) is coefficient c of unknown i on this rank and
+/// has number i (2 H + 1) + c; the load that holds a coordinate takes the place of the coordinate's
+/// mean.
 class Balance {
  public:
   /// `given`: additional constant loads.
-  Balance(const system::PeriodicSystem& system, const Coordinates& held,
+  Balance(const MeshPartition& partition, const Coordinates& held,
           const std::vector<RowLoad>& given, int harmonics)
-      : system_(system),
+      : partition_(partition),
+        system_(partition.system()),
         held_(held),
         given_(given),
         harmonics_(harmonics),
         width_(2 * harmonics + 1),
-        size_(static_cast<Eigen::Index>(system.size())),
-        z_(system.make_state()),
-        z_dot_(system.make_state()),
-        r_(system.make_state()) {}
+        size_(partition.size()),
+        z_(system_.make_state()),
+        z_dot_(system_.make_state()),
+        r_(system_.make_state()) {}
 
-  PetscInt unknowns() const { return static_cast<PetscInt>(size_ * width_); }
+  Eigen::Index width() const { return width_; }
+  const MeshPartition& partition() const { return partition_; }
 
-  PeriodicSolution solution_of(const PetscScalar* h) const {
-    Eigen::MatrixXd coefficients = Eigen::Map<const Eigen::MatrixXd>(h, width_, size_).transpose();
-    for (const system::UnconstrainedCoordinate& coordinate : held_)
-      coefficients(coordinate.unknown, 0) = 0.0;
-    return {std::move(coefficients), system_.period()};
+  /// Zero where another rank has the unknown.
+  PeriodicSolution own_solution(const PetscScalar* h) const {
+    const Eigen::Map<const Eigen::MatrixXd> own(h, width_, size_);
+    Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(system_.size(), width_);
+    for (Eigen::Index i = 0; i < size_; ++i)
+      coefficients.row(partition_.kept()[static_cast<std::size_t>(i)]) = own.col(i).transpose();
+    return without_held(std::move(coefficients));
+  }
+
+  /// The same on all ranks.
+  PeriodicSolution whole_solution(const PetscScalar* h) const {
+    return without_held(
+        partition_.whole(Eigen::Map<const Eigen::MatrixXd>(h, width_, size_)).transpose());
   }
 
   std::vector<double> loads(const PetscScalar* h) const {
     std::vector<double> loads;
     for (const system::UnconstrainedCoordinate& coordinate : held_)
-      loads.push_back(h[coordinate.unknown * width_]);
+      loads.push_back(h[partition_.number_of(coordinate.unknown) * width_]);
     return loads;
   }
 
+  /// The rows of the border are complete on each rank.
   void residual(const PetscScalar* h, PetscScalar* out) {
-    const PeriodicSolution solution = solution_of(h);
-    const std::vector<double> held = loads(h);
     Eigen::Map<Eigen::MatrixXd> result(out, width_, size_);
     result.setZero();
-    const int samples = sample_count(harmonics_);
-    for (int k = 0; k < samples; ++k) {
-      const double t = time_of(k);
-      solution.evaluate(t, z_.get(), z_dot_.get());
-      system_.residual(t, z_.get(), z_dot_.get(), r_.get());
-      const petsc::ReadView view(r_.get());
-      const Eigen::Map<const Eigen::VectorXd> r(view.data(), size_);
-      result += projection(t) * r.transpose();
-    }
-    for (std::size_t n = 0; n < held_.size(); ++n) result(0, held_[n].row) += held[n];
-    for (const RowLoad& given : given_) result(0, given.row) += given.load;
+    partition_.ranks().attempt([&] { add_samples(own_solution(h), result); });
+    partition_.sum_border(result);
+    const std::vector<double> held = loads(h);
+    for (std::size_t n = 0; n < held_.size(); ++n)
+      result(0, partition_.number_of(held_[n].row)) += held[n];
+    for (const RowLoad& given : given_) result(0, partition_.number_of(given.row)) += given.load;
   }
 
   /// Largest coefficient of a balance row.
@@ -109,18 +113,42 @@ class Balance {
     residual(h, rows.data());
     double largest = 0.0;
     for (Eigen::Index i = 0; i < size_; ++i)
-      if (system_.rows()[static_cast<std::size_t>(i)] == system::RowRole::balance)
+      if (system_
+              .rows()[static_cast<std::size_t>(partition_.kept()[static_cast<std::size_t>(i)])] ==
+          system::RowRole::balance)
         largest = std::max(largest, rows.col(i).lpNorm<Eigen::Infinity>());
-    return largest;
+    return partition_.ranks().largest(largest);
   }
 
  private:
+  PeriodicSolution without_held(Eigen::MatrixXd coefficients) const {
+    for (const system::UnconstrainedCoordinate& coordinate : held_)
+      coefficients(coordinate.unknown, 0) = 0.0;
+    return {std::move(coefficients), system_.period()};
+  }
+
+  void add_samples(const PeriodicSolution& solution, Eigen::Map<Eigen::MatrixXd>& result) {
+    const int samples = sample_count(harmonics_);
+    for (int k = 0; k < samples; ++k) {
+      const double t = time_of(k);
+      solution.evaluate(t, z_.get(), z_dot_.get());
+      system_.residual(t, z_.get(), z_dot_.get(), r_.get());
+      const petsc::ReadView view(r_.get());
+      const Eigen::Map<const Eigen::VectorXd> r(view.data(), system_.size());
+      if (partition_.is_distributed())
+        result += projection(t) * r(partition_.kept()).transpose();
+      else
+        result += projection(t) * r.transpose();
+    }
+  }
+
   double period() const { return system_.period() > 0.0 ? system_.period() : 1.0; }
   double time_of(int k) const { return system_.period() * k / sample_count(harmonics_); }
 
   Eigen::VectorXd projection(double t) const { return fourier_weights(harmonics_, period(), t); }
 
-  const system::PeriodicSystem& system_;
+  const MeshPartition& partition_;
+  const system::PeriodicSystem& system_;  ///< part of this rank
   const Coordinates& held_;
   const std::vector<RowLoad>& given_;
   int harmonics_;
@@ -136,7 +164,8 @@ class LinearFailure : public ConvergenceError {
   using ConvergenceError::ConvergenceError;
 };
 
-/// Context of the callbacks of SNES and its linear solver: unknowns and rows are scaled.
+/// Context of the callbacks of SNES and its linear solver: unknowns and rows are scaled. Vectors of
+/// PETSc have the unknowns that the ranks count; all others have the unknowns on this rank.
 struct SolverContext {
   Balance* balance = nullptr;
   HarmonicTangents* tangents = nullptr;
@@ -145,29 +174,38 @@ struct SolverContext {
   Eigen::VectorXd rows;                    ///< factors
   Eigen::VectorXd columns;
   Eigen::VectorXd unscaled;
-  Eigen::VectorXd product;
   bool is_factored = false;
   std::exception_ptr error;
 
-  const PetscScalar* unscale(Vec x) {
+  Eigen::VectorXd spread(Vec x) const {
     const petsc::ReadView view(x);
-    unscaled = Eigen::Map<const Eigen::VectorXd>(view.data(), columns.size()).cwiseProduct(columns);
+    Eigen::MatrixXd values(balance->width(), balance->partition().size());
+    balance->partition().spread(view.data(), values);
+    return values.reshaped();
+  }
+  void collect(const Eigen::VectorXd& values, Vec x) const {
+    const petsc::WriteView view(x);
+    balance->partition().collect(values.reshaped(balance->width(), balance->partition().size()),
+                                 view.data());
+  }
+
+  const PetscScalar* unscale(Vec x) {
+    unscaled = spread(x).cwiseProduct(columns);
     return unscaled.data();
   }
 
   /// x = values / columns.
   void scale(const Eigen::VectorXd& values, Vec x) const {
-    const petsc::WriteView view(x);
-    Eigen::Map<Eigen::VectorXd>(view.data(), values.size()) = values.cwiseQuotient(columns);
+    collect(values.cwiseQuotient(columns), x);
   }
 };
 
 PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
-    const petsc::WriteView view(f);
-    context.balance->residual(context.unscale(x), view.data());
-    Eigen::Map<Eigen::VectorXd>(view.data(), context.rows.size()).array() *= context.rows.array();
+    Eigen::VectorXd residual(context.rows.size());
+    context.balance->residual(context.unscale(x), residual.data());
+    context.collect(residual.cwiseProduct(context.rows), f);
     context.error = nullptr;  // an error in a line search is no cause of a later failure
   } catch (const DomainError&) {
     context.error = std::current_exception();
@@ -185,12 +223,10 @@ PetscErrorCode multiply_tangents(Mat matrix, Vec x, Vec y) noexcept {
   if (const PetscErrorCode code = MatShellGetContext(matrix, &pointer)) return code;
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
-    const petsc::ReadView in(x);
-    const petsc::WriteView out(y);
-    context.product = Eigen::Map<const Eigen::VectorXd>(in.data(), context.columns.size())
-                          .cwiseProduct(context.columns);
-    context.tangents->multiply(context.product.data(), out.data());
-    Eigen::Map<Eigen::VectorXd>(out.data(), context.rows.size()).array() *= context.rows.array();
+    const Eigen::VectorXd in = context.spread(x).cwiseProduct(context.columns);
+    Eigen::VectorXd out(in.size());
+    context.tangents->multiply(in.data(), out.data());
+    context.collect(out.cwiseProduct(context.rows), y);
   } catch (...) {
     context.error = std::current_exception();
     return PETSC_ERR_USER;
@@ -211,9 +247,10 @@ PetscErrorCode apply_preconditioner(PC preconditioner, Vec x, Vec y) noexcept {
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
     if (!context.is_factored) factor_harmonics(context);  // -trim_snes_mf: tangents of the start
-    const petsc::ReadView in(x);
-    const petsc::WriteView out(y);
+    const Eigen::VectorXd in = context.spread(x);
+    Eigen::VectorXd out(in.size());
     context.preconditioner->solve(in.data(), out.data());
+    context.collect(out, y);
   } catch (...) {
     context.error = std::current_exception();
     return PETSC_ERR_USER;
@@ -265,9 +302,12 @@ PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* 
   auto& context = *static_cast<SolverContext*>(pointer);
   try {
     const PetscScalar* h = context.unscale(x);
-    const bool is_start = context.start != nullptr && (context.unscaled - *context.start).norm() <=
-                                                          same * context.start->norm();
-    if (!is_start) context.tangents->sample(context.balance->solution_of(h));
+    const Ranks& ranks = context.balance->partition().ranks();
+    const bool is_start =
+        context.start != nullptr &&
+        ranks.all((context.unscaled - *context.start).norm() <= same * context.start->norm());
+    if (!is_start)
+      ranks.attempt([&] { context.tangents->sample(context.balance->own_solution(h)); });
     context.start = nullptr;
     if (context.preconditioner != nullptr) {
       if (!factors_serve(snes, context)) factor_harmonics(context);
@@ -358,8 +398,9 @@ class PreferredFactorization {
   std::array<bool, choices.size()> set_{};
 };
 
-Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics,
-                             const PeriodicSolution* start) {
+/// (2 H + 1) x unknowns of the system.
+Eigen::MatrixXd start_coefficients(const system::PeriodicSystem& system, int harmonics,
+                                   const PeriodicSolution* start) {
   const auto n = static_cast<Eigen::Index>(system.size());
   Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(2 * harmonics + 1, n);
   if (start != nullptr) {
@@ -379,14 +420,21 @@ Eigen::VectorXd start_vector(const system::PeriodicSystem& system, int harmonics
         coefficients += fourier_weights(harmonics, system.period(), t) * values;
     }
   }
-  return Eigen::Map<const Eigen::VectorXd>(coefficients.data(), coefficients.size());
+  return coefficients;
 }
 
 /// Norm of the scaled residual.
 double residual_at(const Eigen::VectorXd& h, SolverContext& context) {
+  const MeshPartition& partition = context.balance->partition();
   Eigen::VectorXd f(h.size());
   context.balance->residual(h.data(), f.data());
-  return f.cwiseProduct(context.rows).norm();
+  f.array() *= context.rows.array();
+  Eigen::VectorXd counted(context.balance->width() *
+                          static_cast<Eigen::Index>(partition.counted().size()));
+  partition.collect(f.reshaped(context.balance->width(), partition.size()), counted.data());
+  Eigen::VectorXd square = Eigen::VectorXd::Constant(1, counted.squaredNorm());
+  partition.ranks().sum(square);
+  return std::sqrt(square(0));
 }
 
 /// Whether an option chooses a preconditioner or a matrix that the harmonics' own does not serve.
@@ -422,6 +470,12 @@ void choose_linear_solver(SNES solver, SolverContext& context) {
   petsc::check(PCShellSetApply(preconditioner, apply_preconditioner));
 }
 
+std::string words_of_ranks(const MeshPartition& partition) {
+  return partition.is_distributed()
+             ? ", mesh on " + std::to_string(partition.ranks().size) + " ranks"
+             : "";
+}
+
 /// The linear solver that was used, for the report.
 std::string words_of_solver(SNES solver, const SolverContext& context, PetscInt size) {
   KSP linear = nullptr;
@@ -440,16 +494,16 @@ std::string words_of_solver(SNES solver, const SolverContext& context, PetscInt 
   if (context.preconditioner != nullptr)
     return words + "harmonics with a border of " +
            std::to_string(context.preconditioner->border_size()) + " of " + std::to_string(size) +
-           " unknowns";
+           " unknowns" + words_of_ranks(context.balance->partition());
   petsc::check(PCFactorGetMatSolverType(preconditioner, &package));
   const std::string name =
       std::string(kind) + (package == nullptr ? "" : std::string(" (") + package + ")");
   return std::string(type) == KSPPREONLY ? name : words + name;
 }
 
-petsc::Handle<Mat> make_shell(PetscInt size, SolverContext& context) {
+petsc::Handle<Mat> make_shell(MPI_Comm comm, PetscInt own, PetscInt all, SolverContext& context) {
   petsc::Handle<Mat> matrix;
-  petsc::check(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &context, matrix.fill()));
+  petsc::check(MatCreateShell(comm, own, own, all, all, &context, matrix.fill()));
   petsc::check(MatShellSetOperation(matrix.get(), MATOP_MULT,
                                     reinterpret_cast<void (*)()>(multiply_tangents)));
   return matrix;
@@ -460,28 +514,36 @@ petsc::Handle<Mat> make_shell(PetscInt size, SolverContext& context) {
 /// @throws LinearFailure if `tries_harmonics` and the preconditioner of the harmonics fails
 Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const Coordinates& held,
               const std::vector<RowLoad>& given, int harmonics, double tolerance,
-              const PeriodicSolution* start, const NewtonLimits& limits) {
-  Balance balance(system, held, given, harmonics);
-  HarmonicTangents tangents(system, held, harmonics);
+              const PeriodicSolution* start, const NewtonLimits& limits, MPI_Comm comm) {
+  const MeshPartition partition(system, held, tries_harmonics ? comm : PETSC_COMM_SELF);
+  const Ranks& ranks = partition.ranks();
+  Balance balance(partition, held, given, harmonics);
+  HarmonicTangents tangents(partition, held, harmonics);
   HarmonicPreconditioner preconditioner(tangents);
-  Eigen::VectorXd h = start_vector(system, harmonics, start);
-  tangents.sample(balance.solution_of(h.data()));
+  const auto local_start = [&](const PeriodicSolution* from) -> Eigen::VectorXd {
+    return partition.local(start_coefficients(system, harmonics, from)).reshaped();
+  };
+  Eigen::VectorXd h = local_start(start);
+  ranks.attempt([&] { tangents.sample(balance.own_solution(h.data())); });
   SolverContext context;
   context.balance = &balance;
   context.tangents = &tangents;
   if (tries_harmonics && preconditioner.is_useful()) context.preconditioner = &preconditioner;
   context.start = &h;
-  const Eigen::VectorXd undeformed = start_vector(system, harmonics, nullptr);
+  const Eigen::VectorXd undeformed = local_start(nullptr);
   tangents.scale(balance.largest_load(undeformed.data()), context.rows, context.columns);
-  const PetscInt size = balance.unknowns();
-  const petsc::Handle<Mat> matrix =
-      context.preconditioner != nullptr ? make_shell(size, context) : tangents.make_matrix();
-  const petsc::Handle<Vec> x = petsc::make_vector(PETSC_COMM_SELF, size, size);
-  const petsc::Handle<Vec> f = petsc::make_vector(PETSC_COMM_SELF, size, size);
+  const auto width = static_cast<PetscInt>(balance.width());
+  const PetscInt all = width * system.size();
+  const PetscInt own = width * static_cast<PetscInt>(partition.counted().size());
+  const petsc::Handle<Mat> matrix = context.preconditioner != nullptr
+                                        ? make_shell(ranks.comm, own, all, context)
+                                        : tangents.make_matrix();
+  const petsc::Handle<Vec> x = petsc::make_vector(ranks.comm, own, all);
+  const petsc::Handle<Vec> f = petsc::make_vector(ranks.comm, own, all);
   context.scale(h, x.get());
 
   petsc::Handle<SNES> solver;
-  petsc::check(SNESCreate(PETSC_COMM_SELF, solver.fill()));
+  petsc::check(SNESCreate(ranks.comm, solver.fill()));
   petsc::check(SNESSetOptionsPrefix(solver.get(), "trim_"));
   petsc::check(SNESSetFunction(solver.get(), f.get(), form_function, &context));
   petsc::check(SNESSetJacobian(solver.get(), matrix.get(), matrix.get(), form_jacobian, &context));
@@ -515,7 +577,7 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
   if (reason == SNES_CONVERGED_FNORM_ABS && left > vanished) reason = SNES_CONVERGED_FNORM_RELATIVE;
 
   const PetscScalar* solution = context.unscale(x.get());
-  Trim trim{balance.solution_of(solution),
+  Trim trim{balance.whole_solution(solution),
             TrimMethod::harmonic_balance,
             0,
             SNESConvergedReasons[reason],
@@ -538,14 +600,14 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
 /// does not serve.
 Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
            const std::vector<RowLoad>& given, int harmonics, double tolerance,
-           const PeriodicSolution* start, const NewtonLimits& limits = {}) {
+           const PeriodicSolution* start, MPI_Comm comm, const NewtonLimits& limits = {}) {
   if (!is_direct_solver_given()) {
     try {
-      return solve_by(true, system, held, given, harmonics, tolerance, start, limits);
+      return solve_by(true, system, held, given, harmonics, tolerance, start, limits, comm);
     } catch (const LinearFailure&) {
     }
   }
-  return solve_by(false, system, held, given, harmonics, tolerance, start, limits);
+  return solve_by(false, system, held, given, harmonics, tolerance, start, limits, comm);
 }
 
 /// The start of a trim with free coordinates, whose means are held at zero.
@@ -559,14 +621,14 @@ struct HeldStart {
 /// that it does not have: Newton's method diverges from there. Empty without free coordinates, or
 /// where this start is not found.
 std::optional<HeldStart> hold_free(const system::PeriodicSystem& system, int harmonics,
-                                   double tolerance) {
+                                   double tolerance, MPI_Comm comm) {
   const Coordinates free = system.free_coordinates();
   if (free.empty()) return std::nullopt;
   Coordinates held = system.unconstrained_coordinates();
   const std::size_t first = held.size();
   held.insert(held.end(), free.begin(), free.end());
   try {
-    const Trim trim = solve(system, held, {}, harmonics, tolerance, nullptr);
+    const Trim trim = solve(system, held, {}, harmonics, tolerance, nullptr, comm);
     HeldStart start{trim.solution, {}};
     for (std::size_t n = first; n < held.size(); ++n)
       start.loads.push_back({held[n].row, trim.held[n].load});
@@ -579,7 +641,7 @@ std::optional<HeldStart> hold_free(const system::PeriodicSystem& system, int har
 /// Homotopy: removes the loads that hold the free coordinates in parts, or at once if that
 /// converges.
 Trim release(const system::PeriodicSystem& system, int harmonics, double tolerance,
-             const HeldStart& start) {
+             const HeldStart& start, MPI_Comm comm) {
   const Coordinates& held = system.unconstrained_coordinates();
   PeriodicSolution last = start.solution;
   double left = 1.0;  // part of the loads
@@ -589,7 +651,7 @@ Trim release(const system::PeriodicSystem& system, int harmonics, double toleran
     std::vector<RowLoad> loads = start.loads;
     for (RowLoad& load : loads) load.load *= next;
     try {
-      Trim trim = solve(system, held, loads, harmonics, tolerance, &last, full_steps);
+      Trim trim = solve(system, held, loads, harmonics, tolerance, &last, comm, full_steps);
       if (next == 0.0) return trim;
       last = trim.solution;
       left = next;
@@ -598,7 +660,7 @@ Trim release(const system::PeriodicSystem& system, int harmonics, double toleran
       step *= 0.5;
     }
   }
-  return solve(system, held, {}, harmonics, tolerance, &start.solution);
+  return solve(system, held, {}, harmonics, tolerance, &start.solution, comm);
 }
 
 }  // namespace
@@ -707,14 +769,14 @@ void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
 }
 
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
-                            const PeriodicSolution* start) {
+                            const PeriodicSolution* start, MPI_Comm comm) {
   if (harmonics > 0 && system.period() == 0.0)
     throw InternalError("harmonics of a system without a period");
   const Coordinates& unconstrained = system.unconstrained_coordinates();
   const std::optional<HeldStart> held =
-      start == nullptr ? hold_free(system, harmonics, tolerance) : std::nullopt;
-  Trim trim = held ? release(system, harmonics, tolerance, *held)
-                   : solve(system, unconstrained, {}, harmonics, tolerance, start);
+      start == nullptr ? hold_free(system, harmonics, tolerance, comm) : std::nullopt;
+  Trim trim = held ? release(system, harmonics, tolerance, *held, comm)
+                   : solve(system, unconstrained, {}, harmonics, tolerance, start, comm);
   finish_trim(system, trim);
   trim.harmonic_residual = harmonic_residual(system, trim);
   trim.attempts = {{harmonics, trim.residual_between}};

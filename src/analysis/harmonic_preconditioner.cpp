@@ -11,13 +11,12 @@
 namespace samara::analysis {
 namespace {
 
-/// A block belongs to the border if more blocks than this refer to it. (A node of a chain has two
-/// neighbours, and is in the rows of joints and reactions.)
-constexpr std::size_t most_neighbours = 8;
 /// Largest border, as a part of all blocks.
 constexpr double largest_border = 0.5;
 /// Relative size of a border column that counts in a harmonic.
 constexpr double least_coupling = 1e-4;
+/// Columns of the border that are eliminated together.
+constexpr std::size_t columns_at_once = 32;
 /// Smallest pivot of the border's complement, relative to its largest.
 constexpr double least_pivot = 1e-14;
 
@@ -42,27 +41,19 @@ HarmonicPreconditioner::HarmonicPreconditioner(const HarmonicTangents& tangents)
   if (is_useful()) list_places();
 }
 
+/// The border of a distributed mesh is small.
 bool HarmonicPreconditioner::is_useful() const {
+  if (tangents_.partition() != nullptr) return true;
   return block_ > 1 && !interior_.empty() &&
          static_cast<double>(border_.size()) <=
              largest_border * static_cast<double>(in_border_.size());
 }
 
-/// Blocks with a coordinate that is held belong to the border, too.
 void HarmonicPreconditioner::find_border() {
-  std::vector<char> is_border;
-  for (const std::size_t users : tangents_.users())
-    is_border.push_back(users > most_neighbours ? 1 : 0);
-  const auto block = static_cast<std::size_t>(block_);
-  for (const system::UnconstrainedCoordinate& held : tangents_.held())
-    for (const PetscInt i : {held.unknown, held.row}) {
-      const std::size_t first = static_cast<std::size_t>(i) / block * block;
-      std::fill_n(is_border.begin() + static_cast<std::ptrdiff_t>(first), block_, char{1});
-    }
   number_.resize(static_cast<std::size_t>(tangents_.size()));
   in_border_.resize(number_.size());
   for (std::size_t i = 0; i < number_.size(); ++i) {
-    in_border_[i] = is_border[i];
+    in_border_[i] = tangents_.is_border(static_cast<Index>(i)) ? 1 : 0;
     std::vector<PetscInt>& group = in_border_[i] ? border_ : interior_;
     number_[i] = static_cast<Index>(group.size());
     group.push_back(static_cast<PetscInt>(i));
@@ -256,28 +247,33 @@ void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
           if (const Index row = row_of(coupling->interior); row >= 0) filled.insert(row / block_);
     }
     if (filled.empty()) continue;
-    right.resize(static_cast<Index>(chains.blocks.size()) * block_,
-                 static_cast<Index>(kept.size()));
-    for (const Index i : filled) right.middleRows(i * block_, block_).setZero();
-    for (std::size_t n = 0; n < kept.size(); ++n)
-      for (const Coupling* coupling : of_border[kept[n].first])
-        if (const Index row = row_of(coupling->interior); row >= 0)
-          right(row, static_cast<Index>(n)) += coupling->block(k + harmonics, kept[n].second);
-    factors_of(k).solve_part(right, {filled.begin(), filled.end()}, chains.coupled);
-    for (const Coupling& coupling : couplings_) {
-      const Index row = row_of(coupling.interior);
-      if (row < 0) continue;
-      for (std::size_t n = 0; n < kept.size(); ++n) {
-        const Complex value = right(row, static_cast<Index>(n));
-        if (value == 0.0) continue;
-        const Index first = kept[n].first * width_;
-        schur.block(coupling.border * width_, first + kept[n].second, width_, 1) -=
-            value * coupling.block.col(k + harmonics);
-        if (is_real() && k > 0)
-          schur.block(coupling.border * width_, first + width_ - 1 - kept[n].second, width_, 1) -=
-              std::conj(value) * coupling.block.col(harmonics - k);
+    const std::vector<Index> filled_rows(filled.begin(), filled.end());
+    for (std::size_t first = 0; first < kept.size(); first += columns_at_once) {
+      const std::size_t count = std::min(columns_at_once, kept.size() - first);
+      right.resize(static_cast<Index>(chains.blocks.size()) * block_, static_cast<Index>(count));
+      for (const Index i : filled_rows) right.middleRows(i * block_, block_).setZero();
+      for (std::size_t n = 0; n < count; ++n)
+        for (const Coupling* coupling : of_border[kept[first + n].first])
+          if (const Index row = row_of(coupling->interior); row >= 0)
+            right(row, static_cast<Index>(n)) +=
+                coupling->block(k + harmonics, kept[first + n].second);
+      factors_of(k).solve_part(right, filled_rows, chains.coupled);
+      for (const Coupling& coupling : couplings_) {
+        const Index row = row_of(coupling.interior);
+        if (row < 0) continue;
+        for (std::size_t n = 0; n < count; ++n) {
+          const Complex value = right(row, static_cast<Index>(n));
+          if (value == 0.0) continue;
+          const auto& [border, number] = kept[first + n];
+          schur.block(coupling.border * width_, border * width_ + number, width_, 1) -=
+              value * coupling.block.col(k + harmonics);
+          if (is_real() && k > 0)
+            schur.block(coupling.border * width_, border * width_ + width_ - 1 - number, width_,
+                        1) -= std::conj(value) * coupling.block.col(harmonics - k);
+        }
       }
     }
+    factors_of(k).release();
   }
 }
 
@@ -291,8 +287,12 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   if (chains_.empty())
     for (int remainder = 0; remainder < tangents_.sectors(); ++remainder) find_chains(remainder);
   const Eigen::MatrixXd means = tangents_.means();
+  bool is_regular = true;
   for (int k = first_harmonic(); k <= tangents_.harmonics(); ++k)
-    if (!factor_harmonic(k, means)) return false;
+    is_regular = is_regular && factor_harmonic(k, means);
+  const MeshPartition* partition = tangents_.partition();
+  if (partition != nullptr) is_regular = partition->ranks().all(is_regular);
+  if (!is_regular) return false;
   couplings_.clear();
   for (const Place& place : rows_of_border_)
     couplings_.push_back({number_[static_cast<std::size_t>(place.row)],
@@ -316,6 +316,7 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
               number_[static_cast<std::size_t>(place.column)] * width_, width_, width_) =
         scaled_block(place);
   eliminate_chains(all);
+  if (partition != nullptr) partition->ranks().sum(all);
   Eigen::MatrixXcd schur = all(present_, present_);
   // Entries of about one, so that small pivots mean that the matrix is singular.
   const auto inverse = [](double largest) { return largest > 0.0 ? 1.0 / largest : 1.0; };
@@ -345,10 +346,7 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
     const auto of_unknown = [&](Eigen::MatrixXcd& from, Index number, Index all) {
       return Columns(from.col(number).data(), width_, columns, Eigen::OuterStride<>(all * width_));
     };
-    Eigen::MatrixXcd border(width_, border_size() * columns);
-    for (Index c = 0; c < columns; ++c)
-      border.middleCols(c * border_size(), border_size()) =
-          right.middleCols(c * unknowns, unknowns)(Eigen::all, border_);
+    Eigen::MatrixXcd border = Eigen::MatrixXcd::Zero(width_, border_size() * columns);
     Eigen::MatrixXcd given = between;
     solve_interior(between, true);
     if (is_real())
@@ -357,6 +355,10 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
     for (const Coupling& coupling : couplings_)
       of_unknown(border, coupling.border, border_size()).noalias() -=
           coupling.block * of_unknown(between, coupling.interior, interior);
+    if (tangents_.partition() != nullptr) tangents_.partition()->ranks().sum(border);
+    for (Index c = 0; c < columns; ++c)
+      border.middleCols(c * border_size(), border_size()) +=
+          right.middleCols(c * unknowns, unknowns)(Eigen::all, border_);
     Eigen::MatrixXcd of_border = border.reshaped(border_size() * width_, columns);
     Eigen::MatrixXcd unknown = schur_rows_.asDiagonal() * of_border(present_, Eigen::all);
     if (unknown.rows() > 0)

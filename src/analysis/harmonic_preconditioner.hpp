@@ -16,7 +16,8 @@ namespace samara::analysis {
 /// many others refer to (joints, the top of a tower) are the border; their rows and columns are
 /// exact, with all couplings of the harmonics. Between the other blocks, chains of beam nodes in
 /// their own axes, harmonics are not coupled: each has the mean tangents. Solved by the Schur
-/// complement of the border.
+/// complement of the border. Of a distributed mesh, each rank factors its piece of the chains, and
+/// all ranks solve for the border, whose values in right-hand sides are complete on every rank.
 class HarmonicPreconditioner {
  public:
   using Complex = std::complex<double>;

@@ -19,36 +19,8 @@ constexpr int samples_at_once = 8;
 /// Place of an entry of rows or unknowns that are not in the map.
 constexpr PetscInt left_out = -2;
 
-HarmonicTangents::Pattern pattern_of(const system::PeriodicSystem& system,
-                                     const HarmonicTangents::Coordinates& held) {
-  std::vector<std::vector<PetscInt>> rows = system.pattern();
-  if (rows.empty()) {  // the system does not declare a pattern
-    std::vector<PetscInt> all(static_cast<std::size_t>(system.size()));
-    std::iota(all.begin(), all.end(), PetscInt{0});
-    rows.assign(all.size(), all);
-  }
-  std::vector<Eigen::Triplet<double, PetscInt>> places;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (const PetscInt j : rows[i]) places.emplace_back(static_cast<PetscInt>(i), j, 1.0);
-  // The load that holds a coordinate stands in the place of its mean.
-  for (const system::UnconstrainedCoordinate& coordinate : held)
-    places.emplace_back(coordinate.row, coordinate.unknown, 1.0);
-  HarmonicTangents::Pattern pattern(system.size(), system.size());
-  pattern.setFromTriplets(places.begin(), places.end());
-  return pattern;
-}
-
 /// Whether an unknown has no meaning but to fill up a block.
 bool fills_up(const system::Unknown& unknown) { return unknown.quantity.empty(); }
-
-PetscInt block_size_of(Mat matrix) {
-  PetscBool is_blocked = PETSC_FALSE;
-  PetscInt size = 1;
-  petsc::check(
-      PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQBAIJ, &is_blocked));
-  if (is_blocked != PETSC_FALSE) petsc::check(MatGetBlockSize(matrix, &size));
-  return size;
-}
 
 }  // namespace
 
@@ -61,39 +33,68 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
   return weights;
 }
 
-HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, const Coordinates& held,
-                                   int harmonics, bool by_sector)
+HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, int harmonics,
+                                   bool by_sector)
     : system_(system),
-      held_(held),
       harmonics_(harmonics),
       width_(2 * harmonics + 1),
       size_(static_cast<Eigen::Index>(system.size())),
-      block_size_(block_size_of(system.make_jacobian().get())),
-      pattern_(pattern_of(system, held)) {
+      block_size_(block_size_of(system)) {
   kept_.resize(static_cast<std::size_t>(size_));
   std::iota(kept_.begin(), kept_.end(), 0);
   number_ = kept_;
   remainder_.assign(kept_.size(), every);
-  if (by_sector && held.empty()) find_sectors(pattern_);
-  find_users(pattern_);
-  if (sectors_ > 1) {
+  const TangentPattern whole = find_pattern(system, {});
+  if (by_sector) find_sectors(whole);
+  mark_border(find_border(whole, block_size_, {}));
+  make_map(whole);
+}
+
+HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordinates& held,
+                                   int harmonics)
+    : system_(partition.system()),
+      partition_(partition.is_distributed() ? &partition : nullptr),
+      harmonics_(harmonics),
+      width_(2 * harmonics + 1),
+      block_size_(block_size_of(partition.system())),
+      kept_(partition.kept()) {
+  remainder_.assign(kept_.size(), every);
+  std::vector<char> border;
+  for (PetscInt i = 0; i < static_cast<PetscInt>(partition.blocks()); ++i)
+    border.push_back(partition.is_border(i) ? 1 : 0);
+  for (PetscInt i = 0; i < static_cast<PetscInt>(system_.size()); ++i)
+    number_.push_back(partition.number_of(i));
+  mark_border(border);
+  make_map(find_pattern(system_, held));
+  for (const system::UnconstrainedCoordinate& coordinate : held) {
+    held_.push_back(coordinate);
+    held_.back().unknown = partition.number_of(coordinate.unknown);
+    held_.back().row = partition.number_of(coordinate.row);
+  }
+}
+
+/// Takes the places of the unknowns that are kept from the pattern of all.
+void HarmonicTangents::make_map(const TangentPattern& whole) {
+  size_ = static_cast<Eigen::Index>(kept_.size());
+  if (size_ == whole.rows()) {
+    pattern_ = whole;
+  } else {
     std::vector<Eigen::Triplet<double, PetscInt>> places;
     for (PetscInt i = 0; i < static_cast<PetscInt>(kept_.size()); ++i)
-      for (Pattern::InnerIterator it(pattern_, kept_[static_cast<std::size_t>(i)]); it; ++it)
+      for (TangentPattern::InnerIterator it(whole, kept_[static_cast<std::size_t>(i)]); it; ++it)
         if (const PetscInt j = number_[static_cast<std::size_t>(it.col())]; j >= 0)
           places.emplace_back(i, j, 1.0);
-    size_ = static_cast<Eigen::Index>(kept_.size());
     pattern_.resize(size_, size_);
     pattern_.setFromTriplets(places.begin(), places.end());
   }
-  const int samples = sample_count(harmonics);
+  const int samples = sample_count(harmonics_);
   values_of_.resize(samples, width_);
   projection_.resize(width_, samples);
   to_coefficients_.resize(2 * width_ - 1, samples);
   for (int k = 0; k < samples; ++k) {
     const double t = period() * k / samples;
-    values_of_.row(k) = PeriodicSolution::basis(harmonics, period(), t);
-    projection_.col(k) = fourier_weights(harmonics, period(), t);
+    values_of_.row(k) = PeriodicSolution::basis(harmonics_, period(), t);
+    projection_.col(k) = fourier_weights(harmonics_, period(), t);
     for (int m = 1 - width_; m < width_; ++m)
       to_coefficients_(m + width_ - 1, k) =
           std::polar(1.0 / samples, -2.0 * std::numbers::pi * m * k / samples);
@@ -106,7 +107,7 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, const C
 
 /// Keeps the unknowns of the first blade and those that P does not move. All blades stay in the map
 /// where a row of the first blade refers to another blade.
-void HarmonicTangents::find_sectors(const Pattern& whole) {
+void HarmonicTangents::find_sectors(const TangentPattern& whole) {
   const system::RotorSymmetry& symmetry = system_.symmetry();
   if (symmetry.sectors < 2) return;
   const auto size = static_cast<PetscInt>(symmetry.source.size());
@@ -158,7 +159,7 @@ void HarmonicTangents::find_sectors(const Pattern& whole) {
                                      : (symmetry.sign[at] > 0.0 ? 0 : symmetry.sectors / 2));
   }
   for (std::size_t i = 0; i < kept.size(); ++i)
-    for (Pattern::InnerIterator it(whole, kept[i]); it && remainder[i] == every; ++it)
+    for (TangentPattern::InnerIterator it(whole, kept[i]); it && remainder[i] == every; ++it)
       if (number[static_cast<std::size_t>(it.col())] < 0 &&
           kept[i] / block_size_ != it.col() / block_size_)
         return;
@@ -168,17 +169,14 @@ void HarmonicTangents::find_sectors(const Pattern& whole) {
   remainder_ = std::move(remainder);
 }
 
-/// A block of which a part is left out has the largest number.
-void HarmonicTangents::find_users(const Pattern& whole) {
+/// `blocks`: whether each block of the system belongs to the border. A block of which a part is
+/// left out belongs to it as well.
+void HarmonicTangents::mark_border(const std::vector<char>& blocks) {
   const PetscInt block = block_size_;
-  std::vector<std::set<PetscInt>> users(number_.size() / static_cast<std::size_t>(block));
-  for (PetscInt i = 0; i < static_cast<PetscInt>(whole.rows()); ++i)
-    for (Pattern::InnerIterator it(whole, i); it; ++it)
-      users[static_cast<std::size_t>(it.col() / block)].insert(i / block);
   for (const PetscInt i : kept_) {
     const auto own = static_cast<std::size_t>(i / block);
     const auto first = number_.begin() + static_cast<std::ptrdiff_t>(own) * block;
-    users_.push_back(std::count(first, first + block, -1) > 0 ? whole.rows() : users[own].size());
+    is_border_.push_back(blocks[own] != 0 || std::count(first, first + block, -1) > 0 ? 1 : 0);
   }
 }
 
@@ -215,6 +213,7 @@ bool HarmonicTangents::is_held(PetscInt unknown) const {
 }
 
 bool HarmonicTangents::holds(PetscInt row, PetscInt unknown) const {
+  if (partition_ != nullptr && !partition_->is_first()) return false;
   return std::any_of(held_.begin(), held_.end(), [row, unknown](const auto& coordinate) {
     return coordinate.unknown == unknown && coordinate.row == row;
   });
@@ -317,6 +316,7 @@ void HarmonicTangents::multiply(const double* x, double* y) const {
   }
   Eigen::MatrixXd result;
   multiply(coefficients, rates, result);
+  if (partition_ != nullptr) partition_->sum_border(result);
   for (const system::UnconstrainedCoordinate& coordinate : held_)
     result(0, coordinate.row) += x[coordinate.unknown * width_];
   Eigen::Map<Eigen::MatrixXd>(y, width_, size_) = result;
@@ -411,7 +411,8 @@ void HarmonicTangents::scale(double loads, Eigen::VectorXd& rows, Eigen::VectorX
   Eigen::SparseMatrix<double> sizes(system_.size(), system_.size());
   sizes.setFromTriplets(entries.begin(), entries.end(),
                         [](double a, double b) { return std::max(a, b); });
-  const Equilibration scaling = scaling_by_role(system_, sizes, rate, loads);
+  const Equilibration scaling = scaling_by_role(
+      system_, sizes, rate, loads, partition_ == nullptr ? nullptr : &partition_->ranks());
   const petsc::ReadView row_factors(scaling.rows.get());
   const petsc::ReadView column_factors(scaling.columns.get());
   rows.resize(size_ * width_);
@@ -430,7 +431,7 @@ petsc::Handle<Mat> HarmonicTangents::make_matrix() const {
   std::vector<PetscInt> columns;
   for (Eigen::Index i = 0; i < size_; ++i)
     for (int row = 0; row < width_; ++row) {
-      for (Pattern::InnerIterator it(pattern_, i); it; ++it)
+      for (TangentPattern::InnerIterator it(pattern_, i); it; ++it)
         for (int c = 0; c < width_; ++c)
           columns.push_back(static_cast<PetscInt>(it.col()) * width_ + c);
       begin.push_back(static_cast<PetscInt>(columns.size()));

@@ -10,6 +10,8 @@
 #include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
 
+#include "mesh_partition.hpp"
+
 namespace samara::analysis {
 
 /// Samples of a period with which products of three factors, times the azimuth's own cosine, do not
@@ -31,12 +33,11 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t);
 /// much as the first one. (The fast Floquet theory of docs/theory.md, section 5.4, for series.)
 class HarmonicTangents {
  public:
-  using Coordinates = std::vector<system::UnconstrainedCoordinate>;
-  using Pattern = Eigen::SparseMatrix<double, Eigen::RowMajor, PetscInt>;
-
   /// `by_sector`: motions as above, if the system has identical blades.
-  HarmonicTangents(const system::PeriodicSystem& system, const Coordinates& held, int harmonics,
-                   bool by_sector = false);
+  HarmonicTangents(const system::PeriodicSystem& system, int harmonics, bool by_sector);
+  /// The map of the unknowns on this rank, with the terms that this rank evaluates. Sums over the
+  /// ranks are those of the whole system.
+  HarmonicTangents(const MeshPartition& partition, const Coordinates& held, int harmonics);
 
   /// Evaluates K and M along `solution`.
   void sample(const PeriodicSolution& solution);
@@ -52,12 +53,15 @@ class HarmonicTangents {
   /// back.
   Eigen::MatrixXcd whole(const Eigen::MatrixXcd& series) const;
   Eigen::MatrixXcd part(const Eigen::MatrixXcd& whole) const;
-  /// Number of node blocks of the system whose rows refer to the block of each unknown.
-  const std::vector<std::size_t>& users() const { return users_; }
+  /// Whether the block of an unknown belongs to the border of the chains, or is not complete.
+  bool is_border(Eigen::Index unknown) const {
+    return is_border_[static_cast<std::size_t>(unknown)] != 0;
+  }
+  /// Null: one rank has the whole mesh.
+  const MeshPartition* partition() const { return partition_; }
   int width() const { return width_; }  ///< coefficients of an unknown, 2 H + 1
   int harmonics() const { return harmonics_; }
   PetscInt block_size() const { return block_size_; }  ///< of the system's tangents; 1: none
-  const Coordinates& held() const { return held_; }
   bool is_held(PetscInt unknown) const;
   /// Whether the load of this row holds the unknown.
   bool holds(PetscInt row, PetscInt unknown) const;
@@ -69,7 +73,7 @@ class HarmonicTangents {
   };
   const std::vector<Place>& places() const { return places_; }
 
-  /// y = J x, both of size() width() coefficients.
+  /// y = J x, both of size() width() coefficients. The rows of the border are complete.
   void multiply(const double* x, double* y) const;
   /// Coefficients of K(t) x(t) + M(t) w(t), for one or several x and w: each has size() columns.
   void multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
@@ -87,7 +91,8 @@ class HarmonicTangents {
   double rate() const;
 
   /// Row and column factors of all coefficients from the roles of unknowns (scale_by_role);
-  /// `loads`: size of the internal loads, where inertia alone is less.
+  /// `loads`: size of the internal loads, where inertia alone is less. The same for the border on
+  /// all ranks.
   void scale(double loads, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const;
 
   /// An AIJ matrix with the pattern of J.
@@ -100,8 +105,9 @@ class HarmonicTangents {
   bool is_moved(PetscInt unknown) const {
     return remainder_[static_cast<std::size_t>(unknown)] == every;
   }
-  void find_sectors(const Pattern& whole);
-  void find_users(const Pattern& whole);
+  void make_map(const TangentPattern& whole);
+  void find_sectors(const TangentPattern& whole);
+  void mark_border(const std::vector<char>& blocks);
   void find_followers();
   void count_operations(int parts, Eigen::Index columns) const;
   /// Sets the coefficients of harmonics that an unknown's row does not have to zero.
@@ -112,7 +118,8 @@ class HarmonicTangents {
                     Eigen::Ref<Eigen::VectorXd> sample) const;
 
   const system::PeriodicSystem& system_;
-  Coordinates held_;
+  const MeshPartition* partition_ = nullptr;
+  Coordinates held_;  ///< with numbers of the map
   int harmonics_;
   int width_;
   Eigen::Index size_;
@@ -123,8 +130,8 @@ class HarmonicTangents {
   static constexpr int every = -1;
   /// k mod Q of the harmonics of each unknown of the map that P does not move; `every` for others.
   std::vector<int> remainder_;
-  std::vector<std::size_t> users_;
-  Pattern pattern_;  ///< of K and M together; its values have no meaning
+  std::vector<char> is_border_;
+  TangentPattern pattern_;  ///< of K and M together
   std::vector<Place> places_;
   Eigen::MatrixXd values_of_;         ///< samples x width: the harmonics at the samples
   Eigen::MatrixXd projection_;        ///< width x samples: Fourier weights

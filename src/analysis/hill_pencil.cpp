@@ -8,7 +8,7 @@ using Index = Eigen::Index;
 
 HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                        int harmonics)
-    : tangents_(system, {}, harmonics, true), preconditioner_(tangents_) {
+    : tangents_(system, harmonics, true), preconditioner_(tangents_) {
   tangents_.sample(solution);
   tangents_.scale(0.0, rows_, columns_);
 }

@@ -13,6 +13,7 @@
 #include "blas.hpp"
 #include "block_factors.hpp"
 #include "matrix_entries.hpp"
+#include "ranks.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -187,7 +188,7 @@ Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, do
 
 Equilibration scaling_by_role(const system::PeriodicSystem& system,
                               const Eigen::SparseMatrix<double>& entries, double rate,
-                              double least_load) {
+                              double least_load, const Ranks* ranks) {
   const auto n = static_cast<std::size_t>(entries.rows());
   const auto role = [&system](Eigen::Index i) {
     return system.unknowns()[static_cast<std::size_t>(i)].role;
@@ -204,6 +205,7 @@ Equilibration scaling_by_role(const system::PeriodicSystem& system,
       largest = std::max(largest, std::abs(it.value()) * column);
     }
   }
+  if (ranks != nullptr) ranks->find_largest(inertia);
   std::vector<double> levels;
   for (std::size_t i = 0; i < n; ++i)
     if (system.rows()[i] == system::RowRole::balance && inertia[i] > 0.0)
@@ -229,6 +231,7 @@ Equilibration scaling_by_role(const system::PeriodicSystem& system,
       }
     }
   }
+  if (ranks != nullptr) ranks->find_largest(row_largest);
   const petsc::WriteView rows(scaling.rows.get());
   for (std::size_t i = 0; i < n; ++i)
     rows[static_cast<PetscInt>(i)] = row_largest[i] > 0.0 ? 1.0 / row_largest[i] : 1.0;

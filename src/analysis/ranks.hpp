@@ -37,13 +37,47 @@ struct Ranks {
                  part(values.size() - i), MPI_DOUBLE, MPI_SUM, target, comm);
   }
 
-  /// Does work that differs from rank to rank. If it fails on one of them, it fails on all.
+  /// Sums of the real and imaginary parts.
+  void sum(Eigen::MatrixXcd& values) const {
+    sum(reinterpret_cast<double*>(values.data()), 2 * values.size());
+  }
+
+  /// The largest value of all ranks, for each place.
+  void find_largest(std::vector<double>& values) const {
+    if (size == 1) return;
+    const auto count = static_cast<Eigen::Index>(values.size());
+    for (Eigen::Index i = 0; i < count; i += most_values)
+      MPI_Allreduce(MPI_IN_PLACE, values.data() + i, part(count - i), MPI_DOUBLE, MPI_MAX, comm);
+  }
+  double largest(double value) const {
+    if (size > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, comm);
+    return value;
+  }
+
+  /// Whether it is true on all ranks.
+  bool all(bool value) const {
+    int result = value ? 1 : 0;
+    if (size > 1) MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_INT, MPI_MIN, comm);
+    return result != 0;
+  }
+
+  /// Does work that differs from rank to rank. If it fails on one of them, it fails on all, with a
+  /// DomainError or a ConvergenceError.
   template <class Work>
   void attempt(const Work& work) const {
+    if (size == 1) {
+      work();
+      return;
+    }
     std::exception_ptr error;
     std::string message;
+    int is_domain = 0;
     try {
       work();
+    } catch (const DomainError& failure) {
+      error = std::current_exception();
+      message = failure.what();
+      is_domain = 1;
     } catch (const std::exception& failure) {
       error = std::current_exception();
       message = failure.what();
@@ -55,7 +89,9 @@ struct Ranks {
     MPI_Bcast(&length, 1, MPI_INT, failed, comm);
     message.resize(static_cast<std::size_t>(length));
     MPI_Bcast(message.data(), length, MPI_CHAR, failed, comm);
-    if (error) std::rethrow_exception(error);
+    MPI_Bcast(&is_domain, 1, MPI_INT, failed, comm);
+    if (failed == rank) std::rethrow_exception(error);
+    if (is_domain != 0) throw DomainError(message);
     throw ConvergenceError(message);
   }
 

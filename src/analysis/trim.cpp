@@ -69,10 +69,10 @@ bool is_balanced(const system::PeriodicSystem& system) {
 /// Solves at rest. A hinge that only loads restore has a singular tangent in the undeformed state:
 /// the start is then the end of the static path. Without loads the undeformed state is the
 /// solution.
-Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance) {
+Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance, MPI_Comm comm) {
   const auto solve = [&](const PeriodicSolution* start) {
     try {
-      return solve_harmonic_balance(system, 0, tolerance, start);
+      return solve_harmonic_balance(system, 0, tolerance, start, comm);
     } catch (const SingularError& error) {
       throw InputError(error.what());
     }
@@ -85,9 +85,10 @@ Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance) {
 }
 
 /// Tries a constant solution; an unbalanced rotor may have none.
-std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options) {
+std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options,
+                                 MPI_Comm comm) {
   try {
-    return solve_harmonic_balance(system, 0, options.tolerance, nullptr);
+    return solve_harmonic_balance(system, 0, options.tolerance, nullptr, comm);
   } catch (const ConvergenceError&) {
     return std::nullopt;
   }
@@ -110,23 +111,23 @@ std::vector<int> harmonics_to_try(int least, int sectors) {
 /// Solves from the solution with fewer harmonics, or from the undeformed system where that does not
 /// converge.
 Trim solve_from(const system::PeriodicSystem& system, int harmonics, double tolerance,
-                const std::optional<Trim>& last) {
+                const std::optional<Trim>& last, MPI_Comm comm) {
   if (last) {
     try {
-      return solve_harmonic_balance(system, harmonics, tolerance, &last->solution);
+      return solve_harmonic_balance(system, harmonics, tolerance, &last->solution, comm);
     } catch (const ConvergenceError&) {
     }
   }
-  return solve_harmonic_balance(system, harmonics, tolerance, nullptr);
+  return solve_harmonic_balance(system, harmonics, tolerance, nullptr, comm);
 }
 
 Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& options,
-                     const std::optional<Trim>& constant, Observer& observer) {
+                     const std::optional<Trim>& constant, Observer& observer, MPI_Comm comm) {
   std::vector<std::pair<int, double>> attempts;
   if (constant) attempts = constant->attempts;
   std::optional<Trim> last;
   for (const int harmonics : harmonics_to_try(options.least_harmonics, system.symmetry().sectors)) {
-    Trim trim = solve_from(system, harmonics, options.tolerance, last);
+    Trim trim = solve_from(system, harmonics, options.tolerance, last, comm);
     attempts.emplace_back(harmonics, trim.residual_between);
     trim.attempts = attempts;
     std::ostringstream text;
@@ -154,16 +155,16 @@ void add_held_loads(const system::PeriodicSystem& system, const std::vector<Held
       if (unconstrained.unknown == coordinate.unknown) view[unconstrained.row] += coordinate.load;
 }
 
-Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
-               Observer& observer) {
+Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options, Observer& observer,
+               MPI_Comm comm) {
   const petsc::Stage stage("trim");
   require_roles(system);
-  if (system.period() == 0.0) return solve_at_rest(system, options.tolerance);
+  if (system.period() == 0.0) return solve_at_rest(system, options.tolerance, comm);
   // The state of a balanced rotor without gravity or tilt is constant in its own axes: a constant
   // is exact. Loads and motions that oscillate exclude a constant, but they might be zero at all of
   // its samples.
   const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)
-                                           ? try_constant(system, options)
+                                           ? try_constant(system, options, comm)
                                            : std::nullopt;
   if (constant && constant->residual_between <= allowed_residual(*constant, round_off) &&
       constant->residual <= allowed_residual(*constant, round_off) &&
@@ -171,12 +172,12 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
     return *constant;
   if (options.method == TrimMethod::shooting)
     return solve_shooting(system, options.steps, options.tolerance, observer);
-  if (options.automatic) return raise_harmonics(system, options, constant, observer);
+  if (options.automatic) return raise_harmonics(system, options, constant, observer, comm);
   if (!is_closed(options.harmonics, system.symmetry().sectors))
     observer.note("trim: " + std::to_string(options.harmonics) + " harmonics leave harmonic " +
                   std::to_string(options.harmonics + 1) +
                   " of the fixed frame unbalanced; one more or one less is better");
-  return solve_harmonic_balance(system, options.harmonics, options.tolerance, nullptr);
+  return solve_harmonic_balance(system, options.harmonics, options.tolerance, nullptr, comm);
 }
 
 }  // namespace samara::analysis

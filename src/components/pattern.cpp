@@ -7,6 +7,7 @@
 #include "samara/base/error.hpp"
 #include "samara/base/index.hpp"
 #include "samara/components/block_matrix.hpp"
+#include "samara/components/portion.hpp"
 
 namespace samara::components {
 namespace {
@@ -14,12 +15,14 @@ namespace {
 using math::Dependence;
 constexpr int block = BlockMatrix::block;
 
-/// Sorts each list in ascending order and removes duplicates.
+/// Sorts a list in ascending order and removes duplicates.
+void keep_unique(std::vector<int>& row) {
+  std::ranges::sort(row);
+  row.erase(std::unique(row.begin(), row.end()), row.end());
+}
+
 void sort(std::vector<std::vector<int>>& rows) {
-  for (std::vector<int>& row : rows) {
-    std::ranges::sort(row);
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-  }
+  for (std::vector<int>& row : rows) keep_unique(row);
 }
 
 template <class Visit>
@@ -30,7 +33,8 @@ void for_each_quantity(std::uint64_t quantities, const Visit& visit) {
 
 }  // namespace
 
-Pattern::Pattern(int size, const std::vector<int>& port_sizes) {
+Pattern::Pattern(int size, const std::vector<int>& port_sizes, const Portion* portion)
+    : portion_(portion) {
   plan_.K.resize(at(size));
   plan_.M.resize(at(size));
   plan_.port_sizes = port_sizes;
@@ -44,6 +48,7 @@ Pattern::Pattern(int size, const std::vector<int>& port_sizes) {
 void Pattern::add(const std::vector<LinearShare>& shares) {
   for (const LinearShare& share : shares) {
     if (share.weight == 0.0) continue;
+    if (portion_ != nullptr && !portion_->has_entry(share.row, share.column)) continue;
     linear_.push_back(share);
     for (int i = 0; i < share.count; ++i) plan_.K[at(share.row + i)].push_back(share.column + i);
   }
@@ -74,6 +79,13 @@ void Pattern::end(const Connections& connections, int m, const Dependence* y) {
   plan_.calls.emplace_back();
   plan_.calls.back().arguments = static_cast<int>(sources_.size());
   plan_.calls.back().values = m;
+  TangentPlan::Call& call = plan_.calls.back();
+  for (const Source& source : sources_)
+    if (source.kind == Argument::Kind::unknowns || source.kind == Argument::Kind::rates)
+      call.argument_blocks.push_back(source.first / block);
+  for (const Share& share : connections.shares) call.row_blocks.push_back(share.row / block);
+  keep_unique(call.argument_blocks);
+  keep_unique(call.row_blocks);
   shares_.push_back(connections.shares);
   for (const Share& share : connections.shares) add_share(share, y);
   for (const Provision& provision : connections.provisions) add_provision(provision, y);
@@ -103,6 +115,10 @@ void Pattern::add_share(const Share& share, const Dependence* y) {
       share.row / block != (share.row + share.count - 1) / block)
     throw InternalError("a share of a function must have one to three rows in one block");
   TangentPlan::SharePlan plan;
+  if (portion_ != nullptr && !portion_->has_share(plan_.calls.size() - 1, share.row)) {
+    plan_.calls.back().shares.push_back(plan);
+    return;
+  }
   std::uint64_t all = 0;
   for (int i = 0; i < share.count; ++i) {
     std::uint64_t own = 0;
@@ -195,7 +211,8 @@ TangentPlan Pattern::finish(const TangentPlan* at_least) {
   plan_.blocks.resize(plan_.K.size() / block);
   for (std::size_t i = 0; i < plan_.K.size(); ++i) {
     std::vector<int>& own = plan_.blocks[i / block];
-    own.push_back(static_cast<int>(i) / block);
+    if (portion_ == nullptr || portion_->has_rows(static_cast<int>(i) / block))
+      own.push_back(static_cast<int>(i) / block);
     for (const std::vector<int>* columns : {&plan_.K[i], &plan_.M[i]})
       for (const int column : *columns) own.push_back(column / block);
   }

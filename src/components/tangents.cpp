@@ -18,6 +18,10 @@ Tangents::Tangents(std::shared_ptr<const TangentPlan> plan)
     : plan_(std::move(plan)), K_(plan_->blocks), M_(plan_->blocks) {
   for (const TangentPlan::Call& call : plan_->calls) {
     Derivatives derivatives;
+    if (call.is_idle) {  // never evaluated
+      derivatives_.push_back(derivatives);
+      continue;
+    }
     derivatives.x.assign(at(call.arguments), std::numeric_limits<double>::quiet_NaN());
     derivatives.y.setZero(call.values);
     derivatives.J.setZero(call.values, call.arguments);

@@ -101,13 +101,14 @@ std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& op
 }  // namespace
 
 analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
-                          const analysis::TrimOptions& options, analysis::Observer& observer) {
+                          const analysis::TrimOptions& options, analysis::Observer& observer,
+                          MPI_Comm comm) {
   const auto name_limit = [&] {
     const std::string words = find_limit(scenario, options);
     if (!words.empty()) throw ConvergenceError("trim: " + words);
   };
   try {
-    return analysis::find_trim(system, options, observer);
+    return analysis::find_trim(system, options, observer, comm);
   } catch (const ConvergenceError&) {
     name_limit();
     throw;
@@ -118,8 +119,8 @@ analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem
 }
 
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
-                         analysis::Observer& observer) {
-  analysis::Trim trim = solve_trim(scenario, system, trim_options(scenario), observer);
+                         analysis::Observer& observer, MPI_Comm comm) {
+  analysis::Trim trim = solve_trim(scenario, system, trim_options(scenario), observer, comm);
   note_roughness(trim, observer);
   return trim;
 }

@@ -66,9 +66,20 @@ TurbineEquations::TurbineEquations(const model::Turbine& turbine,
   components::Registry registry = place();
   describe(registry);
   components::Pattern pattern(layout_.size(), declarations_.port_sizes);
+  state(pattern);
+  plan_ = std::make_shared<const components::TangentPlan>(pattern.finish(at_least));
+}
+
+void TurbineEquations::state(components::Pattern& pattern) const {
   pattern.add(padding_);
   for (const components::Component* component : components_) component->add_to(pattern);
-  plan_ = std::make_shared<const components::TangentPlan>(pattern.finish(at_least));
+}
+
+std::shared_ptr<const components::TangentPlan> TurbineEquations::find_plan(
+    const components::Portion& portion) const {
+  components::Pattern pattern(layout_.size(), declarations_.port_sizes, &portion);
+  state(pattern);
+  return std::make_shared<const components::TangentPlan>(pattern.finish());
 }
 
 TurbineEquations::~TurbineEquations() = default;
@@ -183,9 +194,10 @@ bool TurbineEquations::constraints_are_autonomous() const {
 
 template <class T>
 void TurbineEquations::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                                const TurbineInputs<T>& inputs, std::vector<T>& r) const {
+                                const TurbineInputs<T>& inputs, std::vector<T>& r,
+                                const components::Portion* portion) const {
   std::fill(r.begin(), r.end(), T(0));
-  Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, r);
+  Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, r, portion);
   residual.add(padding_);
   for (const components::Component* component : components_) component->add_to(residual);
 }
@@ -211,10 +223,10 @@ components::BodiesReport<T> TurbineEquations::report(double t, const std::vector
 using Complex = std::complex<double>;
 template void TurbineEquations::evaluate(double, const std::vector<double>&,
                                          const std::vector<double>&, const TurbineInputs<double>&,
-                                         std::vector<double>&) const;
+                                         std::vector<double>&, const components::Portion*) const;
 template void TurbineEquations::evaluate(double, const std::vector<Complex>&,
                                          const std::vector<Complex>&, const TurbineInputs<Complex>&,
-                                         std::vector<Complex>&) const;
+                                         std::vector<Complex>&, const components::Portion*) const;
 template components::BodiesReport<double> TurbineEquations::report(
     double, const std::vector<double>&, const std::vector<double>&,
     const TurbineInputs<double>&) const;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
+
+#include "samara/components/portion.hpp"
 
 #include "turbine_motions.hpp"
 
@@ -20,30 +23,42 @@ constexpr double large_rotation = 3.4641016151377544;
 
 class TurbineSystem::Assembly {
  public:
-  Assembly(const model::Turbine& whole_turbine, MPI_Comm communicator,
-           const components::TangentPlan* at_least)
-      : equations(whole_turbine, at_least),
+  /// `of_portion`: terms that count; null: all.
+  Assembly(std::shared_ptr<const TurbineEquations> all, MPI_Comm communicator,
+           std::shared_ptr<const components::Portion> of_portion)
+      : shared_equations(std::move(all)),
+        equations(*shared_equations),
         turbine(equations.turbine()),
         layout(equations.layout()),
         comm(communicator),
-        plan(*equations.plan()),
-        tangents(equations.plan()) {
+        portion(std::move(of_portion)),
+        own_plan(portion ? equations.find_plan(*portion) : equations.plan()),
+        plan(*own_plan) {
     find_range();
     place_mass();
   }
 
-  TurbineEquations equations;
+  std::shared_ptr<const TurbineEquations> shared_equations;
+  const TurbineEquations& equations;
   const model::Turbine& turbine;
   const TurbineLayout& layout;
   MPI_Comm comm;
+  std::shared_ptr<const components::Portion> portion;
+  std::shared_ptr<const components::TangentPlan> own_plan;
   const components::TangentPlan& plan;
   std::vector<bool> differential;
   std::vector<std::size_t> mass_offsets;  ///< positions in M's blocks of its entries, row by row
   PetscInt first_row = 0;
   PetscInt last_row = 0;
-  mutable components::Tangents tangents;
+  mutable std::optional<components::Tangents> workspace;
   mutable petsc::Handle<VecScatter> gather;
   mutable petsc::Handle<Vec> whole;
+
+  /// Made at the first use: its memory is large.
+  components::Tangents& tangents() const {
+    if (!workspace) workspace.emplace(own_plan);
+    return *workspace;
+  }
 
   bool parallel() const {
     int ranks = 1;
@@ -129,12 +144,14 @@ class TurbineSystem::Assembly {
 
   /// Finds the positions of M's entries in its blocks.
   void place_mass() {
+    const components::BlockMatrix places(plan.blocks);
     differential.assign(static_cast<std::size_t>(layout.size()), false);
-    for (int row = 0; row < layout.size(); ++row)
-      for (const int column : plan.M[static_cast<std::size_t>(row)]) {
-        mass_offsets.push_back(tangents.M().place(row, column));
+    for (int row = 0; row < layout.size(); ++row) {
+      for (const int column : plan.M[static_cast<std::size_t>(row)])
+        mass_offsets.push_back(places.place(row, column));
+      for (const int column : equations.plan()->M[static_cast<std::size_t>(row)])
         differential[static_cast<std::size_t>(column)] = true;
-      }
+    }
   }
 
  public:
@@ -151,7 +168,10 @@ class TurbineSystem::Assembly {
 
 TurbineSystem::TurbineSystem(const model::Turbine& turbine, MPI_Comm comm,
                              const components::TangentPlan* at_least)
-    : assembly_(std::make_unique<Assembly>(turbine, comm, at_least)) {}
+    : assembly_(std::make_unique<Assembly>(
+          std::make_shared<const TurbineEquations>(turbine, at_least), comm, nullptr)) {}
+
+TurbineSystem::TurbineSystem(std::unique_ptr<Assembly> assembly) : assembly_(std::move(assembly)) {}
 
 TurbineSystem::~TurbineSystem() = default;
 
@@ -217,7 +237,7 @@ petsc::Handle<Mat> TurbineSystem::make_jacobian() const {
   const petsc::Handle<Vec> z = make_state();
   PetscInt local = 0;
   petsc::check(VecGetLocalSize(z.get(), &local));
-  const auto& columns = assembly.tangents.K().columns();
+  const auto& columns = assembly.plan.blocks;
   const int first = static_cast<int>(assembly.first_row) / block;
   const int last = static_cast<int>(assembly.last_row) / block;
   std::vector<PetscInt> inside;
@@ -331,6 +351,23 @@ std::unique_ptr<system::PeriodicSystem> TurbineSystem::unloaded() const {
   return std::make_unique<TurbineSystem>(bare, comm(), assembly_->equations.plan().get());
 }
 
+std::vector<PetscInt> TurbineSystem::common_unknowns() const {
+  std::vector<PetscInt> unknowns;
+  for (const int common : components::Portion::find_common_blocks(assembly_->plan))
+    for (int i = 0; i < block; ++i) unknowns.push_back(common * block + i);
+  return unknowns;
+}
+
+std::unique_ptr<system::PeriodicSystem> TurbineSystem::part_of(
+    int rank, const std::vector<int>& owners) const {
+  std::vector<int> of_blocks;
+  for (std::size_t i = 0; i < owners.size(); i += block) of_blocks.push_back(owners[i]);
+  auto portion = components::Portion::find(assembly_->plan, std::move(of_blocks), rank);
+  if (!portion) return nullptr;
+  return std::unique_ptr<TurbineSystem>(new TurbineSystem(std::make_unique<Assembly>(
+      assembly_->shared_equations, PETSC_COMM_SELF, std::move(portion))));
+}
+
 std::unique_ptr<system::PeriodicSystem> TurbineSystem::counted_from(Vec z) const {
   const Assembly& assembly = *assembly_;
   const std::vector<double> values = assembly.gathered(z);
@@ -368,16 +405,18 @@ void TurbineSystem::count_from_undeformed(Vec z) const {
 void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {
   const Assembly& assembly = *assembly_;
   std::vector<double> values(static_cast<std::size_t>(size()));
-  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), values);
+  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), {}, values,
+                              assembly.portion.get());
   assembly.write_own(values, r);
 }
 
 void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,
                              Mat mass) const {
   const Assembly& assembly = *assembly_;
-  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), assembly.tangents);
-  std::vector<double>& K = assembly.tangents.K().values();
-  const std::vector<double>& M = assembly.tangents.M().values();
+  components::Tangents& tangents = assembly.tangents();
+  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), tangents);
+  std::vector<double>& K = tangents.K().values();
+  const std::vector<double>& M = tangents.M().values();
   if (mass != nullptr && !assembly.parallel()) {
     PetscScalar* values = nullptr;  // row by row, in the order of the offsets
     petsc::check(MatSeqAIJGetArrayWrite(mass, &values));
@@ -403,7 +442,7 @@ void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacob
   if (jacobian != nullptr) {
     if (shift != 0.0)
       for (std::size_t i = 0; i < K.size(); ++i) K[i] += shift * M[i];
-    assembly.tangents.K().copy_to(jacobian);
+    tangents.K().copy_to(jacobian);
   }
 }
 

@@ -17,6 +17,8 @@
 
 namespace samara::analysis {
 
+struct Ranks;
+
 /// Row and column factors that bring the largest entry of every row and column near one.
 struct Equilibration {
   petsc::Handle<Vec> rows;
@@ -35,10 +37,11 @@ void round_to_powers_of_two(Equilibration& scaling);
 /// median inertia load that belongs to them; rows by their largest entry. The condition number of
 /// the matrix of (19) is 6e17 unscaled, 1e8 equilibrated and 2e3 with these factors (the paper's
 /// turbine, 500 steps). The same holds for the pivot blocks of the elimination.
+/// `ranks`: each has a part of the entries; null: this rank has all of them.
 Equilibration scale_by_role(const system::PeriodicSystem& system, Mat matrix, double rate);
 Equilibration scaling_by_role(const system::PeriodicSystem& system,
                               const Eigen::SparseMatrix<double>& matrix, double rate,
-                              double least_load = 0.0);
+                              double least_load = 0.0, const Ranks* ranks = nullptr);
 
 /// A matrix without an inverse.
 class SingularError : public ConvergenceError {

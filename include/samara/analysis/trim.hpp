@@ -58,11 +58,12 @@ inline constexpr int auto_harmonics = 60;
 int shooting_harmonics(int steps);
 
 /// Solves for the periodic steady state from the undeformed system in its prescribed motion.
-/// Serial: every rank computes the same.
+/// `comm`: ranks that share a large mesh in harmonic balance; all of them have the same system and
+/// get the same solution.
 /// @throws ConvergenceError with PETSc's reason and a hint.
 /// @throws InputError at rest where a coordinate may move that nothing restores, or where a part is
 /// held twice.
-Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
-               Observer& observer);
+Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options, Observer& observer,
+               MPI_Comm comm = MPI_COMM_SELF);
 
 }  // namespace samara::analysis

@@ -64,7 +64,9 @@ struct TangentPlan {
     int values = 0;
     std::vector<SharePlan> shares;
     std::vector<ProvisionPlan> provisions;
-    bool is_idle = true;  ///< true without derivatives and without provisions
+    bool is_idle = true;               ///< true without derivatives and without provisions
+    std::vector<int> argument_blocks;  ///< without those of ports
+    std::vector<int> row_blocks;       ///< of the shares
   };
   /// A constant entry of K.
   struct Constant {
@@ -81,10 +83,13 @@ struct TangentPlan {
   std::vector<std::vector<int>> blocks;  ///< block columns of each block row of both, ascending
 };
 
+class Portion;
+
 class Pattern {
  public:
-  /// `size`: number of unknowns of the system.
-  Pattern(int size, const std::vector<int>& port_sizes);
+  /// `size`: number of unknowns of the system. `portion`: the terms that the plan has, with the
+  /// blocks of its rows; null: all.
+  Pattern(int size, const std::vector<int>& port_sizes, const Portion* portion = nullptr);
 
   static constexpr bool has_inputs = false;  ///< they are zero
   static double time() { return 0.0; }
@@ -131,6 +136,7 @@ class Pattern {
   static void append(std::vector<TangentPlan::Entries>& entries, int from,
                      const PortColumn& column);
 
+  const Portion* portion_;
   TangentPlan plan_;
   std::vector<Port> ports_;
   std::vector<Source> sources_;  ///< arguments of the present function

@@ -9,6 +9,7 @@
 #include "samara/base/index.hpp"
 #include "samara/components/function.hpp"
 #include "samara/components/inputs.hpp"
+#include "samara/components/portion.hpp"
 
 namespace samara::components {
 
@@ -16,10 +17,11 @@ template <class T>
 class Residual {
  public:
   /// Computes r(t, z, z_dot, u) into `r`, which must be zero. All vectors have the same size.
-  /// `port_sizes`: number of values of each port.
+  /// `port_sizes`: number of values of each port. `portion`: the functions that count; null: all.
   Residual(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-           const TurbineInputs<T>& inputs, const std::vector<int>& port_sizes, std::vector<T>& r)
-      : t_(t), z_(z), z_dot_(z_dot), inputs_(inputs), r_(r) {
+           const TurbineInputs<T>& inputs, const std::vector<int>& port_sizes, std::vector<T>& r,
+           const Portion* portion = nullptr)
+      : t_(t), z_(z), z_dot_(z_dot), inputs_(inputs), r_(r), portion_(portion) {
     for (const int size : port_sizes)
       ports_.push_back(Eigen::Matrix<T, Eigen::Dynamic, 1>::Zero(size));
   }
@@ -40,16 +42,21 @@ class Residual {
   const Eigen::Matrix<T, Eigen::Dynamic, 1>& port(int number) const { return ports_[at(number)]; }
 
   void add(const std::vector<LinearShare>& shares) {
-    for (const LinearShare& share : shares)
+    for (const LinearShare& share : shares) {
+      if (portion_ != nullptr && !portion_->has_entry(share.row, share.column)) continue;
       for (int i = 0; i < share.count; ++i)
         r_[at(share.row + i)] += z_[at(share.column + i)] * share.weight;
+    }
   }
 
   /// `function`: has n arguments and m values.
   template <int n, int m, class Function>
   void add(const Connections& connections, const Function& function, Memory = Memory::none) {
+    const std::size_t call = next_++;
+    if (portion_ != nullptr && !portion_->needs(call)) return;
     const Eigen::Matrix<T, m, 1> y = function(gather<n>(connections));
     for (const Share& share : connections.shares) {
+      if (portion_ != nullptr && !portion_->has_share(call, share.row)) continue;
       for (int i = 0; i < share.count; ++i)
         r_[at(share.row + i)] += y(share.value + i) * share.weight;
       if (share.other_weight == 0.0) continue;
@@ -91,6 +98,8 @@ class Residual {
   const std::vector<T>& z_dot_;
   const TurbineInputs<T>& inputs_;
   std::vector<T>& r_;
+  const Portion* portion_;
+  std::size_t next_ = 0;  ///< call
   std::vector<Eigen::Matrix<T, Eigen::Dynamic, 1>> ports_;
 };
 

@@ -9,15 +9,17 @@
 
 namespace samara::simulation {
 
-/// Like analysis::find_trim; `system`: of the scenario's turbine.
+/// Like analysis::find_trim; `system`: of the scenario's turbine; `comm`: ranks that share a large
+/// mesh.
 /// @throws ConvergenceError like find_trim; with the limit in the message if a controller needs a
 /// pitch beyond the limits of its actuators
 analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
-                          const analysis::TrimOptions& options, analysis::Observer& observer);
+                          const analysis::TrimOptions& options, analysis::Observer& observer,
+                          MPI_Comm comm = MPI_COMM_SELF);
 
 /// The same with the scenario's options. Adds a note if the result is rough.
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
-                         analysis::Observer& observer);
+                         analysis::Observer& observer, MPI_Comm comm = MPI_COMM_SELF);
 
 /// Note on a rough steady state, with the way to a better one; empty if it is not rough.
 std::string roughness(const analysis::Trim& trim);

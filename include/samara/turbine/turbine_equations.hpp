@@ -42,10 +42,12 @@ class TurbineEquations {
   }
 
   /// r(t, z, z_dot, u, u_dot); all vectors have layout().size(). T: double, or std::complex<double>
-  /// to differentiate by a complex step. @throws DomainError if a rotation is out of range.
+  /// to differentiate by a complex step. `portion`: the functions that count; null: all.
+  /// @throws DomainError if a rotation is out of range.
   template <class T>
   void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                const TurbineInputs<T>& inputs, std::vector<T>& r) const;
+                const TurbineInputs<T>& inputs, std::vector<T>& r,
+                const components::Portion* portion = nullptr) const;
   /// The same without inputs.
   template <class T>
   void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
@@ -55,6 +57,9 @@ class TurbineEquations {
 
   /// Places of the entries of K and M.
   std::shared_ptr<const components::TangentPlan> plan() const { return plan_; }
+  /// The places of the terms of a portion.
+  std::shared_ptr<const components::TangentPlan> find_plan(
+      const components::Portion& portion) const;
   /// K and M, in a workspace made from plan().
   void evaluate(double t, const std::vector<double>& z, const std::vector<double>& z_dot,
                 components::Tangents& tangents) const;
@@ -69,6 +74,7 @@ class TurbineEquations {
   components::Registry place();
   void tie_controls();
   void describe(components::Registry& registry);
+  void state(components::Pattern& pattern) const;
 
   model::Turbine turbine_;
   std::vector<std::unique_ptr<components::Beam>> beams_;  ///< blades, then tower

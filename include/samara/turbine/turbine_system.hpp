@@ -43,6 +43,9 @@ class TurbineSystem final : public system::PeriodicSystem {
   petsc::Handle<Mat> make_mass() const override;
   std::vector<std::vector<PetscInt>> pattern() const override;
   std::unique_ptr<system::PeriodicSystem> unloaded() const override;
+  std::vector<PetscInt> common_unknowns() const override;
+  std::unique_ptr<system::PeriodicSystem> part_of(int rank,
+                                                  const std::vector<int>& owners) const override;
   /// Gives large rotations of the blades a new reference; the rotation of the tower top stays below
   /// 170 degrees.
   std::unique_ptr<system::PeriodicSystem> counted_from(Vec z) const override;
@@ -52,6 +55,8 @@ class TurbineSystem final : public system::PeriodicSystem {
 
  private:
   class Assembly;
+  explicit TurbineSystem(std::unique_ptr<Assembly> assembly);
+
   std::unique_ptr<Assembly> assembly_;
 };
 

@@ -1,0 +1,177 @@
+#include "mesh_partition.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace samara::analysis {
+namespace {
+
+/// A block belongs to the border if more blocks than this refer to it. (A node of a chain has two
+/// neighbours, and is in the rows of joints and reactions.)
+constexpr std::size_t most_neighbours = 8;
+/// Smallest piece of a chain, in blocks.
+constexpr Eigen::Index least_piece = 100;
+/// Largest border that a distribution may have, as a part of all blocks.
+constexpr double largest_border = 0.1;
+
+}  // namespace
+
+TangentPattern find_pattern(const system::PeriodicSystem& system, const Coordinates& held) {
+  std::vector<std::vector<PetscInt>> rows = system.pattern();
+  if (rows.empty()) {  // the system does not declare a pattern
+    std::vector<PetscInt> all(static_cast<std::size_t>(system.size()));
+    std::iota(all.begin(), all.end(), PetscInt{0});
+    rows.assign(all.size(), all);
+  }
+  for (const system::UnconstrainedCoordinate& coordinate : held) {
+    std::vector<PetscInt>& row = rows[static_cast<std::size_t>(coordinate.row)];
+    const auto place = std::lower_bound(row.begin(), row.end(), coordinate.unknown);
+    if (place == row.end() || *place != coordinate.unknown) row.insert(place, coordinate.unknown);
+  }
+  TangentPattern pattern(system.size(), system.size());
+  Eigen::VectorXi lengths(system.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    lengths(static_cast<Eigen::Index>(i)) = static_cast<int>(rows[i].size());
+  pattern.reserve(lengths);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const PetscInt j : rows[i]) pattern.insert(static_cast<Eigen::Index>(i), j) = 1.0;
+  pattern.makeCompressed();
+  return pattern;
+}
+
+PetscInt block_size_of(const system::PeriodicSystem& system) {
+  const petsc::Handle<Mat> matrix = system.make_jacobian();
+  PetscBool is_blocked = PETSC_FALSE;
+  PetscInt size = 1;
+  petsc::check(
+      PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix.get()), MATSEQBAIJ, &is_blocked));
+  if (is_blocked != PETSC_FALSE) petsc::check(MatGetBlockSize(matrix.get(), &size));
+  return size;
+}
+
+std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size,
+                              const Coordinates& held) {
+  std::vector<std::set<PetscInt>> users(static_cast<std::size_t>(pattern.cols() / block_size));
+  for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
+    for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
+      std::set<PetscInt>& own = users[static_cast<std::size_t>(it.col() / block_size)];
+      if (own.size() <= most_neighbours) own.insert(i / block_size);
+    }
+  std::vector<char> border;
+  for (const std::set<PetscInt>& own : users) border.push_back(own.size() > most_neighbours);
+  for (const system::UnconstrainedCoordinate& coordinate : held)
+    for (const PetscInt i : {coordinate.unknown, coordinate.row})
+      border[static_cast<std::size_t>(i / block_size)] = 1;
+  return border;
+}
+
+MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordinates& held,
+                             MPI_Comm comm)
+    : whole_(system), ranks_(comm) {
+  const PetscInt block_size = block_size_of(system);
+  const TangentPattern pattern = find_pattern(system, held);
+  const std::vector<char> border = find_border(pattern, block_size, held);
+  is_border_ = border;
+  const auto inner = static_cast<Eigen::Index>(std::count(border.begin(), border.end(), 0));
+  const auto pieces = static_cast<int>(std::min<Eigen::Index>(ranks_.size, inner / least_piece));
+  if (block_size > 1 && pieces > 1) {
+    for (const PetscInt i : system.common_unknowns())
+      is_border_[static_cast<std::size_t>(i / block_size)] = 1;
+    const std::vector<int> owners = cut(pattern, block_size, pieces);
+    if (static_cast<double>(border_blocks_) <= largest_border * static_cast<double>(blocks())) {
+      std::vector<int> of_unknowns(static_cast<std::size_t>(system.size()));
+      for (std::size_t i = 0; i < of_unknowns.size(); ++i)
+        of_unknowns[i] = owners[i / static_cast<std::size_t>(block_size)];
+      part_ = system.part_of(ranks_.rank, of_unknowns);
+      number_.assign(of_unknowns.size(), -1);
+      for (std::size_t i = 0; part_ && i < of_unknowns.size(); ++i) {
+        const bool is_shared = of_unknowns[i] == system::PeriodicSystem::shared;
+        if (!is_shared && of_unknowns[i] != ranks_.rank) continue;
+        number_[i] = static_cast<PetscInt>(kept_.size());
+        if (is_shared) border_.push_back(number_[i]);
+        if (!is_shared || ranks_.rank == 0) counted_.push_back(number_[i]);
+        kept_.push_back(static_cast<PetscInt>(i));
+      }
+    }
+  }
+  if (part_) return;
+  ranks_ = Ranks(MPI_COMM_SELF);
+  is_border_ = border;
+  border_blocks_ = std::count(border.begin(), border.end(), 1);
+  keep_all();
+}
+
+/// Owners of the blocks. Blocks behind a cut join the border.
+std::vector<int> MeshPartition::cut(const TangentPattern& pattern, PetscInt block_size,
+                                    int pieces) {
+  const auto inner = static_cast<Eigen::Index>(std::count(is_border_.begin(), is_border_.end(), 0));
+  std::vector<int> owners;
+  Eigen::Index number = 0;
+  for (const char in_border : is_border_)
+    owners.push_back(in_border ? system::PeriodicSystem::shared
+                               : static_cast<int>(number++ * pieces / inner));
+  for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
+    for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
+      const auto row = static_cast<std::size_t>(i / block_size);
+      const auto column = static_cast<std::size_t>(it.col() / block_size);
+      if (owners[row] == owners[column] || is_border_[row] || is_border_[column]) continue;
+      const std::size_t behind = std::max(row, column);
+      is_border_[behind] = 1;
+      owners[behind] = system::PeriodicSystem::shared;
+    }
+  border_blocks_ = std::count(is_border_.begin(), is_border_.end(), 1);
+  return owners;
+}
+
+void MeshPartition::keep_all() {
+  kept_.resize(static_cast<std::size_t>(whole_.size()));
+  std::iota(kept_.begin(), kept_.end(), 0);
+  number_ = kept_;
+  counted_ = kept_;
+}
+
+void MeshPartition::sum_border(Eigen::Ref<Eigen::MatrixXd> values) const {
+  if (!is_distributed()) return;
+  Eigen::MatrixXd border = values(Eigen::all, border_);
+  ranks_.sum(border);
+  values(Eigen::all, border_) = border;
+}
+
+Eigen::MatrixXd MeshPartition::whole(const Eigen::Ref<const Eigen::MatrixXd>& values) const {
+  if (!is_distributed()) return values;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(values.rows(), whole_.size());
+  for (const PetscInt i : counted_) all.col(kept_[static_cast<std::size_t>(i)]) = values.col(i);
+  ranks_.sum(all);
+  return all;
+}
+
+Eigen::MatrixXd MeshPartition::local(const Eigen::Ref<const Eigen::MatrixXd>& values) const {
+  if (!is_distributed()) return values;
+  return values(Eigen::all, kept_);
+}
+
+void MeshPartition::spread(const double* counted, Eigen::Ref<Eigen::MatrixXd> values) const {
+  const Eigen::Map<const Eigen::MatrixXd> own(counted, values.rows(),
+                                              static_cast<Eigen::Index>(counted_.size()));
+  if (!is_distributed()) {
+    values = own;
+    return;
+  }
+  for (const PetscInt i : border_) values.col(i).setZero();
+  values(Eigen::all, counted_) = own;
+  sum_border(values);
+}
+
+void MeshPartition::collect(const Eigen::Ref<const Eigen::MatrixXd>& values,
+                            double* counted) const {
+  Eigen::Map<Eigen::MatrixXd> own(counted, values.rows(),
+                                  static_cast<Eigen::Index>(counted_.size()));
+  if (!is_distributed()) {
+    own = values;
+    return;
+  }
+  own = values(Eigen::all, counted_);
+}
+
+}  // namespace samara::analysis

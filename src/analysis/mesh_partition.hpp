@@ -1,0 +1,89 @@
+// Distribution of a mesh over ranks (docs/theory.md, section 4.2).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include "samara/system/periodic_system.hpp"
+
+#include "ranks.hpp"
+
+namespace samara::analysis {
+
+/// Places where K or M may have an entry; its values have no meaning.
+using TangentPattern = Eigen::SparseMatrix<double, Eigen::RowMajor, PetscInt>;
+using Coordinates = std::vector<system::UnconstrainedCoordinate>;
+
+/// Pattern of the tangents. The load that holds a coordinate stands in the place of its mean.
+TangentPattern find_pattern(const system::PeriodicSystem& system, const Coordinates& held);
+
+/// Rows of a block of the system's tangents; 1: no blocks.
+PetscInt block_size_of(const system::PeriodicSystem& system);
+
+/// For each node block, whether it belongs to the border of the chains of beam nodes: many other
+/// blocks refer to it, or it has a coordinate that is held.
+std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size,
+                              const Coordinates& held);
+
+/// Node blocks of a mesh by ranks. The chains between the border are cut into pieces of equal
+/// lengths, one for each rank; the block behind a cut joins the border. Every rank has its own
+/// piece and the border: no block of a piece is coupled to another piece.
+///
+/// A vector on this rank has the unknowns of its piece and of the border, in ascending order. The
+/// first rank counts those of the border where a vector is summed or stored once.
+class MeshPartition {
+ public:
+  /// With one rank, or where the mesh is too small to be worth a distribution or cannot be divided,
+  /// every rank has the whole mesh and works for itself.
+  MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, MPI_Comm comm);
+
+  bool is_distributed() const { return ranks_.size > 1; }
+  /// Of one rank, if the mesh is not distributed.
+  const Ranks& ranks() const { return ranks_; }
+  bool is_first() const { return ranks_.rank == 0; }
+  /// What this rank evaluates.
+  const system::PeriodicSystem& system() const { return part_ ? *part_ : whole_; }
+
+  /// Unknowns of the system on this rank, ascending.
+  const std::vector<PetscInt>& kept() const { return kept_; }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(kept_.size()); }
+  /// Number of an unknown of the system among those on this rank; -1: another rank has it.
+  PetscInt number_of(PetscInt unknown) const { return number_[static_cast<std::size_t>(unknown)]; }
+  /// Numbers of the unknowns that this rank counts.
+  const std::vector<PetscInt>& counted() const { return counted_; }
+  /// Whether a block of the system belongs to the border.
+  bool is_border(PetscInt block) const { return is_border_[static_cast<std::size_t>(block)] != 0; }
+  Eigen::Index blocks() const { return static_cast<Eigen::Index>(is_border_.size()); }
+  Eigen::Index border_blocks() const { return border_blocks_; }
+
+  /// Adds up the columns of the border, each rank having a part of them. One column for each
+  /// unknown on this rank.
+  void sum_border(Eigen::Ref<Eigen::MatrixXd> values) const;
+  /// From the unknowns on the ranks to those of the whole system, one column for each unknown.
+  Eigen::MatrixXd whole(const Eigen::Ref<const Eigen::MatrixXd>& values) const;
+  /// From the columns of the whole system to those on this rank.
+  Eigen::MatrixXd local(const Eigen::Ref<const Eigen::MatrixXd>& values) const;
+  /// From the unknowns that the ranks count to those on this rank.
+  void spread(const double* counted, Eigen::Ref<Eigen::MatrixXd> values) const;
+  /// The unknowns that this rank counts, into `counted`.
+  void collect(const Eigen::Ref<const Eigen::MatrixXd>& values, double* counted) const;
+
+ private:
+  std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pieces);
+  void keep_all();
+
+  const system::PeriodicSystem& whole_;
+  Ranks ranks_;
+  std::unique_ptr<system::PeriodicSystem> part_;
+  std::vector<char> is_border_;  ///< of each block
+  Eigen::Index border_blocks_ = 0;
+  std::vector<PetscInt> kept_;
+  std::vector<PetscInt> number_;
+  std::vector<PetscInt> counted_;
+  std::vector<PetscInt> border_;  ///< numbers of its unknowns
+};
+
+}  // namespace samara::analysis
