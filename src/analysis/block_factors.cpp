@@ -14,9 +14,6 @@
 namespace samara::analysis {
 namespace {
 
-/// Relative to the largest entry of a block row before elimination: a smaller pivot is round-off.
-constexpr double least_pivot = 1e-13;
-
 /// Largest real or imaginary part, without the square roots of the absolute values.
 template <class Scalar>
 double largest_part(const Scalar* values, Eigen::Index count) {
@@ -75,12 +72,12 @@ void BlockFactors<Scalar>::subtract_product(Index entry, const Scalar* b, Scalar
 }
 
 template <class Scalar>
-bool BlockFactors<Scalar>::factor_diagonal(Index i, double largest) {
+bool BlockFactors<Scalar>::factor_diagonal(Index i, double least) {
   Scalar* values = block(diagonal_[static_cast<std::size_t>(i)]);
   if (blas::factor(static_cast<blas::Integer>(size_), values, interchanges(i)) != 0) return false;
-  double pivot = largest;
-  for (Index k = 0; k < size_; ++k) pivot = std::min(pivot, std::abs(values[k * (size_ + 1)]));
-  return pivot > least_pivot * largest;
+  for (Index k = 0; k < size_; ++k)
+    if (!(std::abs(values[k * (size_ + 1)]) > least)) return false;
+  return true;
 }
 
 /// A becomes A D^-1 with the diagonal block D = P^T L U of row k.
@@ -96,7 +93,7 @@ void BlockFactors<Scalar>::divide(Scalar* a, Index k) const {
 }
 
 template <class Scalar>
-bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix) {
+bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix, double least_pivot) {
   const Index area = size_ * size_;
   std::fill(values_.begin(), values_.end(), Scalar(0.0));
   std::vector<Index> place(static_cast<std::size_t>(rows_), -1);
@@ -123,7 +120,7 @@ bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix) {
     }
     for (Index entry = diagonal_[static_cast<std::size_t>(i)] + 1; entry < last; ++entry)
       find_rows(entry);
-    if (!factor_diagonal(i, largest)) return false;
+    if (!factor_diagonal(i, least_pivot * largest)) return false;
   }
   return true;
 }

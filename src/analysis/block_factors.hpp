@@ -34,8 +34,10 @@ class BlockFactors {
   /// Finds the fill-in of a pattern, which all matrices have.
   explicit BlockFactors(const BlockMatrix<Scalar>& pattern);
 
-  /// @returns false where a diagonal block is singular to working precision.
-  bool factor(const BlockMatrix<Scalar>& matrix);
+  /// @returns false where a diagonal block has a pivot below `least_pivot` times the largest entry
+  /// of its row before elimination: by default, where the block is singular to working precision. A
+  /// preconditioner whose solutions are checked may have smaller pivots.
+  bool factor(const BlockMatrix<Scalar>& matrix, double least_pivot = 1e-13);
 
   /// Solves for all columns of diag(`row_factors`) `right`.
   void solve(const Eigen::Ref<const Matrix>& right,
@@ -68,7 +70,7 @@ class BlockFactors {
   const PetscBLASInt* interchanges(Index i) const { return interchanges_.data() + i * size_; }
   void find_rows(Index entry);
   void subtract_product(Index entry, const Scalar* b, Scalar* c, Index columns) const;
-  bool factor_diagonal(Index i, double largest);
+  bool factor_diagonal(Index i, double least);
   void divide(Scalar* a, Index k) const;
   void resize(Index right_sides);
   void eliminate(Index i);

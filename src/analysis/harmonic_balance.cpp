@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -32,6 +33,13 @@ constexpr double same = 1e-14;
 constexpr double linear_tolerance = 1e-10;
 constexpr PetscInt most_iterations = 60;
 constexpr PetscInt few_iterations = 15;
+/// Residual of a linear system that is enough, relative to the residual that Newton's method aims
+/// at. With long chains round-off is above the reduction by linear_tolerance.
+constexpr double enough_for_newton = 0.1;
+/// Reduction with which a solve of most_iterations still gives a step.
+constexpr double least_reduction = 1e-3;
+/// Largest number of entries of a matrix that is factored because GMRES does not converge.
+constexpr double most_entries = 2e8;
 
 /// Newton's method: line search and number of steps.
 struct NewtonLimits {
@@ -175,6 +183,7 @@ struct SolverContext {
   Eigen::VectorXd columns;
   Eigen::VectorXd unscaled;
   bool is_factored = false;
+  double aim = 0.0;  ///< residual that Newton's method aims at
   std::exception_ptr error;
 
   Eigen::VectorXd spread(Vec x) const {
@@ -447,6 +456,35 @@ bool is_direct_solver_given() {
   return is_there("-trim_pc_") || is_there("-trim_mat_") || is_there("-trim_ksp_type preonly");
 }
 
+/// Convergence of GMRES: PETSc's default, or a residual that is enough for Newton's method.
+struct LinearTest {
+  void* of_petsc = nullptr;
+  const SolverContext* context = nullptr;
+  double first = 0.0;  ///< residual at the start
+};
+
+PetscErrorCode test_linear(KSP solver, PetscInt iteration, PetscReal norm,
+                           KSPConvergedReason* reason, void* pointer) noexcept {
+  auto& test = *static_cast<LinearTest*>(pointer);
+  if (iteration == 0) test.first = norm;
+  if (const PetscErrorCode code =
+          KSPConvergedDefault(solver, iteration, norm, reason, test.of_petsc))
+    return code;
+  if (*reason != KSP_CONVERGED_ITERATING) return 0;
+  if (norm <= enough_for_newton * test.context->aim)
+    *reason = KSP_CONVERGED_ATOL;
+  else if (iteration >= most_iterations && norm <= least_reduction * test.first)
+    *reason = KSP_CONVERGED_ITS;
+  return 0;
+}
+
+PetscErrorCode destroy_linear_test(void* pointer) noexcept {
+  const auto* test = static_cast<LinearTest*>(pointer);
+  const PetscErrorCode code = KSPConvergedDefaultDestroy(test->of_petsc);
+  delete test;
+  return code;
+}
+
 /// KSP and PC of a SNES, before its options.
 void choose_linear_solver(SNES solver, SolverContext& context) {
   KSP linear = nullptr;
@@ -464,6 +502,10 @@ void choose_linear_solver(SNES solver, SolverContext& context) {
   petsc::check(KSPSetPCSide(linear, PC_RIGHT));
   petsc::check(
       KSPSetTolerances(linear, linear_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
+  auto test = std::make_unique<LinearTest>();
+  petsc::check(KSPConvergedDefaultCreate(&test->of_petsc));
+  test->context = &context;
+  petsc::check(KSPSetConvergenceTest(linear, test_linear, test.release(), destroy_linear_test));
   petsc::check(PCSetType(preconditioner, PCSHELL));
   petsc::check(PCShellSetName(preconditioner, "harmonics with a border"));
   petsc::check(PCShellSetContext(preconditioner, &context));
@@ -555,6 +597,7 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
     if (residual_at(h, context) > vanished)
       petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
   }
+  context.aim = std::max(enough, tolerance * residual_at(h, context));
   petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, limits.most_steps, 10000));
   SNESLineSearch search = nullptr;
   petsc::check(SNESGetLineSearch(solver.get(), &search));
@@ -604,7 +647,16 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
   if (!is_direct_solver_given()) {
     try {
       return solve_by(true, system, held, given, harmonics, tolerance, start, limits, comm);
-    } catch (const LinearFailure&) {
+    } catch (const LinearFailure& failure) {
+      const auto pattern = static_cast<double>(find_pattern(system, held).nonZeros());
+      const double entries = pattern * std::pow(2.0 * harmonics + 1.0, 2);
+      if (entries > most_entries) {
+        std::ostringstream text;
+        text << failure.what() << ", and a matrix of " << entries
+             << " entries is too large to be factored instead; hint: fewer elements or harmonics; "
+                "-trim_ksp_type preonly factors it nevertheless";
+        throw ConvergenceError(text.str());
+      }
     }
   }
   return solve_by(false, system, held, given, harmonics, tolerance, start, limits, comm);
@@ -666,42 +718,49 @@ Trim release(const system::PeriodicSystem& system, int harmonics, double toleran
 }  // namespace
 
 double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                        const std::vector<HeldCoordinate>& loads, double shift) {
+                        const std::vector<HeldCoordinate>& loads, double shift, MPI_Comm comm) {
+  const Ranks ranks(comm);
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Vec> r = system.make_state();
   const int samples = std::max(sample_count(solution.harmonics()), 16);
   double largest = 0.0;
-  for (int k = 0; k < samples; ++k) {
-    const double t = system.period() * (k + shift) / samples;
-    solution.evaluate(t, z.get(), z_dot.get());
-    system.residual(t, z.get(), z_dot.get(), r.get());
-    add_held_loads(system, loads, r.get());
-    const petsc::ReadView view(r.get());
-    for (std::size_t i = 0; i < system.rows().size(); ++i)
-      if (system.rows()[i] == system::RowRole::balance)
-        largest = std::max(largest, std::abs(view[static_cast<PetscInt>(i)]));
-  }
-  return largest;
+  ranks.attempt([&] {
+    for (int k = ranks.rank; k < samples; k += ranks.size) {
+      const double t = system.period() * (k + shift) / samples;
+      solution.evaluate(t, z.get(), z_dot.get());
+      system.residual(t, z.get(), z_dot.get(), r.get());
+      add_held_loads(system, loads, r.get());
+      const petsc::ReadView view(r.get());
+      for (std::size_t i = 0; i < system.rows().size(); ++i)
+        if (system.rows()[i] == system::RowRole::balance)
+          largest = std::max(largest, std::abs(view[static_cast<PetscInt>(i)]));
+    }
+  });
+  return ranks.largest(largest);
 }
 
 /// Largest mean, cosine or sine of a balance row, up to the solution's harmonics.
-double harmonic_residual(const system::PeriodicSystem& system, const Trim& trim) {
+double harmonic_residual(const system::PeriodicSystem& system, const Trim& trim,
+                         const Ranks& ranks) {
   const PeriodicSolution& solution = trim.solution;
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Vec> r = system.make_state();
   const int samples = sample_count(solution.harmonics());
   Eigen::MatrixXd harmonics = Eigen::MatrixXd::Zero(system.size(), solution.coefficients().cols());
-  for (int k = 0; k < samples; ++k) {
-    const double t = system.period() * k / samples;
-    solution.evaluate(t, z.get(), z_dot.get());
-    system.residual(t, z.get(), z_dot.get(), r.get());
-    add_held_loads(system, trim.held, r.get());
-    const petsc::ReadView view(r.get());
-    harmonics += 2.0 / samples * Eigen::Map<const Eigen::VectorXd>(view.data(), system.size()) *
-                 PeriodicSolution::basis(solution.harmonics(), solution.period(), t).transpose();
-  }
+  ranks.attempt([&] {
+    for (int k = ranks.rank; k < samples; k += ranks.size) {
+      const double t = system.period() * k / samples;
+      solution.evaluate(t, z.get(), z_dot.get());
+      system.residual(t, z.get(), z_dot.get(), r.get());
+      add_held_loads(system, trim.held, r.get());
+      const petsc::ReadView view(r.get());
+      harmonics += 2.0 / samples * Eigen::Map<const Eigen::VectorXd>(view.data(), system.size()) *
+                   PeriodicSolution::basis(solution.harmonics(), solution.period(), t).transpose();
+    }
+  });
+  ranks.sum(harmonics);
   harmonics.col(0) *= 0.5;
   double largest = 0.0;
   for (std::size_t i = 0; i < system.rows().size(); ++i)
@@ -712,7 +771,8 @@ double harmonic_residual(const system::PeriodicSystem& system, const Trim& trim)
 }
 
 double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                      const std::vector<HeldCoordinate>& loads) {
+                      const std::vector<HeldCoordinate>& loads, MPI_Comm comm) {
+  const Ranks ranks(comm);
   std::vector<PetscInt> rows;
   for (std::size_t i = 0; i < system.rows().size(); ++i)
     if (system.rows()[i] == system::RowRole::evolution ||
@@ -724,8 +784,8 @@ double state_residual(const system::PeriodicSystem& system, const PeriodicSoluti
   const petsc::Handle<Vec> r = system.make_state();
   const petsc::Handle<Mat> jacobian = system.make_jacobian();
   const petsc::Handle<Mat> mass = system.make_mass();
-  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(system.size());
-  Eigen::VectorXd residuals = sizes;
+  std::vector<double> sizes(static_cast<std::size_t>(system.size()), 0.0);
+  std::vector<double> residuals = sizes;
   const auto values_of = [&system](Vec vector) -> Eigen::VectorXd {
     const petsc::ReadView view(vector);
     return Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
@@ -739,33 +799,42 @@ double state_residual(const system::PeriodicSystem& system, const PeriodicSoluti
   }
   const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const int samples = 2 * std::max(sample_count(solution.harmonics()), 16);
-  for (int k = 0; k < samples; ++k) {
-    const double t = system.period() * k / samples;
-    solution.evaluate(t, z.get(), z_dot.get());
-    system.residual(t, z.get(), z_dot.get(), r.get());
-    add_held_loads(system, loads, r.get());
-    system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-    const Eigen::VectorXd terms =
-        to_sparse(jacobian.get()).cwiseAbs() * values_of(z.get()).cwiseAbs().cwiseMax(least) +
-        to_sparse(mass.get()).cwiseAbs() * values_of(z_dot.get()).cwiseAbs().cwiseMax(rate * least);
-    sizes = sizes.cwiseMax(terms);
-    residuals = residuals.cwiseMax(values_of(r.get()).cwiseAbs());
-  }
+  const auto raise = [](std::vector<double>& values, const Eigen::VectorXd& by) {
+    Eigen::Map<Eigen::VectorXd> all(values.data(), by.size());
+    all = all.cwiseMax(by);
+  };
+  ranks.attempt([&] {
+    for (int k = ranks.rank; k < samples; k += ranks.size) {
+      const double t = system.period() * k / samples;
+      solution.evaluate(t, z.get(), z_dot.get());
+      system.residual(t, z.get(), z_dot.get(), r.get());
+      add_held_loads(system, loads, r.get());
+      system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+      raise(sizes,
+            to_sparse(jacobian.get()).cwiseAbs() * values_of(z.get()).cwiseAbs().cwiseMax(least) +
+                to_sparse(mass.get()).cwiseAbs() *
+                    values_of(z_dot.get()).cwiseAbs().cwiseMax(rate * least));
+      raise(residuals, values_of(r.get()).cwiseAbs());
+    }
+  });
+  ranks.find_largest(sizes);
+  ranks.find_largest(residuals);
   double largest = 0.0;
-  for (const PetscInt i : rows)
-    if (residuals(i) > 0.0) largest = std::max(largest, residuals(i) / sizes(i));
+  for (const PetscInt row : rows)
+    if (const auto i = static_cast<std::size_t>(row); residuals[i] > 0.0)
+      largest = std::max(largest, residuals[i] / sizes[i]);
   return largest;
 }
 
-void finish_trim(const system::PeriodicSystem& system, Trim& trim) {
+void finish_trim(const system::PeriodicSystem& system, Trim& trim, MPI_Comm comm) {
   for (std::size_t i = 0; i < system.unknowns().size(); ++i)
     if (system.unknowns()[i].role == system::UnknownRole::internal)
       trim.load_level = std::max(
           trim.load_level,
           trim.solution.coefficients().row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
-  trim.residual = balance_residual(system, trim.solution, trim.held, 0.0);
-  trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5);
-  trim.state_residual = state_residual(system, trim.solution, trim.held);
+  trim.residual = balance_residual(system, trim.solution, trim.held, 0.0, comm);
+  trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5, comm);
+  trim.state_residual = state_residual(system, trim.solution, trim.held, comm);
 }
 
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
@@ -777,8 +846,8 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
       start == nullptr ? hold_free(system, harmonics, tolerance, comm) : std::nullopt;
   Trim trim = held ? release(system, harmonics, tolerance, *held, comm)
                    : solve(system, unconstrained, {}, harmonics, tolerance, start, comm);
-  finish_trim(system, trim);
-  trim.harmonic_residual = harmonic_residual(system, trim);
+  finish_trim(system, trim, comm);
+  trim.harmonic_residual = harmonic_residual(system, trim, Ranks(comm));
   trim.attempts = {{harmonics, trim.residual_between}};
   return trim;
 }

@@ -211,7 +211,7 @@ TangentPlan Pattern::finish(const TangentPlan* at_least) {
   plan_.blocks.resize(plan_.K.size() / block);
   for (std::size_t i = 0; i < plan_.K.size(); ++i) {
     std::vector<int>& own = plan_.blocks[i / block];
-    if (portion_ == nullptr || portion_->has_rows(static_cast<int>(i) / block))
+    if (portion_ == nullptr || portion_->has_unknown(static_cast<int>(i)))
       own.push_back(static_cast<int>(i) / block);
     for (const std::vector<int>* columns : {&plan_.K[i], &plan_.M[i]})
       for (const int column : *columns) own.push_back(column / block);

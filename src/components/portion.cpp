@@ -49,8 +49,9 @@ std::shared_ptr<const Portion> Portion::find(const TangentPlan& plan, std::vecto
 
 bool Portion::is_own(int owner) const { return owner == rank_ || (owner == shared && rank_ == 0); }
 
-bool Portion::has_rows(int block) const {
-  return owners_[at(block)] == rank_ || owners_[at(block)] == shared;
+bool Portion::has_unknown(int unknown) const {
+  const int owner = owners_[at(unknown / BlockMatrix::block)];
+  return owner == rank_ || owner == shared;
 }
 
 bool Portion::has_share(std::size_t call, int row) const {

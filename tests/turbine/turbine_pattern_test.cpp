@@ -279,9 +279,100 @@ std::pair<double, double> check_pattern(const turbine::TurbineSystem& system) {
   return {static_cast<double>(declared.size()), static_cast<double>(filled.size())};
 }
 
+/// Owners of the unknowns in two pieces of about equal size: blocks that many others refer to are
+/// shared, and so is the later one of two coupled blocks of unlike pieces.
+std::vector<int> owners_of(const turbine::TurbineSystem& system) {
+  constexpr PetscInt block = turbine::TurbineLayout::block;
+  constexpr std::size_t many = 8;
+  const std::vector<std::vector<PetscInt>> rows = system.pattern();
+  std::set<std::pair<PetscInt, PetscInt>> coupled;
+  std::vector<std::set<PetscInt>> users(rows.size() / block);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const PetscInt j : rows[i]) {
+      const auto row = static_cast<PetscInt>(i) / block;
+      coupled.insert({std::min(row, j / block), std::max(row, j / block)});
+      users[static_cast<std::size_t>(j / block)].insert(row);
+    }
+  std::vector<int> of_blocks;
+  for (std::size_t b = 0; b < users.size(); ++b)
+    of_blocks.push_back(users[b].size() > many ? system::PeriodicSystem::shared
+                                               : static_cast<int>(2 * b / users.size()));
+  for (const PetscInt i : system.common_unknowns())
+    of_blocks[static_cast<std::size_t>(i / block)] = system::PeriodicSystem::shared;
+  for (const auto& [one, other] : coupled) {
+    const int first = of_blocks[static_cast<std::size_t>(one)];
+    int& second = of_blocks[static_cast<std::size_t>(other)];
+    if (first >= 0 && second >= 0 && first != second) second = system::PeriodicSystem::shared;
+  }
+  std::vector<int> owners;
+  for (std::size_t i = 0; i < rows.size(); ++i) owners.push_back(of_blocks[i / block]);
+  return owners;
+}
+
+/// The state as a rank has it: unknowns of other ranks are no numbers.
+sample::RandomState state_of(const sample::RandomState& all, const std::vector<int>& owners,
+                             int rank) {
+  sample::RandomState own = all;
+  for (Eigen::Index i = 0; i < own.z.size(); ++i) {
+    const int owner = owners[static_cast<std::size_t>(i)];
+    if (owner == system::PeriodicSystem::shared || owner == rank) continue;
+    own.z(i) = std::nan("");
+    own.z_dot(i) = std::nan("");
+  }
+  return own;
+}
+
+double largest_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(turbine_pattern)
+
+BOOST_AUTO_TEST_CASE(parts_of_any_turbine_add_up_to_it) {
+  int divided = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    model::Turbine turbine = model::build_turbine(random_turbine(seed));
+    Draw draw(seed + 1000);
+    operate(turbine, draw);
+    const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
+    const std::vector<int> owners = owners_of(system);
+    const sample::RandomState state = sample::random_state(system, seed + 1);
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(system.size());
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(system.size(), system.size());
+    Eigen::MatrixXd M = K;
+    for (int rank = 0; rank < 2; ++rank) {
+      const std::unique_ptr<system::PeriodicSystem> part = system.part_of(rank, owners);
+      BOOST_TEST_REQUIRE(bool(part));
+      const sample::RandomState own = state_of(state, owners, rank);
+      r += sample::residual_of(*part, 1.7, own.z, own.z_dot);
+      const sample::Tangents tangents = sample::tangents_of(*part, 1.7, own.z, own.z_dot);
+      K += tangents.K;
+      M += tangents.M;
+    }
+    const sample::Tangents whole = sample::tangents_of(system, 1.7, state.z, state.z_dot);
+    BOOST_TEST_CONTEXT("seed " << seed) {
+      BOOST_TEST(largest_difference(r, sample::residual_of(system, 1.7, state.z, state.z_dot)) <
+                 1e-13);
+      BOOST_TEST(largest_difference(K, whole.K) < 1e-13);
+      BOOST_TEST(largest_difference(M, whole.M) < 1e-13);
+    }
+    divided += std::count(owners.begin(), owners.end(), 0) > 0 &&
+                       std::count(owners.begin(), owners.end(), 1) > 0
+                   ? 1
+                   : 0;
+  }
+  BOOST_TEST(divided >= 40);
+}
+
+BOOST_AUTO_TEST_CASE(terms_of_two_ranks_cannot_be_divided) {
+  const model::TurbineDefinition definition = sample::turbine_definition(sample::choices().front());
+  const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
+  std::vector<int> owners(static_cast<std::size_t>(system.size()), 0);
+  std::fill(owners.begin() + static_cast<std::ptrdiff_t>(owners.size()) / 36 * 18, owners.end(), 1);
+  BOOST_TEST(!system.part_of(0, owners));
+}
 
 BOOST_AUTO_TEST_CASE(tangents_of_any_turbine_are_inside_and_fill_most_of_it) {
   for (unsigned seed = 0; seed < 120; ++seed) {

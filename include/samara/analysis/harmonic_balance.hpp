@@ -13,17 +13,19 @@ Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics,
                             const PeriodicSolution* start, MPI_Comm comm = MPI_COMM_SELF);
 
 /// The largest balance row of the residual of `solution`, midway between the samples of harmonic
-/// balance (`shift` 0.5) or at them (0). The constant `loads` hold unconstrained coordinates.
+/// balance (`shift` 0.5) or at them (0). The constant `loads` hold unconstrained coordinates. The
+/// ranks of `comm` share the samples.
 double balance_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                        const std::vector<HeldCoordinate>& loads, double shift);
+                        const std::vector<HeldCoordinate>& loads, double shift,
+                        MPI_Comm comm = MPI_COMM_SELF);
 
 /// Largest residual of the evolution and definition rows over a period under these loads, each
 /// relative to the largest sum of the moduli of its terms. In these terms states and auxiliaries
 /// are at least a thousandth of their Unknown::scale. The result is 0 without such rows.
 double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                      const std::vector<HeldCoordinate>& loads);
+                      const std::vector<HeldCoordinate>& loads, MPI_Comm comm = MPI_COMM_SELF);
 
 /// Fills in the residuals and the load level of a solved trim.
-void finish_trim(const system::PeriodicSystem& system, Trim& trim);
+void finish_trim(const system::PeriodicSystem& system, Trim& trim, MPI_Comm comm = MPI_COMM_SELF);
 
 }  // namespace samara::analysis

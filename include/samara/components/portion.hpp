@@ -25,8 +25,8 @@ class Portion {
   bool needs(std::size_t call) const { return is_needed_[call] != 0; }
   /// Whether a share of the function belongs to this rank.
   bool has_share(std::size_t call, int row) const;
-  /// Whether this rank has terms in the rows of a block.
-  bool has_rows(int block) const;
+  /// Whether an unknown and its row are shared or belong to this rank.
+  bool has_unknown(int unknown) const;
   /// Whether a constant entry of K belongs to this rank.
   bool has_entry(int row, int column) const;
 

@@ -35,7 +35,8 @@ class Residual {
   /// @throws DomainError beyond 170 degrees; `place()`: the place in the message
   template <class Place>
   void require_rotation(int first, const Place& place) const {
-    components::require_rotation(z_.data() + first, place);
+    if (portion_ == nullptr || portion_->has_unknown(first))
+      components::require_rotation(z_.data() + first, place);
   }
 
   /// The sum of all provisions to a port.
