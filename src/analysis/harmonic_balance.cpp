@@ -35,7 +35,7 @@ constexpr PetscInt most_iterations = 60;
 constexpr PetscInt few_iterations = 15;
 /// Residual of a linear system that is enough, relative to the residual that Newton's method aims
 /// at. With long chains round-off is above the reduction by linear_tolerance.
-constexpr double enough_for_newton = 0.1;
+constexpr double enough_for_newton = 1e-3;
 /// Reduction with which a solve of most_iterations still gives a step.
 constexpr double least_reduction = 1e-3;
 /// Largest number of entries of a matrix that is factored because GMRES does not converge.

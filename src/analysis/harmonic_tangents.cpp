@@ -56,7 +56,7 @@ HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordin
       partition_(partition.is_distributed() ? &partition : nullptr),
       harmonics_(harmonics),
       width_(2 * harmonics + 1),
-      block_size_(block_size_of(partition.system())),
+      block_size_(partition.block_size()),
       kept_(partition.kept()) {
   remainder_.assign(kept_.size(), every);
   std::vector<char> border;

@@ -68,21 +68,20 @@ std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size
 
 MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordinates& held,
                              MPI_Comm comm)
-    : whole_(system), ranks_(comm) {
-  const PetscInt block_size = block_size_of(system);
+    : whole_(system), ranks_(comm), block_size_(block_size_of(system)) {
   const TangentPattern pattern = find_pattern(system, held);
-  const std::vector<char> border = find_border(pattern, block_size, held);
+  const std::vector<char> border = find_border(pattern, block_size_, held);
   is_border_ = border;
   const auto inner = static_cast<Eigen::Index>(std::count(border.begin(), border.end(), 0));
   const auto pieces = static_cast<int>(std::min<Eigen::Index>(ranks_.size, inner / least_piece));
-  if (block_size > 1 && pieces > 1) {
+  if (block_size_ > 1 && pieces > 1) {
     for (const PetscInt i : system.common_unknowns())
-      is_border_[static_cast<std::size_t>(i / block_size)] = 1;
-    const std::vector<int> owners = cut(pattern, block_size, pieces);
+      is_border_[static_cast<std::size_t>(i / block_size_)] = 1;
+    const std::vector<int> owners = cut(pattern, pieces);
     if (static_cast<double>(border_blocks_) <= largest_border * static_cast<double>(blocks())) {
       std::vector<int> of_unknowns(static_cast<std::size_t>(system.size()));
       for (std::size_t i = 0; i < of_unknowns.size(); ++i)
-        of_unknowns[i] = owners[i / static_cast<std::size_t>(block_size)];
+        of_unknowns[i] = owners[i / static_cast<std::size_t>(block_size_)];
       part_ = system.part_of(ranks_.rank, of_unknowns);
       number_.assign(of_unknowns.size(), -1);
       for (std::size_t i = 0; part_ && i < of_unknowns.size(); ++i) {
@@ -103,8 +102,7 @@ MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordin
 }
 
 /// Owners of the blocks. Blocks behind a cut join the border.
-std::vector<int> MeshPartition::cut(const TangentPattern& pattern, PetscInt block_size,
-                                    int pieces) {
+std::vector<int> MeshPartition::cut(const TangentPattern& pattern, int pieces) {
   const auto inner = static_cast<Eigen::Index>(std::count(is_border_.begin(), is_border_.end(), 0));
   std::vector<int> owners;
   Eigen::Index number = 0;
@@ -113,8 +111,8 @@ std::vector<int> MeshPartition::cut(const TangentPattern& pattern, PetscInt bloc
                                : static_cast<int>(number++ * pieces / inner));
   for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
     for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
-      const auto row = static_cast<std::size_t>(i / block_size);
-      const auto column = static_cast<std::size_t>(it.col() / block_size);
+      const auto row = static_cast<std::size_t>(i / block_size_);
+      const auto column = static_cast<std::size_t>(it.col() / block_size_);
       if (owners[row] == owners[column] || is_border_[row] || is_border_[column]) continue;
       const std::size_t behind = std::max(row, column);
       is_border_[behind] = 1;

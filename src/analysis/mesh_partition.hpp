@@ -47,6 +47,7 @@ class MeshPartition {
   /// What this rank evaluates.
   const system::PeriodicSystem& system() const { return part_ ? *part_ : whole_; }
 
+  PetscInt block_size() const { return block_size_; }  ///< see block_size_of
   /// Unknowns of the system on this rank, ascending.
   const std::vector<PetscInt>& kept() const { return kept_; }
   Eigen::Index size() const { return static_cast<Eigen::Index>(kept_.size()); }
@@ -72,11 +73,12 @@ class MeshPartition {
   void collect(const Eigen::Ref<const Eigen::MatrixXd>& values, double* counted) const;
 
  private:
-  std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pieces);
+  std::vector<int> cut(const TangentPattern& pattern, int pieces);
   void keep_all();
 
   const system::PeriodicSystem& whole_;
   Ranks ranks_;
+  PetscInt block_size_;
   std::unique_ptr<system::PeriodicSystem> part_;
   std::vector<char> is_border_;  ///< of each block
   Eigen::Index border_blocks_ = 0;
