@@ -90,7 +90,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
   return outputs;
 }
 
-/// The value of largest modulus over a revolution.
+/// The value of largest modulus over a revolution; the first of several that differ by round-off.
 double largest_value(const analysis::PeriodicSolution& solution, int unknown) {
   const Eigen::RowVectorXd row = solution.coefficients().row(unknown);
   if (solution.is_constant()) return row(0);
@@ -99,7 +99,7 @@ double largest_value(const analysis::PeriodicSolution& solution, int unknown) {
     const double t = solution.period() * i / instants;
     const double value =
         row.dot(analysis::PeriodicSolution::basis(solution.harmonics(), solution.period(), t));
-    if (std::abs(value) > std::abs(largest)) largest = value;
+    if (std::abs(value) > (1.0 + round_off) * std::abs(largest)) largest = value;
   }
   return largest;
 }
