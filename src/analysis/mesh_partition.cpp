@@ -59,7 +59,8 @@ std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size
       if (own.size() <= most_neighbours) own.insert(i / block_size);
     }
   std::vector<char> border;
-  for (const std::set<PetscInt>& own : users) border.push_back(own.size() > most_neighbours);
+  for (const std::set<PetscInt>& own : users)
+    border.push_back(own.size() > most_neighbours ? 1 : 0);
   for (const system::UnconstrainedCoordinate& coordinate : held)
     for (const PetscInt i : {coordinate.unknown, coordinate.row})
       border[static_cast<std::size_t>(i / block_size)] = 1;
@@ -107,8 +108,9 @@ std::vector<int> MeshPartition::cut(const TangentPattern& pattern, int pieces) {
   std::vector<int> owners;
   Eigen::Index number = 0;
   for (const char in_border : is_border_)
-    owners.push_back(in_border ? system::PeriodicSystem::shared
-                               : static_cast<int>(number++ * pieces / inner));
+    owners.push_back(in_border
+                         ? system::PeriodicSystem::shared
+                         : static_cast<int>(number++ * pieces / std::max<Eigen::Index>(inner, 1)));
   for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
     for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
       const auto row = static_cast<std::size_t>(i / block_size_);
