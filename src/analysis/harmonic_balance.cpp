@@ -36,7 +36,7 @@ constexpr PetscInt few_iterations = 15;
 /// Residual of a linear system that is enough, relative to the residual that Newton's method aims
 /// at. With long chains round-off is above the reduction by linear_tolerance.
 constexpr double enough_for_newton = 1e-3;
-/// Reduction with which a solve of most_iterations still gives a step.
+/// Reduction with which the most iterations of a solve still give a step.
 constexpr double least_reduction = 1e-3;
 /// Largest number of entries of a matrix that is factored because GMRES does not converge.
 constexpr double most_entries = 2e8;
@@ -143,10 +143,7 @@ class Balance {
       system_.residual(t, z_.get(), z_dot_.get(), r_.get());
       const petsc::ReadView view(r_.get());
       const Eigen::Map<const Eigen::VectorXd> r(view.data(), system_.size());
-      if (partition_.is_distributed())
-        result += projection(t) * r(partition_.kept()).transpose();
-      else
-        result += projection(t) * r.transpose();
+      result += projection(t) * r(partition_.kept()).transpose();
     }
   }
 
@@ -183,7 +180,6 @@ struct SolverContext {
   Eigen::VectorXd columns;
   Eigen::VectorXd unscaled;
   bool is_factored = false;
-  double aim = 0.0;  ///< residual that Newton's method aims at
   std::exception_ptr error;
 
   Eigen::VectorXd spread(Vec x) const {
@@ -459,21 +455,27 @@ bool is_direct_solver_given() {
 /// Convergence of GMRES: PETSc's default, or a residual that is enough for Newton's method.
 struct LinearTest {
   void* of_petsc = nullptr;
-  const SolverContext* context = nullptr;
-  double first = 0.0;  ///< residual at the start
+  SNES newton = nullptr;
+  double of_newton = -1.0;  ///< residual at the start of Newton's method; negative: not known
+  double first = 0.0;       ///< residual at the start of the present solve
 };
 
 PetscErrorCode test_linear(KSP solver, PetscInt iteration, PetscReal norm,
                            KSPConvergedReason* reason, void* pointer) noexcept {
   auto& test = *static_cast<LinearTest*>(pointer);
   if (iteration == 0) test.first = norm;
-  if (const PetscErrorCode code =
-          KSPConvergedDefault(solver, iteration, norm, reason, test.of_petsc))
-    return code;
-  if (*reason != KSP_CONVERGED_ITERATING) return 0;
-  if (norm <= enough_for_newton * test.context->aim)
+  if (test.of_newton < 0.0) test.of_newton = norm;
+  PetscReal least = 0.0;
+  PetscReal relative = 0.0;
+  PetscInt most = 0;
+  PetscErrorCode code = KSPConvergedDefault(solver, iteration, norm, reason, test.of_petsc);
+  if (code == 0)
+    code = SNESGetTolerances(test.newton, &least, &relative, nullptr, nullptr, nullptr);
+  if (code == 0) code = KSPGetTolerances(solver, nullptr, nullptr, nullptr, &most);
+  if (code != 0 || *reason != KSP_CONVERGED_ITERATING) return code;
+  if (norm <= enough_for_newton * std::max(least, relative * test.of_newton))
     *reason = KSP_CONVERGED_ATOL;
-  else if (iteration >= most_iterations && norm <= least_reduction * test.first)
+  else if (iteration >= most && norm <= least_reduction * test.first)
     *reason = KSP_CONVERGED_ITS;
   return 0;
 }
@@ -504,7 +506,7 @@ void choose_linear_solver(SNES solver, SolverContext& context) {
       KSPSetTolerances(linear, linear_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
   auto test = std::make_unique<LinearTest>();
   petsc::check(KSPConvergedDefaultCreate(&test->of_petsc));
-  test->context = &context;
+  test->newton = solver;
   petsc::check(KSPSetConvergenceTest(linear, test_linear, test.release(), destroy_linear_test));
   petsc::check(PCSetType(preconditioner, PCSHELL));
   petsc::check(PCShellSetName(preconditioner, "harmonics with a border"));
@@ -597,7 +599,6 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
     if (residual_at(h, context) > vanished)
       petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
   }
-  context.aim = std::max(enough, tolerance * residual_at(h, context));
   petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, limits.most_steps, 10000));
   SNESLineSearch search = nullptr;
   petsc::check(SNESGetLineSearch(solver.get(), &search));

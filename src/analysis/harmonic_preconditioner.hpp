@@ -79,9 +79,8 @@ class HarmonicPreconditioner {
 
   const HarmonicTangents& tangents_;
   Index width_;
-  Index block_;                ///< unknowns of a node
-  std::vector<Index> number_;  ///< of each unknown, in the border or between
-  std::vector<char> in_border_;
+  Index block_;                     ///< unknowns of a node
+  std::vector<Index> number_;       ///< of each unknown, in the border or between
   std::vector<PetscInt> border_;    ///< unknowns
   std::vector<PetscInt> interior_;  ///< unknowns, whole blocks in the order of the system
   std::vector<Chains> chains_;      ///< for the remainders of the harmonics by the sectors

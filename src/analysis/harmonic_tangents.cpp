@@ -4,7 +4,6 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
-#include <set>
 #include <string>
 
 #include "samara/analysis/linear_algebra.hpp"
@@ -44,7 +43,7 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, int har
   std::iota(kept_.begin(), kept_.end(), 0);
   number_ = kept_;
   remainder_.assign(kept_.size(), every);
-  const TangentPattern whole = find_pattern(system, {});
+  TangentPattern whole = find_pattern(system, {});
   if (by_sector) find_sectors(whole);
   mark_border(find_border(whole, block_size_, {}));
   make_map(whole);
@@ -59,13 +58,12 @@ HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordin
       block_size_(partition.block_size()),
       kept_(partition.kept()) {
   remainder_.assign(kept_.size(), every);
-  std::vector<char> border;
-  for (PetscInt i = 0; i < static_cast<PetscInt>(partition.blocks()); ++i)
-    border.push_back(partition.is_border(i) ? 1 : 0);
   for (PetscInt i = 0; i < static_cast<PetscInt>(system_.size()); ++i)
     number_.push_back(partition.number_of(i));
-  mark_border(border);
-  make_map(find_pattern(system_, held));
+  TangentPattern whole = find_pattern(system_, held);
+  mark_border(partition.is_distributed() ? partition.border()
+                                         : find_border(whole, block_size_, held));
+  make_map(whole);
   for (const system::UnconstrainedCoordinate& coordinate : held) {
     held_.push_back(coordinate);
     held_.back().unknown = partition.number_of(coordinate.unknown);
@@ -73,11 +71,12 @@ HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordin
   }
 }
 
-/// Takes the places of the unknowns that are kept from the pattern of all.
-void HarmonicTangents::make_map(const TangentPattern& whole) {
+/// Takes the places of the unknowns that are kept from the pattern of all, which has no meaning
+/// afterwards.
+void HarmonicTangents::make_map(TangentPattern& whole) {
   size_ = static_cast<Eigen::Index>(kept_.size());
   if (size_ == whole.rows()) {
-    pattern_ = whole;
+    pattern_.swap(whole);
   } else {
     std::vector<Eigen::Triplet<double, PetscInt>> places;
     for (PetscInt i = 0; i < static_cast<PetscInt>(kept_.size()); ++i)

@@ -63,7 +63,8 @@ class HarmonicTangents {
   int harmonics() const { return harmonics_; }
   PetscInt block_size() const { return block_size_; }  ///< of the system's tangents; 1: none
   bool is_held(PetscInt unknown) const;
-  /// Whether the load of this row holds the unknown.
+  /// Whether the load of this row holds the unknown; of a distributed mesh, a term of the first
+  /// rank.
   bool holds(PetscInt row, PetscInt unknown) const;
 
   struct Place {
@@ -105,7 +106,7 @@ class HarmonicTangents {
   bool is_moved(PetscInt unknown) const {
     return remainder_[static_cast<std::size_t>(unknown)] == every;
   }
-  void make_map(const TangentPattern& whole);
+  void make_map(TangentPattern& whole);
   void find_sectors(const TangentPattern& whole);
   void mark_border(const std::vector<char>& blocks);
   void find_followers();

@@ -15,6 +15,27 @@ constexpr Eigen::Index least_piece = 100;
 /// Largest border that a distribution may have, as a part of all blocks.
 constexpr double largest_border = 0.1;
 
+/// Owners of the blocks, whose pieces have equal lengths. Blocks behind a cut join the border.
+std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pieces,
+                     std::vector<char>& border) {
+  const auto inner = std::max<Eigen::Index>(std::count(border.begin(), border.end(), 0), 1);
+  std::vector<int> owners;
+  Eigen::Index number = 0;
+  for (const char is_border : border)
+    owners.push_back(is_border ? system::PeriodicSystem::shared
+                               : static_cast<int>(number++ * pieces / inner));
+  for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
+    for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
+      const auto row = static_cast<std::size_t>(i / block_size);
+      const auto column = static_cast<std::size_t>(it.col() / block_size);
+      if (owners[row] == owners[column] || border[row] || border[column]) continue;
+      const std::size_t behind = std::max(row, column);
+      border[behind] = 1;
+      owners[behind] = system::PeriodicSystem::shared;
+    }
+  return owners;
+}
+
 }  // namespace
 
 TangentPattern find_pattern(const system::PeriodicSystem& system, const Coordinates& held) {
@@ -70,61 +91,44 @@ std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size
 MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordinates& held,
                              MPI_Comm comm)
     : whole_(system), ranks_(comm), block_size_(block_size_of(system)) {
-  const TangentPattern pattern = find_pattern(system, held);
-  const std::vector<char> border = find_border(pattern, block_size_, held);
-  is_border_ = border;
-  const auto inner = static_cast<Eigen::Index>(std::count(border.begin(), border.end(), 0));
-  const auto pieces = static_cast<int>(std::min<Eigen::Index>(ranks_.size, inner / least_piece));
-  if (block_size_ > 1 && pieces > 1) {
-    for (const PetscInt i : system.common_unknowns())
-      is_border_[static_cast<std::size_t>(i / block_size_)] = 1;
-    const std::vector<int> owners = cut(pattern, pieces);
-    if (static_cast<double>(border_blocks_) <= largest_border * static_cast<double>(blocks())) {
-      std::vector<int> of_unknowns(static_cast<std::size_t>(system.size()));
-      for (std::size_t i = 0; i < of_unknowns.size(); ++i)
-        of_unknowns[i] = owners[i / static_cast<std::size_t>(block_size_)];
-      part_ = system.part_of(ranks_.rank, of_unknowns);
-      number_.assign(of_unknowns.size(), -1);
-      for (std::size_t i = 0; part_ && i < of_unknowns.size(); ++i) {
-        const bool is_shared = of_unknowns[i] == system::PeriodicSystem::shared;
-        if (!is_shared && of_unknowns[i] != ranks_.rank) continue;
-        number_[i] = static_cast<PetscInt>(kept_.size());
-        if (is_shared) border_.push_back(number_[i]);
-        if (!is_shared || ranks_.rank == 0) counted_.push_back(number_[i]);
-        kept_.push_back(static_cast<PetscInt>(i));
-      }
-    }
-  }
-  if (part_) return;
-  ranks_ = Ranks(MPI_COMM_SELF);
-  is_border_ = border;
-  border_blocks_ = std::count(border.begin(), border.end(), 1);
-  keep_all();
+  if (!distribute(held)) keep_all();
 }
 
-/// Owners of the blocks. Blocks behind a cut join the border.
-std::vector<int> MeshPartition::cut(const TangentPattern& pattern, int pieces) {
-  const auto inner = static_cast<Eigen::Index>(std::count(is_border_.begin(), is_border_.end(), 0));
-  std::vector<int> owners;
-  Eigen::Index number = 0;
-  for (const char in_border : is_border_)
-    owners.push_back(in_border
-                         ? system::PeriodicSystem::shared
-                         : static_cast<int>(number++ * pieces / std::max<Eigen::Index>(inner, 1)));
-  for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
-    for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
-      const auto row = static_cast<std::size_t>(i / block_size_);
-      const auto column = static_cast<std::size_t>(it.col() / block_size_);
-      if (owners[row] == owners[column] || is_border_[row] || is_border_[column]) continue;
-      const std::size_t behind = std::max(row, column);
-      is_border_[behind] = 1;
-      owners[behind] = system::PeriodicSystem::shared;
-    }
-  border_blocks_ = std::count(is_border_.begin(), is_border_.end(), 1);
-  return owners;
+/// @returns false where every rank has to keep the whole mesh
+bool MeshPartition::distribute(const Coordinates& held) {
+  if (ranks_.size == 1 || block_size_ == 1 || whole_.size() < 2 * least_piece * block_size_)
+    return false;
+  const TangentPattern pattern = find_pattern(whole_, held);
+  std::vector<char> border = find_border(pattern, block_size_, held);
+  for (const PetscInt i : whole_.common_unknowns())
+    border[static_cast<std::size_t>(i / block_size_)] = 1;
+  const auto inner = std::count(border.begin(), border.end(), 0);
+  const auto pieces = static_cast<int>(std::min<Eigen::Index>(ranks_.size, inner / least_piece));
+  if (pieces < 2) return false;
+  const std::vector<int> owners = cut(pattern, block_size_, pieces, border);
+  const auto border_blocks = std::count(border.begin(), border.end(), 1);
+  if (static_cast<double>(border_blocks) > largest_border * static_cast<double>(border.size()))
+    return false;
+  std::vector<int> of_unknowns(static_cast<std::size_t>(whole_.size()));
+  for (std::size_t i = 0; i < of_unknowns.size(); ++i)
+    of_unknowns[i] = owners[i / static_cast<std::size_t>(block_size_)];
+  part_ = whole_.part_of(ranks_.rank, of_unknowns);
+  if (!part_) return false;
+  is_border_ = std::move(border);
+  number_.assign(of_unknowns.size(), -1);
+  for (std::size_t i = 0; i < of_unknowns.size(); ++i) {
+    const bool is_shared = of_unknowns[i] == system::PeriodicSystem::shared;
+    if (!is_shared && of_unknowns[i] != ranks_.rank) continue;
+    number_[i] = static_cast<PetscInt>(kept_.size());
+    if (is_shared) border_.push_back(number_[i]);
+    if (!is_shared || is_first()) counted_.push_back(number_[i]);
+    kept_.push_back(static_cast<PetscInt>(i));
+  }
+  return true;
 }
 
 void MeshPartition::keep_all() {
+  ranks_ = Ranks(MPI_COMM_SELF);
   kept_.resize(static_cast<std::size_t>(whole_.size()));
   std::iota(kept_.begin(), kept_.end(), 0);
   number_ = kept_;
@@ -139,7 +143,6 @@ void MeshPartition::sum_border(Eigen::Ref<Eigen::MatrixXd> values) const {
 }
 
 Eigen::MatrixXd MeshPartition::whole(const Eigen::Ref<const Eigen::MatrixXd>& values) const {
-  if (!is_distributed()) return values;
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(values.rows(), whole_.size());
   for (const PetscInt i : counted_) all.col(kept_[static_cast<std::size_t>(i)]) = values.col(i);
   ranks_.sum(all);
@@ -147,31 +150,20 @@ Eigen::MatrixXd MeshPartition::whole(const Eigen::Ref<const Eigen::MatrixXd>& va
 }
 
 Eigen::MatrixXd MeshPartition::local(const Eigen::Ref<const Eigen::MatrixXd>& values) const {
-  if (!is_distributed()) return values;
   return values(Eigen::all, kept_);
 }
 
 void MeshPartition::spread(const double* counted, Eigen::Ref<Eigen::MatrixXd> values) const {
-  const Eigen::Map<const Eigen::MatrixXd> own(counted, values.rows(),
-                                              static_cast<Eigen::Index>(counted_.size()));
-  if (!is_distributed()) {
-    values = own;
-    return;
-  }
   for (const PetscInt i : border_) values.col(i).setZero();
-  values(Eigen::all, counted_) = own;
+  values(Eigen::all, counted_) = Eigen::Map<const Eigen::MatrixXd>(
+      counted, values.rows(), static_cast<Eigen::Index>(counted_.size()));
   sum_border(values);
 }
 
 void MeshPartition::collect(const Eigen::Ref<const Eigen::MatrixXd>& values,
                             double* counted) const {
-  Eigen::Map<Eigen::MatrixXd> own(counted, values.rows(),
-                                  static_cast<Eigen::Index>(counted_.size()));
-  if (!is_distributed()) {
-    own = values;
-    return;
-  }
-  own = values(Eigen::all, counted_);
+  Eigen::Map<Eigen::MatrixXd>(counted, values.rows(), static_cast<Eigen::Index>(counted_.size())) =
+      values(Eigen::all, counted_);
 }
 
 }  // namespace samara::analysis

@@ -55,10 +55,8 @@ class MeshPartition {
   PetscInt number_of(PetscInt unknown) const { return number_[static_cast<std::size_t>(unknown)]; }
   /// Numbers of the unknowns that this rank counts.
   const std::vector<PetscInt>& counted() const { return counted_; }
-  /// Whether a block of the system belongs to the border.
-  bool is_border(PetscInt block) const { return is_border_[static_cast<std::size_t>(block)] != 0; }
-  Eigen::Index blocks() const { return static_cast<Eigen::Index>(is_border_.size()); }
-  Eigen::Index border_blocks() const { return border_blocks_; }
+  /// Of a distributed mesh: whether each block of the system belongs to the border.
+  const std::vector<char>& border() const { return is_border_; }
 
   /// Adds up the columns of the border, each rank having a part of them. One column for each
   /// unknown on this rank.
@@ -73,15 +71,14 @@ class MeshPartition {
   void collect(const Eigen::Ref<const Eigen::MatrixXd>& values, double* counted) const;
 
  private:
-  std::vector<int> cut(const TangentPattern& pattern, int pieces);
+  bool distribute(const Coordinates& held);
   void keep_all();
 
   const system::PeriodicSystem& whole_;
   Ranks ranks_;
   PetscInt block_size_;
   std::unique_ptr<system::PeriodicSystem> part_;
-  std::vector<char> is_border_;  ///< of each block
-  Eigen::Index border_blocks_ = 0;
+  std::vector<char> is_border_;
   std::vector<PetscInt> kept_;
   std::vector<PetscInt> number_;
   std::vector<PetscInt> counted_;

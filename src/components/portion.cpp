@@ -6,11 +6,12 @@
 
 #include "samara/base/index.hpp"
 #include "samara/components/block_matrix.hpp"
+#include "samara/system/periodic_system.hpp"
 
 namespace samara::components {
 namespace {
 
-constexpr int shared = -1;
+constexpr int shared = system::PeriodicSystem::shared;
 
 }  // namespace
 

@@ -35,8 +35,13 @@ class TurbineSystem::Assembly {
         own_plan(portion ? equations.find_plan(*portion) : equations.plan()),
         plan(*own_plan) {
     find_range();
-    place_mass();
+    find_differential();
   }
+
+  struct Workspace {
+    components::Tangents tangents;
+    std::vector<std::size_t> mass_offsets;  ///< positions in M's blocks of its entries, row by row
+  };
 
   std::shared_ptr<const TurbineEquations> shared_equations;
   const TurbineEquations& equations;
@@ -47,17 +52,20 @@ class TurbineSystem::Assembly {
   std::shared_ptr<const components::TangentPlan> own_plan;
   const components::TangentPlan& plan;
   std::vector<bool> differential;
-  std::vector<std::size_t> mass_offsets;  ///< positions in M's blocks of its entries, row by row
   PetscInt first_row = 0;
   PetscInt last_row = 0;
-  mutable std::optional<components::Tangents> workspace;
+  mutable std::optional<Workspace> made_workspace;
   mutable petsc::Handle<VecScatter> gather;
   mutable petsc::Handle<Vec> whole;
 
   /// Made at the first use: its memory is large.
-  components::Tangents& tangents() const {
-    if (!workspace) workspace.emplace(own_plan);
-    return *workspace;
+  Workspace& workspace() const {
+    if (made_workspace) return *made_workspace;
+    made_workspace.emplace(Workspace{components::Tangents(own_plan), {}});
+    for (int row = 0; row < layout.size(); ++row)
+      for (const int column : plan.M[static_cast<std::size_t>(row)])
+        made_workspace->mass_offsets.push_back(made_workspace->tangents.M().place(row, column));
+    return *made_workspace;
   }
 
   bool parallel() const {
@@ -142,16 +150,11 @@ class TurbineSystem::Assembly {
     petsc::check(VecGetOwnershipRange(z.get(), &first_row, &last_row));
   }
 
-  /// Finds the positions of M's entries in its blocks.
-  void place_mass() {
-    const components::BlockMatrix places(plan.blocks);
+  /// Also of a part, whose plan has its own rows only.
+  void find_differential() {
     differential.assign(static_cast<std::size_t>(layout.size()), false);
-    for (int row = 0; row < layout.size(); ++row) {
-      for (const int column : plan.M[static_cast<std::size_t>(row)])
-        mass_offsets.push_back(places.place(row, column));
-      for (const int column : equations.plan()->M[static_cast<std::size_t>(row)])
-        differential[static_cast<std::size_t>(column)] = true;
-    }
+    for (const std::vector<int>& columns : equations.plan()->M)
+      for (const int column : columns) differential[static_cast<std::size_t>(column)] = true;
   }
 
  public:
@@ -413,15 +416,16 @@ void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {
 void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,
                              Mat mass) const {
   const Assembly& assembly = *assembly_;
-  components::Tangents& tangents = assembly.tangents();
+  Assembly::Workspace& workspace = assembly.workspace();
+  components::Tangents& tangents = workspace.tangents;
   assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), tangents);
   std::vector<double>& K = tangents.K().values();
   const std::vector<double>& M = tangents.M().values();
   if (mass != nullptr && !assembly.parallel()) {
     PetscScalar* values = nullptr;  // row by row, in the order of the offsets
     petsc::check(MatSeqAIJGetArrayWrite(mass, &values));
-    for (std::size_t entry = 0; entry < assembly.mass_offsets.size(); ++entry)
-      values[entry] = M[assembly.mass_offsets[entry]];
+    for (std::size_t entry = 0; entry < workspace.mass_offsets.size(); ++entry)
+      values[entry] = M[workspace.mass_offsets[entry]];
     petsc::check(MatSeqAIJRestoreArrayWrite(mass, &values));
   } else if (mass != nullptr) {
     std::size_t entry = 0;
@@ -431,7 +435,7 @@ void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacob
       const bool own = i >= assembly.first_row && i < assembly.last_row;
       row_values.clear();
       for (std::size_t c = 0; c < columns.size(); ++c)
-        row_values.push_back(M[assembly.mass_offsets[entry++]]);
+        row_values.push_back(M[workspace.mass_offsets[entry++]]);
       if (own && !columns.empty())
         petsc::check(MatSetValues(mass, 1, &i, static_cast<PetscInt>(columns.size()),
                                   columns.data(), row_values.data(), INSERT_VALUES));

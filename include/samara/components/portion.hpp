@@ -16,8 +16,8 @@ class Portion {
   /// Blocks that the values of ports depend on; every rank needs them.
   static std::vector<int> find_common_blocks(const TangentPlan& plan);
 
-  /// `owners`: rank of each block; -1: shared. Null if a share contains blocks of two ranks, or if
-  /// a port depends on a block that is not shared.
+  /// `owners`: rank of each block, or PeriodicSystem::shared. Null if a share contains blocks of
+  /// two ranks, or if a port depends on a block that is not shared.
   static std::shared_ptr<const Portion> find(const TangentPlan& plan, std::vector<int> owners,
                                              int rank);
 

@@ -99,14 +99,15 @@ class PeriodicSystem {
   /// at 180 degrees; a larger rotation has the parameters of the same attitude.
   virtual void count_from_undeformed(Vec) const {}
 
+  /// Owner of an unknown that all ranks of a distributed mesh have.
+  static constexpr int shared = -1;
+  /// Unknowns that must be shared in every distribution.
+  virtual std::vector<PetscInt> common_unknowns() const { return {}; }
   /// Part of the same system that a rank of a distributed mesh evaluates. The residuals and
   /// tangents of all parts add up to those of this system. `owners[i]`: rank of unknown and row i,
-  /// or `shared`. A part contains the terms in which an unknown or row of its rank is, and the
-  /// first one also those of shared unknowns alone. Only the unknowns of the rank and shared ones
-  /// are read from a state. Null if the terms cannot be divided in this way.
-  static constexpr int shared = -1;
-  /// Unknowns that must be shared.
-  virtual std::vector<PetscInt> common_unknowns() const { return {}; }
+  /// or `shared`. A rank has all terms in its rows, and in shared rows the terms of its unknowns;
+  /// the first rank also has those of shared unknowns alone. Only the unknowns of the rank and
+  /// shared ones are read from a state. Null if the terms cannot be divided in this way.
   virtual std::unique_ptr<PeriodicSystem> part_of(int /*rank*/,
                                                   const std::vector<int>& /*owners*/) const {
     return nullptr;
