@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "samara/base/error.hpp"
+#include "samara/petsc/options.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -76,7 +77,7 @@ ComplexSolver::ComplexSolver(Eigen::Index size, Map matrix, Map preconditioner, 
   petsc::check(PCSetType(shell, PCSHELL));
   petsc::check(PCShellSetContext(shell, this));
   petsc::check(PCShellSetApply(shell, precondition));
-  petsc::check(KSPSetFromOptions(solver));
+  petsc::take_options(KSPSetFromOptions, solver);
 }
 
 void ComplexSolver::solve(const Vector& right, Vector& x) {

@@ -12,6 +12,7 @@
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
+#include "samara/petsc/options.hpp"
 
 #include "harmonic_preconditioner.hpp"
 #include "harmonic_tangents.hpp"
@@ -604,7 +605,7 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
   petsc::check(SNESGetLineSearch(solver.get(), &search));
   petsc::check(SNESLineSearchSetType(search, limits.line_search));
   choose_linear_solver(solver.get(), context);
-  petsc::check(SNESSetFromOptions(solver.get()));
+  petsc::take_options(SNESSetFromOptions, solver.get());
   const PreferredFactorization factorization;
   const PetscErrorCode code = SNESSolve(solver.get(), nullptr, x.get());
   if (code != 0 && context.error) std::rethrow_exception(context.error);

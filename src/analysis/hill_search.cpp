@@ -11,6 +11,7 @@
 #include <slepceps.h>
 
 #include "samara/base/error.hpp"
+#include "samara/petsc/options.hpp"
 
 #include "complex_solver.hpp"
 
@@ -139,7 +140,7 @@ HillRegion HillSearch::find(double frequency, int count) {
   petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_MAGNITUDE));
   petsc::check(EPSSetDimensions(solver.get(), 2 * count, PETSC_DEFAULT, PETSC_DEFAULT));
   petsc::check(EPSSetTolerances(solver.get(), eigenvalue_tolerance, PETSC_DEFAULT));
-  petsc::check(EPSSetFromOptions(solver.get()));
+  petsc::take_options(EPSSetFromOptions, solver.get());
   EPSWhich which = EPS_LARGEST_MAGNITUDE;
   petsc::check(EPSGetWhichEigenpairs(solver.get(), &which));
   if (which != EPS_LARGEST_MAGNITUDE)

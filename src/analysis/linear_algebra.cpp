@@ -9,6 +9,7 @@
 #include <petscblaslapack.h>
 
 #include "samara/base/error.hpp"
+#include "samara/petsc/options.hpp"
 
 #include "blas.hpp"
 #include "block_factors.hpp"
@@ -307,7 +308,7 @@ void DirectSolver::factor_by_petsc() {
     petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
     if (pivots_) petsc::check(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS));
     petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
-    petsc::check(KSPSetFromOptions(solver_.get()));
+    petsc::take_options(KSPSetFromOptions, solver_.get());
   }
   petsc::check(KSPSetOperators(solver_.get(), matrix_, matrix_));
   FactorFailure failure = set_up(solver_.get());
@@ -584,7 +585,7 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
   petsc::check(EPSSetDimensions(solver, n, PETSC_DEFAULT, PETSC_DEFAULT));
   petsc::check(EPSSetWhichEigenpairs(solver, EPS_WHICH_USER));
   petsc::check(EPSSetEigenvalueComparison(solver, keep_order, nullptr));
-  petsc::check(EPSSetFromOptions(solver));
+  petsc::take_options(EPSSetFromOptions, solver);
   require_whole_spectrum(prefix);
   solve_whole(solver, prefix);
   PetscInt converged = 0;

@@ -10,6 +10,7 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
+#include "samara/petsc/options.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/system/angles.hpp"
 
@@ -445,7 +446,7 @@ class Integration {
     petsc::check(KSPGetPC(linear, &preconditioner));
     petsc::check(PCSetType(preconditioner, PCLU));
     petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
-    petsc::check(TSSetFromOptions(ts));
+    petsc::take_options(TSSetFromOptions, ts);
     require_sound_type();
     prepare_midpoint();
   }

@@ -8,7 +8,7 @@ import unittest
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import BASELINE, MINIMAL, ProgramTest  # noqa: E402
+from program import BASELINE, MINIMAL, SOURCE, ProgramTest  # noqa: E402
 
 COMMANDS = ["check", "modes", "trim", "floquet"]
 
@@ -193,6 +193,17 @@ class Solvers(ProgramTest):
         self.refuse("trim", BASELINE, "--set", "gravity=9.81", "-trim_pc_factor_mat_solver_type",
                     "petsc", code=3, words=["FACTOR_NUMERIC_ZEROPIVOT",
                                             "hint: -trim_pc_factor_mat_solver_type mumps"])
+
+    def test_values_that_petsc_refuses_are_input_errors(self):
+        for command, option, value, word in (("trim", "-trim_snes_rtol", "abc", "abc has no numeric"),
+                                             ("trim", "-trim_ksp_type", "best", "KSP type best"),
+                                             ("modes", "-modes_ksp_type", "best", "KSP type best"),
+                                             ("floquet", "-floquet_eps_type", "best", "best"),
+                                             ("transient", "-transient_ts_type", "best", "best")):
+            beams = {"modes": "rotating.yaml", "transient": "spun_up.yaml"}
+            case = SOURCE / "inputs/beam" / beams[command] if command in beams else BASELINE
+            self.refuse(command, case, option, value,
+                        words=[f"options {option[:option.index('_') + 1]}...", word, "hint: "])
 
     def test_options_that_the_solvers_cannot_follow_are_refused(self):
         for option, value, word in (("-mat_type", "dense", "fixed"),

@@ -8,7 +8,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import BASELINE, QUICK, ProgramTest  # noqa: E402
+from program import BASELINE, QUICK, SOURCE, ProgramTest  # noqa: E402
 
 # Sums over ranks round in another order; well-conditioned eigenvalues move with round-off.
 EXPONENTS = 1e-9
@@ -41,6 +41,17 @@ class Ranks(ProgramTest):
             b = numpy.sort_complex(other[~is_zero] * -1j)
             self.assertLess((abs(a - b) / abs(a)).max(), EXPONENTS)
             self.assertEqual(sorted(labels), sorted(other_labels))
+
+    def test_a_distributed_trim_has_the_table_of_one_rank(self):
+        case = [SOURCE / "inputs/beam/rotating.yaml", "--set", "blades.elements=320", "--set",
+                "blades.order=1", "--set", "gravity=9.81", "--set", "trim.harmonics=3"]
+        tables = []
+        for ranks in (1, 2, 3):
+            text = self.succeed("trim", *case, ranks=ranks).stdout
+            self.assertEqual(text.count(f"mesh on {ranks} ranks"), 1 if ranks > 1 else 0)
+            tables.append([line for line in text.splitlines() if line.startswith("blade 1")])
+            self.assertEqual(tables[-1], tables[0])
+        self.assertEqual(len(tables[0]), 9)
 
     def test_tables_are_printed_once(self):
         for command in ("check", "trim", "floquet"):
