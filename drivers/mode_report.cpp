@@ -150,14 +150,23 @@ std::string rest_words(const StabilityAssessment& result) {
 
 std::string hertz(double rate) { return general(rate / (2.0 * std::numbers::pi), 3) + " Hz"; }
 
+/// Whether the part of the spectrum that was searched is one of slow decays, not of low
+/// frequencies.
+bool is_of_slow_decays(const ModeSet& set) {
+  return set.searched && set.searched->decay < 0.5 * set.searched->high;
+}
+
 /// Frequencies below which all modes are resolved, and below which their errors are small.
-std::string resolved_words(const StabilityAssessment& result, const std::string& deflated) {
-  std::string text = std::isfinite(result.reach)
+std::string resolved_words(const ModeSet& set, const StabilityAssessment& result,
+                           const std::string& deflated) {
+  const double reach = is_of_slow_decays(set) ? set.searched->high : result.reach;
+  std::string text = is_of_slow_decays(set) ? "all of these modes are resolved"
+                     : std::isfinite(result.reach)
                          ? "all modes below " + hertz(result.reach) + " are resolved"
                          : "all modes are resolved";
   text += deflated;
   const std::string percents = general(100.0 * marked_error, 2) + " %";
-  if (result.accurate_reach < result.reach)
+  if (result.accurate_reach < reach)
     text += "; those below " + hertz(result.accurate_reach) + " have errors below " + percents;
   else
     text += "; their errors are below " + percents;
@@ -200,11 +209,13 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   switch (result.doubt) {
     case Doubt::unresolved:
       return "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
-             (set.searched ? "; hint: fewer floquet.modes, or all modes without it"
-                           : (is_periodic(set) ? "; hint: more floquet.steps" : ""));
+             (set.searched
+                  ? "; hint: fewer floquet.modes or floquet.least_damped, or all modes without it"
+                  : (is_periodic(set) ? "; hint: more floquet.steps" : ""));
     case Doubt::incomplete:
       return "no verdict: modes may be missing in the range that was searched; hint: another "
-             "floquet.modes, or all modes without it";
+             "number "
+             "in floquet.modes or floquet.least_damped, or all modes without it";
     case Doubt::growing_alone:
       return "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; other modes: " + rest);
     default:
@@ -274,7 +285,7 @@ std::string verdict_text(const ModeSet& set, const StabilityAssessment& assessme
   std::string text = headline(set, assessment) + "\n";
   if (set.searched) text += searched_words(set) + "\n";
   if (assessment.stability != Stability::unknown)
-    text += resolved_words(assessment, deflated_words(set)) + "\n";
+    text += resolved_words(set, assessment, deflated_words(set)) + "\n";
   return text + doubtful_words(set, assessment, all);
 }
 

@@ -33,6 +33,14 @@ std::vector<double> lobatto_points(int stages) {
   }
 }
 
+bool is_gauss(int order) { return order % 2 == 0; }
+
+/// Points of Radau IIA in [0, 1]; the last one is 1.
+std::vector<double> radau_points(int order) {
+  if (order != 5) throw InternalError("Radau IIA of order " + std::to_string(order));
+  return {0.4 - std::sqrt(0.06), 0.4 + std::sqrt(0.06), 1.0};
+}
+
 }  // namespace
 
 CollocationStep::CollocationStep(const system::PeriodicSystem& system,
@@ -41,12 +49,12 @@ CollocationStep::CollocationStep(const system::PeriodicSystem& system,
     : system_(system),
       solution_(solution),
       subspace_(subspace),
-      stages_(order / 2),
+      stages_((order + 1) / 2),
       step_(step),
-      gauss_(math::gauss_rule(order / 2).points),
-      lobatto_(lobatto_points(order / 2)),
+      points_(is_gauss(order) ? math::gauss_rule(order / 2).points : radau_points(order)),
+      constrained_(is_gauss(order) ? lobatto_points(order / 2) : points_),
       rates_(stages_, stages_ + 1),
-      at_lobatto_(stages_, stages_ + 1),
+      at_constrained_(stages_, stages_ + 1),
       at_end_(stages_ + 1),
       rate_at_end_(stages_ + 1),
       z_(system.make_state()),
@@ -56,12 +64,12 @@ CollocationStep::CollocationStep(const system::PeriodicSystem& system,
       solver_("floquet_", [this](Mat matrix) { return scale(matrix); }),
       impulses_(system, "floquet_impulse_") {
   std::vector<double> nodes{0.0};
-  nodes.insert(nodes.end(), gauss_.begin(), gauss_.end());
+  nodes.insert(nodes.end(), points_.begin(), points_.end());
   for (int a = 0; a <= stages_; ++a) {
-    for (std::size_t i = 0; i < gauss_.size(); ++i) {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
       const auto row = static_cast<Index>(i);
-      rates_(row, a) = math::lagrange_derivative(nodes, a, gauss_[i]) / step_;
-      at_lobatto_(row, a) = math::lagrange(nodes, a, lobatto_[i]);
+      rates_(row, a) = math::lagrange_derivative(nodes, a, points_[i]) / step_;
+      at_constrained_(row, a) = math::lagrange(nodes, a, constrained_[i]);
     }
     at_end_(a) = math::lagrange(nodes, a, 1.0);
     rate_at_end_(a) = math::lagrange_derivative(nodes, a, 1.0) / step_;
@@ -191,20 +199,19 @@ void CollocationStep::evaluate_at(double t) {
 }
 
 void CollocationStep::factor(long k) {
+  factored_.reset();
   const double start = static_cast<double>(k) * step_;
   end_time_ = static_cast<double>(k + 1) * step_;
-  start_terms_.clear();
   {
     MatrixEntries all(matrix_.get());
     std::fill_n(all.values(), entries_.size() * static_cast<std::size_t>(stages_ * stages_), 0.0);
     for (int stage = 0; stage < stages_; ++stage) {
       const auto point = static_cast<std::size_t>(stage);
-      if (stage + 1 < stages_) {
-        evaluate_at(start + lobatto_[point] * step_);
-        take_constraints(stage, MatrixEntries(jacobian_.get()).values(), all.values());
-      }
-      evaluate_at(start + gauss_[point] * step_);
+      evaluate_at(start + points_[point] * step_);
       take_dynamics(stage, all.values());
+      if (stage + 1 == stages_) continue;
+      if (constrained_[point] != points_[point]) evaluate_at(start + constrained_[point] * step_);
+      take_constraints(stage, MatrixEntries(jacobian_.get()).values(), all.values());
     }
     solution_.evaluate(end_time_, z_.get(), z_dot_.get());
     impulses_.evaluate(end_time_, z_.get(), z_dot_.get());
@@ -213,10 +220,13 @@ void CollocationStep::factor(long k) {
   }
   right_of_.resize(system_.size() * stages_, system_.size());
   right_of_.setFromTriplets(start_terms_.begin(), start_terms_.end());
+  start_terms_ = {};
   solver_.factor(matrix_.get());
+  if (impulses_.is_restricted()) factor_impulses();
+  factored_ = k;
 }
 
-/// K z + M z_dot = 0 at a Gauss point, in all rows but those of constraints.
+/// K z + M z_dot = 0 at a stage, in all rows but those of constraints.
 void CollocationStep::take_dynamics(int stage, PetscScalar* values) {
   const MatrixEntries stiffness(jacobian_.get());
   const MatrixEntries mass(mass_.get());
@@ -236,7 +246,7 @@ void CollocationStep::take_dynamics(int stage, PetscScalar* values) {
   }
 }
 
-/// K z = 0 at a Lobatto point, in the rows of constraints.
+/// K z = 0 at a point of constraints, in their rows.
 void CollocationStep::take_constraints(int stage, const PetscScalar* stiffness,
                                        PetscScalar* values) {
   for (const std::size_t e : constraint_entries_) {
@@ -244,9 +254,9 @@ void CollocationStep::take_constraints(int stage, const PetscScalar* stiffness,
     if (stiffness[e] == 0.0) continue;
     PetscScalar* row = values + entry.first + stage * entry.row_stride;
     for (Index other = 0; other < stages_; ++other)
-      row[other * entry.column_stride] += at_lobatto_(stage, other + 1) * stiffness[e];
+      row[other * entry.column_stride] += at_constrained_(stage, other + 1) * stiffness[e];
     start_terms_.emplace_back(row_at(entry.row, stage), entry.column,
-                              -at_lobatto_(stage, 0) * stiffness[e]);
+                              -at_constrained_(stage, 0) * stiffness[e]);
   }
 }
 
@@ -259,7 +269,6 @@ Equilibration CollocationStep::scale(Mat matrix) const {
   const MatrixEntries values(matrix);
   for (const Entry& entry : entries_)
     own.emplace_back(entry.row, entry.column, values.values()[entry.first]);
-  const Eigen::SparseMatrix<double> all = to_sparse(matrix);
   Eigen::SparseMatrix<double> first_stage(n, n);
   first_stage.setFromTriplets(own.begin(), own.end());
   const Equilibration of_roles = scaling_by_role(system_, first_stage, rate);
@@ -270,14 +279,12 @@ Equilibration CollocationStep::scale(Mat matrix) const {
   const petsc::WriteView columns(scaling.columns.get());
   std::vector<double> largest(static_cast<std::size_t>(size), 0.0);
   for (Index j = 0; j < n; ++j)
-    for (Index stage = 0; stage < stages_; ++stage) {
-      const double factor = factors[static_cast<PetscInt>(j)];
-      columns[static_cast<PetscInt>(at(j, stage))] = factor;
-      for (Eigen::SparseMatrix<double>::InnerIterator it(all, at(j, stage)); it; ++it) {
-        double& row = largest[static_cast<std::size_t>(it.row())];
-        row = std::max(row, std::abs(it.value()) * factor);
-      }
-    }
+    for (Index stage = 0; stage < stages_; ++stage)
+      columns[static_cast<PetscInt>(at(j, stage))] = factors[static_cast<PetscInt>(j)];
+  MatrixEntries(matrix).for_each([&](PetscInt i, PetscInt j, const PetscScalar& value) {
+    double& row = largest[static_cast<std::size_t>(i)];
+    row = std::max(row, std::abs(value) * columns[j]);
+  });
   const petsc::WriteView rows(scaling.rows.get());
   for (PetscInt i = 0; i < size; ++i) {
     const double value = largest[static_cast<std::size_t>(i)];
@@ -303,7 +310,7 @@ void CollocationStep::combine(const Eigen::VectorXd& weights, Eigen::MatrixXd& v
 }
 
 void CollocationStep::advance(long k, Eigen::MatrixXd& z) {
-  factor(k);
+  if (factored_ != k) factor(k);
   start_ = z;
   multiply(right_of_, z, middles_);
   solver_.solve(middles_);
@@ -312,8 +319,8 @@ void CollocationStep::advance(long k, Eigen::MatrixXd& z) {
   z = end_;
 }
 
-/// Finds the rates of eta at the end of the step and makes the velocities admissible.
-void CollocationStep::project() {
+/// Of the impulse equations at the end of the step.
+void CollocationStep::factor_impulses() {
   const auto n = static_cast<Index>(system_.size());
   std::vector<Eigen::Triplet<double>> terms;
   const MatrixEntries stiffness(impulses_.stiffness());
@@ -325,11 +332,15 @@ void CollocationStep::project() {
     for (Sparse::InnerIterator it(change, j); it; ++it)
       terms.emplace_back(subspace_.constraint_rows()[static_cast<std::size_t>(it.row())], j,
                          -it.value());
-  Eigen::SparseMatrix<double, Eigen::RowMajor> right(n, n);
-  right.setFromTriplets(terms.begin(), terms.end());
+  rates_of_.resize(n, n);
+  rates_of_.setFromTriplets(terms.begin(), terms.end());
   impulses_.factor(relative_tau * step_);
+}
+
+/// Finds the rates of eta at the end of the step and makes the velocities admissible.
+void CollocationStep::project() {
   combine(rate_at_end_, rate_);
-  multiply(right, end_, impulse_);
+  multiply(rates_of_, end_, impulse_);
   impulse_ += impulses_.added() * rate_;
   impulses_.solve(impulse_);
   for (const PetscInt velocity : subspace_.velocities())
@@ -338,15 +349,15 @@ void CollocationStep::project() {
 
 void CollocationStep::sample(double fraction, Eigen::MatrixXd& values) const {
   std::vector<double> nodes{0.0};
-  nodes.insert(nodes.end(), gauss_.begin(), gauss_.end());
-  nodes.push_back(1.0);
+  nodes.insert(nodes.end(), points_.begin(), points_.end());
+  if (nodes.back() < 1.0) nodes.push_back(1.0);
   const auto count = static_cast<std::size_t>(stages_);
-  std::vector<double> carried(count + 2);
+  std::vector<double> carried(count + 2, 0.0);
   std::vector<double> others(count);
-  for (std::size_t a = 0; a < carried.size(); ++a)
+  for (std::size_t a = 0; a < nodes.size(); ++a)
     carried[a] = math::lagrange(nodes, static_cast<int>(a), fraction);
   for (std::size_t a = 0; a < others.size(); ++a)
-    others[a] = math::lagrange(gauss_, static_cast<int>(a), fraction);
+    others[a] = math::lagrange(points_, static_cast<int>(a), fraction);
   values.resize(start_.rows(), start_.cols());
   for (Index c = 0; c < values.cols(); ++c)
     for (Index first = 0; first < values.rows(); first += block_) {
@@ -367,7 +378,11 @@ void CollocationStep::sample(double fraction, Eigen::MatrixXd& values) const {
 }
 
 Eigen::MatrixXd CollocationStep::state() {
-  if (!impulses_.is_restricted()) project();
+  if (!impulses_.is_restricted()) {
+    factor_impulses();
+    factored_.reset();  // the impulse equations have taken the place of K
+    project();
+  }
   Eigen::MatrixXd state(subspace_.size(), end_.cols());
   const Index d = subspace_.degrees_of_freedom();
   state.topRows(d) = subspace_.coordinates_of(end_);

@@ -843,7 +843,7 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
                            const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
   if (system.period() == 0.0)
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
-  if (options.modes > 0) {
+  if (options.modes > 0 || options.least_damped > 0) {
     if (std::optional<Floquet> found = find_hill_modes(system, solution, options))
       return std::move(*found);
     observer.note("floquet: all modes, because the mesh is too coarse for Hill's method");

@@ -19,6 +19,7 @@
 #include "hill_refinement.hpp"
 #include "hill_residual.hpp"
 #include "hill_search.hpp"
+#include "least_damped_search.hpp"
 #include "state_parts.hpp"
 
 namespace samara::analysis {
@@ -81,6 +82,16 @@ constexpr double least_gap = 0.01;
 /// Relative to the rotor speed: an exponent below this, in the search, is that of a displacement.
 constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
+/// Steps a revolution of the search for the slowest decays; the factor of their number where all
+/// multipliers were found, but not enough; that of the number of multipliers; and the number of
+/// attempts.
+constexpr int steps_of_decays = 36;
+constexpr double increase_of_all = 2.0;
+constexpr double usual_increase = 1.6;
+constexpr int most_attempts = 8;
+/// Relative to the rotor speed: a mode is beyond the edge of the region of slow decays.
+constexpr double edge_slack = 0.02;
+constexpr int most_steps_of_decays = 200;
 
 /// An eigenpair with its identification.
 struct Candidate {
@@ -140,6 +151,10 @@ class Analysis {
     samples_ = std::max(shape_samples, 4 * harmonics + 2);
     sectors_ = pencil.sectors();
     nearest_ = sectors_ / 2;
+    if (options_.least_damped > 0) {
+      search_decays();
+      return true;
+    }
     if (options_.near_hz)
       search_near(search, 2.0 * std::numbers::pi * *options_.near_hz);
     else
@@ -155,6 +170,80 @@ class Analysis {
     const HillSearch::Missing missing = search.count_missing(region_, all_found_);
     region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
     return true;
+  }
+
+  /// Finds the motions of slowest decay by integration, with as many steps as these need.
+  void search_decays() {
+    const auto whole = [this](double steps) {
+      return static_cast<int>(std::ceil(steps / sectors_)) * sectors_;
+    };
+    int steps = whole(steps_of_decays);
+    int count = 2 * (options_.least_damped + margin_pairs);
+    int most = 0;
+    std::optional<LeastDampedSearch> search;
+    for (int attempt = 1;; ++attempt) {
+      if (!search) search.emplace(system_, solution_, steps);
+      search->find(count);
+      found_.clear();
+      std::vector<Complex> exponents;
+      for (std::size_t i = 0; i < search->count(); ++i) {
+        found_.push_back(centred_motion(*search, i));
+        exponents.push_back(exponent_of(found_.back()));
+      }
+      const LeastDampedSearch::Region region =
+          search->region_of(exponents, options_.least_damped, speed_);
+      // More steps do not help where they have not found more.
+      const bool is_last =
+          attempt == most_attempts ||
+          (search->is_exhausted() && region.more_steps == 1.0 && region.motions <= most);
+      if (region.motions == options_.least_damped || (region.motions > 0 && is_last)) {
+        take_decays(region, exponents);
+        region_is_counted_ = true;
+        return;
+      }
+      if (is_last)
+        throw ConvergenceError(
+            "floquet.least_damped: no motion decays slowly enough to be told from others; hint: "
+            "floquet.modes");
+      most = std::max(most, region.motions);
+      const double more =
+          region.more_steps == 1.0 && search->is_exhausted() ? increase_of_all : region.more_steps;
+      if (more > 1.0) {
+        steps = whole(steps * more);
+        search.reset();
+      } else {
+        count = static_cast<int>(count * usual_increase);
+      }
+    }
+  }
+
+  /// Keeps the motions in a region.
+  void take_decays(const LeastDampedSearch::Region& region, const std::vector<Complex>& exponents) {
+    region_ = {0.0, region.high + margin(), region.decay, false, {}};
+    std::vector<Candidate> inside;
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      if (region.has(exponents[i])) inside.push_back(std::move(found_[i]));
+    found_ = std::move(inside);
+    expected_ = static_cast<int>(found_.size());
+  }
+
+  /// That of the copies of a motion, and of its conjugate, that is next to its own harmonic.
+  Candidate centred_motion(const LeastDampedSearch& search, std::size_t number) {
+    const Eigen::MatrixXcd shape = search.shape(number);
+    Candidate candidate{search.pair(number, shape, 0, sectors_), {}, {}};
+    describe(shape, candidate);
+    settle_rest(candidate);
+    int copies = (std::abs(candidate.mode.harmonic) + (sectors_ - 1) / 2) / sectors_;
+    if (candidate.mode.harmonic < 0) copies = -copies;
+    const int shift = copies * sectors_;
+    candidate.mode.harmonic -= shift;
+    candidate.pair = search.pair(number, shape, shift, least_harmonics);
+    if (candidate.pair.exponent.imag() < 0.0) {
+      candidate.pair.exponent = std::conj(candidate.pair.exponent);
+      candidate.pair.series = candidate.pair.series.colwise().reverse().conjugate().eval();
+      candidate.mode.harmonic = -candidate.mode.harmonic;
+    }
+    return candidate;
   }
 
   void search_upwards(HillSearch& search) {
@@ -207,10 +296,11 @@ class Analysis {
   /// Largest distance of the frequency of a mode from that of its eigenpair.
   double margin() const { return (nearest_ + 1) * speed_; }
 
-  /// Modulus of the exponent of the mode of an eigenpair, by its energy.
-  double modulus_of(const Candidate& candidate) const {
-    return std::abs(candidate.pair.exponent + Complex(0.0, candidate.mode.harmonic * speed_));
+  /// Exponent of the mode of an eigenpair, by its energy.
+  Complex exponent_of(const Candidate& candidate) const {
+    return candidate.pair.exponent + Complex(0.0, candidate.mode.harmonic * speed_);
   }
+  double modulus_of(const Candidate& candidate) const { return std::abs(exponent_of(candidate)); }
 
   /// Approximate number of modes that the search has found, with moduli of exponents from the lower
   /// edge to `high`, less the margin.
@@ -280,6 +370,7 @@ class Analysis {
   /// is reported are left out.
   void refine() {
     const auto is_chosen = [this](const Candidate& candidate) {
+      if (options_.least_damped > 0) return true;
       const double modulus = modulus_of(candidate);
       const double slack = neighbourhood * speed_;  // few harmonics give it approximately
       if (modulus > region_.high - margin() + slack ||
@@ -509,22 +600,30 @@ class Analysis {
   }
 
   void describe(Candidate& candidate) {
-    const Eigen::MatrixXcd shape = shape_of(candidate.pair.series);
-    Eigen::MatrixXd real(energy_.signals(), samples_);
-    Eigen::MatrixXd imaginary(energy_.signals(), samples_);
-    energy_.take(shape.real(), real);
-    energy_.take(shape.imag(), imaginary);
-    const int state = leading_state(shape);
-    describe_energy(
-        energy_.energies(real.data(), imaginary.data(), Eigen::VectorXcd::Ones(samples_)),
-        energy_.part_names(), state, candidate.mode, candidate.participation);
-    candidate.mode.state.reset();
-    if (state >= 0) candidate.mode.state = parts_.owners[static_cast<std::size_t>(state)];
-    // A displacement at rest has no energy.
+    describe(shape_of(candidate.pair.series), candidate);
+    settle_rest(candidate);
+  }
+
+  /// A displacement at rest has no energy: its harmonic is that of the positions.
+  void settle_rest(Candidate& candidate) const {
     const Index at = largest_harmonic(candidate.pair.series);
     if (std::abs(candidate.pair.exponent + Complex(0.0, static_cast<double>(at) * speed_)) <
         at_rest * speed_)
       candidate.mode.harmonic = static_cast<int>(at);
+  }
+
+  /// By its shape over a revolution.
+  void describe(const Eigen::MatrixXcd& shape, Candidate& candidate) {
+    Eigen::MatrixXd real(energy_.signals(), shape.cols());
+    Eigen::MatrixXd imaginary(energy_.signals(), shape.cols());
+    energy_.take(shape.real(), real);
+    energy_.take(shape.imag(), imaginary);
+    const int state = leading_state(shape);
+    describe_energy(
+        energy_.energies(real.data(), imaginary.data(), Eigen::VectorXcd::Ones(shape.cols())),
+        energy_.part_names(), state, candidate.mode, candidate.participation);
+    candidate.mode.state.reset();
+    if (state >= 0) candidate.mode.state = parts_.owners[static_cast<std::size_t>(state)];
   }
 
   /// Place in `parts_.owners` of the part with the largest state, relative to its scale, where this
@@ -574,6 +673,13 @@ class Analysis {
     for (Candidate& mode : modes_)  // round-off has split a double zero
       if (std::abs(mode.pair.exponent) < zero_exponent * speed_) mode.pair.exponent.imag(0.0);
     for (Candidate& mode : modes_) describe(mode);  // with the samples of all
+    if (options_.least_damped > 0)
+      std::erase_if(modes_, [this](const Candidate& mode) {  // neighbours of those in the region
+        const Complex exponent = exponent_of(mode);
+        const double slack = edge_slack * speed_;
+        return std::abs(exponent.imag()) > region_.high - margin() + slack ||
+               -exponent.real() > region_.decay + slack;
+      });
     std::vector<Candidate> chosen;
     std::vector<char> taken(modes_.size(), 0);
     for (std::size_t i = 0; i < modes_.size(); ++i) {
@@ -675,6 +781,7 @@ class Analysis {
       if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
     // The search and the refinement may differ in what lies at the edges, but no mode gets lost.
     const auto kept = std::count_if(set_.modes.begin(), set_.modes.end(), [&](const Mode& mode) {
+      if (options_.least_damped > 0) return true;
       const double modulus = std::abs(mode.exponent);
       return modulus < high && modulus > low - neighbourhood * speed_;
     });

@@ -87,6 +87,14 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
       floquet.modes);
   fields.number({"near_hz", "Hz", positive, "frequency next to which `modes` are searched"},
                 floquet.near_hz);
+  fields.integer(
+      Field("least_damped", "", integers(1, most_modes),
+            "number of modes that decay slowest or grow, to find by integration of a block of "
+            "columns, "
+            "and to refine by Hill's method, for large meshes. The other keys of "
+            "`floquet` then do not count")
+          .none_at_zero("all modes"),
+      floquet.least_damped);
 }
 
 void declare_static(Visitor& fields, analysis::StaticOptions& statics) {

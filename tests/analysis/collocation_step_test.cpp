@@ -19,14 +19,15 @@ using analysis::PeriodicSolution;
 namespace {
 
 /// Runge-Kutta coefficients of the Gauss methods in their usual form (Hairer, Norsett and Wanner,
-/// "Solving Ordinary Differential Equations I", section II.7).
+/// "Solving Ordinary Differential Equations I", section II.7), and of Radau IIA (Hairer and Wanner,
+/// part II, section IV.5).
 struct Tableau {
   std::vector<double> c;
   Eigen::MatrixXd a;
   Eigen::VectorXd b;
 };
 
-Tableau gauss_tableau(int order) {
+Tableau tableau_of(int order) {
   const double r3 = std::sqrt(3.0);
   const double r15 = std::sqrt(15.0);
   Tableau tableau;
@@ -39,6 +40,14 @@ Tableau gauss_tableau(int order) {
     tableau.a.resize(2, 2);
     tableau.a << 0.25, 0.25 - r3 / 6.0, 0.25 + r3 / 6.0, 0.25;
     tableau.b = Eigen::Vector2d(0.5, 0.5);
+  } else if (order == 5) {
+    const double r6 = std::sqrt(6.0);
+    tableau.c = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
+    tableau.a.resize(3, 3);
+    tableau.a << (88.0 - 7.0 * r6) / 360.0, (296.0 - 169.0 * r6) / 1800.0,
+        (-2.0 + 3.0 * r6) / 225.0, (296.0 + 169.0 * r6) / 1800.0, (88.0 + 7.0 * r6) / 360.0,
+        (-2.0 - 3.0 * r6) / 225.0, (16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0;
+    tableau.b = tableau.a.row(2);
   } else {
     tableau.c = {0.5 - r15 / 10.0, 0.5, 0.5 + r15 / 10.0};
     tableau.a.resize(3, 3);
@@ -70,7 +79,7 @@ Eigen::MatrixXd runge_kutta_step(const Tableau& tableau, const Matrix& A, double
   return end;
 }
 
-constexpr std::array<int, 3> orders{2, 4, 6};
+constexpr std::array<int, 4> orders{2, 4, 5, 6};
 
 /// (eta, eta_dot, xi) after a span, from the columns of the identity.
 Eigen::MatrixXd map_over(const system::PeriodicSystem& system, int order, int steps, double span) {
@@ -111,7 +120,7 @@ Eigen::MatrixXd exact_map(const Matrix& A, Eigen::Index n, double span) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(a_step_is_that_of_the_gauss_methods) {
+BOOST_AUTO_TEST_CASE(a_step_is_that_of_the_runge_kutta_methods) {
   const Mathieu system(2.5, 1.0);
   const PeriodicSolution solution = rest(system);
   const ConsistentSubspace subspace(system, solution);
@@ -122,7 +131,7 @@ BOOST_AUTO_TEST_CASE(a_step_is_that_of_the_gauss_methods) {
     for (const long k : {0L, 7L, 31L}) {
       Eigen::MatrixXd z = Eigen::MatrixXd::Random(2, 3);
       const Eigen::MatrixXd wanted =
-          runge_kutta_step(gauss_tableau(order), A, static_cast<double>(k) * dt, dt, z);
+          runge_kutta_step(tableau_of(order), A, static_cast<double>(k) * dt, dt, z);
       step.advance(k, z);
       BOOST_TEST((z - wanted).norm() < 1e-13 * wanted.norm());
     }

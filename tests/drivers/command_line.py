@@ -325,6 +325,31 @@ class Inputs(ProgramTest):
         self.refuse("floquet", case, *coarse, "--set", "floquet.modes=4",
                     "-hill_eps_smallest_magnitude", words=["largest eigenvalues"])
 
+    def test_slowest_decays(self):
+        case = SOURCE / "inputs/nrel5mw/land.yaml"
+        coarse = ("--set", "blades.elements=1", "--set", "blades.order=3", "--set",
+                  "tower.elements=1", "--set", "tower.order=3")
+        text = self.succeed("floquet", case, *coarse, "--set", "floquet.least_damped=5", "-o",
+                            "some.h5").stdout
+        self.assertIn("none is missing there", text)
+        self.assertIn("all of these modes are resolved", text)
+        self.succeed("floquet", case, *coarse, "-o", "all.h5")
+        exponents = {}
+        for name in ("some", "all"):
+            with h5py.File(self.folder / f"{name}.h5") as file:
+                exponents[name] = file["/floquet/exponents"][:] @ [1, 1j]
+                if name == "all":
+                    exponents[name] = exponents[name][file["/floquet/resolved"][:] == 1]
+                else:
+                    self.assertEqual(file["/floquet"].attrs["searched_is_counted"], 1)
+        slowest = sorted(exponents["all"], key=lambda exponent: -exponent.real)[:5]
+        for exponent in slowest:
+            self.assertLess(min(abs(exponents["some"] - exponent)), 1e-6 * abs(exponent))
+        self.refuse("floquet", case, *coarse, "--set", "floquet.least_damped=4", "--set",
+                    "floquet.modes=4", words=["floquet.least_damped", "exclude each other"])
+        self.refuse("floquet", case, *coarse, "--set", "floquet.least_damped=0",
+                    words=["floquet.least_damped"])
+
     def test_the_teetering_turbine_is_stable(self):
         case = SOURCE / "inputs/two_bladed/teetering.yaml"
         coarse = ("--set", "blades.elements=2", "--set", "tower.elements=2",

@@ -125,6 +125,37 @@ BOOST_AUTO_TEST_CASE(hill_agrees_with_integration) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(slowest_decays_agree_with_integration) {
+  for (const Example& example : examples()) {
+    // Its two exponents at zero are not resolved, also by shift and invert.
+    if (example.name == "lee2002/ratio10") continue;
+    std::string place = example.name;
+    for (const std::string& setting : example.settings) place += " " + setting;
+    BOOST_TEST_CONTEXT(place) {
+      Turning turbine(example.name, example.settings);
+      const analysis::Floquet found = turbine.by_least_damped(example.modes);
+      BOOST_TEST(found.harmonics > 0);
+      BOOST_TEST(static_cast<int>(found.set.modes.size()) >= std::min(example.modes, 5));
+      require_agreement(found.set, turbine.by_steps(example.steps), place, example.residual);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_slow_decay_of_high_frequency_is_found) {
+  // Without damping of the tower, its second modes decay slower than the second ones of the blades.
+  Turning turbine("nrel5mw/land", with(coarse, {"tower.damping=0"}));
+  const analysis::Floquet found = turbine.by_least_damped(12);
+  const analysis::ModeSet all = turbine.by_steps(180);
+  require_agreement(found.set, all, "no damping of the tower");
+  BOOST_REQUIRE(found.set.searched);
+  int faster = 0;  // of a lower frequency, but not among the slowest decays
+  for (const analysis::Mode& mode : all.modes)
+    if (mode.resolved && mode.exponent.imag() < found.set.searched->high &&
+        -mode.exponent.real() > 1.1 * found.set.searched->decay)
+      ++faster;
+  BOOST_TEST(faster > 0);
+}
+
 BOOST_AUTO_TEST_CASE(hill_finds_modes_next_to_a_frequency) {
   Turning turbine("nrel5mw/land", coarse);
   const analysis::Floquet found = turbine.by_hill(3, 2.0);

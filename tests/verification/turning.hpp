@@ -32,6 +32,12 @@ struct Turning {
     return modes(options);
   }
 
+  analysis::Floquet by_least_damped(int count) {
+    analysis::FloquetOptions options;
+    options.least_damped = count;
+    return modes(options);
+  }
+
   analysis::Observer observer;
   io::Case input;
   turbine::TurbineSystem system;

@@ -1,6 +1,7 @@
 // One step of the linearized periodic system by collocation (docs/theory.md, section 5.1).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,19 +15,22 @@
 
 namespace samara::analysis {
 
-/// Advances columns of small motions about a periodic solution with order 2 s in the length of a
-/// step; s = 1 is (19) of Lee, Hodges & Patil (2002). Unknowns that are carried from step to step
-/// are polynomials of degree s, others (reactions, auxiliaries) of degree s - 1. Rows with rates
-/// and definition rows hold at the s Gauss points of a step; constraint rows hold at its s + 1
-/// Lobatto points, the first of which is the end of the step before. At the end of each step
-/// impulses of the reactions make the velocities admissible.
+/// Advances columns of small motions about a periodic solution by polynomials with s stages. Even
+/// orders 2 s: Gauss points; s = 1 is (19) of Lee, Hodges & Patil (2002). No motion is damped by
+/// these steps, however fast it is. Odd order 2 s - 1: the points of Radau IIA; motions that are
+/// too fast for the step decay. Unknowns that are carried from step to step are polynomials of
+/// degree s, others (reactions, auxiliaries) of degree s - 1. Rows with rates and definition rows
+/// hold at the s points of a step. Constraint rows hold at its s + 1 Lobatto points, the first of
+/// which is the end of the step before, or at the Radau points. At the end of each step impulses of
+/// the reactions make the velocities admissible.
 class CollocationStep {
  public:
-  /// `order`: 2, 4 or 6; `step` [s].
+  /// `order`: 2, 4, 6 or 5; `step` [s].
   CollocationStep(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                   const ConsistentSubspace& subspace, int order, double step);
 
-  /// Advances columns of consistent states from the start of step k (t = k step) to its end.
+  /// Advances columns of consistent states from the start of step k (t = k step) to its end. The
+  /// factors of the last step are kept.
   /// @throws ConvergenceError from the linear solver
   void advance(long k, Eigen::MatrixXd& z);
 
@@ -56,6 +60,7 @@ class CollocationStep {
   void take_dynamics(int stage, PetscScalar* values);
   void take_constraints(int stage, const PetscScalar* stiffness, PetscScalar* values);
   void combine(const Eigen::VectorXd& weights, Eigen::MatrixXd& values) const;
+  void factor_impulses();
   void project();
   Equilibration scale(Mat matrix) const;
   /// Number of an unknown of a stage.
@@ -72,15 +77,15 @@ class CollocationStep {
   const ConsistentSubspace& subspace_;
   Index stages_;
   double step_;
-  Index block_ = 1;                 ///< rows of a node block of K
-  std::vector<Index> row_places_;   ///< of the first stage's rows
-  std::vector<Index> row_strides_;  ///< from a stage's row to the next one
-  std::vector<double> gauss_;       ///< points of a step of length 1
-  std::vector<double> lobatto_;     ///< without the start
-  Eigen::MatrixXd rates_;           ///< s x (s + 1): rate at a Gauss point by start and stages
-  Eigen::MatrixXd at_lobatto_;      ///< s x (s + 1): value at a Lobatto point by start and stages
-  Eigen::VectorXd at_end_;          ///< s + 1: value at the end by start and stages
-  Eigen::VectorXd rate_at_end_;     ///< s + 1
+  Index block_ = 1;                  ///< rows of a node block of K
+  std::vector<Index> row_places_;    ///< of the first stage's rows
+  std::vector<Index> row_strides_;   ///< from a stage's row to the next one
+  std::vector<double> points_;       ///< of the stages, in a step of length 1
+  std::vector<double> constrained_;  ///< points of constraint rows
+  Eigen::MatrixXd rates_;            ///< s x (s + 1): rate at a stage by start and stages
+  Eigen::MatrixXd at_constrained_;   ///< s x (s + 1): value at such a point by start and stages
+  Eigen::VectorXd at_end_;           ///< s + 1: value at the end by start and stages
+  Eigen::VectorXd rate_at_end_;      ///< s + 1
   petsc::Handle<Vec> z_, z_dot_;
   petsc::Handle<Mat> jacobian_;
   petsc::Handle<Mat> mass_;
@@ -94,6 +99,8 @@ class CollocationStep {
   Eigen::SparseMatrix<double, Eigen::RowMajor> right_of_;  ///< right-hand sides of all stages
   DirectSolver solver_;
   ImpulseEquations impulses_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rates_of_;  ///< right-hand sides of impulses_
+  std::optional<long> factored_;                           ///< the step that has factors
   double end_time_ = 0.0;
   Eigen::VectorXd carried_;  ///< 1 for unknowns that are carried, else 0
   Eigen::MatrixXd start_;    ///< the last columns

@@ -1,0 +1,109 @@
+// The slowest decays of a linearized periodic system by integration (docs/theory.md, section 5.11).
+#pragma once
+
+#include <complex>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/analysis/collocation_step.hpp"
+#include "samara/analysis/consistent_subspace.hpp"
+#include "samara/analysis/periodic_solution.hpp"
+#include "samara/petsc/handle.hpp"
+#include "samara/system/periodic_system.hpp"
+
+#include "hill_search.hpp"
+
+namespace samara::analysis {
+
+/// Finds the multipliers of largest modulus of the map over a sector without forming the map: steps
+/// of Radau IIA advance a block of columns. These steps damp motions that are too fast for them.
+/// The space begins with a block of random columns, larger than the number of multipliers that are
+/// searched: all of them have a part in each motion, also in several ones with equal exponents. The
+/// factors of all steps are kept where there is room; else a step is factored for each block.
+class LeastDampedSearch {
+ public:
+  /// `steps` a revolution, a multiple of the sectors.
+  LeastDampedSearch(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                    int steps);
+
+  /// Searches at least `count` multipliers; both of a pair count. Finds less where the others are
+  /// round-off beside the largest one.
+  /// @throws ConvergenceError from the linear solver and the dense eigenproblem (`floquet_`)
+  void find(int count);
+
+  /// Motions that were found, one of each conjugate pair.
+  std::size_t count() const { return exponents_.size(); }
+  /// Exponent of the steps, up to multiples of i Q Omega.
+  std::complex<double> exponent(std::size_t number) const { return exponents_[number]; }
+  /// Z(t) exp(-lambda t) of a motion, size x samples(), at equal distances over a revolution.
+  Eigen::MatrixXcd shape(std::size_t number) const;
+  /// The copy with the exponent lambda + i shift Omega, with some harmonics of its series.
+  HillPair pair(std::size_t number, const Eigen::MatrixXcd& shape, int shift, int harmonics) const;
+
+  /// All motions whose exponents of the steps decay slower than this were found [1/s].
+  double decay() const { return decay_; }
+  /// Instants of shape().
+  Eigen::Index samples() const { return samples_of_step * steps_ * sectors_; }
+
+  /// A part of the spectrum, |Im lambda| <= high [rad/s], -Re lambda <= decay [1/s], in which all
+  /// motions were found. `decay` is not less than the largest growth: without damping each growth
+  /// has a decay beside it.
+  struct Region {
+    double high = 0.0;
+    double decay = 0.0;
+    int motions = 0;  ///< number of the first ones that it was made for, at most the wanted number
+    /// Factor of the number of steps with which the wanted motions may be found; 1 where the
+    /// damping of the steps and their length are not the reason.
+    double more_steps = 1.0;
+
+    bool has(std::complex<double> exponent) const {
+      return std::abs(exponent) < std::numeric_limits<double>::infinity() &&
+             std::abs(exponent.imag()) <= high && -exponent.real() <= decay;
+    }
+  };
+  /// The part that has the first `wanted` motions, or as many as possible. A motion may contain
+  /// frequencies that differ by `margin` [rad/s]. `exponents` of the steps, in the harmonic of each
+  /// motion; on return those of the motions, or infinite where the steps are too long.
+  Region region_of(std::vector<std::complex<double>>& exponents, int wanted, double margin) const;
+  /// Whether all other multipliers are so small that they cannot be found.
+  bool is_exhausted() const { return is_exhausted_; }
+
+ private:
+  using Complex = std::complex<double>;
+
+  static constexpr long samples_of_step = 3;
+
+  double time_of(Eigen::Index sample) const;
+  Complex exact(Complex of_steps) const;
+  double decay_of_steps(Complex exponent) const;
+  void find_weights();
+  void make_shapes(const Eigen::MatrixXd& vectors);
+  /// P z, or its inverse.
+  template <class Matrix>
+  Matrix turned(const Matrix& z) const;
+  template <class Matrix>
+  Matrix turned_back(const Matrix& z) const;
+  Eigen::MatrixXd image_of(const Eigen::MatrixXd& columns);
+  CollocationStep& step(long k) { return *kept_[static_cast<std::size_t>(k) % kept_.size()]; }
+  struct Ritz;
+
+  const system::PeriodicSystem& system_;
+  int sectors_;
+  long steps_;  ///< in a sector
+  double dt_;
+  double speed_;
+  ConsistentSubspace subspace_;
+  std::vector<std::unique_ptr<CollocationStep>> kept_;  ///< all steps, or one for all
+  Eigen::ArrayXd weights_;  ///< 0 for unknowns that are not carried from step to step
+  Eigen::ArrayXd inverse_weights_;
+  std::vector<Complex> exponents_;
+  Eigen::MatrixXd
+      shapes_;  ///< size x steps of a sector by column, real and imaginary parts of each
+  double decay_ = 0.0;
+  bool is_exhausted_ = false;
+};
+
+}  // namespace samara::analysis
