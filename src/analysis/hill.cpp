@@ -89,8 +89,8 @@ constexpr int steps_of_decays = 36;
 constexpr double increase_of_all = 2.0;
 constexpr double usual_increase = 1.6;
 constexpr int most_attempts = 8;
-/// Relative to the rotor speed: a mode is beyond the edge of the region of slow decays.
-constexpr double edge_slack = 0.02;
+/// Relative to the rotor speed: distance of exponents of a motion by the steps and by refinement.
+constexpr double same_motion = 0.1;
 constexpr int most_steps_of_decays = 200;
 
 /// An eigenpair with its identification.
@@ -222,7 +222,10 @@ class Analysis {
     region_ = {0.0, region.high + margin(), region.decay, false, {}};
     std::vector<Candidate> inside;
     for (std::size_t i = 0; i < found_.size(); ++i)
-      if (region.has(exponents[i])) inside.push_back(std::move(found_[i]));
+      if (region.has(exponents[i])) {
+        sought_.push_back(exponents[i] + found_[i].pair.exponent - exponent_of(found_[i]));
+        inside.push_back(std::move(found_[i]));
+      }
     found_ = std::move(inside);
     expected_ = static_cast<int>(found_.size());
   }
@@ -232,7 +235,7 @@ class Analysis {
     const Eigen::MatrixXcd shape = search.shape(number);
     Candidate candidate{search.pair(number, shape, 0, sectors_), {}, {}};
     describe(shape, candidate);
-    settle_rest(candidate);
+    settle_rest(candidate, at_rest);
     int copies = (std::abs(candidate.mode.harmonic) + (sectors_ - 1) / 2) / sectors_;
     if (candidate.mode.harmonic < 0) copies = -copies;
     const int shift = copies * sectors_;
@@ -599,16 +602,17 @@ class Analysis {
     return series.transpose() * waves;
   }
 
-  void describe(Candidate& candidate) {
+  /// `rest`, relative to the rotor speed: an exponent below it is that of a displacement.
+  void describe(Candidate& candidate, double rest = at_rest) {
     describe(shape_of(candidate.pair.series), candidate);
-    settle_rest(candidate);
+    settle_rest(candidate, rest);
   }
 
   /// A displacement at rest has no energy: its harmonic is that of the positions.
-  void settle_rest(Candidate& candidate) const {
+  void settle_rest(Candidate& candidate, double rest) const {
     const Index at = largest_harmonic(candidate.pair.series);
     if (std::abs(candidate.pair.exponent + Complex(0.0, static_cast<double>(at) * speed_)) <
-        at_rest * speed_)
+        rest * speed_)
       candidate.mode.harmonic = static_cast<int>(at);
   }
 
@@ -672,13 +676,13 @@ class Analysis {
     });
     for (Candidate& mode : modes_)  // round-off has split a double zero
       if (std::abs(mode.pair.exponent) < zero_exponent * speed_) mode.pair.exponent.imag(0.0);
-    for (Candidate& mode : modes_) describe(mode);  // with the samples of all
-    if (options_.least_damped > 0)
-      std::erase_if(modes_, [this](const Candidate& mode) {  // neighbours of those in the region
-        const Complex exponent = exponent_of(mode);
-        const double slack = edge_slack * speed_;
-        return std::abs(exponent.imag()) > region_.high - margin() + slack ||
-               -exponent.real() > region_.decay + slack;
+    for (Candidate& mode : modes_) describe(mode, zero_exponent);  // with the samples of all
+    if (options_.least_damped > 0)  // neighbours of those that the search has found
+      std::erase_if(modes_, [this](const Candidate& mode) {
+        const Complex exponent = principal(mode.pair.exponent);
+        return std::none_of(sought_.begin(), sought_.end(), [&](Complex other) {
+          return std::abs(exponent - principal(other)) < same_motion * speed_;
+        });
       });
     std::vector<Candidate> chosen;
     std::vector<char> taken(modes_.size(), 0);
@@ -809,6 +813,7 @@ class Analysis {
   HillRegion region_;
   bool region_is_counted_ = false;
   int expected_ = 0;                ///< modes, by the search, not next to the edge of the region
+  std::vector<Complex> sought_;     ///< exponents of the slowest decays
   std::vector<Complex> all_found_;  ///< exponents by the search, also outside the region
   ModeSet set_;
 };

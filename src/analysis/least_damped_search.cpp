@@ -68,6 +68,7 @@ Eigen::MatrixXd random_columns(Index rows, Index columns) {
 /// An orthonormal basis of the columns, those aside that are less than `least` away from the
 /// others.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least) {
+  if (columns.cols() == 0) return columns;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
   const Eigen::ArrayXd pivots = qr.matrixR().diagonal().array().abs();
   const Index rank = std::ranges::count_if(pivots, [&](double pivot) { return pivot > least; });
@@ -76,7 +77,7 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least) {
 
 /// An orthonormal basis of what the columns add to an orthonormal one.
 Eigen::MatrixXd orthonormal_to(const Eigen::MatrixXd& basis, Eigen::MatrixXd columns) {
-  double least = least_column * columns.colwise().norm().maxCoeff();
+  double least = least_column * columns.norm();
   for (int repeat = 0; repeat < 2; ++repeat) {
     columns -= multiply(basis, multiply(basis.transpose(), columns));
     columns = orthonormal(columns, least);
