@@ -150,10 +150,14 @@ std::string rest_words(const StabilityAssessment& result) {
 
 std::string hertz(double rate) { return general(rate / (2.0 * std::numbers::pi), 3) + " Hz"; }
 
-/// Whether the part of the spectrum that was searched is one of slow decays, not of low
-/// frequencies.
 bool is_of_slow_decays(const ModeSet& set) {
-  return set.searched && set.searched->decay < 0.5 * set.searched->high;
+  return set.searched && set.searched->slowest_decays > 0;
+}
+
+/// Hint where a search has not led to a verdict.
+std::string other_search(const ModeSet& set) {
+  return is_of_slow_decays(set) ? "all modes, without floquet.least_damped"
+                                : "another floquet.modes, or all modes without it";
 }
 
 /// Frequencies below which all modes are resolved, and below which their errors are small.
@@ -179,7 +183,13 @@ std::string searched_words(const ModeSet& set) {
   return "searched: " +
          (region.low > 0.0 ? "from " + hertz(region.low) + " to " : std::string("up to ")) +
          hertz(region.high) + ", growth and decay up to " + general(region.decay, 3) + " 1/s" +
-         (region.is_counted ? "; none is missing there" : "") + "; other modes are not known";
+         (region.is_counted ? "; none is missing there" : "") + "; other modes are not known" +
+         (static_cast<std::size_t>(region.slowest_decays) > set.modes.size()
+              ? "\n" + std::to_string(region.slowest_decays) +
+                    " modes were asked for; the others decay too fast, or are too fast for the "
+                    "steps "
+                    "of the search"
+              : "");
 }
 
 std::string deflated_words(const ModeSet& set) {
@@ -209,13 +219,11 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   switch (result.doubt) {
     case Doubt::unresolved:
       return "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
-             (set.searched
-                  ? "; hint: fewer floquet.modes or floquet.least_damped, or all modes without it"
-                  : (is_periodic(set) ? "; hint: more floquet.steps" : ""));
+             (set.searched ? "; hint: " + other_search(set)
+                           : (is_periodic(set) ? "; hint: more floquet.steps" : ""));
     case Doubt::incomplete:
-      return "no verdict: modes may be missing in the range that was searched; hint: another "
-             "number "
-             "in floquet.modes or floquet.least_damped, or all modes without it";
+      return "no verdict: modes may be missing in the range that was searched; hint: " +
+             other_search(set);
     case Doubt::growing_alone:
       return "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; other modes: " + rest);
     default:

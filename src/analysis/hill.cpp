@@ -82,16 +82,17 @@ constexpr double least_gap = 0.01;
 /// Relative to the rotor speed: an exponent below this, in the search, is that of a displacement.
 constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
-/// Steps a revolution of the search for the slowest decays; the factor of their number where all
-/// multipliers were found, but not enough; that of the number of multipliers; and the number of
-/// attempts.
+/// Steps a revolution and multipliers of the search for the slowest decays; the factor of steps
+/// where all multipliers were found, but not enough, and that of multipliers; the largest number of
+/// steps, and that of attempts.
 constexpr int steps_of_decays = 36;
+constexpr int least_multipliers = 32;
 constexpr double increase_of_all = 2.0;
 constexpr double usual_increase = 1.6;
+constexpr int most_steps_of_decays = 240;
 constexpr int most_attempts = 8;
 /// Relative to the rotor speed: distance of exponents of a motion by the steps and by refinement.
-constexpr double same_motion = 0.1;
-constexpr int most_steps_of_decays = 200;
+constexpr double same_motion = 0.2;
 
 /// An eigenpair with its identification.
 struct Candidate {
@@ -147,7 +148,6 @@ class Analysis {
     const int harmonics = sectors > 2 ? sectors / 2 : search_harmonics;
     HillPencil pencil(system_, solution_, harmonics);
     if (!pencil.is_solvable()) return false;
-    HillSearch search(pencil);
     samples_ = std::max(shape_samples, 4 * harmonics + 2);
     sectors_ = pencil.sectors();
     nearest_ = sectors_ / 2;
@@ -155,6 +155,7 @@ class Analysis {
       search_decays();
       return true;
     }
+    HillSearch search(pencil);
     if (options_.near_hz)
       search_near(search, 2.0 * std::numbers::pi * *options_.near_hz);
     else
@@ -177,8 +178,9 @@ class Analysis {
     const auto whole = [this](double steps) {
       return static_cast<int>(std::ceil(steps / sectors_)) * sectors_;
     };
+    const int wanted = options_.least_damped;
     int steps = whole(steps_of_decays);
-    int count = 2 * (options_.least_damped + margin_pairs);
+    int count = std::max(least_multipliers, 2 * (std::min(wanted, most_pairs) + margin_pairs));
     int most = 0;
     std::optional<LeastDampedSearch> search;
     for (int attempt = 1;; ++attempt) {
@@ -190,24 +192,24 @@ class Analysis {
         found_.push_back(centred_motion(*search, i));
         exponents.push_back(exponent_of(found_.back()));
       }
-      const LeastDampedSearch::Region region =
-          search->region_of(exponents, options_.least_damped, speed_);
+      const LeastDampedSearch::Region region = search->region_of(exponents, wanted, speed_);
+      const bool has_all = region.certain >= wanted;
+      double more = region.more_steps;
       // More steps do not help where they have not found more.
+      if (!has_all && more == 1.0 && search->is_exhausted() && region.certain > most)
+        more = increase_of_all;
+      more = std::min(more, static_cast<double>(most_steps_of_decays) / steps);
+      most = std::max(most, region.certain);
       const bool is_last =
-          attempt == most_attempts ||
-          (search->is_exhausted() && region.more_steps == 1.0 && region.motions <= most);
-      if (region.motions == options_.least_damped || (region.motions > 0 && is_last)) {
-        take_decays(region, exponents);
-        region_is_counted_ = true;
-        return;
-      }
-      if (is_last)
+          attempt == most_attempts || (more <= 1.0 && (has_all || search->is_exhausted()));
+      if (is_last && region.motions.empty())
         throw ConvergenceError(
             "floquet.least_damped: no motion decays slowly enough to be told from others; hint: "
             "floquet.modes");
-      most = std::max(most, region.motions);
-      const double more =
-          region.more_steps == 1.0 && search->is_exhausted() ? increase_of_all : region.more_steps;
+      if (is_last) {
+        take_decays(region);
+        return;
+      }
       if (more > 1.0) {
         steps = whole(steps * more);
         search.reset();
@@ -217,17 +219,44 @@ class Analysis {
     }
   }
 
-  /// Keeps the motions in a region.
-  void take_decays(const LeastDampedSearch::Region& region, const std::vector<Complex>& exponents) {
+  /// Keeps the motions of a region.
+  void take_decays(const LeastDampedSearch::Region& region) {
     region_ = {0.0, region.high + margin(), region.decay, false, {}};
     std::vector<Candidate> inside;
-    for (std::size_t i = 0; i < found_.size(); ++i)
-      if (region.has(exponents[i])) {
-        sought_.push_back(exponents[i] + found_[i].pair.exponent - exponent_of(found_[i]));
-        inside.push_back(std::move(found_[i]));
-      }
+    for (const std::size_t motion : region.motions) {
+      sought_.push_back(found_[motion].pair.exponent);
+      inside.push_back(std::move(found_[motion]));
+    }
     found_ = std::move(inside);
     expected_ = static_cast<int>(found_.size());
+  }
+
+  /// Leaves the wanted modes of slowest decay, and all others that do not decay faster than these:
+  /// the exponents of the steps have errors. The range becomes theirs.
+  void leave_slowest_decays() {
+    // Neighbours of those that the search has found.
+    std::erase_if(modes_, [this](const Candidate& mode) {
+      const Complex exponent = principal(mode.pair.exponent);
+      return std::none_of(sought_.begin(), sought_.end(), [&](Complex other) {
+        return std::abs(exponent - principal(other)) < same_motion * speed_;
+      });
+    });
+    region_is_counted_ = static_cast<int>(modes_.size()) >= expected_;
+    std::vector<double> decays;
+    double growth = 0.0;
+    for (const Candidate& mode : modes_) {
+      decays.push_back(-mode.pair.exponent.real());
+      growth = std::max(growth, mode.pair.exponent.real());
+    }
+    std::ranges::sort(decays);
+    const std::size_t last =
+        std::min(decays.size(), static_cast<std::size_t>(options_.least_damped));
+    if (last > 0)
+      region_.decay = std::min(region_.decay,
+                               std::max(decays[last - 1], growth) + 2.0 * zero_exponent * speed_);
+    std::erase_if(modes_, [this](const Candidate& mode) {
+      return -mode.pair.exponent.real() > region_.decay;
+    });
   }
 
   /// That of the copies of a motion, and of its conjugate, that is next to its own harmonic.
@@ -677,13 +706,6 @@ class Analysis {
     for (Candidate& mode : modes_)  // round-off has split a double zero
       if (std::abs(mode.pair.exponent) < zero_exponent * speed_) mode.pair.exponent.imag(0.0);
     for (Candidate& mode : modes_) describe(mode, zero_exponent);  // with the samples of all
-    if (options_.least_damped > 0)  // neighbours of those that the search has found
-      std::erase_if(modes_, [this](const Candidate& mode) {
-        const Complex exponent = principal(mode.pair.exponent);
-        return std::none_of(sought_.begin(), sought_.end(), [&](Complex other) {
-          return std::abs(exponent - principal(other)) < same_motion * speed_;
-        });
-      });
     std::vector<Candidate> chosen;
     std::vector<char> taken(modes_.size(), 0);
     for (std::size_t i = 0; i < modes_.size(); ++i) {
@@ -712,6 +734,7 @@ class Analysis {
       for (const std::size_t j : *best) chosen.push_back(std::move(modes_[j]));
     }
     modes_ = std::move(chosen);
+    if (options_.least_damped > 0) leave_slowest_decays();
   }
 
   bool is_same(Complex a, Complex b) const { return std::abs(a - b) < same_exponent * speed_; }
@@ -785,12 +808,13 @@ class Analysis {
       if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
     // The search and the refinement may differ in what lies at the edges, but no mode gets lost.
     const auto kept = std::count_if(set_.modes.begin(), set_.modes.end(), [&](const Mode& mode) {
-      if (options_.least_damped > 0) return true;
       const double modulus = std::abs(mode.exponent);
       return modulus < high && modulus > low - neighbourhood * speed_;
     });
     set_.searched =
-        SearchedRegion{low, high, region_.decay, region_is_counted_ && kept >= expected_};
+        SearchedRegion{low, high, region_.decay,
+                       region_is_counted_ && (kept >= expected_ || options_.least_damped > 0),
+                       options_.least_damped};
     for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;
     Floquet result;
     result.harmonics = harmonics_;

@@ -36,9 +36,10 @@ constexpr double bytes_of_unknown = 5000.0;
 constexpr double most_bytes = 2.0 * 1024 * 1024 * 1024;
 /// Multipliers below this are round-off beside the largest ones.
 constexpr double least_multiplier = 1e-6;
-/// Of the edges of a region, relative, and frequencies at which the damping of the steps is taken.
-constexpr double region_slack = 1.005;
-constexpr int region_points = 100;
+/// Frequencies at which the damping of the steps is taken.
+constexpr int region_points = 200;
+/// Error of the inverted damping of a step, relative to this damping.
+constexpr double error_of_damping = 0.2;
 /// Largest modulus of an exponent times the step, of a motion that the steps resolve.
 constexpr double most_radians = 2.0;
 /// Factors of the number of steps from one attempt to the next.
@@ -81,8 +82,8 @@ Eigen::MatrixXd orthonormal_to(const Eigen::MatrixXd& basis, Eigen::MatrixXd col
   for (int repeat = 0; repeat < 2; ++repeat) {
     columns -= multiply(basis, multiply(basis.transpose(), columns));
     columns = orthonormal(columns, least);
-    least =
-        0.5;  // the columns have the length 1 now, and are orthogonal to round-off / least_column
+    // The columns have the length 1 now; what they have of the basis is round-off / least_column.
+    least = 0.5;
   }
   return columns;
 }
@@ -263,7 +264,7 @@ void LeastDampedSearch::find(int count) {
     }
     next = orthonormal_to(basis, multiply(images, leading));
   }
-  is_exhausted_ = ritz.is_exhausted;
+  is_exhausted_ = ritz.is_exhausted || next.cols() == 0;
   exponents_.clear();
   if (ritz.converged == 0)
     throw ConvergenceError("floquet.least_damped: no multiplier converges; hint: floquet.modes");
@@ -285,10 +286,7 @@ void LeastDampedSearch::find(int count) {
 /// Motions at equal distances over a sector. Several instants of a step tell fast motions from slow
 /// ones, which the ends of steps do not.
 void LeastDampedSearch::make_shapes(const Eigen::MatrixXd& vectors) {
-  const Eigen::ArrayXd inverse =
-      (weights_.array() > 0.0)
-          .select(1.0 / weights_.array(), Eigen::ArrayXd::Zero(weights_.size()));
-  Eigen::MatrixXd z = vectors.array().colwise() * inverse;
+  Eigen::MatrixXd z = vectors.array().colwise() * inverse_weights_;
   const Index n = z.rows();
   shapes_.resize(n * steps_ * samples_of_step, z.cols());
   Eigen::MatrixXd values;
@@ -354,38 +352,76 @@ double LeastDampedSearch::decay_of_steps(Complex exponent) const {
   return -std::log(std::abs(step_factor(exponent * dt_).first)) / dt_;
 }
 
-LeastDampedSearch::Region LeastDampedSearch::region_of(std::vector<Complex>& exponents, int wanted,
-                                                       double margin) const {
-  Region region;
-  Region next;
-  int taken = 0;
-  double longest = 0.0;
-  for (Complex& exponent : exponents) {
-    const double radians = std::abs(exponent) * dt_;
-    const Complex of_motion = exact(exponent);
-    const bool is_resolved = radians < most_radians && std::abs(of_motion) * dt_ < most_radians;
-    exponent = is_resolved ? of_motion : std::numeric_limits<double>::infinity();
-    if (taken == wanted) continue;
-    ++taken;
-    longest = std::max(longest, radians);
-    if (longest >= most_radians || !is_resolved || region.more_steps > 1.0) continue;
-    ++next.motions;
-    next.decay = std::max(
-        next.decay, region_slack * std::max(std::abs(exponent.real()), zero_exponent * speed_));
-    next.high = std::max(next.high, region_slack * std::abs(exponent));
-    double decay = 0.0;
-    for (int i = 0; i <= region_points; ++i)
-      decay =
-          std::max(decay, decay_of_steps({-next.decay, (next.high + margin) * i / region_points}));
-    if (decay <= decay_)
-      region = next;
-    else if (decay - next.decay > largest_damping * next.decay)
-      region.more_steps = usual_increase;
+/// Largest frequency [rad/s] up to which all motions with a decay of at most `decay` were found.
+double LeastDampedSearch::highest_frequency(double decay, double margin) const {
+  const double top = most_radians / dt_;
+  double found = 0.0;
+  for (int i = 0; i <= region_points; ++i) {
+    const double frequency = top * i / region_points;
+    if (decay_of_steps({-decay, frequency}) > decay_) break;
+    found = frequency;
   }
-  if (longest >= most_radians)
-    region.more_steps =
-        std::clamp(step_margin * longest / most_radians, least_increase, most_increase);
-  if (region.motions == wanted) region.more_steps = 1.0;
+  return found - margin;
+}
+
+LeastDampedSearch::Region LeastDampedSearch::region_of(const std::vector<Complex>& exponents,
+                                                       int wanted, double margin) const {
+  struct Estimate {
+    std::size_t motion;
+    Complex exponent;
+    double error;    ///< of the decay
+    double radians;  ///< modulus times the step
+  };
+  std::vector<Estimate> estimates;
+  const double of_multiplier = tolerance * sectors_ / system_.period();
+  for (std::size_t i = 0; i < exponents.size(); ++i) {
+    const Complex exponent = exact(exponents[i]);
+    if (!std::isfinite(exponent.real())) continue;
+    const double damping = std::abs(exponents[i].real() - exponent.real());
+    estimates.push_back({i, exponent, error_of_damping * damping + of_multiplier,
+                         std::max(std::abs(exponent), std::abs(exponents[i])) * dt_});
+  }
+  std::ranges::stable_sort(estimates, {}, [](const Estimate& one) { return -one.exponent.real(); });
+  Region region;
+  double slowest = 0.0;  // decay of the last one
+  double error = 0.0;
+  bool is_too_fast = false;  // for the steps
+  int taken = 0;
+  for (const Estimate& last : estimates) {
+    if (last.radians > most_radians) continue;
+    ++taken;
+    slowest = std::max(slowest, std::abs(last.exponent.real()));
+    error = std::max(error, last.error);
+    Region next;
+    next.decay = slowest + 2.0 * error + zero_exponent * speed_;
+    next.high = highest_frequency(next.decay + error, margin);
+    for (const Estimate& one : estimates) {
+      if (std::abs(one.exponent.imag()) > next.high) continue;
+      if (-one.exponent.real() <= next.decay + one.error) next.motions.push_back(one.motion);
+      if (-one.exponent.real() <= next.decay - one.error) ++next.certain;
+    }
+    if (next.certain > region.certain) region = next;
+    const double damping = decay_of_steps({-next.decay, most_radians / dt_}) - next.decay;
+    is_too_fast = next.high < most_radians / dt_ - margin && damping > largest_damping * decay_;
+    if (region.certain >= wanted) break;
+  }
+  const bool is_complete = region.certain >= wanted;
+  // Motions beyond the range that may be wanted. Without damping all of them may.
+  const bool are_told_apart = slowest > error;
+  double longest = 0.0;
+  for (const Estimate& one : estimates) {
+    const double rate = one.exponent.real();
+    const bool may_be_slower =
+        (are_told_apart && -rate - one.error < slowest) || rate > one.error + error;
+    if (std::abs(one.exponent.imag()) > region.high &&
+        (is_complete ? may_be_slower : taken < wanted))
+      longest = std::max(longest, one.radians);
+  }
+  if (longest > 0.0)
+    region.more_steps = std::clamp(step_margin * (longest + margin * dt_) / most_radians,
+                                   least_increase, most_increase);
+  else if (!is_complete && is_too_fast)
+    region.more_steps = usual_increase;
   return region;
 }
 

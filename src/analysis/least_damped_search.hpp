@@ -49,25 +49,21 @@ class LeastDampedSearch {
   Eigen::Index samples() const { return samples_of_step * steps_ * sectors_; }
 
   /// A part of the spectrum, |Im lambda| <= high [rad/s], -Re lambda <= decay [1/s], in which all
-  /// motions were found. `decay` is not less than the largest growth: without damping each growth
-  /// has a decay beside it.
+  /// motions were found, except that the exponents of the steps have errors.
   struct Region {
     double high = 0.0;
-    double decay = 0.0;
-    int motions = 0;  ///< number of the first ones that it was made for, at most the wanted number
-    /// Factor of the number of steps with which the wanted motions may be found; 1 where the
-    /// damping of the steps and their length are not the reason.
+    double decay = 0.0;  ///< not less than a growth: without damping it has a decay beside it
+    std::vector<std::size_t> motions;  ///< those that may be in it, with the error of each
+    int certain = 0;                   ///< number of those that are in it, also with their errors
+    /// Factor of the number of steps, where more may find the wanted number, or slower decays of
+    /// higher frequency; else 1.
     double more_steps = 1.0;
-
-    bool has(std::complex<double> exponent) const {
-      return std::abs(exponent) < std::numeric_limits<double>::infinity() &&
-             std::abs(exponent.imag()) <= high && -exponent.real() <= decay;
-    }
   };
-  /// The part that has the first `wanted` motions, or as many as possible. A motion may contain
-  /// frequencies that differ by `margin` [rad/s]. `exponents` of the steps, in the harmonic of each
-  /// motion; on return those of the motions, or infinite where the steps are too long.
-  Region region_of(std::vector<std::complex<double>>& exponents, int wanted, double margin) const;
+  /// The part with at least the `wanted` motions of slowest decay, or with as many as possible.
+  /// `exponents` of the steps, in the harmonic of each motion. A motion may contain frequencies
+  /// that differ by `margin` [rad/s].
+  Region region_of(const std::vector<std::complex<double>>& exponents, int wanted,
+                   double margin) const;
   /// Whether all other multipliers are so small that they cannot be found.
   bool is_exhausted() const { return is_exhausted_; }
 
@@ -79,6 +75,7 @@ class LeastDampedSearch {
   double time_of(Eigen::Index sample) const;
   Complex exact(Complex of_steps) const;
   double decay_of_steps(Complex exponent) const;
+  double highest_frequency(double decay, double margin) const;
   void find_weights();
   void make_shapes(const Eigen::MatrixXd& vectors);
   /// P z, or its inverse.

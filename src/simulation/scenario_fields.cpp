@@ -89,10 +89,10 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
                 floquet.near_hz);
   fields.integer(
       Field("least_damped", "", integers(1, most_modes),
-            "number of modes that decay slowest or grow, to find by integration of a block of "
-            "columns, "
-            "and to refine by Hill's method, for large meshes. The other keys of "
-            "`floquet` then do not count")
+            "number of modes that decay slowest or grow, in a range of frequencies that the output "
+            "states, for large meshes. They are found by integration of a block of columns and "
+            "refined by Hill's method. `steps`, `period`, `time_order` and `accuracy` then do not "
+            "count")
           .none_at_zero("all modes"),
       floquet.least_damped);
 }

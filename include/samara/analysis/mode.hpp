@@ -67,8 +67,10 @@ struct SearchedRegion {
   double low = 0.0;
   double high = 0.0;
   double decay = 0.0;
-  /// Whether the number of modes in it was counted without finding them, and is right.
+  /// Whether the number of modes in it is known, and is that of the modes.
   bool is_counted = false;
+  /// Number of modes of slowest decay that were asked for; 0: slowest modes.
+  int slowest_decays = 0;
 };
 
 struct ModeSet {
