@@ -383,14 +383,16 @@ LeastDampedSearch::Region LeastDampedSearch::region_of(const std::vector<Complex
   }
   std::ranges::stable_sort(estimates, {}, [](const Estimate& one) { return -one.exponent.real(); });
   Region region;
-  double slowest = 0.0;  // decay of the last one
+  double slowest = 0.0;  // decay of the last one, or the largest growth
+  double last_decay = 0.0;
   double error = 0.0;
   bool is_too_fast = false;  // for the steps
   int taken = 0;
   for (const Estimate& last : estimates) {
     if (last.radians > most_radians) continue;
     ++taken;
-    slowest = std::max(slowest, std::abs(last.exponent.real()));
+    last_decay = -last.exponent.real();
+    slowest = std::max(slowest, std::abs(last_decay));
     error = std::max(error, last.error);
     Region next;
     next.decay = slowest + 2.0 * error + zero_exponent * speed_;
@@ -407,12 +409,12 @@ LeastDampedSearch::Region LeastDampedSearch::region_of(const std::vector<Complex
   }
   const bool is_complete = region.certain >= wanted;
   // Motions beyond the range that may be wanted. Without damping all of them may.
-  const bool are_told_apart = slowest > error;
+  const bool are_told_apart = last_decay > error;
   double longest = 0.0;
   for (const Estimate& one : estimates) {
     const double rate = one.exponent.real();
     const bool may_be_slower =
-        (are_told_apart && -rate - one.error < slowest) || rate > one.error + error;
+        (are_told_apart && -rate - one.error < last_decay) || rate > one.error + error;
     if (std::abs(one.exponent.imag()) > region.high &&
         (is_complete ? may_be_slower : taken < wanted))
       longest = std::max(longest, one.radians);
