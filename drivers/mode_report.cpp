@@ -187,8 +187,7 @@ std::string searched_words(const ModeSet& set) {
          (static_cast<std::size_t>(region.slowest_decays) > set.modes.size()
               ? "\n" + std::to_string(region.slowest_decays) +
                     " modes were asked for; the others decay too fast, or are too fast for the "
-                    "steps "
-                    "of the search"
+                    "steps of the search"
               : "");
 }
 

@@ -20,6 +20,7 @@
 
 #include "energy_coordinates.hpp"
 #include "ranks.hpp"
+#include "sector_motion.hpp"
 #include "signal_series.hpp"
 #include "state_parts.hpp"
 
@@ -312,13 +313,7 @@ class Analysis {
   /// Weights of the initial states in the given modes: real part and imaginary part of one mode
   /// after the other.
   Eigen::MatrixXd weights_of(const std::vector<Eigen::Index>& modes) const {
-    Eigen::MatrixXd weights(states_, 2 * static_cast<Eigen::Index>(modes.size()));
-    Eigen::Index column = 0;
-    for (const Eigen::Index mode : modes) {
-      weights.col(column++) = vectors_.col(mode).real();
-      weights.col(column++) = vectors_.col(mode).imag();
-    }
-    return weights;
+    return real_and_imaginary(vectors_(Eigen::all, modes));
   }
 
   /// The same of the states at the first step of this rank.
@@ -426,53 +421,6 @@ class Analysis {
     }
   }
 
-  /// P^-1 on chosen unknowns: (P y)_i = sign_i y_source(i).
-  Eigen::MatrixXcd turned_back(const Eigen::MatrixXcd& values,
-                               const std::vector<PetscInt>& unknowns) const {
-    const system::RotorSymmetry& symmetry = system_.symmetry();
-    Eigen::MatrixXcd result(values.rows(), values.cols());
-    for (std::size_t i = 0; i < unknowns.size(); ++i) {
-      const auto unknown = static_cast<std::size_t>(unknowns[i]);
-      const auto source =
-          std::lower_bound(unknowns.begin(), unknowns.end(), symmetry.source[unknown]) -
-          unknowns.begin();
-      result.row(source) = symmetry.sign[unknown] * values.row(static_cast<Eigen::Index>(i));
-    }
-    return result;
-  }
-
-  /// A mode over a sector, at every `stride`-th step.
-  struct Sector {
-    const double* values;  ///< all real parts, then all imaginary parts
-    Eigen::Index unknowns;
-    Eigen::Index columns;
-    long stride;
-  };
-
-  /// Z(t) exp(-lambda t) over the whole period from its first sector, where z(t + T/Q) =
-  /// mu P^-1 z(t) and exp(-lambda T/Q) mu = 1.
-  Eigen::MatrixXcd whole_period(const Sector& sector, Complex exponent,
-                                const std::vector<PetscInt>& unknowns) const {
-    const Eigen::Index columns = sector.columns;
-    const Eigen::Map<const Eigen::MatrixXd> real(sector.values, sector.unknowns, columns);
-    const Eigen::Map<const Eigen::MatrixXd> imaginary(sector.values + real.size(), sector.unknowns,
-                                                      columns);
-    Eigen::MatrixXcd part(sector.unknowns, columns);
-    for (Eigen::Index k = 0; k < columns; ++k) {
-      const double t = (static_cast<double>(k * sector.stride) + offset_) * dt_;
-      const Complex factor = std::exp(-exponent * t);
-      part.col(k).real() = factor.real() * real.col(k) - factor.imag() * imaginary.col(k);
-      part.col(k).imag() = factor.imag() * real.col(k) + factor.real() * imaginary.col(k);
-    }
-    if (sectors_ == 1) return part;
-    Eigen::MatrixXcd whole(sector.unknowns, columns * sectors_);
-    for (int q = 0; q < sectors_; ++q) {
-      whole.middleCols(q * columns, columns) = part;
-      if (q + 1 < sectors_) part = turned_back(part, unknowns);
-    }
-    return whole;
-  }
-
   /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega), velocities and states, at the middle
   /// of the first step and one sector later.
   double closure(const Eigen::Ref<const Eigen::VectorXcd>& begin,
@@ -553,13 +501,11 @@ class Analysis {
     Eigen::MatrixXd values = shapes_of(modes, instants);
     ranks_.sum_on(0, values);
     if (ranks_.rank != 0) return;
-    std::vector<PetscInt> all(static_cast<std::size_t>(n));
-    std::iota(all.begin(), all.end(), 0);
     for (std::size_t i = 0; i < modes.size(); ++i) {
       const auto m = static_cast<std::size_t>(modes[i]);
-      const Sector sector{values.col(2 * static_cast<Eigen::Index>(i)).data(), n, instants,
-                          stride_};
-      set_.shapes[m] = whole_period(sector, exponents_[m], all);
+      const SectorMotion motion{values.col(2 * static_cast<Eigen::Index>(i)).data(), n, instants,
+                                offset_ * dt_, static_cast<double>(stride_) * dt_};
+      set_.shapes[m] = shape_over_period(system_.symmetry(), sectors_, motion, exponents_[m]);
     }
   }
 
@@ -861,9 +807,7 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   const auto run = [&](int steps) {
     return Analysis(system, solution, sectors, steps, options, Ranks(comm), observer).run();
   };
-  const auto whole = [sectors](double steps) {
-    return static_cast<int>(std::ceil(steps / sectors)) * sectors;
-  };
+  const auto whole = [sectors](double steps) { return whole_sectors(steps, sectors); };
   if (options.steps > 0) {
     const int steps = whole(options.steps);
     if (steps != options.steps)

@@ -20,6 +20,7 @@
 #include "hill_residual.hpp"
 #include "hill_search.hpp"
 #include "least_damped_search.hpp"
+#include "sector_motion.hpp"
 #include "state_parts.hpp"
 
 namespace samara::analysis {
@@ -114,6 +115,10 @@ struct Group {
   double residual() const { return *std::max_element(residuals.begin(), residuals.end()); }
 };
 
+HillPair conjugate_of(const HillPair& pair) {
+  return {std::conj(pair.exponent), pair.series.colwise().reverse().conjugate()};
+}
+
 class Analysis {
  public:
   Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution,
@@ -175,11 +180,8 @@ class Analysis {
 
   /// Finds the motions of slowest decay by integration, with as many steps as these need.
   void search_decays() {
-    const auto whole = [this](double steps) {
-      return static_cast<int>(std::ceil(steps / sectors_)) * sectors_;
-    };
     const int wanted = options_.least_damped;
-    int steps = whole(steps_of_decays);
+    int steps = whole_sectors(steps_of_decays, sectors_);
     int count = std::max(least_multipliers, 2 * (std::min(wanted, most_pairs) + margin_pairs));
     int most = 0;
     std::optional<LeastDampedSearch> search;
@@ -211,7 +213,7 @@ class Analysis {
         return;
       }
       if (more > 1.0) {
-        steps = whole(steps * more);
+        steps = whole_sectors(steps * more, sectors_);
         search.reset();
       } else {
         count = static_cast<int>(count * usual_increase);
@@ -271,8 +273,7 @@ class Analysis {
     candidate.mode.harmonic -= shift;
     candidate.pair = search.pair(number, shape, shift, least_harmonics);
     if (candidate.pair.exponent.imag() < 0.0) {
-      candidate.pair.exponent = std::conj(candidate.pair.exponent);
-      candidate.pair.series = candidate.pair.series.colwise().reverse().conjugate().eval();
+      candidate.pair = conjugate_of(candidate.pair);
       candidate.mode.harmonic = -candidate.mode.harmonic;
     }
     return candidate;
@@ -376,7 +377,7 @@ class Analysis {
     for (std::size_t i = 0, count = pairs.size(); i < count; ++i) {
       const HillPair pair = pairs[i];
       if (pair.exponent.imag() > 0.0 && std::abs(pair.exponent) < same_group * speed_)
-        pairs.push_back({std::conj(pair.exponent), pair.series.colwise().reverse().conjugate()});
+        pairs.push_back(conjugate_of(pair));
     }
     std::vector<Group> groups;
     std::vector<char> taken(pairs.size(), 0);

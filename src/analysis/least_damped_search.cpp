@@ -13,6 +13,8 @@
 #include "samara/analysis/mode.hpp"
 #include "samara/base/error.hpp"
 
+#include "sector_motion.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -116,8 +118,8 @@ struct LeastDampedSearch::Ritz {
     vectors = pairs.vectors(Eigen::all, order_of);
     const Index wanted = std::min<Index>(count + 1, vectors.cols());
     const Eigen::MatrixXcd first = vectors.leftCols(wanted);
-    const Eigen::MatrixXd of_images = multiply(images, joined(first));
-    const Eigen::MatrixXd of_basis = multiply(basis, joined(first));
+    const Eigen::MatrixXd of_images = multiply(images, real_and_imaginary(first));
+    const Eigen::MatrixXd of_basis = multiply(basis, real_and_imaginary(first));
     for (; converged < wanted; ++converged) {
       const Complex value = values[static_cast<std::size_t>(converged)];
       is_exhausted = std::abs(value) < least_multiplier * std::abs(values.front());
@@ -135,22 +137,14 @@ struct LeastDampedSearch::Ritz {
       --converged;
   }
 
-  /// Real parts and imaginary parts of columns, one after the other.
-  static Eigen::MatrixXd joined(const Eigen::MatrixXcd& columns) {
-    Eigen::MatrixXd result(columns.rows(), 2 * columns.cols());
-    for (Index i = 0; i < columns.cols(); ++i) {
-      result.col(2 * i) = columns.col(i).real();
-      result.col(2 * i + 1) = columns.col(i).imag();
-    }
-    return result;
-  }
   static Eigen::VectorXcd part(const Eigen::MatrixXd& joined_columns, Index column) {
     return joined_columns.col(2 * column) + Complex(0.0, 1.0) * joined_columns.col(2 * column + 1);
   }
 
   /// An orthonormal basis of the first eigenvectors, at least `count` real columns.
   Eigen::MatrixXd leading(Index count) const {
-    return orthonormal(joined(vectors.leftCols(std::min(count + 1, vectors.cols()))), least_column);
+    return orthonormal(real_and_imaginary(vectors.leftCols(std::min(count + 1, vectors.cols()))),
+                       least_column);
   }
 };
 
@@ -209,34 +203,12 @@ void LeastDampedSearch::find_weights() {
   inverse_weights_ = (weights_ > 0.0).select(1.0 / weights_, Eigen::ArrayXd::Zero(weights_.size()));
 }
 
-template <class Matrix>
-Matrix LeastDampedSearch::turned(const Matrix& z) const {
-  if (sectors_ == 1) return z;
-  const system::RotorSymmetry& symmetry = system_.symmetry();
-  Matrix result(z.rows(), z.cols());
-  for (Index i = 0; i < z.rows(); ++i) {
-    const auto unknown = static_cast<std::size_t>(i);
-    result.row(i) = symmetry.sign[unknown] * z.row(symmetry.source[unknown]);
-  }
-  return result;
-}
-
-template <class Matrix>
-Matrix LeastDampedSearch::turned_back(const Matrix& z) const {
-  const system::RotorSymmetry& symmetry = system_.symmetry();
-  Matrix result(z.rows(), z.cols());
-  for (Index i = 0; i < z.rows(); ++i) {
-    const auto unknown = static_cast<std::size_t>(i);
-    result.row(symmetry.source[unknown]) = symmetry.sign[unknown] * z.row(i);
-  }
-  return result;
-}
-
 /// The map, of columns times weights_.
 Eigen::MatrixXd LeastDampedSearch::image_of(const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd z = columns.array().colwise() * inverse_weights_;
   for (long k = 0; k < steps_; ++k) step(k).advance(k, z);
-  return turned(z).array().colwise() * weights_;
+  if (sectors_ > 1) z = turned(system_.symmetry(), z);
+  return z.array().colwise() * weights_;
 }
 
 /// By Rayleigh and Ritz's method on a block Krylov space. Residuals extend the space, until it is
@@ -280,7 +252,7 @@ void LeastDampedSearch::find(int count) {
                            ? least_multiplier * std::abs(ritz.values.front())
                            : std::abs(ritz.values[static_cast<std::size_t>(ritz.converged) - 1]);
   decay_ = -std::log(least) / sector;
-  make_shapes(multiply(basis, Ritz::joined(ritz.vectors(Eigen::all, chosen))));
+  make_shapes(multiply(basis, real_and_imaginary(ritz.vectors(Eigen::all, chosen))));
 }
 
 /// Motions at equal distances over a sector. Several instants of a step tell fast motions from slow
@@ -304,22 +276,10 @@ double LeastDampedSearch::time_of(Index sample) const {
   return (static_cast<double>(sample) + 0.5) * dt_ / samples_of_step;
 }
 
-/// The next sector is P^-1 times the one before.
 Eigen::MatrixXcd LeastDampedSearch::shape(std::size_t number) const {
-  const auto column = static_cast<Index>(2 * number);
-  const Index n = system_.size();
-  const Index span = steps_ * samples_of_step;
-  Eigen::MatrixXcd sector(n, span);
-  for (Index k = 0; k < span; ++k)
-    sector.col(k) = std::exp(-exponents_[number] * time_of(k)) *
-                    (shapes_.col(column).segment(n * k, n).cast<Complex>() +
-                     Complex(0.0, 1.0) * shapes_.col(column + 1).segment(n * k, n));
-  Eigen::MatrixXcd whole(n, samples());
-  for (int q = 0; q < sectors_; ++q) {
-    whole.middleCols(q * span, span) = sector;
-    if (q + 1 < sectors_) sector = turned_back(sector);
-  }
-  return whole;
+  const SectorMotion motion{shapes_.col(static_cast<Index>(2 * number)).data(), system_.size(),
+                            steps_ * samples_of_step, time_of(0), dt_ / samples_of_step};
+  return shape_over_period(system_.symmetry(), sectors_, motion, exponents_[number]);
 }
 
 HillPair LeastDampedSearch::pair(std::size_t number, const Eigen::MatrixXcd& shape, int shift,

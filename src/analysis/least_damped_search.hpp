@@ -2,7 +2,6 @@
 #pragma once
 
 #include <complex>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -11,7 +10,6 @@
 #include "samara/analysis/collocation_step.hpp"
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/periodic_solution.hpp"
-#include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
 
 #include "hill_search.hpp"
@@ -36,15 +34,12 @@ class LeastDampedSearch {
 
   /// Motions that were found, one of each conjugate pair.
   std::size_t count() const { return exponents_.size(); }
-  /// Exponent of the steps, up to multiples of i Q Omega.
-  std::complex<double> exponent(std::size_t number) const { return exponents_[number]; }
   /// Z(t) exp(-lambda t) of a motion, size x samples(), at equal distances over a revolution.
   Eigen::MatrixXcd shape(std::size_t number) const;
-  /// The copy with the exponent lambda + i shift Omega, with some harmonics of its series.
+  /// The copy with the exponent lambda + i shift Omega, with some harmonics of its series. lambda
+  /// is the exponent of the steps, up to multiples of i Q Omega.
   HillPair pair(std::size_t number, const Eigen::MatrixXcd& shape, int shift, int harmonics) const;
 
-  /// All motions whose exponents of the steps decay slower than this were found [1/s].
-  double decay() const { return decay_; }
   /// Instants of shape().
   Eigen::Index samples() const { return samples_of_step * steps_ * sectors_; }
 
@@ -78,11 +73,6 @@ class LeastDampedSearch {
   double highest_frequency(double decay, double margin) const;
   void find_weights();
   void make_shapes(const Eigen::MatrixXd& vectors);
-  /// P z, or its inverse.
-  template <class Matrix>
-  Matrix turned(const Matrix& z) const;
-  template <class Matrix>
-  Matrix turned_back(const Matrix& z) const;
   Eigen::MatrixXd image_of(const Eigen::MatrixXd& columns);
   CollocationStep& step(long k) { return *kept_[static_cast<std::size_t>(k) % kept_.size()]; }
   struct Ritz;
@@ -97,8 +87,9 @@ class LeastDampedSearch {
   Eigen::ArrayXd weights_;  ///< 0 for unknowns that are not carried from step to step
   Eigen::ArrayXd inverse_weights_;
   std::vector<Complex> exponents_;
-  Eigen::MatrixXd
-      shapes_;  ///< size x steps of a sector by column, real and imaginary parts of each
+  /// Values at the instants of a sector: real and imaginary part of one motion after the other.
+  Eigen::MatrixXd shapes_;
+  /// All motions whose exponents of the steps decay slower were found [1/s].
   double decay_ = 0.0;
   bool is_exhausted_ = false;
 };

@@ -103,7 +103,8 @@ class Validation {
     if (scenario_.floquet.near_hz && scenario_.floquet.modes == 0)
       add("floquet.near_hz", "needs floquet.modes, the number of modes to find");
     if (scenario_.floquet.least_damped > 0 && scenario_.floquet.modes > 0)
-      add("floquet.least_damped", "and floquet.modes exclude each other");
+      add("floquet.least_damped",
+          "and floquet.modes exclude each other; hint: leave one of them out");
   }
 
   /// Checks that loads and prescribed motions are constant or periodic with the rotor, and that the

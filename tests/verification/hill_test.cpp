@@ -75,6 +75,12 @@ struct Example {
   int modes;
   int steps;
   double residual = 1e-7;  ///< of the modes, at most
+
+  std::string place() const {
+    std::string text = name;
+    for (const std::string& setting : settings) text += " " + setting;
+    return text;
+  }
 };
 
 const std::vector<std::string> coarse{"blades.elements=1", "blades.order=3", "tower.elements=1",
@@ -110,8 +116,7 @@ std::vector<Example> examples() {
 
 BOOST_AUTO_TEST_CASE(hill_agrees_with_integration) {
   for (const Example& example : examples()) {
-    std::string place = example.name;
-    for (const std::string& setting : example.settings) place += " " + setting;
+    const std::string place = example.place();
     BOOST_TEST_CONTEXT(place) {
       Turning turbine(example.name, example.settings);
       const analysis::Floquet found = turbine.by_hill(example.modes);
@@ -140,8 +145,7 @@ BOOST_AUTO_TEST_CASE(slowest_decays_agree_with_integration) {
   for (const Example& example : all) {
     // Its two exponents at zero are not resolved, also by shift and invert.
     if (example.name == "lee2002/ratio10") continue;
-    std::string place = example.name;
-    for (const std::string& setting : example.settings) place += " " + setting;
+    const std::string place = example.place();
     BOOST_TEST_CONTEXT(place) {
       Turning turbine(example.name, example.settings);
       const analysis::Floquet found = turbine.by_least_damped(example.modes);
