@@ -65,6 +65,15 @@ std::string describe(const Meaning& meaning) {
 
 void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
+bool is_standard_number(const Hdf5Id& type) {
+  const hid_t standard[] = {H5T_STD_I8LE,   H5T_STD_I16LE,  H5T_STD_I32LE,  H5T_STD_I64LE,
+                            H5T_STD_U8LE,   H5T_STD_U16LE,  H5T_STD_U32LE,  H5T_STD_U64LE,
+                            H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_STD_I8BE,   H5T_STD_I16BE,
+                            H5T_STD_I32BE,  H5T_STD_I64BE,  H5T_STD_U8BE,   H5T_STD_U16BE,
+                            H5T_STD_U32BE,  H5T_STD_U64BE,  H5T_IEEE_F32BE, H5T_IEEE_F64BE};
+  return std::ranges::any_of(standard, [&](hid_t one) { return H5Tequal(type.get(), one) > 0; });
+}
+
 Hdf5File::Hdf5File() {
   silence_hdf5();
   file_ = {check(H5Fcreate("samara", H5F_ACC_TRUNC, H5P_DEFAULT, memory_access().get())), H5Fclose};

@@ -48,6 +48,11 @@ class Hdf5Id {
 /// function.
 void silence_hdf5();
 
+/// True for integers of 1, 2, 4 or 8 bytes and IEEE numbers of 4 or 8 bytes, of either byte order.
+/// HDF5 1.10.8 does not check other types before it converts values: a precision beyond the size of
+/// the type makes it write beyond its memory.
+bool is_standard_number(const Hdf5Id& type);
+
 class Hdf5File {
  public:
   using Shape = std::vector<hsize_t>;

@@ -123,8 +123,12 @@ std::vector<std::string> Hdf5Reader::sources(const std::string& name) const {
 }
 
 void Hdf5Reader::require_numbers(const Item& item) const {
-  const H5T_class_t kind = H5Tget_class(type_of(item).get());
+  const Hdf5Id type = type_of(item);
+  const H5T_class_t kind = H5Tget_class(type.get());
   if (kind != H5T_INTEGER && kind != H5T_FLOAT) refuse(item.place, "does not hold numbers");
+  if (!is_standard_number(type))
+    refuse(item.place,
+           "has numbers that are neither integers nor IEEE numbers of 1, 2, 4 or 8 bytes");
 }
 
 std::vector<double> Hdf5Reader::read_numbers(const Item& item, std::size_t count) const {

@@ -250,6 +250,7 @@ bool is_whole(const ExpectedFile& expected) {
     std::vector<hsize_t> extents(shape.size());
     H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr);
     if (extents != shape) return false;
+    if (!is_standard_number({H5Dget_type(dataset.get()), H5Tclose})) return false;
   }
   return true;
 }

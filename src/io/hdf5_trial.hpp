@@ -37,13 +37,14 @@ struct OpenHdf5 {
 /// @throws InternalError where no process can be started
 OpenHdf5 open_for_reading(const std::string& path);
 
-/// A file and the shapes that its datasets should have.
+/// A file and the shapes that its datasets of numbers should have.
 struct ExpectedFile {
   std::string path;
   std::map<std::string, std::vector<hsize_t>> shapes;
 };
 
-/// Checks in a child process whether each file can be opened and has the expected shapes.
+/// Checks in a child process whether each file can be opened and has numbers of the expected
+/// shapes.
 std::vector<bool> find_whole(const std::vector<ExpectedFile>& files);
 
 }  // namespace samara::io

@@ -340,6 +340,16 @@ class Refusals(ProgramTest):
         self.write("l.csv", "mine")
         self.refuse("loads", "t.h5", "--csv", "l.csv", words="it would be lost")
 
+    def test_numbers_of_a_type_that_no_machine_has(self):
+        """HDF5 converts an integer of 16672 bits in 4 bytes beyond the end of its memory."""
+        integer = bytes([0x10, 8, 0, 0, 4, 0, 0, 0, 0, 0, 0x20, 0])  # signed, little endian, 32 bits
+        content = bytearray((self.folder / "h.h5").read_bytes())
+        place = content.index(integer, content.index(b"generator_lost"))
+        content[place + 11] = 0x41
+        (self.folder / "h.h5").write_bytes(content)
+        self.refuse("loads", "h.h5", words=["generator_lost", "has numbers that are neither"])
+        self.refuse("export", "h.h5", "-o", "x.csv", words="has numbers that are neither")
+
     def test_too_short_a_series(self):
         self.refuse("loads", "h.h5", "--set", "from=1.999", words="too few rows")
         text = self.succeed("loads", "h.h5", "--set", "from=1.9").stdout
