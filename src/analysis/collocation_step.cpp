@@ -200,6 +200,7 @@ void CollocationStep::evaluate_at(double t) {
 
 void CollocationStep::factor(long k) {
   factored_.reset();
+  has_impulses_ = false;
   const double start = static_cast<double>(k) * step_;
   end_time_ = static_cast<double>(k + 1) * step_;
   {
@@ -335,6 +336,7 @@ void CollocationStep::factor_impulses() {
   rates_of_.resize(n, n);
   rates_of_.setFromTriplets(terms.begin(), terms.end());
   impulses_.factor(relative_tau * step_);
+  has_impulses_ = true;
 }
 
 /// Finds the rates of eta at the end of the step and makes the velocities admissible.
@@ -378,11 +380,8 @@ void CollocationStep::sample(double fraction, Eigen::MatrixXd& values) const {
 }
 
 Eigen::MatrixXd CollocationStep::state() {
-  if (!impulses_.is_restricted()) {
-    factor_impulses();
-    factored_.reset();  // the impulse equations have taken the place of K
-    project();
-  }
+  if (!has_impulses_) factor_impulses();
+  if (!impulses_.is_restricted()) project();
   Eigen::MatrixXd state(subspace_.size(), end_.cols());
   const Index d = subspace_.degrees_of_freedom();
   state.topRows(d) = subspace_.coordinates_of(end_);

@@ -19,6 +19,7 @@
 #include "samara/petsc/session.hpp"
 
 #include "energy_coordinates.hpp"
+#include "energy_shares.hpp"
 #include "ranks.hpp"
 #include "sector_motion.hpp"
 #include "signal_series.hpp"
@@ -28,6 +29,7 @@ namespace samara::analysis {
 namespace {
 
 using Complex = std::complex<double>;
+using Index = Eigen::Index;
 using namespace std::complex_literals;
 
 constexpr double largest_residual = 1e-6;
@@ -52,8 +54,8 @@ constexpr double far_from_zero = std::numeric_limits<double>::infinity();
 /// round-off. The computed exponent of a motion at rest is the square root of round-off, and so is
 /// its speed.
 constexpr double rest_energy = 1e-10;
-/// Approximate number of values in the time series of the modes that are identified together.
-constexpr Eigen::Index batch_values = 1 << 24;
+/// Initial states that are advanced at once.
+constexpr Index group_states = 128;
 /// Largest number of instants of the mode shapes per revolution.
 constexpr int shape_samples = 24;
 /// Instants per sector for the name of a mode that is not resolved.
@@ -143,33 +145,48 @@ class Analysis {
       if (first == end) return;
       if (first > 0) start = subspace_.basis(static_cast<double>(first) * rule_.step);
       coordinates_.divide(start);
-      integrate(first, end, std::move(start));
+      integrate(first, end, start);
     });
     multiply_maps();
   }
 
-  void integrate(long first, long end, Eigen::MatrixXd z) {
+  /// Initial states are advanced in groups, for all samples of a step at once: the groups stay in
+  /// the cache.
+  void integrate(long first, long end, const Eigen::MatrixXd& start) {
+    const long first_sample = first * samples_of_step_;
     const long samples = (std::min(end, steps_) - std::min(first, steps_)) * samples_of_step_;
-    long sample = first * samples_of_step_;
-    const long last = sample + samples;
-    for (long i = sample; i < last; ++i)
+    for (long i = first_sample; i < first_sample + samples; ++i)
       if (i % stride_ == 0) shape_numbers_.push_back(i / stride_);
-    shapes_.resize(z.rows() * static_cast<Eigen::Index>(shape_numbers_.size()), z.cols());
-    Eigen::Index shape = 0;
+    const Index n = start.rows();
+    shapes_.resize(n * static_cast<Index>(shape_numbers_.size()), states_);
+    if (end > steps_) end_.resize(n, states_);
     CollocationStep step(system_, solution_, subspace_, rule_.order, rule_.step);
+    std::vector<Eigen::MatrixXd> groups;
+    for (Index g = 0; g < states_; g += group_states)
+      groups.emplace_back(start.middleCols(g, std::min(group_states, states_ - g)));
+    Eigen::MatrixXd states_at_end(states_, states_);
     Eigen::MatrixXd values;
     for (long k = first; k < end; ++k) {
-      step.advance(k, z);
-      if (k == steps_) {
-        step.sample(offset_ / samples_of_step_, end_);
-      } else {
-        for (int i = 0; i < samples_of_step_; ++i, ++sample) {
-          step.sample((i + offset_) / samples_of_step_, values);
-          series_.append(values);
-          if (sample % stride_ == 0) shapes_.middleRows(z.rows() * shape++, z.rows()) = values;
+      Index g = 0;
+      for (Eigen::MatrixXd& group : groups) {
+        step.advance(k, group);
+        const Index count = group.cols();
+        if (k == steps_) {
+          step.sample(offset_ / samples_of_step_, values);
+          end_.middleCols(g, count) = values;
+        } else {
+          for (int i = 0; i < samples_of_step_; ++i) {
+            const long sample = k * samples_of_step_ + i;
+            step.sample((i + offset_) / samples_of_step_, values);
+            series_.take(sample - first_sample, g, values);
+            if (sample % stride_ == 0)
+              shapes_.block(n * (sample / stride_ - shape_numbers_.front()), g, n, count) = values;
+          }
+          if (k + 1 == std::min(end, steps_)) states_at_end.middleCols(g, count) = step.state();
         }
-        if (k + 1 == std::min(end, steps_)) map_ = coordinates_.of(step.state());
+        g += count;
       }
+      if (k + 1 == std::min(end, steps_)) map_ = coordinates_.of(states_at_end);
       observer_.progress("floquet", k + 1 - first, end - first);
     }
   }
@@ -323,70 +340,16 @@ class Analysis {
   }
 
   void identify() {
-    const auto count = static_cast<Eigen::Index>(set_.modes.size());
-    HarmonicEnergy& energy = series_.energy();
-    const Eigen::Index parts = energy.columns();
-    set_.participation.setZero(count, samples_);
-    sampled_shares_.setZero(count, samples_);
-    const Eigen::Index batch = std::max<Eigen::Index>(
-        1, batch_values / std::max<Eigen::Index>(1, 2 * series_.most_rows()));
-    Eigen::VectorXcd factors(span_);
-    Eigen::MatrixXd values;
-    for (Eigen::Index first = 0; first < count; first += batch) {
-      std::vector<Eigen::Index> modes(static_cast<std::size_t>(std::min(batch, count - first)));
-      std::iota(modes.begin(), modes.end(), first);
-      values = series_.combine(own_weights_of(modes));
-      // Every rank has the energies of some signals of each mode; the modes need the sum over all
-      // ranks.
-      Eigen::MatrixXd energies(samples_, parts * static_cast<Eigen::Index>(modes.size()));
-      Eigen::MatrixXd of_ends(samples_ / samples_of_step_, energies.cols());
-      for (const Eigen::Index mode : modes) {
-        const Complex exponent = exponents_[static_cast<std::size_t>(mode)];
-        for (long k = 0; k < span_; ++k)
-          factors(k) = std::exp(-exponent * ((static_cast<double>(k) + offset_) * dt_));
-        const Eigen::Index at = mode - first;
-        energies.middleCols(at * parts, parts) =
-            energy.energies(values.col(2 * at).data(), values.col(2 * at + 1).data(), factors);
-        of_ends.middleCols(at * parts, parts) = energy.energies_of_part(samples_of_step_);
-      }
-      ranks_.sum(energies);
-      ranks_.sum(of_ends);
-      Eigen::VectorXd participation;
-      Eigen::VectorXd at_ends;
-      for (const Eigen::Index mode : modes) {
-        describe_energy(energies.middleCols((mode - first) * parts, parts), energy.part_names(),
-                        leading_states_[static_cast<std::size_t>(mode)],
-                        set_.modes[static_cast<std::size_t>(mode)], participation);
-        Mode unused;
-        describe_energy(of_ends.middleCols((mode - first) * parts, parts), energy.part_names(),
-                        leading_states_[static_cast<std::size_t>(mode)], unused, at_ends);
-        sampled_shares_.row(mode) = participation;
-        set_.participation.row(mode) = shares_of_harmonics(participation, at_ends);
-      }
-    }
+    const EnergyShares::Samples at{offset_ * dt_, dt_, samples_of_step_, steps_, sectors_};
+    sampled_shares_ =
+        EnergyShares(series_, at, ranks_)
+            .describe({exponents_, leading_states_,
+                       [this](const std::vector<Index>& modes) { return own_weights_of(modes); },
+                       [this](std::size_t m, const Eigen::VectorXd& shares) {
+                         return fast_share(m, shares);
+                       }},
+                      set_);
     find_displacements();
-  }
-
-  /// Shares of all harmonics from those at the ends of steps, which have the order of the rule but
-  /// do not distinguish harmonics that differ by the number of steps. `sampled`: shares at all
-  /// samples, which have the error of the polynomials in a step; they choose between such
-  /// harmonics.
-  Eigen::VectorXd shares_of_harmonics(const Eigen::VectorXd& sampled,
-                                      const Eigen::VectorXd& at_ends) const {
-    if (samples_of_step_ == 1) return sampled;
-    const Eigen::Index ends = at_ends.size();
-    Eigen::VectorXd shares = Eigen::VectorXd::Zero(samples_);
-    for (Eigen::Index i = 0; i < ends; ++i) {
-      const Eigen::Index harmonic = i - ends / 2;
-      Eigen::Index chosen = -1;
-      for (Eigen::Index a = -samples_of_step_; a <= samples_of_step_; ++a) {
-        const Eigen::Index place = harmonic + a * ends + samples_ / 2;
-        if (place < 0 || place >= samples_) continue;
-        if (chosen < 0 || sampled(place) > sampled(chosen)) chosen = place;
-      }
-      shares(chosen) = at_ends(i);
-    }
-    return shares;
   }
 
   /// Finds displacements at rest that nothing restores: their kinetic energy is round-off, and at
@@ -521,7 +484,7 @@ class Analysis {
         mode.exponent = exponents_[m];
         const bool real = exponents_[m].imag() == 0.0 && !mode.state &&
                           is_rigid_body(system_, set_.shapes[m], mode);
-        if ((!is_zero(exponents_[m]) && !real) || fast_share(m) > largest_fast_share)
+        if ((!is_zero(exponents_[m]) && !real) || is_too_fast(m))
           harmonics(static_cast<Eigen::Index>(m)) = set_.modes[m].harmonic;
       }
     }
@@ -533,22 +496,23 @@ class Analysis {
 
   // ---- the result ------------------------------------------------------------------------------
 
-  /// Share of the kinetic energy of mode m in harmonics that the step does not resolve.
-  double fast_share(std::size_t m) const {
+  /// Share of the energy of mode m in harmonics that the step does not resolve.
+  double fast_share(std::size_t m, const Eigen::VectorXd& shares) const {
     double share = 0.0;
-    for (Eigen::Index i = 0; i < samples_; ++i) {
-      const auto harmonic = static_cast<int>(i - samples_ / 2);
-      if (!in_reach_at(exponents_[m], harmonic))
-        share += sampled_shares_(static_cast<Eigen::Index>(m), i);
-    }
+    for (Index i = 0; i < samples_; ++i)
+      if (!in_reach_at(exponents_[m], static_cast<int>(i - samples_ / 2))) share += shares(i);
     return share;
+  }
+
+  bool is_too_fast(std::size_t m) const {
+    return fast_share(m, sampled_shares_.row(static_cast<Index>(m))) > largest_fast_share;
   }
 
   /// Adds the harmonic of mode m to the exponent, maps the warping by the step back and chooses the
   /// conjugate with Im >= 0. May be called again with another harmonic.
   void settle(std::size_t m) {
     Mode& mode = set_.modes[m];
-    const bool slow = fast_share(m) <= largest_fast_share;
+    const bool slow = !is_too_fast(m);
     const WarpingSpread spread =
         warping_spread(exponents_[m], set_.participation.row(static_cast<Eigen::Index>(m)),
                        -static_cast<int>(samples_ / 2), mode.harmonic, speed_, rule_);
@@ -687,7 +651,7 @@ class Analysis {
     Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(2, static_cast<Eigen::Index>(set_.modes.size()));
     for (std::size_t m = 0; m < set_.shapes.size(); ++m)
       if (set_.modes[m].resolved && !is_zero(set_.modes[m].exponent))
-        errors.col(static_cast<Eigen::Index>(m)) =
+        errors.block<2, 1>(0, static_cast<Eigen::Index>(m)) =
             find_mesh_error(system_, elements, set_.modes[m], set_.shapes[m]);
     ranks_.sum(errors);
     for (std::size_t m = 0; m < set_.modes.size(); ++m)

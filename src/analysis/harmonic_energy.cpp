@@ -141,6 +141,12 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors
   signals_.setFromTriplets(triplets.begin(), triplets.end());
 }
 
+HarmonicEnergy::HarmonicEnergy(Eigen::Index mixtures, int sectors)
+    : parts_{"mixtures"},
+      columns_(1),
+      sectors_(sectors),
+      part_of_(static_cast<std::size_t>(mixtures), 0) {}
+
 const Eigen::MatrixXd& HarmonicEnergy::energies(const double* real, const double* imaginary,
                                                 const Eigen::VectorXcd& factors) {
   const auto rows = static_cast<Eigen::Index>(part_of_.size());

@@ -30,7 +30,7 @@ class CollocationStep {
                   const ConsistentSubspace& subspace, int order, double step);
 
   /// Advances columns of consistent states from the start of step k (t = k step) to its end. The
-  /// factors of the last step are kept.
+  /// factors of the last step are kept, so that columns may be advanced in groups.
   /// @throws ConvergenceError from the linear solver
   void advance(long k, Eigen::MatrixXd& z);
 
@@ -101,6 +101,7 @@ class CollocationStep {
   ImpulseEquations impulses_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> rates_of_;  ///< right-hand sides of impulses_
   std::optional<long> factored_;                           ///< the step that has factors
+  bool has_impulses_ = false;                              ///< factors of impulses_ for its end
   double end_time_ = 0.0;
   Eigen::VectorXd carried_;  ///< 1 for unknowns that are carried, else 0
   Eigen::MatrixXd start_;    ///< the last columns

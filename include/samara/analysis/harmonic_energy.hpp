@@ -26,12 +26,19 @@ class HarmonicEnergy {
   explicit HarmonicEnergy(const system::PeriodicSystem& system, int sectors = 1, int share = 0,
                           int shares = 1);
 
+  /// For `mixtures` of signals, which have one part.
+  HarmonicEnergy(Eigen::Index mixtures, int sectors);
+
   /// Names of the parts of the kinetic energy.
   const std::vector<std::string>& part_names() const { return parts_; }
   /// Columns of energies(): the parts of part_names(), then those of first-order states
   /// (find_state_parts), where half the sum of squares of the states stands in place of an energy.
   Eigen::Index columns() const { return columns_; }
   Eigen::Index signals() const { return signals_.rows(); }
+  /// Whether a signal of a sector belongs to the kinetic energy; others are those of states.
+  bool is_kinetic(Eigen::Index signal) const {
+    return part_of_[static_cast<std::size_t>(signal)] < static_cast<Eigen::Index>(parts_.size());
+  }
 
   /// Signals (signals x columns) of states (system size x columns).
   void take(const Eigen::MatrixXd& states, Eigen::Ref<Eigen::MatrixXd> signals) const {
