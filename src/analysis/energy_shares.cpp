@@ -32,7 +32,7 @@ Eigen::MatrixXd EnergyShares::describe(const Motions& motions, ModeSet& set) {
   const auto count = static_cast<Index>(set.modes.size());
   set.participation.setZero(count, count_);
   sampled_.setZero(count, count_);
-  const std::vector<char> is_fast = estimate();
+  const std::vector<signed char> is_fast = estimate();
   std::vector<Index> slow;
   std::vector<Index> fast;
   for (Index m = 0; m < count; ++m)
@@ -70,9 +70,10 @@ void EnergyShares::for_each_shape(const std::vector<Index>& modes, const Eigen::
 }
 
 /// Estimates the shares by harmonic from mixtures of the signals. Returns 1 for each mode that is
-/// too fast for the step beyond doubt. (First-order states are not in the mixtures.)
-std::vector<char> EnergyShares::estimate() {
-  std::vector<char> is_fast(motions_->exponents.size(), 0);
+/// too fast for the step beyond doubt. (First-order states are not in the mixtures.) Each rank does
+/// so for some of the modes.
+std::vector<signed char> EnergyShares::estimate() {
+  std::vector<signed char> is_fast(motions_->exponents.size(), 0);
   std::vector<Index> all(is_fast.size());
   std::iota(all.begin(), all.end(), 0);
   HarmonicEnergy& energy = series_.energy_of_mixtures();
@@ -82,6 +83,7 @@ std::vector<char> EnergyShares::estimate() {
         modes, values, 1,
         [&](Index i, const double* re, const double* im, const Eigen::VectorXcd& factors) {
           const Index m = modes[static_cast<std::size_t>(i)];
+          if (m % ranks_.size != ranks_.rank) return;
           const auto mode = static_cast<std::size_t>(m);
           Mode unused;
           Eigen::VectorXd shares;
@@ -93,8 +95,9 @@ std::vector<char> EnergyShares::estimate() {
             is_fast[mode] = 1;
         });
   });
-  // All ranks use the choice of one.
-  MPI_Bcast(is_fast.data(), static_cast<int>(is_fast.size()), MPI_CHAR, 0, ranks_.comm);
+  ranks_.sum(sampled_);
+  MPI_Allreduce(MPI_IN_PLACE, is_fast.data(), static_cast<int>(is_fast.size()), MPI_SIGNED_CHAR,
+                MPI_MAX, ranks_.comm);
   return is_fast;
 }
 

@@ -55,7 +55,7 @@ class EnergyShares {
   template <class Work>
   void for_each_shape(const std::vector<Index>& modes, const Eigen::MatrixXd& values, long stride,
                       const Work& work) const;
-  std::vector<char> estimate();
+  std::vector<signed char> estimate();
   void describe_slow(const std::vector<Index>& modes, ModeSet& set);
   void describe_fast(const std::vector<Index>& modes, long stride, ModeSet& set);
   long stride_of_fast_modes() const;

@@ -316,6 +316,10 @@ class Analysis {
       MPI_Bcast(multipliers_.data(), 2 * count, MPI_DOUBLE, 0, ranks_.comm);
       MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0, ranks_.comm);
     }
+    weights_ = real_and_imaginary(vectors_);
+    vectors_.resize(0, 0);
+    if (ranks_.rank > 0) weights_ = multiply(before_, weights_);
+    before_.resize(0, 0);
     set_.modes.resize(multipliers_.size());
     for (std::size_t i = 0; i < set_.modes.size(); ++i) {
       exponents_.push_back(principal_exponent(multipliers_[i]));
@@ -327,16 +331,13 @@ class Analysis {
 
   // ---- identification --------------------------------------------------------------------------
 
-  /// Weights of the initial states in the given modes: real part and imaginary part of one mode
-  /// after the other.
-  Eigen::MatrixXd weights_of(const std::vector<Eigen::Index>& modes) const {
-    return real_and_imaginary(vectors_(Eigen::all, modes));
-  }
-
-  /// The same of the states at the first step of this rank.
-  Eigen::MatrixXd own_weights_of(const std::vector<Eigen::Index>& modes) const {
-    const Eigen::MatrixXd weights = weights_of(modes);
-    return ranks_.rank == 0 ? weights : multiply(before_, weights);
+  /// Weights of the states at the first step of this rank in the given modes: real part and
+  /// imaginary part of one mode after the other.
+  Eigen::MatrixXd weights_of(const std::vector<Index>& modes) const {
+    Eigen::MatrixXd weights(states_, 2 * static_cast<Index>(modes.size()));
+    for (std::size_t i = 0; i < modes.size(); ++i)
+      weights.middleCols<2>(static_cast<Index>(2 * i)) = weights_.middleCols<2>(2 * modes[i]);
+    return weights;
   }
 
   void identify() {
@@ -344,7 +345,7 @@ class Analysis {
     sampled_shares_ =
         EnergyShares(series_, at, ranks_)
             .describe({exponents_, leading_states_,
-                       [this](const std::vector<Index>& modes) { return own_weights_of(modes); },
+                       [this](const std::vector<Index>& modes) { return weights_of(modes); },
                        [this](std::size_t m, const Eigen::VectorXd& shares) {
                          return fast_share(m, shares);
                        }},
@@ -410,7 +411,7 @@ class Analysis {
     std::iota(modes.begin(), modes.end(), 0);
     Eigen::MatrixXd first = shapes_of(modes, 1);
     Eigen::MatrixXd last = Eigen::MatrixXd::Zero(first.rows(), first.cols());
-    if (end_.size() > 0) last = multiply(end_, own_weights_of(modes));
+    if (end_.size() > 0) last = multiply(end_, weights_of(modes));
     ranks_.sum_on(0, first);
     ranks_.sum_on(0, last);
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes.size()));
@@ -453,7 +454,7 @@ class Analysis {
                        shape_numbers_.begin();
     if (count == 0) return values;
     Eigen::MatrixXd own;
-    multiply(shapes_.topRows(n * count), own_weights_of(modes), own);
+    multiply(shapes_.topRows(n * count), weights_of(modes), own);
     values.middleRows(n * shape_numbers_.front(), n * count) = own;
     return values;
   }
@@ -703,9 +704,10 @@ class Analysis {
   std::vector<double> conditions_;    ///< of the multipliers
   std::vector<int> leading_states_;   ///< see leading_states(); with those of dropped modes
   std::vector<Complex> exponents_;    ///< principal
-  Eigen::MatrixXcd vectors_;
-  Eigen::MatrixXd sampled_shares_;  ///< of the harmonics, at all samples; modes x harmonics
-  ModeSet set_;                     ///< the result; only the first rank has the shapes
+  Eigen::MatrixXcd vectors_;          ///< of the map, until weights_ has them
+  Eigen::MatrixXd weights_;           ///< of all modes, see weights_of()
+  Eigen::MatrixXd sampled_shares_;    ///< of the harmonics, at all samples; modes x harmonics
+  ModeSet set_;                       ///< the result; only the first rank has the shapes
 };
 
 }  // namespace
@@ -754,7 +756,7 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   if (system.period() == 0.0)
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
   if (options.modes > 0 || options.least_damped > 0) {
-    if (std::optional<Floquet> found = find_hill_modes(system, solution, options))
+    if (std::optional<Floquet> found = find_hill_modes(system, solution, options, comm))
       return std::move(*found);
     observer.note("floquet: all modes, because the mesh is too coarse for Hill's method");
   }

@@ -7,19 +7,17 @@
 #include <optional>
 #include <tuple>
 
-#include <Eigen/QR>
-
 #include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/mode_error.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
+#include "hill_groups.hpp"
 #include "hill_pencil.hpp"
-#include "hill_refinement.hpp"
-#include "hill_residual.hpp"
 #include "hill_search.hpp"
 #include "least_damped_search.hpp"
+#include "ranks.hpp"
 #include "sector_motion.hpp"
 #include "state_parts.hpp"
 
@@ -43,21 +41,9 @@ constexpr int most_harmonics = 60;
 constexpr double wanted_residual = 1e-8;
 constexpr double largest_residual = 1e-6;
 /// Relative residual of eigenpairs in their truncated series: with the first number of harmonics,
-/// which may not be the last, and the one that is wanted. Harmonics are missing where the residual
-/// in the time domain is larger by a factor.
+/// which may not be the last, and the one that is wanted.
 constexpr double first_tolerance = 1e-7;
 constexpr double last_tolerance = 1e-10;
-constexpr double of_missing_harmonics = 10.0;
-/// Least cosine of the angle between the eigenvectors of a mode with two numbers of harmonics, and
-/// the distance, relative to the rotor speed, in which other eigenpairs are searched where it is
-/// less; their number.
-constexpr double least_overlap = 0.95;
-constexpr double neighbourhood = 1.0;
-constexpr int most_neighbours = 12;
-/// Least correlation of an eigenvector with one that is a mixture of several.
-constexpr double part_of_mixture = 0.1;
-/// Correlation of equal eigenvectors.
-constexpr double same_vector = 0.9;
 /// Correlation of the largest harmonics of an eigenpair and of its copy.
 constexpr double same_shape = 0.7;
 /// Harmonics at the edges of a series, and their part in a copy.
@@ -70,10 +56,10 @@ constexpr double slowest_decay = 0.93;
 constexpr int least_pairs = 24;
 constexpr int margin_pairs = 6;
 constexpr int most_pairs = 100;
-/// Relative to the rotor speed: distance of exponents that are refined together, of one exponent
-/// that two searches find, of a copy in the search from where it should be, and of refined
-/// exponents that are the same.
-constexpr double same_group = 0.03;
+/// Relative to the rotor speed: slack of the edges of the region, and distance of one exponent that
+/// two searches find, of a copy in the search from where it should be, and of refined exponents
+/// that are the same.
+constexpr double edge_slack = 1.0;
 constexpr double same_found = 1e-3;
 constexpr double same_copy = 0.25;
 constexpr double same_exponent = 1e-6;
@@ -104,28 +90,14 @@ struct Candidate {
   bool is_found = false;  ///< an eigenpair of the truncated series
 };
 
-/// Eigenpairs with neighbouring exponents.
-struct Group {
-  std::vector<HillPair> pairs;
-  double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
-  std::vector<double> residuals;                            ///< of each pair in the time domain
-  double before = std::numeric_limits<double>::infinity();  ///< residual with less harmonics
-  bool is_neighbour = false;  ///< found with the present harmonics: may be a copy of another
-
-  double residual() const { return *std::max_element(residuals.begin(), residuals.end()); }
-};
-
-HillPair conjugate_of(const HillPair& pair) {
-  return {std::conj(pair.exponent), pair.series.colwise().reverse().conjugate()};
-}
-
 class Analysis {
  public:
   Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-           const FloquetOptions& options)
+           const FloquetOptions& options, const Ranks& ranks)
       : system_(system),
         solution_(solution),
         options_(options),
+        ranks_(ranks),
         speed_(2.0 * std::numbers::pi / system.period()),
         energy_(system),
         parts_(find_state_parts(system)) {}
@@ -133,7 +105,10 @@ class Analysis {
   std::optional<Floquet> run() {
     {
       const petsc::Stage stage("Hill: search");
-      if (!search()) return std::nullopt;
+      std::optional<HillPencil> pencil;
+      ranks_.attempt([&] { search(pencil); });
+      if (!pencil) return std::nullopt;
+      if (options_.least_damped == 0) count(*pencil);
     }
     {
       const petsc::Stage stage("Hill: refinement");
@@ -146,21 +121,23 @@ class Analysis {
 
  private:
   /// Finds approximate exponents with few harmonics, from the real axis upwards, or from
-  /// `near_hz` to both sides.
-  /// @returns false where the structure of the system does not serve
-  bool search() {
+  /// `near_hz` to both sides. There is no pencil where the structure of the system does not serve.
+  void search(std::optional<HillPencil>& pencil) {
     const int sectors = system_.symmetry().sectors;
     const int harmonics = sectors > 2 ? sectors / 2 : search_harmonics;
-    HillPencil pencil(system_, solution_, harmonics);
-    if (!pencil.is_solvable()) return false;
+    pencil.emplace(system_, solution_, harmonics);
+    if (!pencil->is_solvable()) {
+      pencil.reset();
+      return;
+    }
     samples_ = std::max(shape_samples, 4 * harmonics + 2);
-    sectors_ = pencil.sectors();
+    sectors_ = pencil->sectors();
     nearest_ = sectors_ / 2;
     if (options_.least_damped > 0) {
       search_decays();
-      return true;
+      return;
     }
-    HillSearch search(pencil);
+    HillSearch search(*pencil);
     if (options_.near_hz)
       search_near(search, 2.0 * std::numbers::pi * *options_.near_hz);
     else
@@ -172,10 +149,20 @@ class Analysis {
       const Complex exponent = candidate.pair.exponent;
       return exponent.imag() > region_.high || std::abs(exponent.real()) > region_.decay;
     });
-    expected_ = centred(region_.high - neighbourhood * speed_);
-    const HillSearch::Missing missing = search.count_missing(region_, all_found_);
+    expected_ = centred(region_.high - edge_slack * speed_);
+  }
+
+  /// Counts the eigenvalues in the region, that of the first rank.
+  void count(HillPencil& pencil) {
+    for (double* value : {&region_.low, &region_.high, &region_.decay})
+      ranks_.send_from(0, value, 1);
+    auto found = static_cast<int>(all_found_.size());
+    MPI_Bcast(&found, 1, MPI_INT, 0, ranks_.comm);
+    all_found_.resize(static_cast<std::size_t>(found));
+    ranks_.send_from(0, reinterpret_cast<double*>(all_found_.data()), 2 * found);
+    const HillSearch::Missing missing =
+        HillSearch(pencil).count_missing(region_, all_found_, ranks_);
     region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
-    return true;
   }
 
   /// Finds the motions of slowest decay by integration, with as many steps as these need.
@@ -371,33 +358,6 @@ class Analysis {
     return std::abs(candidate.mode.harmonic) <= nearest_;
   }
 
-  /// Groups of neighbouring exponents.
-  std::vector<Group> groups_of(std::vector<HillPair> pairs) const {
-    // The conjugate of a slow motion belongs to its group: both may be a double zero.
-    for (std::size_t i = 0, count = pairs.size(); i < count; ++i) {
-      const HillPair pair = pairs[i];
-      if (pair.exponent.imag() > 0.0 && std::abs(pair.exponent) < same_group * speed_)
-        pairs.push_back(conjugate_of(pair));
-    }
-    std::vector<Group> groups;
-    std::vector<char> taken(pairs.size(), 0);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (taken[i]) continue;
-      std::vector<std::size_t> group{i};
-      taken[i] = 1;
-      for (std::size_t g = 0; g < group.size(); ++g)
-        for (std::size_t j = 0; j < pairs.size(); ++j)
-          if (!taken[j] &&
-              std::abs(pairs[j].exponent - pairs[group[g]].exponent) < same_group * speed_) {
-            taken[j] = 1;
-            group.push_back(j);
-          }
-      groups.emplace_back();
-      for (const std::size_t j : group) groups.back().pairs.push_back(pairs[j]);
-    }
-    return groups;
-  }
-
   /// Refines the eigenpairs that are identified at their own harmonic, and those that should have a
   /// copy with this property in the region but have none. Modes beyond the part of the region that
   /// is reported are left out.
@@ -405,7 +365,7 @@ class Analysis {
     const auto is_chosen = [this](const Candidate& candidate) {
       if (options_.least_damped > 0) return true;
       const double modulus = modulus_of(candidate);
-      const double slack = neighbourhood * speed_;  // few harmonics give it approximately
+      const double slack = edge_slack * speed_;  // few harmonics give it approximately
       if (modulus > region_.high - margin() + slack ||
           (region_.low > 0.0 && modulus < region_.low + margin() - slack))
         return false;
@@ -424,11 +384,12 @@ class Analysis {
     for (const Candidate& candidate : found_)
       if (is_chosen(candidate)) pairs.push_back(candidate.pair);
     found_.clear();
-    refine(groups_of(std::move(pairs)));
+    refine(groups_of(std::move(pairs), speed_));
   }
 
   /// Adds harmonics until the residuals are small, or do not become smaller.
-  void refine(std::vector<Group> groups) {
+  void refine(std::vector<HillGroup> groups) {
+    share_groups(ranks_, groups);
     std::vector<Candidate> doubtful;
     harmonics_ = std::max(least_harmonics, solution_.harmonics());
     int added = 0;  // harmonics, since the attempt before
@@ -436,33 +397,30 @@ class Analysis {
     while (!groups.empty()) {
       HillPencil pencil(system_, solution_, harmonics_);
       samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
-      refine(pencil, groups, tolerance);
-      if (tolerance > last_tolerance) refine_further(pencil, groups);
+      HillGroups all(system_, solution_, pencil, ranks_);
+      all.refine(groups, tolerance);
+      if (tolerance > last_tolerance) all.refine_further(groups, last_tolerance);
       tolerance = last_tolerance;
+      std::vector<std::vector<Candidate>> members;
+      std::vector<char> is_done;
+      for (HillGroup& group : groups) {
+        members.push_back(take_members(group));
+        is_done.push_back(is_last(group, members.back(), added) ? 1 : 0);
+      }
+      // All ranks follow the first one.
+      MPI_Bcast(is_done.data(), static_cast<int>(is_done.size()), MPI_CHAR, 0, ranks_.comm);
       double largest = 0.0;
-      std::vector<Group> left;
-      for (Group& group : groups) {
-        const double residual = group.residual();
-        const bool is_found = group.truncated_residual <= largest_residual;
-        std::vector<Candidate> members;
-        bool is_own = false;  // next to its own harmonic
-        for (std::size_t i = 0; i < group.pairs.size(); ++i) {
-          members.push_back({group.pairs[i], {}, {}, group.residuals[i], is_found});
-          describe(members.back());
-          is_own = is_own || is_centred(members.back());
-        }
-        // A neighbour is known by its harmonic as soon as it is resolved.
-        const bool is_known = !group.is_neighbour || residual <= largest_residual;
-        const bool is_last = harmonics_ == most_harmonics || (!is_own && is_known) || !is_found ||
-                             (residual <= largest_residual &&
-                              residual > std::pow(slowest_decay, added) * group.before);
-        if (residual <= wanted_residual || is_last) {
-          for (Candidate& member : members)
+      std::vector<HillGroup> left;
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        const double residual = groups[g].residual();
+        if (is_done[g] != 0) {
+          for (Candidate& member : members[g])
             (member.residual <= largest_residual ? modes_ : doubtful).push_back(std::move(member));
         } else {
           largest = std::max(largest, residual);
-          group.before = residual;
-          left.push_back(std::move(group));
+          groups[g].before = residual;
+          for (Candidate& member : members[g]) groups[g].pairs.push_back(std::move(member.pair));
+          left.push_back(std::move(groups[g]));
         }
       }
       groups = std::move(left);
@@ -482,119 +440,30 @@ class Analysis {
         modes_.push_back(std::move(candidate));
   }
 
-  /// Refines all groups. Where the eigenvectors change much, another eigenpair next to it may have
-  /// taken the place of the one that was meant: all that are near take the place of the group.
-  void refine(HillPencil& pencil, std::vector<Group>& groups, double tolerance) {
-    HillRefinement refinement(pencil);
-    std::vector<Group> kept;
-    std::vector<std::pair<Group, Group>> changed;  // before and after
-    for (Group& group : groups) {
-      Group before = group;
-      const HillRefinement::Result result = refinement.refine(group.pairs, tolerance);
-      group.truncated_residual = result.residual;
-      if (result.overlap >= least_overlap)
-        kept.push_back(std::move(group));
-      else
-        changed.emplace_back(std::move(before), std::move(group));
+  /// Identifies the eigenpairs of a group, and takes them from it.
+  std::vector<Candidate> take_members(HillGroup& group) {
+    const bool is_found = group.truncated_residual <= largest_residual;
+    std::vector<Candidate> members;
+    for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+      members.push_back({std::move(group.pairs[i]), {}, {}, group.residuals[i], is_found});
+      describe(members.back());
     }
-    for (auto& [before, after] : changed) {
-      std::vector<Group> neighbours = neighbours_of(pencil, before);
-      if (neighbours.empty()) kept.push_back(std::move(after));
-      for (Group& near : neighbours) {
-        near.truncated_residual = refinement.refine(near.pairs, tolerance).residual;
-        if (std::all_of(near.pairs.begin(), near.pairs.end(), [&](const HillPair& pair) {
-              return std::any_of(kept.begin(), kept.end(),
-                                 [&](const Group& other) { return has(other, pair); });
-            }))
-          continue;
-        std::erase_if(kept, [&](const Group& other) {
-          return std::any_of(near.pairs.begin(), near.pairs.end(),
-                             [&](const HillPair& pair) { return has(other, pair); });
-        });
-        kept.push_back(std::move(near));
-      }
-    }
-    groups = std::move(kept);
-    std::vector<Group*> all;
-    for (Group& group : groups) all.push_back(&group);
-    find_residuals(all);
+    group.pairs.clear();
+    return members;
   }
 
-  /// Eigenpairs next to those of a group that have a part in them; none where the search fails.
-  std::vector<Group> neighbours_of(HillPencil& pencil, const Group& group) {
-    const auto distance = [&group](const HillPair& pair) {
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const HillPair& own : group.pairs)
-        nearest = std::min(nearest, std::abs(pair.exponent - own.exponent));
-      return nearest;
-    };
-    const double frequency = std::max(group.pairs.front().exponent.imag(), neighbourhood * speed_);
-    std::vector<HillPair> found;
-    try {
-      found = HillSearch(pencil).find(frequency, most_neighbours).pairs;
-    } catch (const ConvergenceError&) {
-      return {};
-    }
-    if (found.empty()) return {};
-    const auto part_of = [&](const HillPair& pair) {
-      const Eigen::VectorXcd vector = pencil.vector_of(pair.series).normalized();
-      double largest = 0.0;
-      for (const HillPair& own : group.pairs)
-        largest =
-            std::max(largest, std::abs(vector.dot(pencil.vector_of(own.series).normalized())));
-      return largest;
-    };
-    std::vector<HillPair> near;
-    for (const HillPair& pair : found)
-      if (distance(pair) < neighbourhood * speed_ && part_of(pair) > part_of_mixture)
-        near.push_back(pair);
-    if (near.empty())
-      near.push_back(*std::max_element(
-          found.begin(), found.end(),
-          [&](const HillPair& a, const HillPair& b) { return part_of(a) < part_of(b); }));
-    std::vector<Group> groups = groups_of(std::move(near));
-    for (Group& one : groups) one.is_neighbour = true;
-    return groups;
-  }
-
-  /// Whether a group has an eigenpair.
-  bool has(const Group& group, const HillPair& pair) const {
-    if (std::none_of(group.pairs.begin(), group.pairs.end(), [&](const HillPair& own) {
-          return std::abs(own.exponent - pair.exponent) < same_found * speed_;
-        }))
-      return false;
-    Eigen::MatrixXcd own(pair.series.size(), static_cast<Index>(group.pairs.size()));
-    for (std::size_t j = 0; j < group.pairs.size(); ++j)
-      own.col(static_cast<Index>(j)) = group.pairs[j].series.reshaped();
-    const Eigen::VectorXcd vector = pair.series.reshaped();
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(own);
-    return (own * qr.solve(vector)).norm() > same_vector * vector.norm();
-  }
-
-  /// Refines the groups with enough harmonics to the last tolerance.
-  void refine_further(HillPencil& pencil, std::vector<Group>& groups) {
-    HillRefinement refinement(pencil);
-    std::vector<Group*> chosen;
-    for (Group& group : groups) {
-      if (!(group.residual() <= of_missing_harmonics * group.truncated_residual)) continue;
-      group.truncated_residual = refinement.refine(group.pairs, last_tolerance).residual;
-      chosen.push_back(&group);
-    }
-    find_residuals(chosen);
-  }
-
-  /// In the time domain.
-  void find_residuals(const std::vector<Group*>& groups) const {
-    std::vector<const HillPair*> pairs;
-    for (const Group* group : groups)
-      for (const HillPair& pair : group->pairs) pairs.push_back(&pair);
-    const std::vector<double> residuals = find_hill_residuals(system_, solution_, pairs);
-    auto next = residuals.begin();
-    for (Group* group : groups) {
-      const auto end = next + static_cast<std::ptrdiff_t>(group->pairs.size());
-      group->residuals.assign(next, end);
-      next = end;
-    }
+  /// Whether more harmonics are not needed, or of no use. `added`: since the attempt before.
+  bool is_last(const HillGroup& group, const std::vector<Candidate>& members, int added) const {
+    const double residual = group.residual();
+    if (residual <= wanted_residual || harmonics_ == most_harmonics) return true;
+    const bool is_own = std::any_of(members.begin(), members.end(), [this](const Candidate& one) {
+      return is_centred(one);  // next to its own harmonic
+    });
+    // A neighbour is known by its harmonic as soon as it is resolved.
+    const bool is_known = !group.is_neighbour || residual <= largest_residual;
+    return (!is_own && is_known) || !members.front().is_found ||
+           (residual <= largest_residual &&
+            residual > std::pow(slowest_decay, added) * group.before);
   }
 
   /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut
@@ -810,7 +679,7 @@ class Analysis {
     // The search and the refinement may differ in what lies at the edges, but no mode gets lost.
     const auto kept = std::count_if(set_.modes.begin(), set_.modes.end(), [&](const Mode& mode) {
       const double modulus = std::abs(mode.exponent);
-      return modulus < high && modulus > low - neighbourhood * speed_;
+      return modulus < high && modulus > low - edge_slack * speed_;
     });
     set_.searched =
         SearchedRegion{low, high, region_.decay,
@@ -826,6 +695,7 @@ class Analysis {
   const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;
   const FloquetOptions& options_;
+  Ranks ranks_;
   double speed_;
   HarmonicEnergy energy_;
   StateParts parts_;
@@ -847,8 +717,8 @@ class Analysis {
 
 std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution,
-                                       const FloquetOptions& options) {
-  return Analysis(system, solution, options).run();
+                                       const FloquetOptions& options, MPI_Comm comm) {
+  return Analysis(system, solution, options, Ranks(comm)).run();
 }
 
 }  // namespace samara::analysis

@@ -29,7 +29,8 @@ Eigen::VectorXd row_factors(const system::PeriodicSystem& system, double speed,
 
 std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
                                         const PeriodicSolution& solution,
-                                        const std::vector<const HillPair*>& pairs) {
+                                        const std::vector<const HillPair*>& pairs,
+                                        const Ranks& ranks) {
   if (pairs.empty()) return {};
   const double speed = 2.0 * std::numbers::pi / system.period();
   const auto count = static_cast<Index>(pairs.size());
@@ -39,18 +40,19 @@ std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Mat> jacobian = system.make_jacobian();
   const petsc::Handle<Mat> mass = system.make_mass();
-  Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
-  Eigen::VectorXd scale = Eigen::VectorXd::Zero(count);
-  Eigen::VectorXd rows;
+  std::vector<double> largest(pairs.size(), 0.0);
+  std::vector<double> scale(pairs.size(), 0.0);
+  Eigen::VectorXd rows;  // by the tangents at the first instant, on all ranks
   Eigen::MatrixXcd values(system.size(), count);
   Eigen::MatrixXcd rates(system.size(), count);
-  for (int j = 0; j < instants; ++j) {
+  const auto add_instant = [&](int j) {
     const double t = system.period() * (j + 0.37) / instants;
     solution.evaluate(t, z.get(), z_dot.get());
     system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
     const Eigen::SparseMatrix<double> K = to_sparse(jacobian.get());
     const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
     if (rows.size() == 0) rows = row_factors(system, speed, K, M);
+    if (j % ranks.size != ranks.rank) return;
     for (Index m = 0; m < count; ++m) {
       const HillPair& pair = *pairs[static_cast<std::size_t>(m)];
       Eigen::VectorXcd waves(2 * harmonics + 1);
@@ -67,12 +69,19 @@ std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
     const Eigen::MatrixXcd residual = inertia + rows.asDiagonal() * (K * values);
     const Eigen::MatrixXcd at_speed = speed * (rows.asDiagonal() * (M * values));
     for (Index m = 0; m < count; ++m) {
-      largest(m) = std::max(largest(m), residual.col(m).norm());
-      scale(m) = std::max({scale(m), inertia.col(m).norm(), at_speed.col(m).norm()});
+      const auto pair = static_cast<std::size_t>(m);
+      largest[pair] = std::max(largest[pair], residual.col(m).norm());
+      scale[pair] = std::max({scale[pair], inertia.col(m).norm(), at_speed.col(m).norm()});
     }
-  }
+  };
+  ranks.attempt([&] {
+    for (int j = 0; j < instants; ++j)
+      if (j == 0 || j % ranks.size == ranks.rank) add_instant(j);
+  });
+  ranks.find_largest(largest);
+  ranks.find_largest(scale);
   std::vector<double> residuals;
-  for (Index m = 0; m < count; ++m) residuals.push_back(largest(m) / scale(m));
+  for (std::size_t m = 0; m < pairs.size(); ++m) residuals.push_back(largest[m] / scale[m]);
   return residuals;
 }
 

@@ -7,15 +7,17 @@
 #include "samara/system/periodic_system.hpp"
 
 #include "hill_search.hpp"
+#include "ranks.hpp"
 
 namespace samara::analysis {
 
 /// Largest residual of K z + M z_dot of each eigenpair, at instants that are not those of the
 /// series, in rows scaled by their roles, relative to the largest inertia load M z_dot, or, where
 /// it is less, that of the same motion at the rotor speed. All series have the same number of
-/// harmonics.
+/// harmonics. Every rank has the same pairs, calls it and gets the same result.
 std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
                                         const PeriodicSolution& solution,
-                                        const std::vector<const HillPair*>& pairs);
+                                        const std::vector<const HillPair*>& pairs,
+                                        const Ranks& ranks);
 
 }  // namespace samara::analysis

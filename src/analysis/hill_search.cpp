@@ -252,7 +252,8 @@ double HillSearch::contraction_at(Complex s) {
 }
 
 HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
-                                              const std::vector<Complex>& found) {
+                                              const std::vector<Complex>& found,
+                                              const Ranks& ranks) {
   Missing result;
   const double a = region.decay;
   std::vector<Complex> corners{
@@ -269,23 +270,26 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
   };
   std::optional<double> last;
   for (int panels = 1; result.points <= most_points; panels *= 2) {
-    Complex integral = 0.0;
-    for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
-      const Complex begin = corners[side];
-      const Complex length = corners[side + 1] - begin;
-      // The integrand is smooth on the scale of the region's width.
-      const auto parts = static_cast<int>(std::ceil(
-          panels * std::max(1.0, std::abs(length) / (2.0 * std::max(a, pencil_.speed())))));
-      for (int part = 0; part < parts; ++part)
-        for (std::size_t i = 0; i < gauss_points.size(); ++i) {
-          const Complex s = begin + length * ((part + 0.5 + 0.5 * gauss_points[i]) / parts);
-          integral += 0.5 * gauss_weights[i] / parts * length * integrand(s);
-          ++result.points;
-        }
-    }
+    double integral = 0.0;  // its imaginary part
+    ranks.attempt([&] {
+      for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
+        const Complex begin = corners[side];
+        const Complex length = corners[side + 1] - begin;
+        // The integrand is smooth on the scale of the region's width.
+        const auto parts = static_cast<int>(std::ceil(
+            panels * std::max(1.0, std::abs(length) / (2.0 * std::max(a, pencil_.speed())))));
+        for (int part = 0; part < parts; ++part)
+          for (std::size_t i = 0; i < gauss_points.size(); ++i) {
+            if (result.points++ % ranks.size != ranks.rank) continue;
+            const Complex s = begin + length * ((part + 0.5 + 0.5 * gauss_points[i]) / parts);
+            integral += (0.5 * gauss_weights[i] / parts * length * integrand(s)).imag();
+          }
+      }
+    });
+    ranks.sum(&integral, 1);
     // The part below the real axis has the conjugate integral, in the opposite direction.
     const double number =
-        is_closed ? integral.imag() / (2.0 * std::numbers::pi) : integral.imag() / std::numbers::pi;
+        is_closed ? integral / (2.0 * std::numbers::pi) : integral / std::numbers::pi;
     if (last && std::abs(number - *last) < same_number &&
         std::abs(number - std::round(number)) < same_number) {
       result.eigenvalues = static_cast<int>(std::lround(number));
@@ -293,11 +297,16 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
     }
     last = number;
   }
-  for (std::size_t side = 0; side + 1 < corners.size(); ++side)
-    for (const double part : {0.02, 0.25, 0.5, 0.75, 0.98})
-      result.contraction =
-          std::max(result.contraction,
-                   contraction_at(corners[side] + part * (corners[side + 1] - corners[side])));
+  ranks.attempt([&] {
+    int point = 0;
+    for (std::size_t side = 0; side + 1 < corners.size(); ++side)
+      for (const double part : {0.02, 0.25, 0.5, 0.75, 0.98})
+        if (point++ % ranks.size == ranks.rank)
+          result.contraction =
+              std::max(result.contraction,
+                       contraction_at(corners[side] + part * (corners[side + 1] - corners[side])));
+  });
+  result.contraction = ranks.largest(result.contraction);
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "hill_pencil.hpp"
+#include "ranks.hpp"
 
 namespace samara::analysis {
 
@@ -46,13 +47,15 @@ class HillSearch {
   /// starts there, less those of `found`. By the argument principle for the determinant of the
   /// preconditioner. The pencil has the same number where `contraction` is less than one on the
   /// edge: on the way from one matrix to the other, none is singular there. Empty where the
-  /// integral is not close to an integer.
+  /// integral is not close to an integer. Every rank calls it with the same arguments, takes some
+  /// of the points and gets the same result.
   struct Missing {
     std::optional<int> eigenvalues;
     double contraction = 0.0;  ///< largest estimated |1 - eigenvalue| of the preconditioned pencil
     int points = 0;            ///< of the edge, with three factorizations each
   };
-  Missing count_missing(const HillRegion& region, const std::vector<std::complex<double>>& found);
+  Missing count_missing(const HillRegion& region, const std::vector<std::complex<double>>& found,
+                        const Ranks& ranks);
 
  private:
   std::complex<double> log_derivative(std::complex<double> s);

@@ -42,6 +42,13 @@ struct Ranks {
     sum(reinterpret_cast<double*>(values.data()), 2 * values.size());
   }
 
+  /// Copies values of one rank to all others.
+  void send_from(int source, double* values, Eigen::Index count) const {
+    if (size == 1) return;
+    for (Eigen::Index i = 0; i < count; i += most_values)
+      MPI_Bcast(values + i, part(count - i), MPI_DOUBLE, source, comm);
+  }
+
   /// The largest value of all ranks, for each place.
   void find_largest(std::vector<double>& values) const {
     if (size == 1) return;

@@ -42,6 +42,29 @@ class Ranks(ProgramTest):
             self.assertLess((abs(a - b) / abs(a)).max(), EXPONENTS)
             self.assertEqual(sorted(labels), sorted(other_labels))
 
+    def test_a_search_for_some_modes_finds_the_same(self):
+        """Two blades that teeter: eigenpairs are replaced by their neighbours, harmonics added."""
+        coarse = [part for key in ("blades.elements=2", "tower.elements=2", "gravity=9.81")
+                  for part in ("--set", key)]
+        case = SOURCE / "inputs/two_bladed/teetering.yaml"
+        for wanted in ("floquet.modes=8", "floquet.least_damped=4"):
+            found = []
+            for ranks in (1, 2, 3):
+                self.succeed("floquet", case, *coarse, "--set", wanted, "-o", "some.h5",
+                             ranks=ranks)
+                with h5py.File(self.folder / "some.h5") as file:
+                    group = file["/floquet"]
+                    self.assertEqual(group.attrs["searched_is_counted"], 1)
+                    self.assertLess(group["residual"][:].max(), 1e-8)
+                    found.append(group["exponents"][:] @ [1, 1j] / group.attrs["rotor_speed"])
+                    labels = sorted(group["label"].asstr()[:])
+                self.assertEqual(len(found[-1]), len(found[0]))
+                if ranks == 1:
+                    of_one_rank = labels
+                self.assertEqual(labels, of_one_rank)
+                distances = abs(found[-1][:, None] - found[0]).min(axis=1)
+                self.assertLess((distances / numpy.maximum(1, abs(found[-1]))).max(), 1e-8)
+
     def test_a_distributed_trim_has_the_table_of_one_rank(self):
         case = [SOURCE / "inputs/beam/rotating.yaml", "--set", "blades.elements=320", "--set",
                 "blades.order=1", "--set", "gravity=9.81", "--set", "trim.harmonics=3"]

@@ -207,11 +207,12 @@ BOOST_AUTO_TEST_CASE(count_notices_a_missing_exponent) {
     Turning turbine(name, coarse);
     analysis::HillPencil pencil(turbine.system, turbine.trim.solution, harmonics);
     analysis::HillSearch search(pencil);
+    const analysis::Ranks alone(MPI_COMM_SELF);
     analysis::HillRegion region = search.find(pencil.speed(), 16);
     region.decay *= 0.8;
     std::vector<Complex> found;
     for (const analysis::HillPair& pair : region.pairs) found.push_back(pair.exponent);
-    const analysis::HillSearch::Missing none = search.count_missing(region, found);
+    const analysis::HillSearch::Missing none = search.count_missing(region, found, alone);
     BOOST_REQUIRE(none.eigenvalues);
     BOOST_TEST(*none.eigenvalues == 0);
     BOOST_TEST(none.contraction < 0.2);
@@ -220,7 +221,7 @@ BOOST_AUTO_TEST_CASE(count_notices_a_missing_exponent) {
       if (left_out.imag() > region.high || std::abs(left_out.real()) > region.decay) continue;
       std::vector<Complex> others = found;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      const analysis::HillSearch::Missing one = search.count_missing(region, others);
+      const analysis::HillSearch::Missing one = search.count_missing(region, others, alone);
       BOOST_REQUIRE(one.eigenvalues);
       BOOST_TEST(*one.eigenvalues == (left_out.imag() > 0.0 ? 2 : 1), name << " " << left_out);
     }

@@ -7,12 +7,12 @@
 
 namespace samara::analysis {
 
-/// The `options.modes` slowest modes, or those nearest to `options.near_hz`. Every rank computes
-/// the same. Empty where the structure of the system does not serve: chains of nodes with a small
-/// border.
+/// The `options.modes` slowest modes, or those nearest to `options.near_hz`, the same on every rank
+/// of `comm`. The ranks share the refinement and the count of eigenvalues. Empty where the
+/// structure of the system does not serve: chains of nodes with a small border.
 /// @throws ConvergenceError
 std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution,
-                                       const FloquetOptions& options);
+                                       const FloquetOptions& options, MPI_Comm comm);
 
 }  // namespace samara::analysis

@@ -1,0 +1,239 @@
+#include "hill_groups.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <Eigen/QR>
+
+#include "samara/base/error.hpp"
+
+#include "hill_residual.hpp"
+
+namespace samara::analysis {
+namespace {
+
+using Index = Eigen::Index;
+
+/// Harmonics are missing where the residual in the time domain is larger than that in the truncated
+/// series by a factor.
+constexpr double of_missing_harmonics = 10.0;
+/// Least cosine of the angle between the eigenvectors of a mode with two numbers of harmonics, and
+/// the distance, relative to the rotor speed, in which other eigenpairs are searched where it is
+/// less; their number.
+constexpr double least_overlap = 0.95;
+constexpr double neighbourhood = 1.0;
+constexpr int most_neighbours = 12;
+/// Least correlation of an eigenvector with one that is a mixture of several.
+constexpr double part_of_mixture = 0.1;
+/// Correlation of equal eigenvectors.
+constexpr double same_vector = 0.9;
+/// Relative to the rotor speed: distance of exponents that are refined together, and of one
+/// exponent that two searches find.
+constexpr double same_group = 0.03;
+constexpr double same_found = 1e-3;
+
+void share_pair(const Ranks& ranks, int owner, HillPair& pair) {
+  if (ranks.size == 1) return;
+  ranks.send_from(owner, reinterpret_cast<double*>(&pair.exponent), 2);
+  long shape[] = {pair.series.rows(), pair.series.cols()};
+  MPI_Bcast(shape, 2, MPI_LONG, owner, ranks.comm);
+  pair.series.resize(shape[0], shape[1]);
+  ranks.send_from(owner, reinterpret_cast<double*>(pair.series.data()), 2 * pair.series.size());
+}
+
+}  // namespace
+
+HillPair conjugate_of(const HillPair& pair) {
+  return {std::conj(pair.exponent), pair.series.colwise().reverse().conjugate()};
+}
+
+std::vector<HillGroup> groups_of(std::vector<HillPair> pairs, double speed) {
+  // The conjugate of a slow motion belongs to its group: both may be a double zero.
+  for (std::size_t i = 0, count = pairs.size(); i < count; ++i) {
+    const HillPair pair = pairs[i];
+    if (pair.exponent.imag() > 0.0 && std::abs(pair.exponent) < same_group * speed)
+      pairs.push_back(conjugate_of(pair));
+  }
+  std::vector<HillGroup> groups;
+  std::vector<char> taken(pairs.size(), 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (taken[i]) continue;
+    std::vector<std::size_t> group{i};
+    taken[i] = 1;
+    for (std::size_t g = 0; g < group.size(); ++g)
+      for (std::size_t j = 0; j < pairs.size(); ++j)
+        if (!taken[j] &&
+            std::abs(pairs[j].exponent - pairs[group[g]].exponent) < same_group * speed) {
+          taken[j] = 1;
+          group.push_back(j);
+        }
+    groups.emplace_back();
+    for (const std::size_t j : group) groups.back().pairs.push_back(pairs[j]);
+  }
+  return groups;
+}
+
+void share_groups(const Ranks& ranks, std::vector<HillGroup>& groups) {
+  if (ranks.size == 1) return;
+  long count = static_cast<long>(groups.size());
+  MPI_Bcast(&count, 1, MPI_LONG, 0, ranks.comm);
+  groups.resize(static_cast<std::size_t>(count));
+  for (HillGroup& group : groups) {
+    long sizes[] = {static_cast<long>(group.pairs.size()),
+                    static_cast<long>(group.residuals.size()), group.is_neighbour ? 1L : 0L};
+    MPI_Bcast(sizes, 3, MPI_LONG, 0, ranks.comm);
+    group.pairs.resize(static_cast<std::size_t>(sizes[0]));
+    group.residuals.resize(static_cast<std::size_t>(sizes[1]));
+    group.is_neighbour = sizes[2] != 0;
+    ranks.send_from(0, &group.truncated_residual, 1);
+    ranks.send_from(0, &group.before, 1);
+    ranks.send_from(0, group.residuals.data(), sizes[1]);
+    for (HillPair& pair : group.pairs) share_pair(ranks, 0, pair);
+  }
+}
+
+/// Refines each group on one rank. Groups next to each other stay on one rank: they may use the
+/// same factors.
+/// @returns the groups whose eigenvectors changed much, as they were before; the others are empty
+std::vector<HillGroup> HillGroups::deal(const std::vector<HillGroup*>& groups, double tolerance) {
+  const auto rank_of = [&](std::size_t group) {
+    return static_cast<int>(group * static_cast<std::size_t>(ranks_.size) / groups.size());
+  };
+  std::vector<HillRefinement::Result> results(groups.size());
+  std::vector<HillGroup> changed(groups.size());
+  ranks_.attempt([&] {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (rank_of(g) != ranks_.rank) continue;
+      changed[g] = *groups[g];
+      results[g] = refinement_.refine(groups[g]->pairs, tolerance);
+      if (results[g].overlap >= least_overlap) changed[g] = {};
+    }
+  });
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const int owner = rank_of(g);
+    ranks_.send_from(owner, &results[g].residual, 1);
+    ranks_.send_from(owner, &results[g].overlap, 1);
+    if (owner != ranks_.rank && results[g].overlap < least_overlap) changed[g] = *groups[g];
+    groups[g]->truncated_residual = results[g].residual;
+    for (HillPair& pair : groups[g]->pairs) share_pair(ranks_, owner, pair);
+  }
+  return changed;
+}
+
+void HillGroups::refine(std::vector<HillGroup>& groups, double tolerance) {
+  std::vector<HillGroup*> all;
+  for (HillGroup& group : groups) all.push_back(&group);
+  const std::vector<HillGroup> changed = deal(all, tolerance);
+  std::vector<HillGroup> kept;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (changed[g].pairs.empty()) kept.push_back(std::move(groups[g]));
+  if (kept.size() < groups.size()) {
+    ranks_.attempt([&] {
+      if (ranks_.rank > 0) return;
+      for (std::size_t g = 0; g < groups.size(); ++g)
+        if (!changed[g].pairs.empty()) replace(kept, changed[g], std::move(groups[g]), tolerance);
+    });
+    share_groups(ranks_, kept);
+  }
+  groups = std::move(kept);
+  all.clear();
+  for (HillGroup& group : groups) all.push_back(&group);
+  find_residuals(all);
+}
+
+/// Adds the neighbours of a group, or where there are none, the group itself, to those that are
+/// kept.
+void HillGroups::replace(std::vector<HillGroup>& kept, const HillGroup& before, HillGroup after,
+                         double tolerance) {
+  std::vector<HillGroup> neighbours = neighbours_of(before);
+  if (neighbours.empty()) kept.push_back(std::move(after));
+  for (HillGroup& near : neighbours) {
+    near.truncated_residual = refinement_.refine(near.pairs, tolerance).residual;
+    if (std::all_of(near.pairs.begin(), near.pairs.end(), [&](const HillPair& pair) {
+          return std::any_of(kept.begin(), kept.end(),
+                             [&](const HillGroup& other) { return has(other, pair); });
+        }))
+      continue;
+    std::erase_if(kept, [&](const HillGroup& other) {
+      return std::any_of(near.pairs.begin(), near.pairs.end(),
+                         [&](const HillPair& pair) { return has(other, pair); });
+    });
+    kept.push_back(std::move(near));
+  }
+}
+
+/// Eigenpairs next to those of a group that have a part in them; none where the search fails.
+std::vector<HillGroup> HillGroups::neighbours_of(const HillGroup& group) {
+  const auto distance = [&group](const HillPair& pair) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const HillPair& own : group.pairs)
+      nearest = std::min(nearest, std::abs(pair.exponent - own.exponent));
+    return nearest;
+  };
+  const double frequency = std::max(group.pairs.front().exponent.imag(), neighbourhood * speed_);
+  std::vector<HillPair> found;
+  try {
+    found = HillSearch(pencil_).find(frequency, most_neighbours).pairs;
+  } catch (const ConvergenceError&) {
+    return {};
+  }
+  if (found.empty()) return {};
+  const auto part_of = [&](const HillPair& pair) {
+    const Eigen::VectorXcd vector = pencil_.vector_of(pair.series).normalized();
+    double largest = 0.0;
+    for (const HillPair& own : group.pairs)
+      largest = std::max(largest, std::abs(vector.dot(pencil_.vector_of(own.series).normalized())));
+    return largest;
+  };
+  std::vector<HillPair> near;
+  for (const HillPair& pair : found)
+    if (distance(pair) < neighbourhood * speed_ && part_of(pair) > part_of_mixture)
+      near.push_back(pair);
+  if (near.empty())
+    near.push_back(*std::max_element(
+        found.begin(), found.end(),
+        [&](const HillPair& a, const HillPair& b) { return part_of(a) < part_of(b); }));
+  std::vector<HillGroup> groups = groups_of(std::move(near), speed_);
+  for (HillGroup& one : groups) one.is_neighbour = true;
+  return groups;
+}
+
+/// Whether a group has an eigenpair.
+bool HillGroups::has(const HillGroup& group, const HillPair& pair) const {
+  if (std::none_of(group.pairs.begin(), group.pairs.end(), [&](const HillPair& own) {
+        return std::abs(own.exponent - pair.exponent) < same_found * speed_;
+      }))
+    return false;
+  Eigen::MatrixXcd own(pair.series.size(), static_cast<Index>(group.pairs.size()));
+  for (std::size_t j = 0; j < group.pairs.size(); ++j)
+    own.col(static_cast<Index>(j)) = group.pairs[j].series.reshaped();
+  const Eigen::VectorXcd vector = pair.series.reshaped();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(own);
+  return (own * qr.solve(vector)).norm() > same_vector * vector.norm();
+}
+
+void HillGroups::refine_further(std::vector<HillGroup>& groups, double tolerance) {
+  std::vector<HillGroup*> chosen;
+  for (HillGroup& group : groups)
+    if (group.residual() <= of_missing_harmonics * group.truncated_residual)
+      chosen.push_back(&group);
+  if (chosen.empty()) return;
+  deal(chosen, tolerance);
+  find_residuals(chosen);
+}
+
+/// In the time domain.
+void HillGroups::find_residuals(const std::vector<HillGroup*>& groups) const {
+  std::vector<const HillPair*> pairs;
+  for (const HillGroup* group : groups)
+    for (const HillPair& pair : group->pairs) pairs.push_back(&pair);
+  const std::vector<double> residuals = find_hill_residuals(system_, solution_, pairs, ranks_);
+  auto next = residuals.begin();
+  for (HillGroup* group : groups) {
+    const auto end = next + static_cast<std::ptrdiff_t>(group->pairs.size());
+    group->residuals.assign(next, end);
+    next = end;
+  }
+}
+
+}  // namespace samara::analysis

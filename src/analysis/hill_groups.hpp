@@ -1,0 +1,69 @@
+// Refinement of eigenpairs in groups of neighbouring exponents (docs/theory.md, section 5.10).
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "hill_pencil.hpp"
+#include "hill_refinement.hpp"
+#include "hill_search.hpp"
+#include "ranks.hpp"
+
+namespace samara::analysis {
+
+/// Eigenpairs with neighbouring exponents.
+struct HillGroup {
+  std::vector<HillPair> pairs;
+  double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
+  std::vector<double> residuals;                            ///< of each pair in the time domain
+  double before = std::numeric_limits<double>::infinity();  ///< residual with less harmonics
+  bool is_neighbour = false;  ///< found with the present harmonics: may be a copy of another
+
+  double residual() const { return *std::max_element(residuals.begin(), residuals.end()); }
+};
+
+HillPair conjugate_of(const HillPair& pair);
+
+/// Groups of eigenpairs, with the conjugates of slow ones. `speed`: of the rotor [rad/s].
+std::vector<HillGroup> groups_of(std::vector<HillPair> pairs, double speed);
+
+/// Copies the groups of the first rank to all others.
+void share_groups(const Ranks& ranks, std::vector<HillGroup>& groups);
+
+/// Refines groups with the harmonics of a pencil. Every rank has all groups and refines some of
+/// them; all ranks get the same result.
+class HillGroups {
+ public:
+  HillGroups(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+             HillPencil& pencil, const Ranks& ranks)
+      : system_(system),
+        solution_(solution),
+        pencil_(pencil),
+        refinement_(pencil),
+        ranks_(ranks),
+        speed_(pencil.speed()) {}
+
+  /// Refines all groups. Where the eigenvectors change much, another eigenpair next to it may have
+  /// taken the place of the one that was meant: all that are near take the place of the group.
+  void refine(std::vector<HillGroup>& groups, double tolerance);
+  /// Refines the groups with enough harmonics to a smaller tolerance.
+  void refine_further(std::vector<HillGroup>& groups, double tolerance);
+
+ private:
+  std::vector<HillGroup> deal(const std::vector<HillGroup*>& groups, double tolerance);
+  void replace(std::vector<HillGroup>& kept, const HillGroup& before, HillGroup after,
+               double tolerance);
+  std::vector<HillGroup> neighbours_of(const HillGroup& group);
+  bool has(const HillGroup& group, const HillPair& pair) const;
+  void find_residuals(const std::vector<HillGroup*>& groups) const;
+
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  HillPencil& pencil_;
+  HillRefinement refinement_;
+  Ranks ranks_;
+  double speed_;
+};
+
+}  // namespace samara::analysis
