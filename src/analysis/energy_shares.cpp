@@ -180,7 +180,7 @@ Eigen::Index EnergyShares::likeliest_place(Index harmonic, Index count,
 Eigen::VectorXd EnergyShares::spread(const Eigen::VectorXd& shares,
                                      const Eigen::VectorXd& sampled) const {
   const Index ends = shares.size();
-  if (ends == count_) return sampled;
+  if (ends == count_) return shares;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(count_);
   for (Index i = 0; i < ends; ++i) result(likeliest_place(i - ends / 2, ends, sampled)) = shares(i);
   return result;

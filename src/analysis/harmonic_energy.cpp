@@ -97,6 +97,7 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors
   };
   std::vector<Entry> entries;
   std::vector<std::size_t> loads(static_cast<std::size_t>(shares), 0);
+  unsigned count = 0;  // signals of all shares
   const auto add = [&](const EnergyGroup& group, Eigen::Index column) {
     const std::vector<std::vector<Image>> images = sectors_of(group, sectors, before);
     const int alike = count_alike(images);
@@ -104,10 +105,13 @@ HarmonicEnergy::HarmonicEnergy(const system::PeriodicSystem& system, int sectors
     const Eigen::MatrixXd root = std::sqrt(static_cast<double>(alike)) * energy_root(group);
     const auto least = std::min_element(loads.begin(), loads.end());
     *least += static_cast<std::size_t>(root.rows());
+    const unsigned first = count;
+    count += static_cast<unsigned>(root.rows());
     if (least - loads.begin() != share) return;
     for (Eigen::Index r = 0; r < root.rows(); ++r) {
       const auto signal = static_cast<Eigen::Index>(part_of_.size());
       part_of_.push_back(column);
+      numbers_.push_back(first + static_cast<unsigned>(r));
       for (int q = 0; q < sectors; ++q)
         for (Eigen::Index c = 0; c < root.cols(); ++c) {
           const Image& image = images[static_cast<std::size_t>(q)][static_cast<std::size_t>(c)];

@@ -427,10 +427,11 @@ class Analysis {
       // The residual falls by the same factor with each harmonic.
       if (!groups.empty()) {
         const double factor = std::log(0.3 * wanted_residual) / std::log(std::min(largest, 0.9));
-        const int next = std::min(
+        int next = std::min(
             most_harmonics,
             static_cast<int>(
                 std::ceil(std::clamp(factor, 1.0 + 1.0 / harmonics_, most_increase) * harmonics_)));
+        MPI_Bcast(&next, 1, MPI_INT, 0, ranks_.comm);  // pow and log may differ by round-off
         added = next - harmonics_;
         harmonics_ = next;
       }

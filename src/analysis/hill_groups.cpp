@@ -32,6 +32,9 @@ constexpr double same_vector = 0.9;
 constexpr double same_group = 0.03;
 constexpr double same_found = 1e-3;
 
+/// Whether other eigenpairs may have been found.
+bool is_other(const HillRefinement::Result& result) { return !(result.overlap >= least_overlap); }
+
 void share_pair(const Ranks& ranks, int owner, HillPair& pair) {
   if (ranks.size == 1) return;
   ranks.send_from(owner, reinterpret_cast<double*>(&pair.exponent), 2);
@@ -106,14 +109,14 @@ std::vector<HillGroup> HillGroups::deal(const std::vector<HillGroup*>& groups, d
       if (rank_of(g) != ranks_.rank) continue;
       changed[g] = *groups[g];
       results[g] = refinement_.refine(groups[g]->pairs, tolerance);
-      if (results[g].overlap >= least_overlap) changed[g] = {};
+      if (!is_other(results[g])) changed[g] = {};
     }
   });
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const int owner = rank_of(g);
     ranks_.send_from(owner, &results[g].residual, 1);
     ranks_.send_from(owner, &results[g].overlap, 1);
-    if (owner != ranks_.rank && results[g].overlap < least_overlap) changed[g] = *groups[g];
+    if (owner != ranks_.rank && is_other(results[g])) changed[g] = *groups[g];
     groups[g]->truncated_residual = results[g].residual;
     for (HillPair& pair : groups[g]->pairs) share_pair(ranks_, owner, pair);
   }

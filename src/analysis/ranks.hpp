@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <string>
 #include <vector>
@@ -68,8 +69,8 @@ struct Ranks {
     return result != 0;
   }
 
-  /// Does work that differs from rank to rank. If it fails on one of them, it fails on all, with a
-  /// DomainError or a ConvergenceError.
+  /// Does work that differs from rank to rank. If it fails on one of them, it fails on all, with
+  /// the same class of error.
   template <class Work>
   void attempt(const Work& work) const {
     if (size == 1) {
@@ -78,16 +79,22 @@ struct Ranks {
     }
     std::exception_ptr error;
     std::string message;
-    int is_domain = 0;
+    ErrorClass kind = ErrorClass::convergence;
+    const auto take = [&](const std::exception& failure, ErrorClass of) {
+      error = std::current_exception();
+      message = failure.what();
+      kind = of;
+    };
     try {
       work();
+    } catch (const InputError& failure) {
+      take(failure, ErrorClass::input);
     } catch (const DomainError& failure) {
-      error = std::current_exception();
-      message = failure.what();
-      is_domain = 1;
+      take(failure, ErrorClass::domain);
+    } catch (const InternalError& failure) {
+      take(failure, ErrorClass::internal);
     } catch (const std::exception& failure) {
-      error = std::current_exception();
-      message = failure.what();
+      take(failure, ErrorClass::convergence);
     }
     int failed = error ? rank : size;
     MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, comm);
@@ -96,13 +103,23 @@ struct Ranks {
     MPI_Bcast(&length, 1, MPI_INT, failed, comm);
     message.resize(static_cast<std::size_t>(length));
     MPI_Bcast(message.data(), length, MPI_CHAR, failed, comm);
-    MPI_Bcast(&is_domain, 1, MPI_INT, failed, comm);
+    int number = static_cast<int>(kind);
+    MPI_Bcast(&number, 1, MPI_INT, failed, comm);
     if (failed == rank) std::rethrow_exception(error);
-    if (is_domain != 0) throw DomainError(message);
-    throw ConvergenceError(message);
+    switch (static_cast<ErrorClass>(number)) {
+      case ErrorClass::input:
+        throw InputError(message);
+      case ErrorClass::domain:
+        throw DomainError(message);
+      case ErrorClass::internal:
+        throw InternalError(message);
+      case ErrorClass::convergence:
+        throw ConvergenceError(message);
+    }
   }
 
  private:
+  enum class ErrorClass : std::uint8_t { input, domain, internal, convergence };
   /// Largest number of values in a message.
   static constexpr Eigen::Index most_values = 1 << 20;
   static int part(Eigen::Index rest) { return static_cast<int>(std::min(most_values, rest)); }

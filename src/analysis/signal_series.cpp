@@ -21,18 +21,19 @@ SignalSeries::SignalSeries(const system::PeriodicSystem& system, int sectors,
       sectors_(sectors),
       energy_of_mixtures_(mixture_count, sectors),
       mixtures_(mixture_count * sectors * samples_of(ranks.rank), states) {
-  std::mt19937 random;
   for (int r = 0; r < ranks_.size; ++r) {
     energies_.emplace_back(system, sectors, r, ranks_.size);
     most_signals_ = std::max(most_signals_, energies_.back().signals());
     values_.emplace_back(energies_.back().signals() * samples_of(ranks_.rank), states);
     signs_.emplace_back(mixture_count, energies_.back().signals() / sectors);
     const double size = 1.0 / std::sqrt(static_cast<double>(mixture_count));
-    for (Eigen::Index j = 0; j < signs_.back().cols(); ++j)
+    for (Eigen::Index j = 0; j < signs_.back().cols(); ++j) {
+      std::mt19937 random(energies_.back().number(j));  // the same for any number of ranks
       for (Eigen::Index i = 0; i < mixture_count; ++i) {
         const double sign = random() % 2 == 0 ? size : -size;
         signs_.back()(i, j) = energies_.back().is_kinetic(j) ? sign : 0.0;
       }
+    }
   }
 }
 

@@ -90,6 +90,8 @@ class Ranks(ProgramTest):
             (2, "there is no folder", ["floquet", BASELINE, "-o", "missing/x.h5"]),
             (2, "samara floquet, or samara modes --parked", ["modes", BASELINE]),
             (3, "trim: ", ["trim", BASELINE, "-trim_snes_max_it", "0"]),
+            (2, "largest eigenvalues", ["floquet", SOURCE / "inputs/nrel5mw/land.yaml", "--set",
+                                        "floquet.modes=8", "-hill_eps_smallest_magnitude"]),
         ):
             with self.subTest(words=words):
                 run = self.samara(*arguments, ranks=2)

@@ -34,7 +34,10 @@ class HarmonicEnergy {
   /// Columns of energies(): the parts of part_names(), then those of first-order states
   /// (find_state_parts), where half the sum of squares of the states stands in place of an energy.
   Eigen::Index columns() const { return columns_; }
-  Eigen::Index signals() const { return signals_.rows(); }
+  Eigen::Index signals() const { return static_cast<Eigen::Index>(part_of_.size()) * sectors_; }
+  /// Number of a signal of a sector among those of all shares, which does not depend on their
+  /// number.
+  unsigned number(Eigen::Index signal) const { return numbers_[static_cast<std::size_t>(signal)]; }
   /// Whether a signal of a sector belongs to the kinetic energy; others are those of states.
   bool is_kinetic(Eigen::Index signal) const {
     return part_of_[static_cast<std::size_t>(signal)] < static_cast<Eigen::Index>(parts_.size());
@@ -57,6 +60,7 @@ class HarmonicEnergy {
   std::vector<std::string> parts_;
   Eigen::Index columns_ = 0;
   int sectors_;
+  std::vector<unsigned> numbers_;                         ///< of the signals of a sector
   Eigen::SparseMatrix<double, Eigen::RowMajor> signals_;  ///< sector after sector
   std::vector<Eigen::Index> part_of_;                     ///< column of each signal of one sector
   std::unique_ptr<math::FourierTransform> transform_;
