@@ -9,9 +9,9 @@
 namespace samara::analysis {
 namespace {
 
-/// Least share in harmonics beyond reach, and least energy, of a mode that is described by less
-/// samples. By mixtures the share is known to a third of itself, and a resolved mode has less than
-/// 0.01.
+/// Least share in harmonics beyond reach, and least energy, of a mode that is described by
+/// fewer samples. By mixtures the share is known to a third of itself, and a resolved mode has less
+/// than 0.01.
 constexpr double beyond_doubt = 0.3;
 constexpr double least_energy = 1e-6;
 /// Least number of these samples in a period.

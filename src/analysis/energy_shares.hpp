@@ -45,7 +45,7 @@ class EnergyShares {
   /// for the step: at the ends of steps these may look like slow ones.
   ///
   /// A mode that is too fast by a large margin, as random mixtures of its signals show, is
-  /// described by less samples; its shares by harmonic are those of the mixtures. Every rank calls
+  /// described by fewer samples; its shares by harmonic are those of the mixtures. Every rank calls
   /// it.
   Eigen::MatrixXd describe(const Motions& motions, ModeSet& set);
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <sstream>
 #include <string>
 
 #include "samara/analysis/collocation_step.hpp"
@@ -218,7 +217,7 @@ class Analysis {
     } else {
       map_ = coordinates_.of(turned(coordinates_.states_of(map_)));
     }
-    if (ranks_.size > 1) MPI_Bcast(map_.data(), count, MPI_DOUBLE, ranks_.size - 1, ranks_.comm);
+    ranks_.share(ranks_.size - 1, map_);
   }
 
   /// Applies P to (eta, eta_dot, xi). Their entries are unknowns, each divided by its own scale; P
@@ -267,20 +266,19 @@ class Analysis {
     return rule_.may_reach(s) && in_reach(unwarped(s, rule_));
   }
 
-  void keep(Complex multiplier, const Eigen::VectorXcd& vector, double condition, int state) {
-    multipliers_.push_back(multiplier);
-    conditions_.push_back(condition);
-    leading_states_.push_back(state);
-    vectors_.conservativeResize(states_, vectors_.cols() + 1);
-    vectors_.col(vectors_.cols() - 1) = vector;
-  }
-
   void solve_eigenproblem() {
     const Eigenpairs pairs = dense_eigenpairs(map_, "floquet_");
     const Eigen::VectorXd conditions = condition_numbers(pairs);
     const StateParts parts = find_state_parts(system_);
     const std::vector<int> states =
         leading_states(pairs, 2 * subspace_.degrees_of_freedom(), parts);
+    Eigen::MatrixXcd vectors(states_, states_);  // of the modes
+    const auto keep = [&](Complex multiplier, const Eigen::VectorXcd& vector, std::size_t pair) {
+      vectors.col(static_cast<Index>(multipliers_.size())) = vector;
+      multipliers_.push_back(multiplier);
+      conditions_.push_back(conditions(static_cast<Index>(pair)));
+      leading_states_.push_back(states[pair]);
+    };
     double largest = 1.0;
     for (const Complex value : pairs.values) largest = std::max(largest, std::abs(value));
     for (std::size_t i = 0; i < pairs.values.size(); ++i) {
@@ -291,33 +289,24 @@ class Analysis {
       }
       if (pairs.values[i].imag() < 0.0) continue;  // its conjugate is kept
       const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
-      const double condition = conditions(static_cast<Eigen::Index>(i));
       const Complex exponent = principal_exponent(pairs.values[i]);
       if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
         // Round-off has split a double zero into a complex pair. It is kept as two real modes, like
         // a double zero that round-off splits into two real exponents.
-        keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
-        keep(pairs.values[i].real(), real_part(vector), condition, states[i]);
+        keep(pairs.values[i].real(), real_part(vector), i);
+        keep(pairs.values[i].real(), real_part(vector), i);
       } else {
-        keep(pairs.values[i], vector, condition, states[i]);
+        keep(pairs.values[i], vector, i);
       }
     }
-    if (ranks_.size > 1) {  // all ranks use the result of one
-      int count = static_cast<int>(multipliers_.size());
-      MPI_Bcast(&count, 1, MPI_INT, 0, ranks_.comm);
-      MPI_Bcast(&set_.deflated, 1, MPI_INT, 0, ranks_.comm);
-      MPI_Bcast(&set_.deflated_rate, 1, MPI_DOUBLE, 0, ranks_.comm);
-      multipliers_.resize(static_cast<std::size_t>(count));
-      conditions_.resize(static_cast<std::size_t>(count));
-      leading_states_.resize(static_cast<std::size_t>(count));
-      MPI_Bcast(conditions_.data(), count, MPI_DOUBLE, 0, ranks_.comm);
-      MPI_Bcast(leading_states_.data(), count, MPI_INT, 0, ranks_.comm);
-      vectors_.conservativeResize(states_, count);
-      MPI_Bcast(multipliers_.data(), 2 * count, MPI_DOUBLE, 0, ranks_.comm);
-      MPI_Bcast(vectors_.data(), static_cast<int>(2 * vectors_.size()), MPI_DOUBLE, 0, ranks_.comm);
-    }
-    weights_ = real_and_imaginary(vectors_);
-    vectors_.resize(0, 0);
+    weights_ = real_and_imaginary(vectors.leftCols(static_cast<Index>(multipliers_.size())));
+    // All ranks use the result of one.
+    ranks_.share(0, set_.deflated);
+    ranks_.share(0, set_.deflated_rate);
+    ranks_.share(0, multipliers_);
+    ranks_.share(0, conditions_);
+    ranks_.share(0, leading_states_);
+    ranks_.share(0, weights_);
     if (ranks_.rank > 0) weights_ = multiply(before_, weights_);
     before_.resize(0, 0);
     set_.modes.resize(multipliers_.size());
@@ -661,18 +650,11 @@ class Analysis {
 
   /// Names come from the shapes, which only the first rank has.
   void share_names() {
-    if (ranks_.size == 1) return;
-    MPI_Bcast(&set_.instances, 1, MPI_INT, 0, ranks_.comm);
-    for (Mode& mode : set_.modes)
-      MPI_Bcast(&mode.fixed_frame_frequency, 1, MPI_DOUBLE, 0, ranks_.comm);
-    std::string text;
-    for (const Mode& mode : set_.modes) text += mode.label + '\n';
-    int length = static_cast<int>(text.size());
-    MPI_Bcast(&length, 1, MPI_INT, 0, ranks_.comm);
-    text.resize(static_cast<std::size_t>(length));
-    MPI_Bcast(text.data(), length, MPI_CHAR, 0, ranks_.comm);
-    std::istringstream lines(text);
-    for (Mode& mode : set_.modes) std::getline(lines, mode.label);
+    ranks_.share(0, set_.instances);
+    for (Mode& mode : set_.modes) {
+      ranks_.share(0, mode.fixed_frame_frequency);
+      ranks_.share(0, mode.label);
+    }
   }
 
   const system::PeriodicSystem& system_;
@@ -704,7 +686,6 @@ class Analysis {
   std::vector<double> conditions_;    ///< of the multipliers
   std::vector<int> leading_states_;   ///< see leading_states(); with those of dropped modes
   std::vector<Complex> exponents_;    ///< principal
-  Eigen::MatrixXcd vectors_;          ///< of the map, until weights_ has them
   Eigen::MatrixXd weights_;           ///< of all modes, see weights_of()
   Eigen::MatrixXd sampled_shares_;    ///< of the harmonics, at all samples; modes x harmonics
   ModeSet set_;                       ///< the result; only the first rank has the shapes

@@ -56,11 +56,9 @@ constexpr double slowest_decay = 0.93;
 constexpr int least_pairs = 24;
 constexpr int margin_pairs = 6;
 constexpr int most_pairs = 100;
-/// Relative to the rotor speed: slack of the edges of the region, and distance of one exponent that
-/// two searches find, of a copy in the search from where it should be, and of refined exponents
-/// that are the same.
+/// Relative to the rotor speed: slack of the edges of the region, and distance of a copy in the
+/// search from where it should be, and of refined exponents that are the same.
 constexpr double edge_slack = 1.0;
-constexpr double same_found = 1e-3;
 constexpr double same_copy = 0.25;
 constexpr double same_exponent = 1e-6;
 /// Relative to the rotor speed: distance of two exponents between which the edge of a region may
@@ -108,7 +106,7 @@ class Analysis {
       std::optional<HillPencil> pencil;
       ranks_.attempt([&] { search(pencil); });
       if (!pencil) return std::nullopt;
-      if (options_.least_damped == 0) count(*pencil);
+      if (options_.least_damped == 0) count_missing(*pencil);
     }
     {
       const petsc::Stage stage("Hill: refinement");
@@ -153,13 +151,9 @@ class Analysis {
   }
 
   /// Counts the eigenvalues in the region, that of the first rank.
-  void count(HillPencil& pencil) {
-    for (double* value : {&region_.low, &region_.high, &region_.decay})
-      ranks_.send_from(0, value, 1);
-    auto found = static_cast<int>(all_found_.size());
-    MPI_Bcast(&found, 1, MPI_INT, 0, ranks_.comm);
-    all_found_.resize(static_cast<std::size_t>(found));
-    ranks_.send_from(0, reinterpret_cast<double*>(all_found_.data()), 2 * found);
+  void count_missing(HillPencil& pencil) {
+    for (double* value : {&region_.low, &region_.high, &region_.decay}) ranks_.share(0, *value);
+    ranks_.share(0, all_found_);
     const HillSearch::Missing missing =
         HillSearch(pencil).count_missing(region_, all_found_, ranks_);
     region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
@@ -408,7 +402,7 @@ class Analysis {
         is_done.push_back(is_last(group, members.back(), added) ? 1 : 0);
       }
       // All ranks follow the first one.
-      MPI_Bcast(is_done.data(), static_cast<int>(is_done.size()), MPI_CHAR, 0, ranks_.comm);
+      ranks_.share(0, is_done);
       double largest = 0.0;
       std::vector<HillGroup> left;
       for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -431,7 +425,7 @@ class Analysis {
             most_harmonics,
             static_cast<int>(
                 std::ceil(std::clamp(factor, 1.0 + 1.0 / harmonics_, most_increase) * harmonics_)));
-        MPI_Bcast(&next, 1, MPI_INT, 0, ranks_.comm);  // pow and log may differ by round-off
+        ranks_.share(0, next);  // pow and log may differ by round-off
         added = next - harmonics_;
         harmonics_ = next;
       }

@@ -27,21 +27,15 @@ constexpr int most_neighbours = 12;
 constexpr double part_of_mixture = 0.1;
 /// Correlation of equal eigenvectors.
 constexpr double same_vector = 0.9;
-/// Relative to the rotor speed: distance of exponents that are refined together, and of one
-/// exponent that two searches find.
+/// Relative to the rotor speed: distance of exponents that are refined together.
 constexpr double same_group = 0.03;
-constexpr double same_found = 1e-3;
 
 /// Whether other eigenpairs may have been found.
 bool is_other(const HillRefinement::Result& result) { return !(result.overlap >= least_overlap); }
 
 void share_pair(const Ranks& ranks, int owner, HillPair& pair) {
-  if (ranks.size == 1) return;
-  ranks.send_from(owner, reinterpret_cast<double*>(&pair.exponent), 2);
-  long shape[] = {pair.series.rows(), pair.series.cols()};
-  MPI_Bcast(shape, 2, MPI_LONG, owner, ranks.comm);
-  pair.series.resize(shape[0], shape[1]);
-  ranks.send_from(owner, reinterpret_cast<double*>(pair.series.data()), 2 * pair.series.size());
+  ranks.share(owner, pair.exponent);
+  ranks.share(owner, pair.series);
 }
 
 }  // namespace
@@ -77,46 +71,43 @@ std::vector<HillGroup> groups_of(std::vector<HillPair> pairs, double speed) {
 }
 
 void share_groups(const Ranks& ranks, std::vector<HillGroup>& groups) {
-  if (ranks.size == 1) return;
-  long count = static_cast<long>(groups.size());
-  MPI_Bcast(&count, 1, MPI_LONG, 0, ranks.comm);
-  groups.resize(static_cast<std::size_t>(count));
+  std::size_t count = groups.size();
+  ranks.share(0, count);
+  groups.resize(count);
   for (HillGroup& group : groups) {
-    long sizes[] = {static_cast<long>(group.pairs.size()),
-                    static_cast<long>(group.residuals.size()), group.is_neighbour ? 1L : 0L};
-    MPI_Bcast(sizes, 3, MPI_LONG, 0, ranks.comm);
-    group.pairs.resize(static_cast<std::size_t>(sizes[0]));
-    group.residuals.resize(static_cast<std::size_t>(sizes[1]));
-    group.is_neighbour = sizes[2] != 0;
-    ranks.send_from(0, &group.truncated_residual, 1);
-    ranks.send_from(0, &group.before, 1);
-    ranks.send_from(0, group.residuals.data(), sizes[1]);
+    ranks.share(0, group.truncated_residual);
+    ranks.share(0, group.before);
+    ranks.share(0, group.is_neighbour);
+    ranks.share(0, group.residuals);
+    std::size_t pairs = group.pairs.size();
+    ranks.share(0, pairs);
+    group.pairs.resize(pairs);
     for (HillPair& pair : group.pairs) share_pair(ranks, 0, pair);
   }
 }
 
 /// Refines each group on one rank. Groups next to each other stay on one rank: they may use the
 /// same factors.
-/// @returns the groups whose eigenvectors changed much, as they were before; the others are empty
-std::vector<HillGroup> HillGroups::deal(const std::vector<HillGroup*>& groups, double tolerance) {
+/// @returns for each group whose eigenvectors changed much, its pairs as they were before
+std::vector<std::vector<HillPair>> HillGroups::deal(const std::vector<HillGroup*>& groups,
+                                                    double tolerance) {
   const auto rank_of = [&](std::size_t group) {
     return static_cast<int>(group * static_cast<std::size_t>(ranks_.size) / groups.size());
   };
   std::vector<HillRefinement::Result> results(groups.size());
-  std::vector<HillGroup> changed(groups.size());
+  std::vector<std::vector<HillPair>> changed(groups.size());
   ranks_.attempt([&] {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       if (rank_of(g) != ranks_.rank) continue;
-      changed[g] = *groups[g];
+      changed[g] = groups[g]->pairs;
       results[g] = refinement_.refine(groups[g]->pairs, tolerance);
-      if (!is_other(results[g])) changed[g] = {};
+      if (!is_other(results[g])) changed[g].clear();
     }
   });
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const int owner = rank_of(g);
-    ranks_.send_from(owner, &results[g].residual, 1);
-    ranks_.send_from(owner, &results[g].overlap, 1);
-    if (owner != ranks_.rank && is_other(results[g])) changed[g] = *groups[g];
+    ranks_.share(owner, results[g]);
+    if (owner != ranks_.rank && is_other(results[g])) changed[g] = groups[g]->pairs;
     groups[g]->truncated_residual = results[g].residual;
     for (HillPair& pair : groups[g]->pairs) share_pair(ranks_, owner, pair);
   }
@@ -126,15 +117,15 @@ std::vector<HillGroup> HillGroups::deal(const std::vector<HillGroup*>& groups, d
 void HillGroups::refine(std::vector<HillGroup>& groups, double tolerance) {
   std::vector<HillGroup*> all;
   for (HillGroup& group : groups) all.push_back(&group);
-  const std::vector<HillGroup> changed = deal(all, tolerance);
+  const std::vector<std::vector<HillPair>> changed = deal(all, tolerance);
   std::vector<HillGroup> kept;
   for (std::size_t g = 0; g < groups.size(); ++g)
-    if (changed[g].pairs.empty()) kept.push_back(std::move(groups[g]));
+    if (changed[g].empty()) kept.push_back(std::move(groups[g]));
   if (kept.size() < groups.size()) {
     ranks_.attempt([&] {
       if (ranks_.rank > 0) return;
       for (std::size_t g = 0; g < groups.size(); ++g)
-        if (!changed[g].pairs.empty()) replace(kept, changed[g], std::move(groups[g]), tolerance);
+        if (!changed[g].empty()) replace(kept, changed[g], std::move(groups[g]), tolerance);
     });
     share_groups(ranks_, kept);
   }
@@ -144,10 +135,10 @@ void HillGroups::refine(std::vector<HillGroup>& groups, double tolerance) {
   find_residuals(all);
 }
 
-/// Adds the neighbours of a group, or where there are none, the group itself, to those that are
-/// kept.
-void HillGroups::replace(std::vector<HillGroup>& kept, const HillGroup& before, HillGroup after,
-                         double tolerance) {
+/// Adds the neighbours of eigenpairs, or where there are none, the group that came of them, to
+/// those that are kept.
+void HillGroups::replace(std::vector<HillGroup>& kept, const std::vector<HillPair>& before,
+                         HillGroup after, double tolerance) {
   std::vector<HillGroup> neighbours = neighbours_of(before);
   if (neighbours.empty()) kept.push_back(std::move(after));
   for (HillGroup& near : neighbours) {
@@ -165,15 +156,15 @@ void HillGroups::replace(std::vector<HillGroup>& kept, const HillGroup& before, 
   }
 }
 
-/// Eigenpairs next to those of a group that have a part in them; none where the search fails.
-std::vector<HillGroup> HillGroups::neighbours_of(const HillGroup& group) {
-  const auto distance = [&group](const HillPair& pair) {
+/// Eigenpairs next to some pairs that have a part in them; none where the search fails.
+std::vector<HillGroup> HillGroups::neighbours_of(const std::vector<HillPair>& pairs) {
+  const auto distance = [&pairs](const HillPair& pair) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const HillPair& own : group.pairs)
+    for (const HillPair& own : pairs)
       nearest = std::min(nearest, std::abs(pair.exponent - own.exponent));
     return nearest;
   };
-  const double frequency = std::max(group.pairs.front().exponent.imag(), neighbourhood * speed_);
+  const double frequency = std::max(pairs.front().exponent.imag(), neighbourhood * speed_);
   std::vector<HillPair> found;
   try {
     found = HillSearch(pencil_).find(frequency, most_neighbours).pairs;
@@ -184,7 +175,7 @@ std::vector<HillGroup> HillGroups::neighbours_of(const HillGroup& group) {
   const auto part_of = [&](const HillPair& pair) {
     const Eigen::VectorXcd vector = pencil_.vector_of(pair.series).normalized();
     double largest = 0.0;
-    for (const HillPair& own : group.pairs)
+    for (const HillPair& own : pairs)
       largest = std::max(largest, std::abs(vector.dot(pencil_.vector_of(own.series).normalized())));
     return largest;
   };

@@ -17,7 +17,7 @@ struct HillGroup {
   std::vector<HillPair> pairs;
   double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
   std::vector<double> residuals;                            ///< of each pair in the time domain
-  double before = std::numeric_limits<double>::infinity();  ///< residual with less harmonics
+  double before = std::numeric_limits<double>::infinity();  ///< residual with fewer harmonics
   bool is_neighbour = false;  ///< found with the present harmonics: may be a copy of another
 
   double residual() const { return *std::max_element(residuals.begin(), residuals.end()); }
@@ -51,10 +51,10 @@ class HillGroups {
   void refine_further(std::vector<HillGroup>& groups, double tolerance);
 
  private:
-  std::vector<HillGroup> deal(const std::vector<HillGroup*>& groups, double tolerance);
-  void replace(std::vector<HillGroup>& kept, const HillGroup& before, HillGroup after,
+  std::vector<std::vector<HillPair>> deal(const std::vector<HillGroup*>& groups, double tolerance);
+  void replace(std::vector<HillGroup>& kept, const std::vector<HillPair>& before, HillGroup after,
                double tolerance);
-  std::vector<HillGroup> neighbours_of(const HillGroup& group);
+  std::vector<HillGroup> neighbours_of(const std::vector<HillPair>& pairs);
   bool has(const HillGroup& group, const HillPair& pair) const;
   void find_residuals(const std::vector<HillGroup*>& groups) const;
 

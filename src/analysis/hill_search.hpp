@@ -12,6 +12,9 @@
 
 namespace samara::analysis {
 
+/// Distance, relative to the rotor speed, of one exponent that two searches find.
+constexpr double same_found = 1e-3;
+
 /// An exponent and the series of its motion, (2 H + 1) x unknowns.
 struct HillPair {
   std::complex<double> exponent;

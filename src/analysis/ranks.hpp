@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -43,11 +45,21 @@ struct Ranks {
     sum(reinterpret_cast<double*>(values.data()), 2 * values.size());
   }
 
-  /// Copies values of one rank to all others.
-  void send_from(int source, double* values, Eigen::Index count) const {
-    if (size == 1) return;
-    for (Eigen::Index i = 0; i < count; i += most_values)
-      MPI_Bcast(values + i, part(count - i), MPI_DOUBLE, source, comm);
+  /// Copies a value of one rank to all others; texts, vectors and matrices take its size.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void share(int source, T& value) const { share(source, &value, 1); }
+  void share(int source, std::string& text) const { share_sized(source, text); }
+  template <class T>
+  void share(int source, std::vector<T>& values) const {
+    share_sized(source, values);
+  }
+  template <class T>
+  void share(int source, Eigen::MatrixX<T>& values) const {
+    std::array<Eigen::Index, 2> shape{values.rows(), values.cols()};
+    share(source, shape);
+    values.resize(shape[0], shape[1]);
+    share(source, values.data(), values.size());
   }
 
   /// The largest value of all ranks, for each place.
@@ -99,14 +111,10 @@ struct Ranks {
     int failed = error ? rank : size;
     MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, comm);
     if (failed == size) return;
-    int length = static_cast<int>(message.size());
-    MPI_Bcast(&length, 1, MPI_INT, failed, comm);
-    message.resize(static_cast<std::size_t>(length));
-    MPI_Bcast(message.data(), length, MPI_CHAR, failed, comm);
-    int number = static_cast<int>(kind);
-    MPI_Bcast(&number, 1, MPI_INT, failed, comm);
+    share(failed, message);
+    share(failed, kind);
     if (failed == rank) std::rethrow_exception(error);
-    switch (static_cast<ErrorClass>(number)) {
+    switch (kind) {
       case ErrorClass::input:
         throw InputError(message);
       case ErrorClass::domain:
@@ -120,6 +128,21 @@ struct Ranks {
 
  private:
   enum class ErrorClass : std::uint8_t { input, domain, internal, convergence };
+
+  template <class Values>
+  void share_sized(int source, Values& values) const {
+    std::size_t count = values.size();
+    share(source, count);
+    values.resize(count);
+    share(source, values.data(), static_cast<Eigen::Index>(count));
+  }
+  template <class T>
+  void share(int source, T* values, Eigen::Index count) const {
+    if (size == 1) return;
+    for (Eigen::Index i = 0; i < count; i += most_values)
+      MPI_Bcast(values + i, part(count - i) * static_cast<int>(sizeof(T)), MPI_BYTE, source, comm);
+  }
+
   /// Largest number of values in a message.
   static constexpr Eigen::Index most_values = 1 << 20;
   static int part(Eigen::Index rest) { return static_cast<int>(std::min(most_values, rest)); }

@@ -1,5 +1,7 @@
 // Hill's method against integration over a period, on turbines.
+#include <algorithm>
 #include <set>
+#include <tuple>
 
 #include <boost/test/unit_test.hpp>
 
@@ -127,6 +129,44 @@ BOOST_AUTO_TEST_CASE(hill_agrees_with_integration) {
                    found.set.searched->high);
       require_agreement(found.set, turbine.by_steps(example.steps), place, example.residual);
     }
+  }
+}
+
+/// The steps find energies from time series of the signals of all initial states, Hill's method
+/// from the series of one mode.
+BOOST_AUTO_TEST_CASE(energies_of_modes_are_those_of_their_series) {
+  for (const auto& [name, order, steps] :
+       {std::tuple{"nrel5mw/land", 6, 36}, std::tuple{"nrel5mw/land", 2, 360},
+        std::tuple{"two_bladed/teetering", 6, 48}}) {
+    Turning turbine(name, with(coarse, {"gravity=9.81"}));
+    const analysis::ModeSet some = turbine.by_hill(8).set;
+    const analysis::ModeSet all = turbine.by_steps(steps, order);
+    int compared = 0;
+    for (std::size_t m = 0; m < some.modes.size(); ++m) {
+      const analysis::Mode& mode = some.modes[m];
+      const auto found = std::ranges::find_if(all.modes, [&](const analysis::Mode& other) {
+        return other.resolved && without_number(other.label) == without_number(mode.label) &&
+               std::abs(other.exponent - mode.exponent) < 1e-3 * std::abs(mode.exponent);
+      });
+      if (found == all.modes.end()) continue;
+      ++compared;
+      const std::string place = std::string(name) + ": " + mode.label;
+      for (const analysis::PartShare& part : mode.parts) {
+        const auto same = std::ranges::find(found->parts, part.part, &analysis::PartShare::part);
+        const double share = same == found->parts.end() ? 0.0 : same->share;
+        BOOST_TEST(std::abs(share - part.share) < 2e-3,
+                   place << " " << part.part << " " << share << " " << part.share);
+      }
+      const auto row = static_cast<Eigen::Index>(m);
+      const auto other = static_cast<Eigen::Index>(found - all.modes.begin());
+      for (int k = -4; k <= 4; ++k) {  // from the stated harmonic
+        const double share = all.participation(other, found->harmonic + k - all.first_harmonic);
+        const double expected = some.participation(row, mode.harmonic + k - some.first_harmonic);
+        BOOST_TEST(std::abs(share - expected) < 2e-3,
+                   place << " k = " << k << " " << share << " " << expected);
+      }
+    }
+    BOOST_TEST(compared >= 5, name << " " << compared);
   }
 }
 
