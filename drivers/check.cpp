@@ -238,6 +238,44 @@ std::vector<std::pair<std::string, std::string>> control_lines(
   return lines;
 }
 
+/// The wind and the models of the air.
+std::vector<std::pair<std::string, std::string>> air_lines(
+    const model::TurbineDefinition& definition, const model::Turbine& turbine) {
+  if (!turbine.air) {
+    if (definition.blades.aero_sections.empty()) return {};
+    return {{"air", definition.wind ? "none (aero: none)" : "none: no wind is given"}};
+  }
+  const model::Air& air = *turbine.air;
+  const elements::AirModels& models = air.rotor.models;
+  std::vector<std::pair<std::string, std::string>> lines;
+  std::string wind = general(air.hub_wind, 4) + " m/s at the hub, " +
+                     general(air.hub_wind_axial, 4) + " m/s along the shaft";
+  if (turbine.speed > 0.0 && air.hub_wind > 0.0)
+    wind += "; tip-speed ratio " + general(turbine.speed * air.rotor.tip_radius / air.hub_wind, 4);
+  lines.emplace_back("wind", wind);
+  int still = 0;
+  for (const elements::AirStation& station : air.stations.front())
+    if (!station.has_dynamics(models)) ++still;
+  const char* dynamics[] = {"hgm", "oye", "quasi_steady", "static"};
+  const char* thrust[] = {"glauert_skew", "buhl", "buhl_f"};
+  std::string words = count(static_cast<int>(air.stations.front().size()), "station") +
+                      " a blade; airfoil dynamics " +
+                      dynamics[static_cast<std::size_t>(models.dynamics)];
+  const bool has_lags = models.dynamics == elements::AirfoilDynamics::hgm ||
+                        models.dynamics == elements::AirfoilDynamics::oye;
+  if (has_lags && still > 0)
+    words += " (" + std::to_string(still) + " without: their polars have no attached lift)";
+  if (models.induction == elements::Induction::none)
+    words += "; no induction";
+  else
+    words += std::string("; thrust ") + thrust[static_cast<std::size_t>(models.thrust)] +
+             (models.inflow == elements::Inflow::oye
+                  ? ", dynamic inflow with tau1 " + general(air.rotor.tau1, 4) + " s"
+                  : ", inflow in equilibrium");
+  lines.emplace_back("air", words);
+  return lines;
+}
+
 std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
@@ -302,6 +340,7 @@ std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
   if (has_rotor && !definition.blades.beam.support.is_clamp())
     line("blade roots", support_words(definition.blades.beam.support));
   for (const auto& [name, words] : control_lines(definition, turbine)) line(name, words);
+  for (const auto& [name, words] : air_lines(definition, turbine)) line(name, words);
   std::string dampers = "mass dampers";
   for (const std::string& words : mass_damper_lines(system)) {
     line(dampers, words);

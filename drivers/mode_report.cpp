@@ -86,7 +86,10 @@ std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& a
   const Motion motion = assessment.motions[m];
   const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
   const bool is_known = has_rate || motion == Motion::rigid_body || !simulation::is_rough(mode);
-  const double frequency = motion == Motion::rigid_body ? 0.0 : mode.exponent.imag();
+  // Round-off splits equal real exponents into pairs with a small frequency.
+  constexpr double real_exponent = 1e-6;
+  const bool is_real = mode.exponent.imag() < real_exponent * std::abs(mode.exponent);
+  const double frequency = motion == Motion::rigid_body || is_real ? 0.0 : mode.exponent.imag();
   std::vector<std::string> row{std::to_string(m + 1), mode.label};
   if (set.rotor_speed > 0.0) row.push_back(fixed(frequency / set.rotor_speed, 4));
   row.push_back(fixed(frequency / (2.0 * std::numbers::pi), 4));
@@ -125,8 +128,11 @@ std::string name_growing(const ModeSet& set, const std::vector<std::size_t>& gro
 
 std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
   const Mode& least = set.modes[*result.least_damped];
-  const int decaying = static_cast<int>(result.decaying.size());
-  return (decaying == 1 ? "the mode decays" : "all " + count(decaying, "mode") + " decay") +
+  const int decaying = static_cast<int>(result.decaying.size()) - result.of_medium;
+  const std::string air =
+      result.of_medium == 0 ? "" : " and " + count(result.of_medium, "exponent") + " of the air";
+  return (decaying == 1 && air.empty() ? "the mode decays"
+                                       : "all " + count(decaying, "mode") + air + " decay") +
          "; the least damped is " + least.label + ", " + general(100.0 * least.damping_ratio, 3) +
          " %";
 }
@@ -134,9 +140,12 @@ std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
 /// Text on the behaviour of the modes that do not grow.
 std::string rest_words(const StabilityAssessment& result) {
   std::vector<std::string> rest;
-  const int decaying = static_cast<int>(result.decaying.size());
+  const int decaying = static_cast<int>(result.decaying.size()) - result.of_medium;
   if (decaying > 0)
     rest.push_back(std::to_string(decaying) + (decaying == 1 ? " decays" : " decay"));
+  if (result.of_medium > 0)
+    rest.push_back(count(result.of_medium, "exponent") + " of the air" +
+                   (result.of_medium == 1 ? " decays" : " decay"));
   if (result.rigid_body > 0)
     rest.push_back(std::to_string(result.rigid_body) + (result.rigid_body == 1 ? " is" : " are") +
                    " rigid-body");
@@ -255,7 +264,17 @@ std::string doubtful_words(const ModeSet& set, const StabilityAssessment& result
         (is_periodic(set) && !set.searched
              ? "too fast for the time step (hint: more floquet.steps), or a residual too large\n"
              : "a residual too large\n");
+  if (result.of_medium > 0 && !all)
+    text += count(result.of_medium, "exponent") + " of the air (inflow, shed wake, stall), " +
+            (result.of_medium == 1 ? "a decay that is" : "decays that are") +
+            " not listed (--all lists them)\n";
   return text;
+}
+
+/// Modes that are not resolved and decays of the air are listed by --all only.
+bool is_listed(const ModeSet& set, const StabilityAssessment& assessment, std::size_t m) {
+  return set.modes[m].resolved &&
+         (!is_of_medium(set.modes[m]) || assessment.motions[m] == Motion::growing);
 }
 
 }  // namespace
@@ -277,7 +296,8 @@ std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment
   std::vector<std::size_t> rows;
   for (const bool resolved : {true, false})
     for (std::size_t m = 0; m < set.modes.size(); ++m)
-      if (set.modes[m].resolved == resolved && (resolved || listing.all)) rows.push_back(m);
+      if (set.modes[m].resolved == resolved && (listing.all || is_listed(set, assessment, m)))
+        rows.push_back(m);
   const std::size_t shown = listing.first > 0
                                 ? std::min(rows.size(), static_cast<std::size_t>(listing.first))
                                 : rows.size();

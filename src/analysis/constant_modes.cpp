@@ -311,7 +311,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     set_growth_error(mode, {}, mode.exponent);
     if (mode.resolved && mode.exponent != 0.0)
       add_mesh_error(mode, find_mesh_error(system, elements, mode, shape));
-    if (!mode.resolved) set.reach = std::min(set.reach, std::abs(mode.exponent));
+    if (!mode.resolved && !is_of_medium(mode))
+      set.reach = std::min(set.reach, std::abs(mode.exponent));
     set.found += found.exponent.imag() != 0.0 ? 2 : 1;
     const double size = std::abs(mode.exponent);
     mode.damping_ratio = size > 0.0 ? -mode.exponent.real() / size : 0.0;

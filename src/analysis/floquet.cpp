@@ -603,7 +603,8 @@ class Analysis {
     move_to_leading(leading);
     set_.reach = rule_.reach();
     for (const Mode& mode : set_.modes)
-      if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
+      if (!mode.resolved && !is_of_medium(mode))
+        set_.reach = std::min(set_.reach, std::abs(mode.exponent));
     find_mesh_errors();
     name_modes(system_, leading, set_, sectors_);
     share_names();

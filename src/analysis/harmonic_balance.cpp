@@ -23,6 +23,8 @@ namespace {
 
 /// Relative to Unknown::scale: least size of a state in the measure of its residual.
 constexpr double least_state = 1e-3;
+/// The same for a medium: stations without load have no weight.
+constexpr double least_medium = 0.1;
 
 /// Scaled residual that counts as round-off.
 constexpr double vanished = 1e-13;
@@ -73,6 +75,7 @@ class Balance {
         held_(held),
         given_(given),
         harmonics_(harmonics),
+        samples_(sample_count(system_, harmonics)),
         width_(2 * harmonics + 1),
         size_(partition.size()),
         z_(system_.make_state()),
@@ -137,8 +140,7 @@ class Balance {
   }
 
   void add_samples(const PeriodicSolution& solution, Eigen::Map<Eigen::MatrixXd>& result) {
-    const int samples = sample_count(harmonics_);
-    for (int k = 0; k < samples; ++k) {
+    for (int k = 0; k < samples_; ++k) {
       const double t = time_of(k);
       solution.evaluate(t, z_.get(), z_dot_.get());
       system_.residual(t, z_.get(), z_dot_.get(), r_.get());
@@ -149,15 +151,18 @@ class Balance {
   }
 
   double period() const { return system_.period() > 0.0 ? system_.period() : 1.0; }
-  double time_of(int k) const { return system_.period() * k / sample_count(harmonics_); }
+  double time_of(int k) const { return system_.period() * k / samples_; }
 
-  Eigen::VectorXd projection(double t) const { return fourier_weights(harmonics_, period(), t); }
+  Eigen::VectorXd projection(double t) const {
+    return fourier_weights(harmonics_, period(), t, samples_);
+  }
 
   const MeshPartition& partition_;
   const system::PeriodicSystem& system_;  ///< part of this rank
   const Coordinates& held_;
   const std::vector<RowLoad>& given_;
   int harmonics_;
+  int samples_;
   int width_;
   Eigen::Index size_;
   petsc::Handle<Vec> z_;
@@ -414,7 +419,7 @@ Eigen::MatrixXd start_coefficients(const system::PeriodicSystem& system, int har
     coefficients.topRows(columns) = start->coefficients().leftCols(columns).transpose();
   } else {
     const petsc::Handle<Vec> z = system.make_state();
-    const int samples = system.constraints_are_autonomous() ? 1 : sample_count(harmonics);
+    const int samples = system.constraints_are_autonomous() ? 1 : sample_count(system, harmonics);
     for (int k = 0; k < samples; ++k) {
       const double t = system.period() * k / samples;
       system.reference_state(t, z.get());
@@ -423,7 +428,7 @@ Eigen::MatrixXd start_coefficients(const system::PeriodicSystem& system, int har
       if (samples == 1)
         coefficients.row(0) = values;
       else
-        coefficients += fourier_weights(harmonics, system.period(), t) * values;
+        coefficients += fourier_weights(harmonics, system.period(), t, samples) * values;
     }
   }
   return coefficients;
@@ -725,7 +730,7 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Vec> r = system.make_state();
-  const int samples = std::max(sample_count(solution.harmonics()), 16);
+  const int samples = std::max(sample_count(system, solution.harmonics()), 16);
   double largest = 0.0;
   ranks.attempt([&] {
     for (int k = ranks.rank; k < samples; k += ranks.size) {
@@ -749,7 +754,7 @@ double harmonic_residual(const system::PeriodicSystem& system, const Trim& trim,
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Vec> r = system.make_state();
-  const int samples = sample_count(solution.harmonics());
+  const int samples = sample_count(system, solution.harmonics());
   Eigen::MatrixXd harmonics = Eigen::MatrixXd::Zero(system.size(), solution.coefficients().cols());
   ranks.attempt([&] {
     for (int k = ranks.rank; k < samples; k += ranks.size) {
@@ -797,10 +802,11 @@ double state_residual(const system::PeriodicSystem& system, const PeriodicSoluti
     const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
     if (unknown.role == system::UnknownRole::state ||
         unknown.role == system::UnknownRole::auxiliary)
-      least(i) = least_state * unknown.scale;
+      least(i) = (unknown.owner.kind == system::PartKind::medium ? least_medium : least_state) *
+                 unknown.scale;
   }
   const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
-  const int samples = 2 * std::max(sample_count(solution.harmonics()), 16);
+  const int samples = 2 * std::max(sample_count(system, solution.harmonics()), 16);
   const auto raise = [](std::vector<double>& values, const Eigen::VectorXd& by) {
     Eigen::Map<Eigen::VectorXd> all(values.data(), by.size());
     all = all.cwiseMax(by);

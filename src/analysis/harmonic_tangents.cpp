@@ -23,11 +23,18 @@ bool fills_up(const system::Unknown& unknown) { return unknown.quantity.empty();
 
 }  // namespace
 
-int sample_count(int harmonics) { return 4 * harmonics + 2; }
+int sample_count(const system::PeriodicSystem& system, int harmonics) {
+  const bool has_medium = std::any_of(
+      system.unknowns().begin(), system.unknowns().end(),
+      [](const system::Unknown& one) { return one.owner.kind == system::PartKind::medium; });
+  const int least = has_medium ? 6 * harmonics + 4 : 4 * harmonics + 2;
+  const int sectors = system.symmetry().sectors;
+  return (least + sectors - 1) / sectors * sectors;
+}
 
-Eigen::VectorXd fourier_weights(int harmonics, double period, double t) {
+Eigen::VectorXd fourier_weights(int harmonics, double period, double t, int samples) {
   Eigen::VectorXd weights = PeriodicSolution::basis(harmonics, period, t);
-  weights *= 2.0 / sample_count(harmonics);
+  weights *= 2.0 / samples;
   weights(0) *= 0.5;
   return weights;
 }
@@ -86,14 +93,14 @@ void HarmonicTangents::make_map(TangentPattern& whole) {
     pattern_.resize(size_, size_);
     pattern_.setFromTriplets(places.begin(), places.end());
   }
-  const int samples = sample_count(harmonics_);
+  const int samples = sample_count(system_, harmonics_);
   values_of_.resize(samples, width_);
   projection_.resize(width_, samples);
   to_coefficients_.resize(2 * width_ - 1, samples);
   for (int k = 0; k < samples; ++k) {
     const double t = period() * k / samples;
     values_of_.row(k) = PeriodicSolution::basis(harmonics_, period(), t);
-    projection_.col(k) = fourier_weights(harmonics_, period(), t);
+    projection_.col(k) = fourier_weights(harmonics_, period(), t, samples);
     for (int m = 1 - width_; m < width_; ++m)
       to_coefficients_(m + width_ - 1, k) =
           std::polar(1.0 / samples, -2.0 * std::numbers::pi * m * k / samples);
@@ -223,7 +230,7 @@ void HarmonicTangents::sample(const PeriodicSolution& solution) {
   const petsc::Handle<Vec> z_dot = system_.make_state();
   const petsc::Handle<Mat> jacobian = system_.make_jacobian();
   const petsc::Handle<Mat> mass = system_.make_mass();
-  const int samples = sample_count(harmonics_);
+  const int samples = sample_count(system_, harmonics_);
   std::vector<PetscInt> jacobian_places;
   std::vector<PetscInt> mass_places;
   // The samples of a place are next to each other in memory: some at a time are written.

@@ -14,12 +14,13 @@
 
 namespace samara::analysis {
 
-/// Samples of a period with which products of three factors, times the azimuth's own cosine, do not
-/// alias.
-int sample_count(int harmonics);
+/// Samples of a period, a multiple of the sectors of a symmetric rotor: with another number,
+/// aliasing breaks the symmetry of the solution. Products of three factors, times the azimuth's own
+/// cosine, do not alias; the equations of a medium, which are no polynomials, have more samples.
+int sample_count(const system::PeriodicSystem& system, int harmonics);
 
-/// Fourier weights of a sample at t: mean, then 2/N cos, 2/N sin (N samples, 2 H + 1 entries).
-Eigen::VectorXd fourier_weights(int harmonics, double period, double t);
+/// Fourier weights of a sample at t: mean, then 2/N cos, 2/N sin (N `samples`, 2 H + 1 entries).
+Eigen::VectorXd fourier_weights(int harmonics, double period, double t, int samples);
 
 /// The linear map from coefficients x to those of K(t) x(t) + M(t) x_dot(t). Coefficient c of
 /// unknown i has number i (2 H + 1) + c: mean, then cosine and sine of each harmonic. The load that

@@ -670,7 +670,8 @@ class Analysis {
     const double high = region_.high - margin();
     set_.reach = std::min(high, region_.decay);
     for (const Mode& mode : set_.modes)
-      if (!mode.resolved) set_.reach = std::min(set_.reach, std::abs(mode.exponent));
+      if (!mode.resolved && !is_of_medium(mode))
+        set_.reach = std::min(set_.reach, std::abs(mode.exponent));
     // The search and the refinement may differ in what lies at the edges, but no mode gets lost.
     const auto kept = std::count_if(set_.modes.begin(), set_.modes.end(), [&](const Mode& mode) {
       const double modulus = std::abs(mode.exponent);

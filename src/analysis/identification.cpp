@@ -275,6 +275,11 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set) {
 void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingMotion>& leading,
                 ModeSet& set, int sectors) {
   set.instances = count_instances(system.motions());
+  set.medium_states = static_cast<int>(std::count_if(
+      system.unknowns().begin(), system.unknowns().end(), [](const system::Unknown& unknown) {
+        return unknown.role == system::UnknownRole::state &&
+               unknown.owner.kind == system::PartKind::medium;
+      }));
   if (set.shapes.empty()) return;  // another rank has them
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   std::vector<Name> names;
@@ -326,8 +331,9 @@ void arrange_modes(ModeSet& set) {
   const std::vector<int> by_growth = ranks_of(decays, 0.0, same_size);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto key = [&](std::size_t m) {
-      return std::tuple(!set.modes[m].resolved, by_size[m], by_growth[m], set.modes[m].label,
-                        harmonic_key(m), std::abs(set.modes[m].exponent));
+      return std::tuple(!set.modes[m].resolved, is_of_medium(set.modes[m]), by_size[m],
+                        by_growth[m], set.modes[m].label, harmonic_key(m),
+                        std::abs(set.modes[m].exponent));
     };
     return key(a) < key(b);
   });

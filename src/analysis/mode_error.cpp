@@ -119,7 +119,9 @@ void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<doub
     mode.growth_error = std::max(mode.growth_error, several * spread.modulus);
 }
 
+/// The elements of a mesh describe motions; the states of a medium have no such error.
 void add_mesh_error(Mode& mode, const Eigen::Vector2d& relative) {
+  if (is_of_medium(mode)) return;
   mode.mesh_error = relative(0);
   mode.mesh_growth_error = relative(1) * std::abs(mode.exponent);
   mode.growth_error += mode.mesh_growth_error;

@@ -163,6 +163,7 @@ void Beam::place(Registry& registry) {
   const model::Beam& beam = *placed_.beam;
   placed_.points.assign(at(beam.point_count()), 0);
   placed_.masses.assign(beam.mass_nodes.size(), 0);
+  if (setting_.has_air) placed_.air.assign(at(beam.point_count()), 0);
   std::vector<int*> blocks;  // root to tip
   auto mass = placed_.masses.begin();
   auto node = beam.mass_nodes.begin();
@@ -175,7 +176,16 @@ void Beam::place(Registry& registry) {
   }
   blocks.push_back(&placed_.tip);
   if (setting_.end == BeamEnd::free) std::reverse(blocks.begin(), blocks.end());
-  for (int* first : blocks) *first = registry.add_block(setting_.rank);
+  // The air of a point is eliminated before the point: it adds entries to that point's block only.
+  const auto add_block = [&](int* first) {
+    const auto p = std::find_if(placed_.points.begin(), placed_.points.end(),
+                                [first](const int& point) { return &point == first; });
+    if (setting_.has_air && p != placed_.points.end())
+      placed_.air[static_cast<std::size_t>(p - placed_.points.begin())] =
+          registry.add_block(setting_.rank);
+    *first = registry.add_block(setting_.rank);
+  };
+  for (int* first : blocks) add_block(first);
   placed_.root = registry.add_shared(setting_.shared_rank, 6);
   placed_.root_port = registry.add_port(9);
 }

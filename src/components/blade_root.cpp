@@ -84,6 +84,13 @@ void BladeRoot::describe(Registry& registry, int reactions, int hub_port, int lo
   }
 }
 
+void BladeRoot::connect_pose(int hub_port) {
+  pose_.arguments = {port_values(hub_port, hub_pose_values),
+                     pitch_port_ < 0 ? zeros(2) : port_values(pitch_port_, 2)};
+  for (const Argument& argument : hinge_arguments(false)) pose_.arguments.push_back(argument);
+  pose_.provisions = {{pose_port_, 0}};
+}
+
 void BladeRoot::describe_channel(Registry& registry, model::HingeAxis axis, int angle) const {
   const char* names[] = {"FlapHinge", "LagHinge", "PitchHinge"};
   const char* ways[] = {"downwind", "against the turning", "toward feather"};

@@ -59,6 +59,11 @@ void RigidBodies::connect() {
   chain_.provisions = {{hub_port_, hub_motion}};
   foot_.arguments = {zeros(1)};
   if (has_top) foot_.provisions = {{setting_.tower->placed().root_port, 0}};
+  if (pose_port_ < 0) return;
+  pose_.arguments = {of_top(unknowns(top, 6)), unknowns(joints_, joint_unknowns),
+                     port_values(hub_port_, 9)};
+  pose_.provisions = {{pose_port_, 0}};
+  for (BladeRoot& root : roots_) root.connect_pose(pose_port_);
 }
 
 /// Sets the prescribed motions and the torques on the joints.
@@ -175,6 +180,40 @@ void RigidBodies::state(System& system) const {
   };
   system.template add<chain_arguments, chain_values>(chain_, rows_of);
   for (const BladeRoot& root : roots_) root.state_motion(system);
+  if (pose_port_ >= 0) state_poses(system);
+}
+
+/// The poses of hub and blade roots, which the wind needs.
+template <class System>
+void RigidBodies::state_poses(System& system) const {
+  const auto pose_of = [&]<class T>(const Eigen::Matrix<T, pose_arguments, 1>& x) {
+    ChainArguments<T> joints = ChainArguments<T>::Zero();
+    joints.template segment<joint_unknowns>(at_joints) = x.template segment<joint_unknowns>(6);
+    RigidTree::States<T> states;
+    set_joints<T>(system, joints, states);
+    elements::Pose<T> base;
+    if (setting_.tower != nullptr) {
+      const Vec3<T> top = x.template head<3>() + setting_.tower->placed().beam->tip.cast<T>();
+      const Mat3<T> C = math::direction_cosines<T>(x.template segment<3>(3));
+      const auto in_ground = [&](const Vec3<T>& foot) {
+        if constexpr (System::has_inputs)
+          return from_beam_order<T>(system.inputs().in_ground(foot));
+        else
+          return from_beam_order<T>(foot);
+      };
+      base.place = in_ground(top);
+      for (int i = 0; i < 3; ++i)  // t1 t2 t3 are the second, third and first axis of the beam
+        base.axes.col(i) = in_ground(Vec3<T>(C.row((i + 1) % 3).transpose()));
+    }
+    const elements::Pose<T> hub = tree_.pose_of<T>(elements::teeter_node, base, states);
+    const Vec3<T> velocity = hub.axes * Vec3<T>(x.template segment<3>(14));
+    const Vec3<T> apex(T(0), T(turbine_.chain.undersling), T(0));
+    Eigen::Matrix<T, hub_pose_values, 1> y;
+    y << hub.place + hub.axes * apex, hub.axes.col(0), hub.axes.col(1), velocity, x(18);
+    return y;
+  };
+  system.template add<pose_arguments, hub_pose_values>(pose_, pose_of);
+  for (const BladeRoot& root : roots_) root.state_pose(system);
 }
 
 template <class T>

@@ -32,6 +32,9 @@ void RigidBodies::place(Registry& registry) {
   hub_port_ = registry.add_port(9);
   load_port_ = registry.add_port(6);
   for (BladeRoot& root : roots_) root.place(registry, setting_.hinge_rank);
+  if (!turbine_.air) return;
+  pose_port_ = registry.add_port(hub_pose_values);
+  for (BladeRoot& root : roots_) root.place_pose(registry);
 }
 
 int RigidBodies::joint(int number) const { return joints_ + joint_unknowns * number; }

@@ -32,13 +32,15 @@ class RangeCheck : public Visitor {
     for (int& value : values) integer(field, value, {});
   }
 
-  void numbers(const Field& field, std::span<double> values, bool) override {
+  void numbers(const Field& field, std::span<double> values, bool,
+               std::span<const Word> words) override {
+    if (std::ranges::any_of(words, [](const Word& word) { return *word.is_given; })) return;
     for (std::size_t i = 0; i < values.size(); ++i)
       check(field, join_path(std::string(field.key), i), values[i]);
   }
 
   void number_list(const Field& field, const char*, std::vector<double>& values) override {
-    numbers(field, values, false);
+    numbers(field, values, false, {});
   }
 
   void pairs(const Field& field, const std::array<const char*, 2>& names,
@@ -50,6 +52,13 @@ class RangeCheck : public Visitor {
       if (i > 0 && !(pairs[i].first > pairs[i - 1].first))
         add(entry, std::string(names[0]) + " must be more than in the entry before");
     }
+  }
+
+  void table(const Field& field, std::span<const Column> columns) override {
+    for (const Column& column : columns)
+      for (std::size_t i = 0; i < column.values->size(); ++i)
+        check(Field(field.key, column.unit, field.range, ""), join_path(std::string(field.key), i),
+              (*column.values)[i]);
   }
 
   void matrix(const Field& field, Matrix6& matrix, std::array<bool, 6>*) override {

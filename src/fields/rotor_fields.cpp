@@ -1,5 +1,6 @@
 #include "rotor_fields.hpp"
 
+#include "air_fields.hpp"
 #include "beam_fields.hpp"
 
 namespace samara::fields {
@@ -302,6 +303,7 @@ void declare_blades(Visitor& fields, model::BladesDefinition& blades) {
                blades.actuator, [&](model::PitchActuatorDefinition& actuator) {
                  declare_actuator(fields, actuator);
                });
+  declare_airfoils(fields, blades);
 }
 
 }  // namespace samara::fields

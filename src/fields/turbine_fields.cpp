@@ -1,5 +1,6 @@
 #include "samara/fields/turbine_fields.hpp"
 
+#include "air_fields.hpp"
 #include "beam_fields.hpp"
 #include "rotor_fields.hpp"
 
@@ -278,6 +279,8 @@ void declare(Visitor& fields, model::TurbineDefinition& turbine) {
       Field("controller", "of the generator's speed, [below](#controller)").or_else("none"),
       turbine.controller,
       [&](model::ControllerDefinition& controller) { declare_controller(fields, controller); });
+  declare_wind(fields, turbine);
+  declare_aero(fields, turbine);
 }
 
 }  // namespace samara::fields

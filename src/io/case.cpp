@@ -9,6 +9,7 @@
 #include "samara/model/validation.hpp"
 #include "samara/simulation/scenario_fields.hpp"
 
+#include "case_polars.hpp"
 #include "case_version.hpp"
 #include "field_reader.hpp"
 #include "model_text.hpp"
@@ -58,7 +59,13 @@ bool check_version(const YamlNode& root, ErrorList& errors) {
   return true;
 }
 
-std::string setting_line(const std::string& setting) { return "# --set " + setting + "\n"; }
+/// The lines above the text of a case.
+std::string setting_lines(const Case& input) {
+  std::string lines;
+  for (const std::vector<std::string>* settings : {&input.settings, &input.polar_settings})
+    for (const std::string& setting : *settings) lines += "# --set " + setting + "\n";
+  return lines;
+}
 
 std::string read_file(const std::string& path) {
   std::error_code error;
@@ -79,9 +86,6 @@ Case parse_case(const std::string& path, const std::string& text,
   Case result;
   result.path = path;
   result.settings = settings;
-  for (const std::string& setting : settings) result.text += setting_line(setting);
-  result.text += text;
-
   ErrorList errors(path, settings);
   YamlNode root;
   try {
@@ -94,8 +98,12 @@ Case parse_case(const std::string& path, const std::string& text,
     throw InputError(path + ": the file is empty, expected a case (docs/case_file.md)");
   }
   if (root.kind == YamlNode::Kind::map) apply_settings(settings, root, errors);
-  if (check_version(root, errors)) read_scenario(root, result, errors);
+  if (check_version(root, errors)) {
+    result.polar_settings = embed_polars(path, root, errors);
+    read_scenario(root, result, errors);
+  }
   errors.throw_if_any();
+  result.text = setting_lines(result) + text;
   result.model_text = model_text_of(root);
   result.notes = errors.notes();
   return result;
@@ -103,11 +111,8 @@ Case parse_case(const std::string& path, const std::string& text,
 
 void require_valid(const Case& input, const std::vector<Fault>& faults) {
   if (faults.empty()) return;
-  // The text begins with the settings, one per line.
-  std::size_t begin = 0;
-  for (const std::string& setting : input.settings) begin += setting_line(setting).size();
   ErrorList errors(input.path, input.settings);
-  YamlNode root = parse_yaml(input.text.substr(begin));
+  YamlNode root = parse_yaml(input.text.substr(setting_lines(input).size()));
   apply_settings(input.settings, root, errors);
   errors.add(faults, root);
   errors.throw_if_any();

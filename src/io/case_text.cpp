@@ -18,7 +18,6 @@ namespace samara::io {
 namespace {
 
 using fields::Field;
-using fields::Unit;
 
 constexpr std::size_t comment_column = 44;
 constexpr std::size_t most_in_line = 100;
@@ -33,23 +32,11 @@ std::string quote(const std::string& text) {
   return quoted + "\"";
 }
 
-/// The shortest decimal in `unit` that reads back as the value in SI; if there is none because of
-/// round-off, the nearest one.
-std::string exact_in(const Unit& unit, double value) {
-  const double converted = unit.from_si(value);
-  if (unit.factor == unit.divisor) return exact(converted);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  constexpr int most_digits = 17;
-  std::array<char, 48> text{};
-  for (const double near :
-       {converted, std::nextafter(converted, infinity), std::nextafter(converted, -infinity)})
-    for (int digits = 1; digits <= most_digits; ++digits) {
-      const int size = std::snprintf(text.data(), text.size(), "%.*g", digits, near);
-      double read = 0.0;
-      std::from_chars(text.data(), text.data() + size, read);
-      if (unit.to_si(read) == value) return exact(read);
-    }
-  return exact(converted);
+/// True if YAML reads the text as itself without quotes.
+bool is_plain(const std::string& text) {
+  return text.find_first_not_of(
+             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789 ") ==
+         std::string::npos;
 }
 
 std::string in_brackets(const std::vector<std::string>& entries, char open, char close) {
@@ -159,7 +146,10 @@ class CaseWriter : public fields::Description {
   void integer(const Field& field, int& value, std::span<const fields::Word>) override {
     if (!field.zero_is_none || value != 0) add(field, std::to_string(value));
   }
-  void numbers(const Field& field, std::span<double> values, bool spread) override {
+  void numbers(const Field& field, std::span<double> values, bool spread,
+               std::span<const fields::Word> words) override {
+    for (const fields::Word& word : words)
+      if (*word.is_given) return add(field, word.text);
     std::vector<std::string> texts;
     for (const double value : values) texts.push_back(exact_in(field.unit, value));
     const bool is_one =
@@ -167,7 +157,7 @@ class CaseWriter : public fields::Description {
     add(field, is_one ? texts[0] : in_brackets(texts, '[', ']'));
   }
   void number_list(const Field& field, const char*, std::vector<double>& values) override {
-    if (!values.empty()) numbers(field, values, false);
+    if (!values.empty()) numbers(field, values, false, {});
   }
   void name_list(const Field& field, std::vector<std::string>& names) override {
     if (!names.empty()) add(field, in_brackets(names, '[', ']'));
@@ -178,11 +168,18 @@ class CaseWriter : public fields::Description {
     for (const auto& [x, y] : pairs) texts.push_back("[" + exact(x) + ", " + exact(y) + "]");
     if (!texts.empty()) add(field, in_brackets(texts, '[', ']'));
   }
+  void table(const Field& field, std::span<const fields::Column> columns) override {
+    std::vector<std::string> rows(columns[0].values->size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      std::vector<std::string> row;
+      for (const fields::Column& column : columns)
+        row.push_back(exact_in(column.unit, column.values->at(i)));
+      rows[i] = in_brackets(row, '[', ']');
+    }
+    if (!rows.empty()) add_rows(field, std::move(rows));
+  }
   bool text(const Field& field, const char*, std::string& value) override {
-    const bool is_word = value.find_first_not_of(
-                             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789 ") ==
-                         std::string::npos;
-    if (!value.empty()) add(field, is_word && field.key != "title" ? value : quote(value));
+    if (!value.empty()) add(field, is_plain(value) && field.key != "title" ? value : quote(value));
     return false;
   }
   bool choice(const Field& field, std::span<const char* const> words, std::size_t& place) override {
@@ -249,6 +246,21 @@ class CaseWriter : public fields::Description {
       entry.key = std::to_string(k);
       entry.entries = within(std::string(field.key) + "[]", [&] { entries.declare(k); });
       if (!entry.entries.empty()) all.push_back(std::move(entry));
+    }
+    if (!all.empty()) add_entries(field, std::move(all), false);
+  }
+  void named(const Field& field, const fields::Named& entries) override {
+    if (describes()) {
+      within(std::string(field.key) + "[]", [&] { entries.declare(""); });
+      return;
+    }
+    std::vector<Entry> all;
+    for (const std::string& name : entries.names()) {
+      Entry entry;
+      entry.key = is_plain(name) ? name : quote(name);
+      entry.entries = within(std::string(field.key) + "[]", [&] { entries.declare(name); });
+      if (entry.entries.empty()) entry.value = "{}";
+      all.push_back(std::move(entry));
     }
     if (!all.empty()) add_entries(field, std::move(all), false);
   }
@@ -319,6 +331,23 @@ std::string exact(double value) {
   std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   return {buffer.data(), end.ptr};
+}
+
+std::string exact_in(const fields::Unit& unit, double value) {
+  const double converted = unit.from_si(value);
+  if (unit.factor == unit.divisor) return exact(converted);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr int most_digits = 17;
+  std::array<char, 48> text{};
+  for (const double near :
+       {converted, std::nextafter(converted, infinity), std::nextafter(converted, -infinity)})
+    for (int digits = 1; digits <= most_digits; ++digits) {
+      const int size = std::snprintf(text.data(), text.size(), "%.*g", digits, near);
+      double read = 0.0;
+      std::from_chars(text.data(), text.data() + size, read);
+      if (unit.to_si(read) == value) return exact(read);
+    }
+  return exact(converted);
 }
 
 std::string write_case_text(const model::TurbineDefinition& turbine, const CaseComments& comments) {

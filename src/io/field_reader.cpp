@@ -75,11 +75,16 @@ void FieldReader::integers(const Field& field, std::span<int> values) {
   }
 }
 
-void FieldReader::numbers(const Field& field, std::span<double> values, bool spread) {
+void FieldReader::numbers(const Field& field, std::span<double> values, bool spread,
+                          std::span<const Word> words) {
   const YamlNode* entry = find(field);
-  if (entry == nullptr) return;
+  if (entry == nullptr || read_words(*entry, words)) return;
   const std::string where = map_->where(field.key);
   std::vector<double> given(values.size());
+  if (!words.empty() && entry->kind != YamlNode::Kind::list)
+    return expected(
+        field.key,
+        fields::join_words("a list of " + std::to_string(values.size()) + " numbers", words));
   if (spread && entry->kind != YamlNode::Kind::list) {
     std::vector<std::string> others{"a list of " + std::to_string(values.size())};
     if (mapping_words_ != nullptr) others.emplace_back(mapping_words_);
@@ -112,6 +117,28 @@ void FieldReader::pairs(const Field& field, const std::array<const char*, 2>& na
   const std::size_t errors_before = map_->errors().size();
   read_pairs(*map_, field.key, *entry, names, pairs);
   if (map_->errors().size() > errors_before) pairs.clear();
+}
+
+void FieldReader::table(const Field& field, std::span<const fields::Column> columns) {
+  const YamlNode* node = find(field);
+  if (node == nullptr) return;
+  if (node->kind != YamlNode::Kind::list || node->children.empty()) {
+    std::string names;
+    for (const fields::Column& column : columns)
+      names += (names.empty() ? "[" : ", ") + std::string(column.name);
+    return expected(field.key, "a list of rows " + names + "]");
+  }
+  const std::string where = map_->where(field.key);
+  const std::size_t errors_before = map_->errors().size();
+  std::vector<double> row(columns.size());
+  for (const fields::Column& column : columns) column.values->clear();
+  for (std::size_t i = 0; i < node->children.size(); ++i) {
+    read_numbers(node->children[i], fields::join_path(where, i), field.range, row, map_->errors());
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      columns[k].values->push_back(columns[k].unit.to_si(row[k]));
+  }
+  if (map_->errors().size() == errors_before) return;
+  for (const fields::Column& column : columns) column.values->clear();
 }
 
 bool FieldReader::text(const Field& field, const char* expected, std::string& value) {
@@ -253,8 +280,13 @@ void FieldReader::named(const Field& field, const fields::Named& entries) {
   if (node == nullptr) return;
   if (node->kind != YamlNode::Kind::map) return expected(field.key, entries.words);
   const std::string where = map_->where(field.key);
-  for (const YamlNode& entry : node->children)
-    read_entries(entry, fields::join_path(where, entry.key), [&] { entries.declare(entry.key); });
+  MapReader(*node, where, map_->errors());  // reports keys that are given twice
+  for (const YamlNode& entry : node->children) {
+    if (entry.key.empty())
+      map_->errors().add(entry.place, where, "a name is empty");
+    else
+      read_entries(entry, fields::join_path(where, entry.key), [&] { entries.declare(entry.key); });
+  }
 }
 
 void FieldReader::two_ways(const Field& field, const char* words,

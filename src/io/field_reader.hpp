@@ -21,12 +21,16 @@ class FieldReader : public fields::Visitor {
   void integer(const fields::Field& field, int& value,
                std::span<const fields::Word> words) override;
   void integers(const fields::Field& field, std::span<int> values) override;
-  void numbers(const fields::Field& field, std::span<double> values, bool spread) override;
+  using Visitor::numbers;
+  void numbers(const fields::Field& field, std::span<double> values, bool spread,
+               std::span<const fields::Word> words) override;
   void number_list(const fields::Field& field, const char* items,
                    std::vector<double>& values) override;
   void name_list(const fields::Field& field, std::vector<std::string>& names) override;
   void pairs(const fields::Field& field, const std::array<const char*, 2>& names,
              std::vector<std::pair<double, double>>& pairs) override;
+  using Visitor::table;
+  void table(const fields::Field& field, std::span<const fields::Column> columns) override;
   bool text(const fields::Field& field, const char* expected, std::string& value) override;
   bool choice(const fields::Field& field, std::span<const char* const> words,
               std::size_t& place) override;

@@ -26,8 +26,24 @@ std::string canonical(const YamlNode& node) {
   return text.str();
 }
 
+bool is_polar_table(const std::string& where) {
+  return where.starts_with("blades.airfoils.") && where.ends_with(".table");
+}
+
+/// A row of a table, "-180, 0, 0.5, 0".
+std::string row_text(const YamlNode& row) {
+  std::string text;
+  for (const YamlNode& child : row.children) text += (text.empty() ? "" : ", ") + canonical(child);
+  return text;
+}
+
 void add_lines(const YamlNode& node, const std::string& where,
                std::map<std::string, std::string>& lines) {
+  if (node.kind == YamlNode::Kind::list && is_polar_table(where)) {
+    for (std::size_t i = 0; i < node.children.size(); ++i)
+      lines[join_path(where, i)] = row_text(node.children[i]);
+    return;
+  }
   for (std::size_t i = 0; i < node.children.size(); ++i) {
     const YamlNode& child = node.children[i];
     const std::string place =

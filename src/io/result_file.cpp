@@ -296,7 +296,8 @@ ResultFile::ResultFile(const std::string& path, const Case& input, const RunReco
   file.set_attribute("/", "time", now_in_utc());
   file.write("/case", input.text,
              {"", no_frame, "the case as run; comments at its top list the --set arguments"});
-  file.set_attribute("/case", "settings", static_cast<int>(input.settings.size()));
+  file.set_attribute("/case", "settings",
+                     static_cast<int>(input.settings.size() + input.polar_settings.size()));
 }
 
 ResultFile::~ResultFile() = default;

@@ -99,14 +99,18 @@ class SchemaWriter : public fields::Description {
     add(field, std::move(schema));
   }
 
-  void numbers(const Field& field, std::span<double> values, bool spread) override {
-    Json schema = list_schema(number_schema(field.range), values.size(), values.size());
+  void numbers(const Field& field, std::span<double> values, bool spread,
+               std::span<const fields::Word> words) override {
+    Json schema =
+        with_words(list_schema(number_schema(field.range), values.size(), values.size()), words);
     if (spread) schema = either(number_schema(field.range), std::move(schema));
     Json fallback = Json::array();
     for (const double value : values) fallback.push_back(value_of(field.unit.from_si(value)));
     const bool is_uniform =
         std::ranges::all_of(fallback, [&](const Json& one) { return one == fallback[0]; });
     schema["default"] = spread && is_uniform ? fallback[0] : fallback;
+    for (const fields::Word& word : words)
+      if (*word.is_given) schema["default"] = word.text;
     add(field, std::move(schema));
   }
 
@@ -126,6 +130,11 @@ class SchemaWriter : public fields::Description {
   void pairs(const Field& field, const std::array<const char*, 2>&,
              std::vector<std::pair<double, double>>&) override {
     add(field, list_schema(list_schema({{"type", "number"}}, 2, 2), 1, 0));
+  }
+
+  void table(const Field& field, std::span<const fields::Column> columns) override {
+    add(field,
+        list_schema(list_schema({{"type", "number"}}, columns.size(), columns.size()), 1, 0));
   }
 
   bool text(const Field& field, const char*, std::string& value) override {

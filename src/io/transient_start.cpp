@@ -14,9 +14,10 @@ namespace {
 
 /// Keys in which a transient may differ from the result that it starts from: loads on the turbine,
 /// and motions. Motions are compared at the instant of the start.
-constexpr std::array<std::string_view, 8> acting_keys{
+constexpr std::array<std::string_view, 9> acting_keys{
     "gravity",     "loads",       "shaft.azimuth_deg", "shaft.generator.torque",
-    "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each.*.pitch_deg"};
+    "shaft.rotor", "shaft.speed", "blades.pitch_deg",  "blades.each.*.pitch_deg",
+    "wind"};
 
 simulation::TransientState last_state(const std::string& path, const TimeSeriesReader& series,
                                       const Case& before, const turbine::TurbineSystem& system,

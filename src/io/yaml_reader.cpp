@@ -79,6 +79,12 @@ std::string suggest_number(const YamlNode& node) {
   return {};
 }
 
+/// A setting may state a whole polar.
+std::string shorten(const std::string& setting) {
+  constexpr std::size_t most = 200;
+  return setting.size() > most ? setting.substr(0, most) + "..." : setting;
+}
+
 std::string list_words(const std::vector<std::string>& words, const char* last_link) {
   std::string list;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -146,7 +152,7 @@ std::string ErrorList::compose(const Place& place, const std::string& where,
   std::string subject = where;
   if (place.setting >= 0) {
     const std::string& setting = settings_[static_cast<std::size_t>(place.setting)];
-    message = "--set " + setting + ": ";
+    message = "--set " + shorten(setting) + ": ";
     if (to_setting_path(where) == setting.substr(0, setting.find('='))) subject.clear();
   } else {
     message = path_ + ":";

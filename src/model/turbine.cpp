@@ -6,6 +6,7 @@
 
 #include "samara/base/error.hpp"
 #include "samara/math/rotation.hpp"
+#include "samara/model/air.hpp"
 #include "samara/model/reference_line.hpp"
 
 namespace samara::model {
@@ -274,6 +275,7 @@ Turbine build_turbine(const TurbineDefinition& given) {
     if (hinge->free) ++turbine.degrees_of_freedom;
   for (const BladeRoot& root : turbine.roots)
     turbine.degrees_of_freedom += static_cast<int>(root.hinges.size());
+  if (definition.aero) turbine.air = build_air(definition, turbine);
   for (const MassDamper& damper : turbine.mass_dampers)
     turbine.degrees_of_freedom += static_cast<int>(damper.definition.axes.size());
   return turbine;

@@ -7,6 +7,8 @@
 
 #include "samara/base/format.hpp"
 
+#include "air_validation.hpp"
+
 namespace samara::model {
 namespace {
 
@@ -44,6 +46,8 @@ class Validation {
     for (std::size_t i = 0; i < turbine_.loads.size(); ++i) check_load(i);
     for (std::size_t i = 0; i < turbine_.mass_dampers.size(); ++i) check_mass_damper(i);
     if (turbine_.controller) check_controller(*turbine_.controller);
+    const std::vector<Fault> of_air = find_air_faults(turbine_);
+    faults_.insert(faults_.end(), of_air.begin(), of_air.end());
     return faults_;
   }
 
@@ -169,10 +173,10 @@ class Validation {
       add("controller.pitch.integral",
           "torque and pitch cannot both have an integral: both would hold the speed, and their "
           "shares of the torque would be undetermined");
-    if (controller.pitch && shaft.rotor_pitch_slope == 0.0)
+    if (controller.pitch && shaft.rotor_pitch_slope == 0.0 && !turbine_.aero)
       add("controller.pitch",
           "the torque of the rotor does not depend on the pitch; hint: give "
-          "shaft.rotor.torque_pitch_slope in place of the aerodynamics",
+          "wind and blades.aero_sections, or shaft.rotor.torque_pitch_slope in their place",
           {"shaft.rotor.torque_pitch_slope"});
   }
 
@@ -322,7 +326,7 @@ class Validation {
 std::vector<Fault> find_notes(const TurbineDefinition& turbine) {
   const ShaftDefinition& shaft = turbine.shaft;
   const TorqueLaw& law = shaft.generator.law;
-  std::vector<Fault> notes;
+  std::vector<Fault> notes = find_air_notes(turbine);
   const auto check_rest = [&notes](const std::string& field, const TorqueLaw& acting) {
     if (acting.table.size() < 2 || acting.covers(0.0)) return;
     notes.push_back({field + ".torque_table", "the table reaches from " +

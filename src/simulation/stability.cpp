@@ -61,9 +61,10 @@ void sort_modes(const ModeSet& set, StabilityAssessment& result) {
       result.growing_alone.push_back(m);
     else if (motion == Motion::growing)
       result.growing.push_back(m);
-    else if (motion == Motion::decaying)
+    else if (motion == Motion::decaying) {
       result.decaying.push_back(m);
-    else
+      if (is_of_medium(mode)) ++result.of_medium;
+    } else
       ++result.undamped;
   }
   const auto grows_faster = [&set](std::size_t a, std::size_t b) {
@@ -83,13 +84,15 @@ bool result_of_search_is_known(const ModeSet& set) {
 }
 
 /// True if all of the first modes are known: no mode that is not resolved can be among them.
-/// Deflated decays are known to decay.
+/// Deflated decays are known to decay; as many as a medium has states may be its own. Modes of a
+/// medium, which may be hundreds of slow decays, do not count.
 bool knows_first_modes(const ModeSet& set) {
   if (set.searched) return result_of_search_is_known(set);
-  std::size_t below = static_cast<std::size_t>(set.deflated) / 2;
+  std::size_t below = static_cast<std::size_t>(std::max(set.deflated - set.medium_states, 0)) / 2;
   std::size_t others = 0;
   for (const Mode& mode : set.modes)
-    ++(mode.resolved && std::abs(mode.exponent) <= set.reach ? below : others);
+    if (!is_of_medium(mode))
+      ++(mode.resolved && std::abs(mode.exponent) <= set.reach ? below : others);
   return below >= first_modes || others == 0;
 }
 
@@ -117,7 +120,7 @@ StabilityAssessment assess_stability(const ModeSet& set) {
   sort_modes(set, result);
   result.reach = set.reach;
   for (const Mode& mode : set.modes)
-    if (mode.resolved && total_error(mode) > marked_error &&
+    if (mode.resolved && !is_of_medium(mode) && total_error(mode) > marked_error &&
         motion_of(mode, set.rotor_speed) != Motion::rigid_body)
       result.accurate_reach = std::min(result.accurate_reach, std::abs(mode.exponent));
   if (!knows_first_modes(set))

@@ -127,16 +127,20 @@ analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem&
 
 std::string roughness(const analysis::Trim& trim) {
   if (trim.imbalance() <= rough_imbalance) return "";
-  const std::string part = general(trim.imbalance(), 2) + " of the largest load";
+  const bool is_of_states = trim.state_residual >= trim.imbalance();
+  const std::string part = is_of_states
+                               ? general(trim.state_residual, 2) + " of the terms of its equations"
+                               : general(trim.imbalance(), 2) + " of the largest load";
   const std::string bound = " (more than " + general(rough_imbalance, 1) + ")";
+  const std::string what =
+      is_of_states ? "a state or auxiliary is out of balance by " : "loads are out of balance by ";
   if (trim.method == analysis::TrimMethod::shooting)
-    return "loads are out of balance by " + part + bound + "; hint: more trim.steps";
+    return what + part + bound + "; hint: more trim.steps";
   if (std::isnan(trim.harmonic_residual))
-    return "loads are out of balance by " + part + bound +
-           "; hint: more trim.harmonics, or a smaller trim.tolerance";
-  const bool is_newton =
-      trim.harmonic_residual > 0.5 * std::max(trim.residual, trim.residual_between);
-  return "loads are out of balance by " + part + bound +
+    return what + part + bound + "; hint: more trim.harmonics, or a smaller trim.tolerance";
+  const bool is_newton = !is_of_states && trim.harmonic_residual >
+                                              0.5 * std::max(trim.residual, trim.residual_between);
+  return what + part + bound +
          (is_newton ? "; hint: a smaller trim.tolerance" : "; hint: more trim.harmonics");
 }
 

@@ -35,6 +35,7 @@ BeamSetting blade_setting(const model::Turbine& turbine, std::size_t k) {
   blade.rank = blade_rank;
   blade.shared_rank = shared_rank;
   blade.speed = turbine.speed;
+  blade.has_air = turbine.air.has_value();
   blade.root_moves = turbine.has_tower || chain.yaw.free || chain.teeter.free ||
                      chain.torsion.free || chain.generator.free || !turbine.roots[k].hinges.empty();
   return blade;
@@ -109,6 +110,10 @@ void TurbineEquations::make_components() {
   }
   components_.push_back(bodies_.get());
   for (const auto& beam : beams_) components_.push_back(beam.get());
+  for (std::size_t k = 0; turbine_.air && k < turbine_.blades.size(); ++k) {
+    airs_.push_back(std::make_unique<components::BladeAir>(turbine_, k, *beams_[k]));
+    components_.push_back(airs_.back().get());
+  }
   for (const model::MassDamper& damper : turbine_.mass_dampers) {
     const bool is_on_blade = damper.blade >= 0;
     components::MassDamperSetting setting;
@@ -166,6 +171,10 @@ void TurbineEquations::describe(components::Registry& registry) {
   for (const auto& actuator : actuators_) actuator->describe(registry);
   for (const auto& beam : beams_) beam->describe(registry);
   bodies_->describe(registry);
+  for (std::size_t k = 0; k < airs_.size(); ++k) {
+    airs_[k]->tie(bodies_->pose_port(), bodies_->roots()[k].pose_port());
+    airs_[k]->describe(registry);
+  }
   for (const auto& damper : mass_dampers_) {
     damper->set_yaw(layout_.yaw());
     damper->describe(registry);
@@ -207,6 +216,20 @@ void TurbineEquations::evaluate(double t, const std::vector<double>& z,
                                 components::Tangents& tangents) const {
   tangents.start(t, z, z_dot);
   for (const components::Component* component : components_) component->add_to(tangents);
+}
+
+void TurbineEquations::settle_air(double t, std::vector<double>& z) const {
+  if (airs_.empty()) return;
+  const std::vector<double> rates(z.size(), 0.0);
+  std::vector<double> unused(z.size(), 0.0);  // only the ports count
+  const TurbineInputs<double> inputs;
+  Residual<double> residual(t, z, rates, inputs, declarations_.port_sizes, unused);
+  if (controller_) controller_->add_to(residual);
+  for (const auto& actuator : actuators_) actuator->add_to(residual);
+  bodies_->add_to(residual);
+  std::vector<double> settled = z;
+  for (const auto& air : airs_) air->settle(residual, settled);
+  z = settled;
 }
 
 template <class T>

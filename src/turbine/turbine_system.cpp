@@ -341,6 +341,7 @@ void TurbineSystem::reference_state(double t, Vec z) const {
       if (is_joint(i)) values[i + 1] += r[i];  // its speed
     }
   }
+  assembly.equations.settle_air(t, values);
   assembly.write_own(values, z);
 }
 
@@ -351,6 +352,7 @@ std::unique_ptr<system::PeriodicSystem> TurbineSystem::unloaded() const {
   bare.chain.rotor_torque = {};
   bare.tower.loads.clear();
   for (model::Beam& blade : bare.blades) blade.loads.clear();
+  if (bare.air) bare.air->rotor.acting = 0.0;
   return std::make_unique<TurbineSystem>(bare, comm(), assembly_->equations.plan().get());
 }
 

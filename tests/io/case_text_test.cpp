@@ -91,9 +91,46 @@ blades:
   pitch_link_delta3_deg: 4
   each: {2: {pitch_deg: 0.4, mass_factor: 1.01, hinges: {flap: {damping: 0}}}}
   pitch_actuator: {frequency: 6, damping_ratio: 0.7, rate_limit_deg: 8, lowest_deg: -3}
+  airfoils:
+    circle:
+      polars: [{table: [[-180, 0, 0.5, 0], [180, 0, 0.5, 0]]}]
+      thickness: 1
+    FFA-W3 24+:
+      polars:
+        - {reynolds: 7.5e5, table: [[-180, 0, 0.1, 0], [-17.3, -1, 0.02, 0.1], [180, 0, 0.1, 0]]}
+        - reynolds: 3e6
+          table: [[-180, 0, 0.1, 0], [9.7, 1.1, 0.013, -0.1], [33.3, 1, 0.7, 0], [180, 0, 0.1, 0]]
+      lift_slope: 6.31
+  aero_sections:
+    - {at: 0.1, chord: 1.3, twist_deg: 13.7, airfoil: circle}
+    - {at: 0.9, chord: 0.3, twist_deg: -0.7, airfoil: FFA-W3 24+, center: [0.01, -0.02]}
 controller:
   speed_filter: 1.5
   pitch: {proportional: 0.02, integral: 0.008, gain_schedule_deg: 6.3}
+wind:
+  speed: 11.4
+  height: 20.9
+  shear: {power: 0.143, left: -0.1, up: 0.07, length: 20.2}
+  direction_deg: 7.7
+  veer_deg: 0.0123
+  upflow_deg: 8.1
+  density: 1.1
+aero:
+  induction: axial
+  inflow: equilibrium
+  tau1: 14.7
+  closure: load
+  thrust: buhl_f
+  tip_loss: false
+  hub_loss: false
+  axial_drag: false
+  tangential_drag: false
+  skew: 0.7
+  airfoil_dynamics: oye
+  wake_constants: [0.3, 0.7, 0.14, 0.53]
+  T_p: 1.5
+  T_f: 6
+  cut_out_deg: 47.3
 tuned_mass_dampers:
   - {on: nacelle, mass: 20, position: [0, 1.5, 2], side_side: {stiffness: 700, damping: 7}}
   - {on: blade 2, at: 0.8, mass: 1, lead_lag: {stiffness: 7000, stops: {displacement: 0.1, stiffness: 5e4}}}
@@ -113,6 +150,30 @@ BOOST_AUTO_TEST_SUITE(case_texts)
 
 BOOST_AUTO_TEST_CASE(every_key_comes_back) {
   check_round_trip(parse_case("everything", everything, {}).turbine, "everything");
+}
+
+BOOST_AUTO_TEST_CASE(every_choice_of_wind_and_air_comes_back) {
+  using Profile = model::WindDefinition::Profile;
+  model::TurbineDefinition turbine = parse_case("everything", everything, {}).turbine;
+  turbine.wind->exponent = 0.0;  // a power law all the same
+  check_round_trip(turbine, "exponent 0");
+  turbine.wind->profile = Profile::logarithmic;
+  turbine.wind->roughness = 0.03;
+  check_round_trip(turbine, "roughness");
+  turbine.wind = model::WindDefinition{.speed = 0.0};
+  check_round_trip(turbine, "still air");
+  turbine.aero.emplace();
+  BOOST_TEST(write_case_text(turbine, {}).find("aero: {}") != std::string::npos);
+  check_round_trip(turbine, "the default models");
+  turbine.aero->skew = 0.0;
+  turbine.aero->dynamics = model::AirfoilDynamics::static_polar;
+  check_round_trip(turbine, "no skewed wake");
+  turbine.aero.reset();
+  BOOST_TEST(write_case_text(turbine, {}).find("aero: none") != std::string::npos);
+  check_round_trip(turbine, "no models");
+  turbine.wind.reset();
+  BOOST_TEST(write_case_text(turbine, {}).find("aero:") == std::string::npos);
+  check_round_trip(turbine, "no wind");
 }
 
 BOOST_AUTO_TEST_CASE(inputs_come_back) {
@@ -136,6 +197,14 @@ BOOST_AUTO_TEST_CASE(angles_and_speeds_come_back_to_the_last_digit) {
     turbine.shaft.tilt = draw();
     turbine.blades.precone = draw();
     turbine.blades.beam.sections[0].twist = draw();
+    turbine.blades.aero_sections[1].twist = draw();
+    turbine.blades.airfoils["circle"].polars[0].angles = {-fields::deg.to_si(180.0), draw(),
+                                                          fields::deg.to_si(180.0)};
+    for (auto values : {&model::PolarDefinition::lift, &model::PolarDefinition::drag,
+                        &model::PolarDefinition::moment})
+      (turbine.blades.airfoils["circle"].polars[0].*values) = {0.1, draw(), 0.1};
+    turbine.wind->direction = draw();
+    turbine.wind->veer = fields::deg.to_si(1e-3 * in_file(random));
     turbine.gravity = std::abs(draw()) * 1e-7;
     turbine.shaft.speed = fields::rpm.to_si(std::abs(in_file(random)));
     turbine.controller->set_point = turbine.shaft.generator_speed();

@@ -49,6 +49,11 @@ struct Mode {
   double kinetic_energy = 0.0;  ///< mean, of the shape as it is scaled [J]
 };
 
+/// True for a mode of the states of a medium: exponents of the air around a part.
+inline bool is_of_medium(const Mode& mode) {
+  return mode.state && mode.state->kind == system::PartKind::medium;
+}
+
 /// Error of an exponent, relative to its modulus.
 inline double total_error(const Mode& mode) {
   return mode.step_error + mode.mesh_error + mode.round_off_error;
@@ -82,13 +87,15 @@ struct ModeSet {
   bool conservative = false;   ///< multipliers should come in pairs mu, 1/mu*
   int states = 0;              ///< number of exponents; both of a pair count; 0: not counted
   int found = 0;               ///< number of these that belong to `modes`
+  int medium_states = 0;       ///< number of exponents that first-order states of a medium add
   /// Number of exponents that decay below round-off within the integration: their values are not
   /// known, and `modes` does not contain them. All of them decay at `deflated_rate` [1/s] or
   /// faster.
   int deflated = 0;
   double deflated_rate = std::numeric_limits<double>::infinity();
-  /// Smallest modulus of an exponent that is not resolved [rad/s], but not more than the largest
-  /// modulus that the time step resolves. All modes below it are known, except deflated ones.
+  /// Smallest modulus of an exponent that is not resolved and does not belong to a medium [rad/s],
+  /// but not more than the largest modulus that the time step resolves. All modes below it are
+  /// known, except deflated ones.
   double reach = std::numeric_limits<double>::infinity();
   /// Set where not all modes were searched.
   std::optional<SearchedRegion> searched;

@@ -46,6 +46,7 @@ struct BeamSetting {
   int shared_rank = 0;                              ///< elimination rank of the root's reactions
   double speed = 0.0;       ///< rotor speed, which prescribed loads may follow [rad/s]
   bool root_moves = false;  ///< other than by a prescribed motion
+  bool has_air = false;     ///< each point has a block for the unknowns of the air
 };
 
 /// Places of the unknowns of a beam.
@@ -53,6 +54,7 @@ struct PlacedBeam {
   const model::Beam* beam = nullptr;
   std::vector<int> points;  ///< first unknown of each point
   std::vector<int> masses;  ///< first unknown of each mass node
+  std::vector<int> air;     ///< first unknown of the air at each point; empty: none
   int tip = 0;
   int root = 0;       ///< first of F_hat_0, M_hat_0
   int root_port = 0;  ///< motion of the root and gravity there: v_a, omega_a, g

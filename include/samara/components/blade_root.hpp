@@ -12,6 +12,10 @@
 
 namespace samara::components {
 
+/// Values of the port of the hub's pose: place of the apex, h1, h2; velocity of the apex; angular
+/// velocity about h2. Components in the ground.
+inline constexpr int hub_pose_values = 13;
+
 /// "flap hinge", "lag hinge", "pitch hinge"
 const char* hinge_name(model::HingeAxis axis);
 
@@ -24,6 +28,11 @@ class BladeRoot {
   /// `root`: first of the root's reactions. Ports: motion of the hub, load on the hub, motion of
   /// the root.
   void describe(Registry& registry, int root, int hub_port, int load_port, int root_port);
+  /// Adds the port of the root's pose: its place, then b1 and b2 of the root in the ground's axes.
+  void place_pose(Registry& registry) { pose_port_ = registry.add_port(9); }
+  int pose_port() const { return pose_port_; }
+  /// `hub_port`: place of the apex, then h1 and h2.
+  void connect_pose(int hub_port);
   bool is_conservative() const;
 
   /// First of q, U of each free hinge.
@@ -41,6 +50,9 @@ class BladeRoot {
   /// States the motion of the root.
   template <class System>
   void state_motion(System& system) const;
+  /// States the pose of the root.
+  template <class System>
+  void state_pose(System& system) const;
 
  private:
   static constexpr int most_hinges = 3;
@@ -49,6 +61,8 @@ class BladeRoot {
   static constexpr int load_values = 6 + 2 * most_hinges;  ///< load on the hub; rows
   /// Motion of the hub; pitch and its rate; q, U.
   static constexpr int motion_arguments = 11 + 2 * most_hinges;
+  /// Pose and motion of the hub; pitch and its rate; q, U.
+  static constexpr int pose_arguments = hub_pose_values + 2 + 2 * most_hinges;
 
   /// Rotation of a link.
   template <class T>
@@ -73,8 +87,10 @@ class BladeRoot {
   std::size_t k_;
   int first_ = 0;
   int pitch_port_ = -1;
+  int pose_port_ = -1;
   Connections load_;
   Connections motion_;
+  Connections pose_;
 };
 
 /// Sum of the prescribed motion, the pitch, the hinge and the pitch link.
@@ -208,6 +224,28 @@ void BladeRoot::state_motion(System& system) const {
     return motion;
   };
   system.template add<motion_arguments, 9>(motion_, motion_of);
+}
+
+template <class System>
+void BladeRoot::state_pose(System& system) const {
+  const auto pose_of = [&]<class T>(const Eigen::Matrix<T, pose_arguments, 1>& x) {
+    const Eigen::Matrix<T, 2 + 2 * most_hinges, 1> angles = x.template tail<2 + 2 * most_hinges>();
+    Vec3<T> place = x.template head<3>();
+    Mat3<T> axes;
+    axes.col(0) = x.template segment<3>(3);
+    axes.col(1) = x.template segment<3>(6);
+    axes.col(2) = math::cross(Vec3<T>(axes.col(0)), Vec3<T>(axes.col(1)));
+    for (const model::RootLink& link : root().links) {
+      if (!link.arm.isZero(0.0)) place += axes * link.arm.template cast<T>();
+      if (!link.axes.isIdentity(0.0)) axes = (axes * link.axes.template cast<T>()).eval();
+      if (const Turn<T> turn = turn_of<T>(system, link, angles); turn.moves)
+        axes = (axes * math::turn_about<T>(link.axis, turn.angle)).eval();
+    }
+    Eigen::Matrix<T, 9, 1> pose;
+    pose << place, axes.col(0), axes.col(1);
+    return pose;
+  };
+  system.template add<pose_arguments, 9>(pose_, pose_of);
 }
 
 }  // namespace samara::components

@@ -27,6 +27,12 @@ struct TurbineInputs {
            (math::turn_about<T>(Vector3::UnitZ(), base_turn(1)).transpose() *
             (math::turn_about<T>(Vector3::UnitY(), base_turn(0)).transpose() * ground));
   }
+  /// The reverse of at_foot.
+  Vec3<T> in_ground(const Vec3<T>& foot) const {
+    return math::turn_about<T>(Vector3::UnitY(), base_turn(0)) *
+           (math::turn_about<T>(Vector3::UnitZ(), base_turn(1)) *
+            (math::turn_about<T>(Vector3::UnitX(), base_turn(2)) * foot));
+  }
   Vec3<T> up() const { return at_foot(Vec3<T>::UnitX()); }
 };
 

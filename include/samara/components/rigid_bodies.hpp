@@ -57,6 +57,8 @@ class RigidBodies final : public Stated<RigidBodies> {
   /// Sets the integral of a controller. Its evolution row then fixes the mean of the generator's
   /// angle. -1: no integral.
   void set_integral(int integral) { integral_ = integral; }
+  /// Port of the hub's pose (blade_root.hpp); -1: without air.
+  int pose_port() const { return pose_port_; }
 
   template <class System>
   void state(System& system) const;
@@ -100,6 +102,10 @@ class RigidBodies final : public Stated<RigidBodies> {
                                        const Mat3<T>& C_top) const;
   template <class T, class System>
   Walk<T> walk(const System& system, const ChainArguments<T>& x) const;
+  /// u, theta of the tower top; the joints; motion of the apex.
+  static constexpr int pose_arguments = 23;
+  template <class System>
+  void state_poses(System& system) const;
 
   const model::Turbine& turbine_;
   BodiesSetting setting_;
@@ -107,9 +113,11 @@ class RigidBodies final : public Stated<RigidBodies> {
   int integral_ = -1;
   int hub_port_ = 0;   ///< motion of the apex and gravity there, in H
   int load_port_ = 0;  ///< sum of the root loads: force and moment about the apex, in H
+  int pose_port_ = -1;
   elements::RigidTree tree_;
   Connections chain_;
   Connections foot_;
+  Connections pose_;
   std::vector<BladeRoot> roots_;
 };
 

@@ -104,6 +104,13 @@ struct FrameMotion {
   Vec3<T> omega, alpha, v, a, gravity;
 };
 
+/// Place of a frame's origin and its axes as columns, components in the ground.
+template <class T>
+struct Pose {
+  Vec3<T> place = Vec3<T>::Zero();
+  Mat3<T> axes = Mat3<T>::Identity();
+};
+
 /// A force, and a moment about a point.
 template <class T>
 struct Wrench {
@@ -163,9 +170,24 @@ class RigidTree {
   Wrench<T> walk_inward(const FrameMotion<T>& base, const States<T>& states, const Loads<T>& loads,
                         Results<T>& results) const;
 
+  /// Pose of the body behind joint `i`, at the joint's point. `base`: pose of the base.
+  template <class T>
+  Pose<T> pose_of(int i, const Pose<T>& base, const States<T>& states) const;
+
   void set_base_body(const RigidBody& body) { base_body_ = body; }
 
  private:
+  /// Angle of the axes of node `i`, with that of a round joint inboard of it.
+  template <class T>
+  T angle_of(int i, const States<T>& states) const {
+    const TreeNode& node = this->node(i);
+    const JointState<T>& state = states[static_cast<std::size_t>(i)];
+    T angle = (node.free ? state.angle : T(state.prescribed.angle)) + T(state.carried.angle);
+    if (node.parent >= 0 && this->node(node.parent).is_round)
+      angle += angle_of<T>(node.parent, states);
+    return angle;
+  }
+
   RigidBody base_body_;
   std::vector<TreeNode> nodes_;
 };
@@ -266,8 +288,7 @@ void RigidTree::walk_outward(const FrameMotion<T>& base, const States<T>& states
     NodeResult<T>& result = results[static_cast<std::size_t>(i)];
     const auto parent = static_cast<std::size_t>(node.parent);
     const bool on_base = node.parent < 0;
-    result.angle = (node.free ? state.angle : T(state.prescribed.angle)) + T(state.carried.angle);
-    if (!on_base && this->node(node.parent).is_round) result.angle += results[parent].angle;
+    result.angle = angle_of<T>(i, states);
     result.inner = on_base ? base : results[parent].motion;
     if (!node.place.isZero(0.0))
       result.inner = detail::moved_to<T>(node.place.cast<T>(), result.inner);
@@ -289,6 +310,17 @@ void RigidTree::walk_outward(const FrameMotion<T>& base, const States<T>& states
         node.free ? T(state.angle_dot - own_rate) : T(own_rate - T(state.prescribed.rate));
     result.rows.position = state.angle - T(state.prescribed.angle);
   }
+}
+
+template <class T>
+Pose<T> RigidTree::pose_of(int i, const Pose<T>& base, const States<T>& states) const {
+  const TreeNode& node = this->node(i);
+  Pose<T> pose = node.parent < 0 ? base : pose_of<T>(node.parent, base, states);
+  if (!node.place.isZero(0.0)) pose.place += pose.axes * node.place.cast<T>();
+  if (!node.axes.isIdentity(0.0)) pose.axes = (pose.axes * node.axes.cast<T>()).eval();
+  if (!node.is_round)
+    pose.axes = (pose.axes * math::turn_about<T>(node.axis, angle_of<T>(i, states))).eval();
+  return pose;
 }
 
 template <class T>

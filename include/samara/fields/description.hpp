@@ -14,11 +14,14 @@ class Description : public Visitor {
   void number(const Field&, double&, std::span<const Word>) override {}
   void integer(const Field&, int&, std::span<const Word>) override {}
   void integers(const Field&, std::span<int>) override {}
-  void numbers(const Field&, std::span<double>, bool) override {}
+  using Visitor::numbers;
+  void numbers(const Field&, std::span<double>, bool, std::span<const Word>) override {}
   void number_list(const Field&, const char*, std::vector<double>&) override {}
   void name_list(const Field&, std::vector<std::string>&) override {}
   void pairs(const Field&, const std::array<const char*, 2>&,
              std::vector<std::pair<double, double>>&) override {}
+  using Visitor::table;
+  void table(const Field&, std::span<const Column>) override {}
   bool text(const Field&, const char*, std::string&) override { return false; }
   bool choice(const Field&, std::span<const char* const>, std::size_t&) override { return false; }
   void matrix(const Field&, Matrix6&, std::array<bool, 6>*) override {}

@@ -24,6 +24,13 @@ struct Word {
   bool* is_given;
 };
 
+/// A column of a table of numbers.
+struct Column {
+  const char* name;  ///< as messages call it
+  Unit unit;
+  std::vector<double>* values;
+};
+
 /// "a number > 0", "a number > 0 or rigid", "a number > 0, rigid or free".
 inline std::string join_words(std::string expected, const std::vector<std::string>& others) {
   for (std::size_t i = 0; i < others.size(); ++i)
@@ -92,14 +99,18 @@ class Visitor {
   virtual void integer(const Field& field, int& value, std::span<const Word> words) = 0;
   /// As many integers as there are values, or one that holds for all.
   virtual void integers(const Field& field, std::span<int> values) = 0;
-  /// As many numbers as there are values; with `spread` also one that holds for all.
-  virtual void numbers(const Field& field, std::span<double> values, bool spread) = 0;
+  /// As many numbers as there are values; with `spread` also one that holds for all, or one of the
+  /// words.
+  virtual void numbers(const Field& field, std::span<double> values, bool spread,
+                       std::span<const Word> words) = 0;
   /// One number or more; `items` says of what.
   virtual void number_list(const Field& field, const char* items, std::vector<double>& values) = 0;
   virtual void name_list(const Field& field, std::vector<std::string>& names) = 0;
   /// [[x, y], ...] with rising x; `names` are the words for x and y.
   virtual void pairs(const Field& field, const std::array<const char*, 2>& names,
                      std::vector<std::pair<double, double>>& pairs) = 0;
+  /// Rows of numbers, one for each column.
+  virtual void table(const Field& field, std::span<const Column> columns) = 0;
   /// Any text; `expected` says which.
   /// False: it is left out, or no text.
   virtual bool text(const Field& field, const char* expected, std::string& value) = 0;
@@ -148,6 +159,13 @@ class Visitor {
   void number(const Field& field, std::optional<double>& value);
   void integer(const Field& field, int& value, std::initializer_list<Word> words = {}) {
     integer(field, value, std::span<const Word>(words.begin(), words.size()));
+  }
+  void numbers(const Field& field, std::span<double> values, bool spread,
+               std::initializer_list<Word> words = {}) {
+    numbers(field, values, spread, std::span<const Word>(words.begin(), words.size()));
+  }
+  void table(const Field& field, std::initializer_list<Column> columns) {
+    table(field, std::span<const Column>(columns.begin(), columns.size()));
   }
   void vector(const Field& field, Vector3& value) {
     numbers(field, std::span<double>(value.data(), 3), false);

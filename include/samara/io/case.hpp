@@ -12,14 +12,18 @@ namespace samara::io {
 /// A scenario as a file states it.
 struct Case : simulation::Scenario {
   std::string path;
-  std::string text;  ///< the file as read; comment lines at its top list the --set arguments
+  std::string text;  ///< the file as read; comment lines at its top list the --set arguments and
+                     ///< `polar_settings`
   std::vector<std::string> settings;  ///< the --set arguments, as given
-  std::string model_text;             ///< the keys that define the model; equal for equal models
-  std::vector<std::string> notes;     ///< about keys without their apparent effect, with places
+  /// Further --set arguments: the polars of the files that the case names.
+  std::vector<std::string> polar_settings;
+  std::string model_text;          ///< the keys that define the model; equal for equal models
+  std::vector<std::string> notes;  ///< about keys without their apparent effect, with places
 };
 
 /// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys
-/// before validation (`blades.elements=8`, `blades.sections.0.mass=10`).
+/// before validation (`blades.elements=8`, `blades.sections.0.mass=10`). Files that the case names
+/// are found from its folder.
 /// @throws InputError with all errors, one per line: `path:line:column: where: what`.
 Case read_case(const std::string& path, const std::vector<std::string>& settings);
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "samara/fields/field.hpp"
 #include "samara/model/definition.hpp"
 
 namespace samara::io {
@@ -20,5 +21,9 @@ std::string write_case_text(const model::TurbineDefinition& turbine, const CaseC
 
 /// The shortest decimal that reads back as the same double.
 std::string exact(double value);
+
+/// The shortest decimal in `unit` that reads back as the value in SI; if there is none because of
+/// round-off, the nearest one.
+std::string exact_in(const fields::Unit& unit, double value);
 
 }  // namespace samara::io

@@ -16,6 +16,7 @@
 #include "samara/elements/joint_motion.hpp"
 #include "samara/elements/torque_line.hpp"
 #include "samara/math/types.hpp"
+#include "samara/model/air_definition.hpp"
 
 namespace samara::turbine {
 class Extension;
@@ -266,6 +267,8 @@ struct BladesDefinition {
   double pitch_link = 0.0;
   BeamDefinition beam;
   std::map<int, BladeDifference> each;  ///< by blade number from 1
+  std::map<std::string, AirfoilDefinition> airfoils;
+  std::vector<AeroSectionDefinition> aero_sections;  ///< sorted by `at`; empty: no air loads
 
   bool operator==(const BladesDefinition&) const = default;
 };
@@ -364,6 +367,8 @@ struct TurbineDefinition {
   std::vector<LoadDefinition> loads;
   std::vector<MassDamperDefinition> mass_dampers;
   std::optional<ControllerDefinition> controller;
+  std::optional<WindDefinition> wind;
+  std::optional<AeroDefinition> aero;  ///< none: no air loads
   /// Components that a program adds (turbine/extension.hpp).
   std::vector<std::shared_ptr<const turbine::Extension>> extensions;
 

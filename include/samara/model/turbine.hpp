@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "samara/elements/air_station.hpp"
 #include "samara/elements/rigid_chain.hpp"
 #include "samara/model/beam.hpp"
 #include "samara/model/definition.hpp"
@@ -57,6 +58,14 @@ struct MassDamper {
   Vector3 axis(std::size_t i) const { return axes.col(definition.axes[i].axis); }
 };
 
+/// The air around the rotor.
+struct Air {
+  elements::AirRotor rotor;
+  double hub_wind = 0.0;        ///< speed of the wind at the apex of the undeformed rotor [m/s]
+  double hub_wind_axial = 0.0;  ///< its component along the shaft, downwind [m/s]
+  std::vector<std::vector<elements::AirStation>> stations;  ///< of each blade, at its points
+};
+
 struct Turbine {
   bool has_tower = false;
   Beam tower;
@@ -65,6 +74,7 @@ struct Turbine {
   std::vector<MassDamper> mass_dampers;
   std::optional<PitchActuatorDefinition> pitch_actuator;  ///< one per blade, all equal
   std::optional<ControllerDefinition> controller;
+  std::optional<Air> air;
   std::vector<std::shared_ptr<const turbine::Extension>> extensions;
   double rotor_pitch_slope = 0.0;  ///< torque on the hub per mean pitch [N m/rad]
   double pitch = 0.0;              ///< common to all blades [rad]

@@ -51,6 +51,7 @@ struct StabilityAssessment {
   std::optional<std::size_t> least_damped;  ///< the least damped of the decaying modes
   int undamped = 0;
   int rigid_body = 0;
+  int of_medium = 0;   ///< decaying modes of a medium, also in `decaying`
   int rough = 0;       ///< resolved by the step, with an error above `largest_error`
   int unresolved = 0;  ///< not resolved, not counted
   /// All modes below this are resolved, except those that are deflated [rad/s].

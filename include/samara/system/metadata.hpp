@@ -42,6 +42,7 @@ enum class PartKind {
   joint,    ///< between two bodies
   support,  ///< elastic, between a body or the ground and the part on it
   law,      ///< equation without mass: actuator, controller
+  medium,   ///< the fluid around a part: its induced velocity, its flow around a section
 };
 
 /// A part of the system, or one of several equal parts.

@@ -8,6 +8,7 @@
 
 #include "samara/base/error.hpp"
 #include "samara/components/beam.hpp"
+#include "samara/components/blade_air.hpp"
 #include "samara/components/controller.hpp"
 #include "samara/components/inputs.hpp"
 #include "samara/components/mass_damper.hpp"
@@ -55,6 +56,9 @@ class TurbineEquations {
     evaluate(t, z, z_dot, TurbineInputs<T>(), r);
   }
 
+  /// Sets the unknowns of the air to those of steady air around the blades in their motion at t.
+  void settle_air(double t, std::vector<double>& z) const;
+
   /// Places of the entries of K and M.
   std::shared_ptr<const components::TangentPlan> plan() const { return plan_; }
   /// The places of the terms of a portion.
@@ -83,6 +87,7 @@ class TurbineEquations {
   std::unique_ptr<components::Controller> controller_;                 ///< null: none
   std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< one per blade, if any
   std::unique_ptr<components::RigidBodies> bodies_;
+  std::vector<std::unique_ptr<components::BladeAir>> airs_;  ///< one per blade, or none
   std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
   std::vector<components::Component*> components_;  ///< in the order of their equations
   components::Declarations declarations_;

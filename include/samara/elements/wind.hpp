@@ -1,0 +1,61 @@
+// The mean wind as a function of the place (docs/theory.md, section 11.1).
+#pragma once
+
+#include "samara/elements/air_models.hpp"
+#include "samara/math/linearized.hpp"
+#include "samara/math/smooth.hpp"
+#include "samara/math/types.hpp"
+
+namespace samara::elements {
+
+/// Steady wind. Places and velocities have components n1 n2 n3; the height counts along n3.
+struct MeanWind {
+  double speed = 0.0;   ///< at the reference height [m/s]
+  double height = 0.0;  ///< reference height [m]
+  WindProfile profile = WindProfile::uniform;
+  double exponent = 0.0;    ///< of the power law
+  double roughness = 0.0;   ///< roughness length of the logarithmic law [m]
+  double shear_left = 0.0;  ///< change of the speed to the left of one who looks downwind [1/s]
+  double shear_up = 0.0;    ///< and with the height [1/s]
+  double direction = 0.0;   ///< 0: along n2; > 0: counter-clockwise seen from above [rad]
+  double veer = 0.0;        ///< change of the direction with the height [rad/m]
+  double upflow = 0.0;      ///< > 0: the wind rises [rad]
+
+  /// Velocity at a place [m/s].
+  template <class T>
+  Vec3<T> at(const Vec3<T>& place) const;
+
+ private:
+  template <class T>
+  T profile_factor(const T& z) const;
+};
+
+/// Speed at height z by that at the reference height. Below 1 m, the speed is that of about 1 m.
+template <class T>
+T MeanWind::profile_factor(const T& z) const {
+  constexpr double lowest = 1.0;
+  if (profile == WindProfile::uniform) return T(1.0);
+  const T above = math::smooth_max(z, T(lowest));
+  if (profile == WindProfile::power) return math::power(T(above / T(height)), exponent);
+  return math::logarithm(T(above / T(roughness))) / T(std::log(height / roughness));
+}
+
+template <class T>
+Vec3<T> MeanWind::at(const Vec3<T>& place) const {
+  using std::cos;
+  using std::sin;
+  T factor = profile_factor<T>(place(2)) * T(speed);
+  T sine(std::sin(direction));
+  T cosine(std::cos(direction));
+  if (veer != 0.0) {
+    const T turned = (place(2) - T(height)) * T(veer) + T(direction);
+    sine = sin(turned);
+    cosine = cos(turned);
+  }
+  if (shear_left != 0.0) factor -= (cosine * place(0) + sine * place(1)) * T(shear_left);
+  if (shear_up != 0.0) factor += (place(2) - T(height)) * T(shear_up);
+  const T level = factor * T(std::cos(upflow));
+  return Vec3<T>(-(level * sine), level * cosine, factor * T(std::sin(upflow)));
+}
+
+}  // namespace samara::elements

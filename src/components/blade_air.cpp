@@ -1,0 +1,217 @@
+#include "samara/components/blade_air.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "samara/base/index.hpp"
+#include "samara/components/blade_root.hpp"
+
+namespace samara::components {
+namespace {
+
+namespace air = elements::air;
+using elements::AirfoilDynamics;
+using elements::AirModels;
+using elements::AirStation;
+using elements::Induction;
+using elements::Inflow;
+using system::RowRole;
+using system::UnknownRole;
+
+struct NamedUnknown {
+  const char* name;
+  const char* unit;
+};
+
+constexpr std::array<NamedUnknown, air::unknowns> air_unknowns{{{"W_n", "m/s"},
+                                                                {"W_t", "m/s"},
+                                                                {"R_n", "m/s"},
+                                                                {"R_t", "m/s"},
+                                                                {"Q_n", "m/s"},
+                                                                {"Q_t", "m/s"},
+                                                                {"x1", "m/s"},
+                                                                {"x2", "m/s"},
+                                                                {"x3", "1"},
+                                                                {"x4", "1"},
+                                                                {"f1", "N/m"},
+                                                                {"f2", "N/m"},
+                                                                {"f3", "N/m"},
+                                                                {"m1", "N"},
+                                                                {"m2", "N"},
+                                                                {"m3", "N"}}};
+
+/// Part after which exponents are named.
+const char* part_of(int i) {
+  return i < air::wake    ? "inflow"
+         : i < air::lift  ? "shed wake"
+         : i < air::force ? "stall"
+                          : "air load";
+}
+
+/// Role of unknown i of a station, and whether the models have it.
+enum class Use { none, state, auxiliary };
+
+Use use_of(const AirModels& models, const AirStation& station, int i) {
+  if (i >= air::force) return Use::auxiliary;
+  if (i >= air::wake) {
+    if (!station.has_dynamics(models)) return Use::none;
+    const bool is_used = models.dynamics == AirfoilDynamics::hgm || i == air::separation;
+    return is_used ? Use::state : Use::none;
+  }
+  if (models.induction == Induction::none) return Use::none;
+  if (models.induction == Induction::axial && i % 2 == 1) return Use::none;
+  if (i >= air::quasi_steady) return Use::auxiliary;
+  if (models.inflow == Inflow::oye) return Use::state;
+  return i >= air::reduced ? Use::none : Use::auxiliary;
+}
+
+}  // namespace
+
+BladeAir::BladeAir(const model::Turbine& turbine, std::size_t k, const Beam& blade)
+    : turbine_(turbine), k_(k), blade_(blade), stations_(turbine.air->stations[k]) {
+  // The references of the points may be those of a deformed blade.
+  for (std::size_t p = 0; p < stations_.size(); ++p) {
+    const elements::BeamPoint& point = turbine.blades[k].points[p];
+    stations_[p].x = point.x;
+    stations_[p].turned = point.reference * point.C_ab;
+  }
+}
+
+void BladeAir::tie(int hub_port, int root_port) {
+  static_assert(hub_values == hub_pose_values);
+  hub_port_ = hub_port;
+  root_port_ = root_port;
+}
+
+void BladeAir::describe(Registry& registry) {
+  for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {
+    describe_point(registry, p);
+    connect_point(p);
+    if (air().rotor.models.added_mass) connect_added_mass(p);
+  }
+}
+
+void BladeAir::describe_point(Registry& registry, int p) const {
+  const elements::AirRotor& rotor = air().rotor;
+  const double velocity =
+      std::max({turbine_.speed * rotor.tip_radius, rotor.wind.speed, 1.0}) / 10.0;
+  const double load = 50.0 * rotor.density * velocity * velocity * station(p).chord;
+  const int first = blade_.placed().air[at(p)];
+  for (int i = 0; i < air::unknowns; ++i) {
+    const Use use = use_of(rotor.models, station(p), i);
+    if (use == Use::none) continue;
+    const system::Owner owner(system::PartKind::medium, part_of(i), static_cast<int>(k_) + 1);
+    system::Unknown unknown{owner,
+                            "point " + std::to_string(p + 1),
+                            air_unknowns[at(i)].name,
+                            air_unknowns[at(i)].unit,
+                            use == Use::state ? UnknownRole::state : UnknownRole::auxiliary,
+                            system::Frame::rotating};
+    if (i < air::lift) unknown.scale = velocity;
+    if (i >= air::force) unknown.scale = i < air::moment ? load : load * station(p).chord;
+    registry.describe(first + i, unknown,
+                      use == Use::state ? RowRole::evolution : RowRole::definition);
+  }
+}
+
+void BladeAir::connect_point(int p) {
+  const PlacedBeam& placed = blade_.placed();
+  const int point = placed.points[at(p)];
+  const int first = placed.air[at(p)];
+  Connections connections;
+  connections.arguments = {unknowns(point, 12)};
+  std::vector<Argument> rates_of_states;
+  for (int i = 0; i < air::unknowns; ++i) {
+    const Use use = use_of(air().rotor.models, station(p), i);
+    const auto add = [](std::vector<Argument>& list, const Argument& next) {
+      Argument* last = list.empty() ? nullptr : &list.back();
+      if (last != nullptr && last->kind == next.kind &&
+          (next.kind == Argument::Kind::zeros || last->first + last->count == next.first))
+        last->count += next.count;
+      else
+        list.push_back(next);
+    };
+    add(connections.arguments, use == Use::none ? zeros(1) : unknowns(first + i, 1));
+    if (i < rate_count) add(rates_of_states, use == Use::state ? rates(first + i, 1) : zeros(1));
+    if (use != Use::none) connections.shares.push_back({first + i, 1, i});
+  }
+  connections.arguments.insert(connections.arguments.end(), rates_of_states.begin(),
+                               rates_of_states.end());
+  connections.arguments.push_back(port_values(hub_port_, hub_values));
+  connections.arguments.push_back(port_values(root_port_, 9));
+  points_.push_back(connections);
+  for (int node = 0; node <= placed.beam->order; ++node) {
+    const double weight = -placed.node_weights(node, p)[1];
+    const int row = placed.force_rows(p, node);
+    linear_.push_back({row, first + air::force, 3, weight});
+    linear_.push_back({row + 3, first + air::moment, 3, weight});
+  }
+}
+
+void BladeAir::connect_added_mass(int p) {
+  const PlacedBeam& placed = blade_.placed();
+  const int point = placed.points[at(p)];
+  Connections connections;
+  connections.arguments = {unknowns(point + 3, 3), rates(point + 6, 6)};
+  for (int node = 0; node <= placed.beam->order; ++node) {
+    const double weight = -placed.node_weights(node, p)[1];
+    const int row = placed.force_rows(p, node);
+    connections.shares.push_back({row, 3, 0, weight});
+    connections.shares.push_back({row + 3, 3, 3, weight});
+  }
+  inertias_.push_back(connections);
+}
+
+template <class T>
+elements::StationMotion<T> BladeAir::motion_at(int p,
+                                               const Eigen::Matrix<T, arguments, 1>& x) const {
+  elements::HubPose<T> hub;
+  hub.place = x.template segment<3>(at_hub);
+  hub.axis = x.template segment<3>(at_hub + 6);
+  hub.velocity = x.template segment<3>(at_hub + 9);
+  hub.speed = x(at_hub + 12);
+  elements::RootPose<T> root;
+  root.place = x.template segment<3>(at_root);
+  root.axes.col(0) = x.template segment<3>(at_root + 3);
+  root.axes.col(1) = x.template segment<3>(at_root + 6);
+  root.axes.col(2) = math::cross(Vec3<T>(root.axes.col(0)), Vec3<T>(root.axes.col(1)));
+  return elements::station_motion<T>(air().rotor, station(p), x.template head<12>(), root, hub);
+}
+
+template <class System>
+void BladeAir::state(System& system) const {
+  system.add(linear_);
+  for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {
+    const auto rows_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
+      return elements::air_station_rows<T>(air().rotor, station(p), motion_at<T>(p, x),
+                                           x.template segment<air::unknowns>(at_air),
+                                           x.template segment<rate_count>(at_rates));
+    };
+    system.template add<arguments, air::unknowns>(points_[at(p)], rows_of, Memory::of_arguments);
+    if (inertias_.empty()) continue;
+    const auto inertia_of = [&]<class T>(const Eigen::Matrix<T, 9, 1>& x) {
+      const Mat3<T> R = math::direction_cosines<T>(x.template head<3>()).transpose() *
+                        station(p).turned.template cast<T>();
+      const Vec6<T> load =
+          elements::added_mass_load<T>(air().rotor, station(p), x.template tail<6>()) *
+          T(air().rotor.acting);
+      Vec6<T> y;
+      y << R * Vec3<T>(load.template head<3>()), R * Vec3<T>(load.template tail<3>());
+      return y;
+    };
+    system.template add<9, 6>(inertias_[at(p)], inertia_of, Memory::of_arguments);
+  }
+}
+
+void BladeAir::settle(const Residual<double>& residual, std::vector<double>& values) const {
+  for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {
+    const auto x = residual.gather<arguments>(points_[at(p)]);
+    const Eigen::Matrix<double, air::unknowns, 1> steady =
+        elements::steady_air(air().rotor, station(p), motion_at<double>(p, x));
+    for (const Share& share : points_[at(p)].shares) values[at(share.row)] = steady(share.value);
+  }
+}
+
+template class Stated<BladeAir>;
+
+}  // namespace samara::components

@@ -1,0 +1,212 @@
+#include "samara/model/air.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <tuple>
+
+#include "samara/base/error.hpp"
+#include "samara/math/rotation.hpp"
+#include "samara/model/airfoil.hpp"
+
+namespace samara::model {
+namespace {
+
+constexpr double kinematic_viscosity = 1.46e-5;  // of air at 15 degrees [m^2/s]
+
+/// Place of a fraction of the length between two sections, and the weight of the second one.
+struct Between {
+  const AeroSectionDefinition* before = nullptr;
+  const AeroSectionDefinition* behind = nullptr;
+  double weight = 0.0;
+};
+
+Between find_sections(const std::vector<AeroSectionDefinition>& sections, double at) {
+  const auto behind = std::ranges::lower_bound(sections, at, {},
+                                               [](const AeroSectionDefinition& s) { return s.at; });
+  if (behind == sections.begin()) return {&*behind, &*behind, 0.0};
+  if (behind == sections.end()) return {&sections.back(), &sections.back(), 0.0};
+  const AeroSectionDefinition& before = *(behind - 1);
+  return {&before, &*behind, (at - before.at) / (behind->at - before.at)};
+}
+
+/// The curves of the airfoils between sections, each made once.
+class AirfoilShelf {
+ public:
+  explicit AirfoilShelf(const std::map<std::string, AirfoilDefinition>& airfoils)
+      : airfoils_(airfoils) {}
+
+  std::shared_ptr<const elements::AirfoilCurves> at(const Between& place, double reynolds) {
+    const bool is_one = place.before->airfoil == place.behind->airfoil;
+    const double weight = is_one ? 0.0 : place.weight;
+    const bool has_many = airfoil(place.before->airfoil).polars.size() > 1 ||
+                          airfoil(place.behind->airfoil).polars.size() > 1;
+    auto& curves =
+        made_[{place.before->airfoil, place.behind->airfoil, weight, has_many ? reynolds : 0.0}];
+    if (!curves)
+      curves = std::make_shared<const elements::AirfoilCurves>(make_curves(
+          airfoil(place.before->airfoil), airfoil(place.behind->airfoil), weight, reynolds));
+    return curves;
+  }
+
+ private:
+  const AirfoilDefinition& airfoil(const std::string& name) const {
+    const auto found = airfoils_.find(name);
+    if (found == airfoils_.end())
+      throw InputError("blades.aero_sections: there is no airfoil \"" + name + "\"");
+    return found->second;
+  }
+
+  const std::map<std::string, AirfoilDefinition>& airfoils_;
+  std::map<std::tuple<std::string, std::string, double, double>,
+           std::shared_ptr<const elements::AirfoilCurves>>
+      made_;
+};
+
+elements::MeanWind wind_of(const WindDefinition& definition) {
+  elements::MeanWind wind;
+  wind.speed = definition.speed;
+  wind.height = definition.height;
+  wind.profile = definition.profile;
+  wind.exponent = definition.exponent;
+  wind.roughness = definition.roughness;
+  if (definition.shear_length > 0.0) {
+    wind.shear_left = definition.shear_left / definition.shear_length;
+    wind.shear_up = definition.shear_up / definition.shear_length;
+  }
+  wind.direction = definition.direction;
+  wind.veer = definition.veer;
+  wind.upflow = definition.upflow;
+  return wind;
+}
+
+/// Undeformed distance from the shaft axis.
+double radius_of(const BladeRoot& root, const Vector3& x) {
+  const Vector3 place = root.position + root.C_Ha * x;
+  return std::hypot(place(0), place(2));
+}
+
+/// Wind at the apex of the undeformed rotor, along its axis and whole.
+struct HubWind {
+  double axial = 0.0;
+  double speed = 0.0;
+};
+
+HubWind find_hub_wind(const elements::MeanWind& wind, const Turbine& turbine) {
+  const elements::RigidChain& chain = turbine.chain;
+  const Matrix3 bearing = math::turn_about<double>(Vector3::UnitZ(), turbine.yaw_motion.angle) *
+                          math::turn_about<double>(Vector3::UnitX(), chain.tilt);
+  Vector3 apex = Vector3(0.0, 0.0, chain.height) +
+                 bearing * Vector3(0.0, chain.overhang + chain.undersling, 0.0);
+  if (turbine.has_tower)
+    apex += Vector3(turbine.tower.tip(1), turbine.tower.tip(2), turbine.tower.tip(0));
+  const Vector3 v = wind.at<double>(apex);
+  return {v.dot(bearing.col(1)), v.norm()};
+}
+
+/// Mean axial induction of the undeformed rotor in axial wind over the area of its stations.
+double find_mean_induction(const Air& air, const Turbine& turbine, double wind_axial) {
+  elements::AirRotor rotor = air.rotor;
+  rotor.wind = {};
+  rotor.wind.speed = wind_axial;  // along n2, which is the rotor's axis here
+  elements::HubPose<double> hub;
+  hub.speed = turbine.speed;
+  double sum = 0.0;
+  double area = 0.0;
+  for (std::size_t k = 0; k < air.stations.size(); ++k) {
+    const elements::RootPose<double> root{turbine.roots[k].position, turbine.roots[k].C_Ha};
+    const Vector3 spin = root.axes.transpose() * Vector3(0.0, turbine.speed, 0.0);
+    for (std::size_t p = 0; p < air.stations[k].size(); ++p) {
+      const elements::AirStation& station = air.stations[k][p];
+      const Vector3 arm = root.axes.transpose() * root.place + station.x;
+      Eigen::Matrix<double, 12, 1> z = Eigen::Matrix<double, 12, 1>::Zero();
+      z.segment<3>(6) = station.turned.transpose() * math::cross(spin, Vector3(arm));
+      z.segment<3>(9) = station.turned.transpose() * spin;
+      const auto motion = elements::station_motion<double>(rotor, station, z, root, hub);
+      const double weight =
+          turbine.blades[k].point_length(static_cast<int>(p)) * station.radius * motion.spread;
+      sum -= weight * elements::steady_induction(rotor, station, motion)(0) / wind_axial;
+      area += weight;
+    }
+  }
+  return sum / area;
+}
+
+/// First time constant of Oye's dynamic inflow.
+double find_tau1(const Air& air, const Turbine& turbine, double wind_axial) {
+  constexpr double least_wind = 0.1;  // [m/s]
+  constexpr double longest = 100.0;   // [s]
+  constexpr double largest = 0.5;     // induction
+  const double U = std::abs(wind_axial);
+  if (U < least_wind || air.rotor.models.induction == elements::Induction::none) return longest;
+  const double a = std::clamp(find_mean_induction(air, turbine, wind_axial), 0.0, largest);
+  return std::min(1.1 / (1.0 - 1.3 * a) * air.rotor.tip_radius / U, longest);
+}
+
+void place_stations(const TurbineDefinition& definition, const Turbine& turbine, Air& air) {
+  AirfoilShelf shelf(definition.blades.airfoils);
+  for (std::size_t k = 0; k < turbine.blades.size(); ++k) {
+    const Beam& beam = turbine.blades[k];
+    const BladeRoot& root = turbine.roots[k];
+    std::vector<elements::AirStation>& stations = air.stations.emplace_back();
+    for (int p = 0; p < beam.point_count(); ++p) {
+      const auto at = static_cast<std::size_t>(p);
+      const double fraction = beam.fractions[at];
+      const Between place = find_sections(definition.blades.aero_sections, fraction);
+      const auto mix = [&place](auto member) {
+        return (1.0 - place.weight) * member(*place.before) + place.weight * member(*place.behind);
+      };
+      elements::AirStation station;
+      station.x = beam.points[at].x;
+      station.turned = beam.points[at].reference * beam.points[at].C_ab;
+      station.chord = mix([](const AeroSectionDefinition& s) { return s.chord; });
+      station.twist = mix([](const AeroSectionDefinition& s) { return s.twist; }) -
+                      interpolate_section(definition.blades.beam, fraction).twist;
+      station.center = Vector3(0.0, mix([](const AeroSectionDefinition& s) { return s.center[0]; }),
+                               mix([](const AeroSectionDefinition& s) { return s.center[1]; }));
+      station.arc_to_tip = (1.0 - fraction) * beam.length;
+      station.arc_to_hub = fraction * beam.length;
+      station.radius = radius_of(root, station.x);
+      const double speed = std::hypot(turbine.speed * station.radius, definition.wind->speed);
+      station.airfoil = shelf.at(place, speed * station.chord / kinematic_viscosity);
+      if (air.rotor.models.induction != elements::Induction::none &&
+          !(station.radius > 0.3 * definition.hub.radius && station.radius > 0.0))
+        throw InputError("blades.aero_sections: " + beam.name + " point " + std::to_string(p + 1) +
+                         " is inboard of the hub, where there is no balance of momentum (use "
+                         "aero.induction: none)");
+      stations.push_back(station);
+    }
+  }
+}
+
+}  // namespace
+
+Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
+  Air air;
+  elements::AirRotor& rotor = air.rotor;
+  rotor.models = *definition.aero;
+  rotor.wind = wind_of(*definition.wind);
+  rotor.density = definition.wind->density;
+  rotor.blades = static_cast<int>(turbine.blades.size());
+  rotor.hub_radius = definition.hub.radius;
+  for (std::size_t k = 0; k < turbine.blades.size(); ++k)
+    rotor.tip_radius =
+        std::max(rotor.tip_radius, radius_of(turbine.roots[k], turbine.blades[k].tip));
+  place_stations(definition, turbine, air);
+  const HubWind wind = find_hub_wind(rotor.wind, turbine);
+  air.hub_wind = wind.speed;
+  air.hub_wind_axial = wind.axial;
+  constexpr double share = 0.01;
+  constexpr double least = 0.01;  // [m/s]
+  rotor.least_speed = std::max(share * wind.speed, least);
+  // A rotor at rest has no induced velocity; at tip-speed ratios from 2 it has the whole.
+  const double tip_speed = std::abs(turbine.speed) * rotor.tip_radius;
+  rotor.loading = wind.speed == 0.0 ? (tip_speed > 0.0 ? 1.0 : 0.0)
+                                    : math::smoothstep(tip_speed / wind.speed - 1.0);
+  rotor.tau1 = definition.aero->tau1 ? *definition.aero->tau1 : find_tau1(air, turbine, wind.axial);
+  return air;
+}
+
+}  // namespace samara::model

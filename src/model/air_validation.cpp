@@ -1,0 +1,150 @@
+#include "air_validation.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "samara/base/format.hpp"
+#include "samara/base/words.hpp"
+#include "samara/model/airfoil.hpp"
+
+namespace samara::model {
+namespace {
+
+std::string indexed(const std::string& list, std::size_t i) {
+  return list + "[" + std::to_string(i) + "]";
+}
+
+/// Names are parts of paths of keys (`--set blades.airfoils.NAME.file=F.dat`).
+bool is_name(const std::string& text) {
+  const auto is_inner = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '+' || c == ' ';
+  };
+  return !text.empty() && text.front() != ' ' && text.back() != ' ' &&
+         std::ranges::all_of(text, is_inner);
+}
+
+class AirValidation {
+ public:
+  explicit AirValidation(const TurbineDefinition& turbine) : turbine_(turbine) {}
+
+  std::vector<Fault> find() {
+    if (turbine_.wind) check_wind(*turbine_.wind);
+    if (turbine_.aero) check_aero(*turbine_.aero);
+    if (turbine_.blades.count == 0) return std::move(faults_);
+    for (const auto& [name, airfoil] : turbine_.blades.airfoils) check_airfoil(name, airfoil);
+    for (std::size_t i = 0; i < turbine_.blades.aero_sections.size(); ++i) check_section(i);
+    return std::move(faults_);
+  }
+
+ private:
+  void add(const std::string& field, const std::string& text,
+           const std::vector<std::string>& others = {}) {
+    faults_.push_back({field, text, others});
+  }
+
+  void check_wind(const WindDefinition& wind) {
+    using Profile = WindDefinition::Profile;
+    if (turbine_.blades.count == 0) return add("wind", "there are no blades");
+    const bool needs_height =
+        wind.profile != Profile::uniform || wind.shear_up != 0.0 || wind.veer != 0.0;
+    if (needs_height && !(wind.height > 0.0))
+      add("wind.height",
+          "expected a number > 0; hint: shear and veer count from the height at which the wind has "
+          "its speed, e.g. that of the hub",
+          {"wind.shear", "wind.veer_deg"});
+    if (wind.profile == Profile::logarithmic && wind.height > 0.0 &&
+        !(wind.roughness < wind.height))
+      add("wind.shear.log",
+          "expected less than the height, " + general(wind.height, 6) +
+              " m; hint: a roughness "
+              "length in metres, such as 0.03",
+          {"wind.height"});
+    if ((wind.shear_left != 0.0 || wind.shear_up != 0.0) && !(wind.shear_length > 0.0))
+      add("wind.shear.length",
+          "expected a number > 0; hint: left and up are changes of the speed by this length, e.g. "
+          "the diameter of the rotor",
+          {"wind.shear.left", "wind.shear.up"});
+  }
+
+  void check_aero(const AeroDefinition& aero) {
+    const BladesDefinition& blades = turbine_.blades;
+    if (blades.count == 0)
+      add("aero", "there are no blades");
+    else if (blades.aero_sections.empty())
+      add("aero", "needs blades.aero_sections, the chords and airfoils of the blades",
+          {"blades.aero_sections"});
+    if (blades.count > 0 && !turbine_.wind)
+      add("aero", "needs the wind; hint: wind: {speed: 8}, or aero: none", {"wind"});
+    if (!(aero.wake[2] > 0.0 && aero.wake[3] > 0.0))
+      add("aero.wake_constants", "expected decay rates b1, b2 > 0");
+  }
+
+  void check_airfoil(const std::string& name, const AirfoilDefinition& airfoil) {
+    const std::string place = "blades.airfoils." + name;
+    if (!is_name(name))
+      add("blades.airfoils",
+          "expected a name of letters, digits, spaces, \"_\", \"-\" and \"+\", got \"" + name +
+              "\"");
+    if (airfoil.polars.empty())
+      add(place + ".polars", "expected one polar or more", {place + ".file"});
+    for (std::size_t i = 0; i < airfoil.polars.size(); ++i) {
+      const PolarDefinition& polar = airfoil.polars[i];
+      const std::string own = indexed(place + ".polars", i);
+      if (const std::string fault = find_polar_fault(polar); !fault.empty()) add(own, fault);
+      if (airfoil.polars.size() > 1 && !(polar.reynolds > 0.0))
+        add(own + ".reynolds", "expected a number > 0; several polars are told apart by it");
+      const bool is_double =
+          std::any_of(airfoil.polars.begin(), airfoil.polars.begin() + static_cast<long>(i),
+                      [&](const auto& other) { return other.reynolds == polar.reynolds; });
+      if (is_double && polar.reynolds > 0.0) add(own + ".reynolds", "the same as of another polar");
+    }
+  }
+
+  void check_section(std::size_t i) {
+    const std::vector<AeroSectionDefinition>& sections = turbine_.blades.aero_sections;
+    const AeroSectionDefinition& section = sections[i];
+    const std::string place = indexed("blades.aero_sections", i);
+    if (i > 0 && !(section.at > sections[i - 1].at))
+      add(place + ".at",
+          "expected more than the section before has, got " + general(section.at, 6));
+    if (!(section.chord > 0.0))
+      add(place + ".chord", "expected a number > 0, got " + general(section.chord, 6));
+    const auto& airfoils = turbine_.blades.airfoils;
+    if (airfoils.contains(section.airfoil)) return;
+    std::vector<std::string> names;
+    for (const auto& [name, airfoil] : airfoils) names.push_back(name);
+    add(place + ".airfoil", "there is no airfoil \"" + section.airfoil + "\" in blades.airfoils" +
+                                suggest(section.airfoil, names));
+  }
+
+  const TurbineDefinition& turbine_;
+  std::vector<Fault> faults_;
+};
+
+}  // namespace
+
+std::vector<Fault> find_air_faults(const TurbineDefinition& turbine) {
+  return AirValidation(turbine).find();
+}
+
+std::vector<Fault> find_air_notes(const TurbineDefinition& turbine) {
+  const BladesDefinition& blades = turbine.blades;
+  if (turbine.wind && blades.count > 0 && blades.aero_sections.empty())
+    return {{"wind", "without effect, there are no blades.aero_sections"}};
+  if (!turbine.aero) return {};
+  std::vector<Fault> notes;
+  for (const auto& [name, airfoil] : blades.airfoils) {
+    if (std::ranges::find(blades.aero_sections, name, &AeroSectionDefinition::airfoil) ==
+        blades.aero_sections.end())
+      continue;
+    for (std::size_t i = 0; i < airfoil.polars.size(); ++i) {
+      if (!find_polar_fault(airfoil.polars[i]).empty()) continue;
+      for (const std::string& text : find_polar_notes(airfoil.polars[i]))
+        notes.push_back({indexed("blades.airfoils." + name + ".polars", i), text});
+    }
+  }
+  return notes;
+}
+
+}  // namespace samara::model

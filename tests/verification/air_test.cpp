@@ -1,0 +1,243 @@
+// Aeroelastic cases: the wing of Goland, flap damping in closed form, the NREL 5 MW rotor, and the
+// agreement of analyses with each other.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+
+#include "samara/analysis/constant_modes.hpp"
+#include "samara/turbine/turbine_channels.hpp"
+
+#include "turning.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using boost::test_tools::tolerance;
+
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double pi = std::numbers::pi;
+
+std::string input_path(const std::string& name) {
+  return std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml";
+}
+
+/// A turbine with its steady state.
+struct Steady {
+  explicit Steady(const io::Case& given)
+      : input(given),
+        system(model::build_turbine(input.turbine), PETSC_COMM_SELF),
+        trim(analysis::find_trim(system, input.trim, observer)) {}
+
+  analysis::ModeSet constant_modes() const {
+    return analysis::find_constant_modes(system, trim.solution);
+  }
+  analysis::ModeSet floquet(const analysis::FloquetOptions& options) {
+    return analysis::find_floquet_modes(system, trim.solution, options, PETSC_COMM_SELF, observer)
+        .set;
+  }
+  /// Values of channels at t = 0.
+  std::vector<double> channels(const std::vector<std::string>& names) const {
+    const turbine::TurbineChannels channels(system, {}, names);
+    const petsc::Handle<Vec> z = system.make_state();
+    const petsc::Handle<Vec> z_dot = system.make_state();
+    trim.solution.evaluate(0.0, z.get(), z_dot.get());
+    std::vector<double> values(names.size());
+    channels.evaluate(0.0, z.get(), z_dot.get(), values);
+    return values;
+  }
+
+  analysis::Observer observer;
+  io::Case input;
+  turbine::TurbineSystem system;
+  analysis::Trim trim;
+};
+
+// ---- the wing of Goland ------------------------------------------------------------------------
+
+Complex fastest_growth(const std::vector<std::string>& settings) {
+  const Steady wing(io::read_case(input_path("goland/wing"), settings));
+  Complex found(-1e300, 0.0);
+  for (const analysis::Mode& mode : wing.constant_modes().modes)
+    if (mode.exponent.real() > found.real() && mode.exponent.imag() > 1.0) found = mode.exponent;
+  return found;
+}
+
+/// Natural frequencies in still air without its inertia, of an independent converged program.
+BOOST_AUTO_TEST_CASE(goland_wing_has_its_natural_frequencies) {
+  const Steady wing(io::read_case(input_path("goland/wing"), {"aero=none", "blades.elements=3"}));
+  const std::vector<analysis::Mode> modes = wing.constant_modes().modes;
+  const std::vector<double> expected{48.1523, 95.7026, 243.735, 347.58};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    BOOST_TEST(modes[i].exponent.imag() == expected[i], tolerance(1e-4));
+}
+
+/// Flutter with strip theory and Jones's constants, of the same program: 137.335 m/s, 69.346 rad/s.
+BOOST_AUTO_TEST_CASE(goland_wing_flutters_at_the_speed_of_strip_theory) {
+  const auto growth = [](double speed) {
+    return fastest_growth(
+        {"blades.elements=3", "blades.order=4", "wind.speed=" + std::to_string(speed)});
+  };
+  double low = 137.0;
+  double high = 138.0;
+  BOOST_REQUIRE(growth(low).real() < 0.0);
+  BOOST_REQUIRE(growth(high).real() > 0.0);
+  while (high - low > 1e-4) {
+    const double middle = 0.5 * (low + high);
+    (growth(middle).real() > 0.0 ? high : low) = middle;
+  }
+  BOOST_TEST(low == 137.335, tolerance(1e-4));
+  BOOST_TEST(growth(low).imag() == 69.346, tolerance(1e-4));
+}
+
+// ---- flap damping in closed form ---------------------------------------------------------------
+
+/// A rigid blade on a flap hinge at the axis in still air, Cl = a alpha, no drag, no induced
+/// velocity: the growth of flap is -(gamma Omega/16)(1 - x^4), gamma = rho a c R^4/I, x the radius
+/// of the root by that of the tip.
+BOOST_AUTO_TEST_CASE(flap_damping_of_a_hinged_blade_is_that_of_its_lock_number) {
+  constexpr double a = 5.7;
+  constexpr double chord = 0.5;
+  constexpr double R = 10.0;
+  constexpr double mass = 8.0;  // per length
+  constexpr double Omega = 15.0;
+  for (const double x : {0.0, 0.3}) {
+    const std::string slope = std::to_string(a * 30.0 * pi / 180.0);
+    const std::string text =
+        "samara: 1\ngravity: 0\nshaft: {speed: 15}\nhub: {radius: " + std::to_string(x * R) +
+        "}\nwind: {speed: 0}\naero: {induction: none, airfoil_dynamics: static}\nblades:\n"
+        "  count: 1\n  length: " +
+        std::to_string((1.0 - x) * R) +
+        "\n  elements: 2\n  order: 3\n  hinges: [{axis: flap, offset: 0, joint: free}]\n"
+        "  sections:\n    - {mass: 8, inertia: [0, 0, 0], stiffness: {EA: rigid, GA2: rigid, GA3: "
+        "rigid, GJ: rigid, EI2: rigid, EI3: rigid}}\n"
+        "  airfoils:\n    line: {polars: [{table: [[-180, 0, 0, 0], [-30, -" +
+        slope + ", 0, 0], [30, " + slope + ", 0, 0], [180, 0, 0, 0]]}]}\n" +
+        "  aero_sections:\n    - {at: 0, chord: 0.5, airfoil: line}\n";
+    const Steady rotor(io::parse_case("hinged blade", text, {}));
+    const double I = mass * R * R * R * (1.0 - x * x * x) / 3.0;
+    const double gamma = 1.225 * a * chord * std::pow(R, 4) / I;
+    const double expected = -gamma * Omega / 16.0 * (1.0 - std::pow(x, 4));
+    double found = 0.0;
+    for (const analysis::Mode& mode : rotor.constant_modes().modes)
+      if (mode.label.find("flap") != std::string::npos) found = mode.exponent.real();
+    BOOST_TEST(found == expected, tolerance(1e-3));
+  }
+}
+
+// ---- the NREL 5 MW rotor -----------------------------------------------------------------------
+
+/// The rotor on the ground, rigid, without cone, tilt and gravity, in axial wind.
+io::Case rigid_rotor(const std::vector<std::string>& settings) {
+  std::vector<std::string> all{"gravity=0",
+                               "shaft.tilt_deg=0",
+                               "blades.precone_deg=0",
+                               "shaft.torsion.joint=locked",
+                               "shaft.torsion.stiffness=0",
+                               "shaft.torsion.damping=0",
+                               "aero.airfoil_dynamics=static",
+                               "aero.thrust=buhl_f"};
+  all.insert(all.end(), settings.begin(), settings.end());
+  io::Case input = io::read_case(input_path("nrel5mw/land"), all);
+  input.turbine.has_tower = false;
+  input.turbine.blades.beam.damping.setZero();
+  for (model::SectionDefinition& section : input.turbine.blades.beam.sections) {
+    section.rigid.fill(true);
+    section.stiffness.setZero();
+  }
+  return input;
+}
+
+struct OperatingPoint {
+  double wind, rpm, pitch_deg, power, thrust;  // MW, kN
+};
+
+void require_point(const OperatingPoint& at, const std::vector<std::string>& mesh,
+                   double relative) {
+  std::vector<std::string> settings{"wind.speed=" + std::to_string(at.wind),
+                                    "shaft.speed_rpm=" + std::to_string(at.rpm),
+                                    "blades.pitch_deg=" + std::to_string(at.pitch_deg)};
+  settings.insert(settings.end(), mesh.begin(), mesh.end());
+  const Steady rotor(rigid_rotor(settings));
+  const std::vector<double> found = rotor.channels({"RotPwr", "RotThrust"});
+  BOOST_TEST_CONTEXT(at.wind << " m/s") {
+    BOOST_TEST(found[0] * 1e-3 == at.power, tolerance(relative));
+    BOOST_TEST(found[1] == at.thrust, tolerance(relative));
+  }
+}
+
+/// Converged figures of an independent program: rigid, no cone and tilt, static polars, Buhl's
+/// thrust law with the tip loss inside.
+constexpr OperatingPoint nrel_points[] = {
+    {8.0, 9.155, 0.0, 1.9173, 387.1},   {10.0, 11.444, 0.0, 3.7447, 604.9},
+    {13.0, 12.1, 6.60, 5.3320, 510.7},  {15.0, 12.1, 10.45, 5.3223, 422.4},
+    {17.0, 12.1, 13.54, 5.3157, 369.8}, {20.0, 12.1, 17.47, 5.3374, 322.4},
+    {25.0, 12.1, 23.47, 4.7387, 252.0}};
+
+BOOST_AUTO_TEST_CASE(nrel_rotor_has_the_converged_power_and_thrust) {
+  for (const OperatingPoint& at : nrel_points)
+    require_point(at, {"blades.elements=24", "blades.order=2"}, 3e-3);
+}
+
+BOOST_AUTO_TEST_CASE(mesh_of_the_input_has_power_and_thrust_within_6_per_mille) {
+  for (const OperatingPoint& at : nrel_points) require_point(at, {}, 6e-3);
+}
+
+// ---- analyses agree ----------------------------------------------------------------------------
+
+/// The elastic rotor on the ground in axial wind, without gravity and tilt: constant tangents.
+io::Case rotor_in_axial_wind(const std::vector<std::string>& settings) {
+  std::vector<std::string> all{"gravity=0", "shaft.tilt_deg=0", "wind.speed=10", "blades.order=2",
+                               "shaft.speed_rpm=11.444"};
+  all.insert(all.end(), settings.begin(), settings.end());
+  io::Case input = io::read_case(input_path("nrel5mw/land"), all);
+  input.turbine.has_tower = false;
+  return input;
+}
+
+/// Each resolved mode of `some` that is not one of the air has an exponent among `all`, up to
+/// multiples of the rotor speed.
+void require_same_exponents(const analysis::ModeSet& some, const analysis::ModeSet& all,
+                            double relative) {
+  int compared = 0;
+  for (const analysis::Mode& mode : some.modes) {
+    if (!mode.resolved || is_of_medium(mode)) continue;
+    double best = 1e300;
+    for (const analysis::Mode& other : all.modes)
+      for (const double sign : {1.0, -1.0}) {
+        const double apart =
+            std::remainder(sign * other.exponent.imag() - mode.exponent.imag(), some.rotor_speed);
+        best = std::min(best, std::hypot(other.exponent.real() - mode.exponent.real(), apart));
+      }
+    BOOST_TEST_CONTEXT(mode.label << " " << mode.exponent)
+    BOOST_TEST(best < relative * std::max(std::abs(mode.exponent), some.rotor_speed));
+    ++compared;
+  }
+  BOOST_TEST(compared >= 8);
+}
+
+/// The map of the steps of order 2 is exact where tangents are constant.
+BOOST_AUTO_TEST_CASE(floquet_and_constant_modes_agree_in_axial_wind) {
+  for (const std::string inflow : {"oye", "equilibrium"}) {
+    Steady rotor(rotor_in_axial_wind({"aero.inflow=" + inflow}));
+    require_same_exponents(rotor.floquet({400, analysis::FloquetPeriod::automatic, 2}),
+                           rotor.constant_modes(), 1e-8);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(blade_passage_and_revolution_agree_in_sheared_skewed_wind) {
+  const std::vector<std::string> settings{
+      "wind.speed=10",  "wind.height=90", "wind.shear.power=0.2", "wind.direction_deg=20",
+      "blades.order=2", "tower.order=3",  "trim.harmonics=8"};
+  Steady turbine(io::read_case(input_path("nrel5mw/land"), settings));
+  require_same_exponents(turbine.floquet({72, analysis::FloquetPeriod::automatic, 6}),
+                         turbine.floquet({72, analysis::FloquetPeriod::full, 6}), 1e-8);
+}
+
+}  // namespace
