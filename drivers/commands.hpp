@@ -16,6 +16,7 @@ void run_floquet(const Job& job);
 void run_transient(const Job& job);
 void run_loads(const Job& job);
 void run_linearize(const Job& job);
+void run_operate(const Job& job);
 
 void run_import(const CommandLine& line);
 void run_export(const CommandLine& line);

@@ -31,7 +31,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 11> commands{{
+constexpr std::array<Command, 12> commands{{
     {.name = "check",
      .summary = "reports the model of a case: masses, sizes, unknowns; solves nothing",
      .description =
@@ -101,6 +101,17 @@ constexpr std::array<Command, 11> commands{{
      .writes_result = true,
      .analysis = simulation::Analysis::linearize,
      .run = run_linearize},
+    {.name = "operate",
+     .summary = "operating points over the wind speed: speed, pitch, power, thrust",
+     .description =
+         "Finds the steady operating points over the wind speed: by a law of the generator's\n"
+         "torque below the rated power and by the pitch above it, or from a table of speed and\n"
+         "pitch. Writes speed, pitch, torque, power, thrust and deflections.\n",
+     .example = "inputs/nrel5mw/land.yaml --set operation.wind_speeds=[6,8,10,12,14]",
+     .writes_result = true,
+     .has_csv = true,
+     .analysis = simulation::Analysis::operate,
+     .run = run_operate},
     {.name = "import",
      .summary = "a case file from a turbine of OpenFAST or windIO",
      .description =

@@ -25,6 +25,8 @@ namespace {
 constexpr double least_state = 1e-3;
 /// The same for a medium: stations without load have no weight.
 constexpr double least_medium = 0.1;
+/// Least number of instants at which the sizes of terms are taken.
+constexpr int instants_of_sizes = 16;
 
 /// Scaled residual that counts as round-off.
 constexpr double vanished = 1e-13;
@@ -777,15 +779,15 @@ double harmonic_residual(const system::PeriodicSystem& system, const Trim& trim,
   return largest;
 }
 
-double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                      const std::vector<HeldCoordinate>& loads, MPI_Comm comm) {
+StateResidual state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                             const std::vector<HeldCoordinate>& loads, MPI_Comm comm) {
   const Ranks ranks(comm);
   std::vector<PetscInt> rows;
   for (std::size_t i = 0; i < system.rows().size(); ++i)
     if (system.rows()[i] == system::RowRole::evolution ||
         system.rows()[i] == system::RowRole::definition)
       rows.push_back(static_cast<PetscInt>(i));
-  if (rows.empty()) return 0.0;
+  if (rows.empty()) return {};
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Vec> r = system.make_state();
@@ -807,6 +809,7 @@ double state_residual(const system::PeriodicSystem& system, const PeriodicSoluti
   }
   const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const int samples = 2 * std::max(sample_count(system, solution.harmonics()), 16);
+  const int stride = samples / instants_of_sizes;
   const auto raise = [](std::vector<double>& values, const Eigen::VectorXd& by) {
     Eigen::Map<Eigen::VectorXd> all(values.data(), by.size());
     all = all.cwiseMax(by);
@@ -817,20 +820,24 @@ double state_residual(const system::PeriodicSystem& system, const PeriodicSoluti
       solution.evaluate(t, z.get(), z_dot.get());
       system.residual(t, z.get(), z_dot.get(), r.get());
       add_held_loads(system, loads, r.get());
+      raise(residuals, values_of(r.get()).cwiseAbs());
+      if (k % stride != 0) continue;
       system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
       raise(sizes,
             to_sparse(jacobian.get()).cwiseAbs() * values_of(z.get()).cwiseAbs().cwiseMax(least) +
                 to_sparse(mass.get()).cwiseAbs() *
                     values_of(z_dot.get()).cwiseAbs().cwiseMax(rate * least));
-      raise(residuals, values_of(r.get()).cwiseAbs());
     }
   });
   ranks.find_largest(sizes);
   ranks.find_largest(residuals);
-  double largest = 0.0;
-  for (const PetscInt row : rows)
-    if (const auto i = static_cast<std::size_t>(row); residuals[i] > 0.0)
-      largest = std::max(largest, residuals[i] / sizes[i]);
+  StateResidual largest;
+  for (const PetscInt row : rows) {
+    const auto i = static_cast<std::size_t>(row);
+    const bool is_of_medium = system.unknowns()[i].owner.kind == system::PartKind::medium;
+    double& found = is_of_medium ? largest.of_medium : largest.of_others;
+    if (residuals[i] > 0.0) found = std::max(found, residuals[i] / sizes[i]);
+  }
   return largest;
 }
 
@@ -842,7 +849,9 @@ void finish_trim(const system::PeriodicSystem& system, Trim& trim, MPI_Comm comm
           trim.solution.coefficients().row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff());
   trim.residual = balance_residual(system, trim.solution, trim.held, 0.0, comm);
   trim.residual_between = balance_residual(system, trim.solution, trim.held, 0.5, comm);
-  trim.state_residual = state_residual(system, trim.solution, trim.held, comm);
+  const StateResidual states = state_residual(system, trim.solution, trim.held, comm);
+  trim.state_residual = states.of_others;
+  trim.medium_residual = states.of_medium;
 }
 
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,

@@ -86,9 +86,11 @@ Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance, MPI_C
 
 /// Tries a constant solution; an unbalanced rotor may have none.
 std::optional<Trim> try_constant(const system::PeriodicSystem& system, const TrimOptions& options,
-                                 MPI_Comm comm) {
+                                 MPI_Comm comm, const Trim* near) {
   try {
-    return solve_harmonic_balance(system, 0, options.tolerance, nullptr, comm);
+    const bool has_start = near != nullptr && near->solution.harmonics() == 0;
+    return solve_harmonic_balance(system, 0, options.tolerance,
+                                  has_start ? &near->solution : nullptr, comm);
   } catch (const ConvergenceError&) {
     return std::nullopt;
   }
@@ -121,6 +123,11 @@ Trim solve_from(const system::PeriodicSystem& system, int harmonics, double tole
   return solve_harmonic_balance(system, harmonics, tolerance, nullptr, comm);
 }
 
+bool is_enough(const Trim& trim, const TrimOptions& options) {
+  return trim.residual_between <= allowed_residual(trim, options.auto_tolerance) &&
+         trim.state_residual <= options.auto_tolerance && trim.medium_residual <= rough_medium;
+}
+
 Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& options,
                      const std::optional<Trim>& constant, Observer& observer, MPI_Comm comm) {
   std::vector<std::pair<int, double>> attempts;
@@ -134,14 +141,29 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
     text << "trim: " << harmonics << " harmonics, residual between the samples "
          << trim.residual_between;
     observer.note(text.str());
-    if (trim.residual_between <= allowed_residual(trim, options.auto_tolerance) &&
-        trim.state_residual <= options.auto_tolerance)
-      return trim;
+    if (is_enough(trim, options)) return trim;
     last = std::move(trim);
   }
   throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(auto_harmonics) +
                          " and the residual between the samples is still too large; hint: give "
                          "trim.harmonics or a larger trim.auto_tolerance");
+}
+
+/// Tries a steady state nearby as the start, with its harmonics.
+std::optional<Trim> try_near(const system::PeriodicSystem& system, const TrimOptions& options,
+                             MPI_Comm comm, const Trim* near) {
+  if (near == nullptr || options.method != TrimMethod::harmonic_balance) return std::nullopt;
+  const int harmonics = near->solution.harmonics();
+  const int least = options.automatic ? std::max(1, options.least_harmonics) : options.harmonics;
+  if (harmonics < least) return std::nullopt;
+  try {
+    Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, &near->solution, comm);
+    if (options.automatic && !is_enough(trim, options)) return std::nullopt;
+    return trim;
+  } catch (const ConvergenceError&) {
+  } catch (const DomainError&) {
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -156,7 +178,7 @@ void add_held_loads(const system::PeriodicSystem& system, const std::vector<Held
 }
 
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options, Observer& observer,
-               MPI_Comm comm) {
+               MPI_Comm comm, const Trim* near) {
   const petsc::Stage stage("trim");
   require_roles(system);
   if (system.period() == 0.0) return solve_at_rest(system, options.tolerance, comm);
@@ -164,12 +186,13 @@ Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options,
   // is exact. Loads and motions that oscillate exclude a constant, but they might be zero at all of
   // its samples.
   const std::optional<Trim> constant = options.least_harmonics == 0 && !feels_time(system)
-                                           ? try_constant(system, options, comm)
+                                           ? try_constant(system, options, comm, near)
                                            : std::nullopt;
   if (constant && constant->residual_between <= allowed_residual(*constant, round_off) &&
       constant->residual <= allowed_residual(*constant, round_off) &&
-      constant->state_residual <= state_round_off)
+      std::max(constant->state_residual, constant->medium_residual) <= state_round_off)
     return *constant;
+  if (const std::optional<Trim> trim = try_near(system, options, comm, near)) return *trim;
   if (options.method == TrimMethod::shooting)
     return solve_shooting(system, options.steps, options.tolerance, observer);
   if (options.automatic) return raise_harmonics(system, options, constant, observer, comm);

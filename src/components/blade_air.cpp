@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <complex>
 
 #include "samara/base/index.hpp"
 #include "samara/components/blade_root.hpp"
@@ -163,19 +164,30 @@ void BladeAir::connect_added_mass(int p) {
 }
 
 template <class T>
-elements::StationMotion<T> BladeAir::motion_at(int p,
-                                               const Eigen::Matrix<T, arguments, 1>& x) const {
+elements::HubPose<T> BladeAir::hub_of(const Eigen::Matrix<T, arguments, 1>& x) {
   elements::HubPose<T> hub;
   hub.place = x.template segment<3>(at_hub);
   hub.axis = x.template segment<3>(at_hub + 6);
   hub.velocity = x.template segment<3>(at_hub + 9);
   hub.speed = x(at_hub + 12);
+  return hub;
+}
+
+template <class T>
+elements::RootPose<T> BladeAir::root_of(const Eigen::Matrix<T, arguments, 1>& x) {
   elements::RootPose<T> root;
   root.place = x.template segment<3>(at_root);
   root.axes.col(0) = x.template segment<3>(at_root + 3);
   root.axes.col(1) = x.template segment<3>(at_root + 6);
   root.axes.col(2) = math::cross(Vec3<T>(root.axes.col(0)), Vec3<T>(root.axes.col(1)));
-  return elements::station_motion<T>(air().rotor, station(p), x.template head<12>(), root, hub);
+  return root;
+}
+
+template <class T>
+elements::StationMotion<T> BladeAir::motion_at(int p,
+                                               const Eigen::Matrix<T, arguments, 1>& x) const {
+  return elements::station_motion<T>(air().rotor, station(p), x.template head<12>(), root_of<T>(x),
+                                     hub_of<T>(x));
 }
 
 template <class System>
@@ -202,6 +214,78 @@ void BladeAir::state(System& system) const {
     system.template add<9, 6>(inertias_[at(p)], inertia_of, Memory::of_arguments);
   }
 }
+
+template <class T>
+AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const {
+  using math::cross;
+  using math::dot;
+  using std::sqrt;
+  const elements::AirRotor& rotor = air().rotor;
+  const AirStation& station = this->station(p);
+  const elements::HubPose<T> hub = hub_of<T>(x);
+  const elements::RootPose<T> root = root_of<T>(x);
+  const elements::StationMotion<T> motion = motion_at<T>(p, x);
+  const elements::StationAir<T> present =
+      elements::station_air<T>(rotor, station, motion, x.template segment<air::unknowns>(at_air),
+                               x.template segment<rate_count>(at_rates));
+  const elements::SectionFlow<T>& flow = present.flow;
+  const Vec3<T> force = root.axes * Vec3<T>(x.template segment<3>(at_air + air::force));
+  const Vec3<T> moment = root.axes * Vec3<T>(x.template segment<3>(at_air + air::moment));
+  const Vec3<T> place =
+      root.place + root.axes * Vec3<T>(station.x.cast<T>() + x.template head<3>());
+  const Vec3<T> arm = place - hub.place;
+  const Vec3<T> outward = arm - hub.axis * dot(arm, hub.axis);
+  const Mat3<T> section = root.axes * motion.R;
+  const Vec3<T> edge =
+      section * Vec3<T>(T(0.0), T(std::cos(station.twist)), T(-std::sin(station.twist)));
+  const Vec3<T> suction =
+      section * Vec3<T>(T(0.0), T(std::sin(station.twist)), T(std::cos(station.twist)));
+  AirPointReport<T> report;
+  report.radius = sqrt(dot(outward, outward));
+  const Vec3<T> e_t = cross(hub.axis, outward) / report.radius;
+  const Vec3<T> relative = section * Vec3<T>(motion.relative + motion.axial * present.induced_n +
+                                             motion.tangential * present.induced_t);
+  report.angle = air::angle_of(flow, flow.n);
+  report.inflow_angle = math::arctangent(T(dot(relative, hub.axis)), T(-dot(relative, e_t)));
+  report.speed = flow.speed;
+  report.pressure = flow.speed * flow.speed * T(0.5 * rotor.density);
+  report.wind = dot(Vec3<T>(rotor.wind.at<T>(place) - hub.velocity), hub.axis);
+  report.hub_speed = hub.speed;
+  const auto share_of = [&](const T& induced, const T& whole) {
+    return -(induced * whole) / (whole * whole + T(rotor.least_speed * rotor.least_speed));
+  };
+  report.induced_n = present.induced_n;
+  report.induced_t = present.induced_t;
+  report.axial = share_of(present.induced_n, report.wind);
+  report.tangential = share_of(present.induced_t, T(hub.speed * report.radius));
+  report.lift = present.coefficients.lift;
+  report.drag = present.coefficients.drag;
+  report.moment = present.coefficients.moment;
+  report.normal = dot(force, suction);
+  report.chordwise = dot(force, edge);
+  report.thrust = dot(force, hub.axis);
+  report.driving = dot(force, e_t);
+  Mat3<T> axes;  // h1 h2 h3
+  axes.col(0) = x.template segment<3>(at_hub + 3);
+  axes.col(1) = hub.axis;
+  axes.col(2) = cross(Vec3<T>(axes.col(0)), Vec3<T>(axes.col(1)));
+  report.hub_load << axes.transpose() * force,
+      axes.transpose() * Vec3<T>(cross(arm, force) + moment);
+  return report;
+}
+
+template <class T>
+std::vector<AirPointReport<T>> BladeAir::report(const Residual<T>& residual) const {
+  std::vector<AirPointReport<T>> reports;
+  for (std::size_t p = 0; p < points_.size(); ++p)
+    reports.push_back(
+        report_at<T>(static_cast<int>(p), residual.template gather<arguments>(points_[p])));
+  return reports;
+}
+
+template std::vector<AirPointReport<double>> BladeAir::report(const Residual<double>&) const;
+template std::vector<AirPointReport<std::complex<double>>> BladeAir::report(
+    const Residual<std::complex<double>>&) const;
 
 void BladeAir::settle(const Residual<double>& residual, std::vector<double>& values) const {
   for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {

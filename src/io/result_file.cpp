@@ -17,6 +17,7 @@
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
 #include "samara/io/load_result.hpp"
+#include "samara/io/operation_table.hpp"
 #include "samara/io/time_series_export.hpp"
 #include "samara/io/time_series_file.hpp"
 #include "samara/io/whole_file.hpp"
@@ -39,8 +40,9 @@ constexpr char schema_attribute[] = "samara_schema";
 constexpr std::string_view mode_table_start = "number,label,";
 constexpr std::string_view trim_table_start = "name,unit,mean";
 constexpr std::string_view static_table_start = "factor,newton_steps,";
-constexpr std::array<std::string_view, 5> table_starts{
-    mode_table_start, trim_table_start, static_table_start, series_table_start, load_table_start};
+constexpr std::array<std::string_view, 6> table_starts{mode_table_start,   trim_table_start,
+                                                       static_table_start, series_table_start,
+                                                       load_table_start,   operation_table_start};
 
 /// Harmonics of the participation are kept up to the last ones in which a mode has this share.
 constexpr double smallest_share = 1e-9;
@@ -387,6 +389,8 @@ void ResultFile::write_trim(const analysis::Trim& trim) {
        "rest of the residual comes from harmonics that were left out"});
   write_value("/trim/state_residual", trim.state_residual,
               {"1", no_frame, "largest residual of the first-order states, relative to its terms"});
+  write_value("/trim/medium_residual", trim.medium_residual,
+              {"1", no_frame, "the same of the air at its stations; it is rough beyond 0.01"});
   write_value("/trim/imbalance", trim.imbalance(),
               {"1", no_frame,
                "the larger residual relative to the largest internal load; a steady state is rough "

@@ -69,13 +69,14 @@ analysis::Trim read_result_trim(const std::string& path) {
   trim.residual = residual[0];
   trim.residual_between = residual[1];
   trim.load_level = file.number("/trim/load_level");
-  // Older results lack both values.
+  // Older results lack these values.
   const auto number_or = [&file](const char* name, double otherwise) {
     return file.has(name) ? file.number(name) : otherwise;
   };
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   trim.harmonic_residual = number_or("/trim/harmonic_residual", unknown);
   trim.state_residual = number_or("/trim/state_residual", 0.0);
+  trim.medium_residual = number_or("/trim/medium_residual", 0.0);
   if (file.text_attribute("/trim", "method") == "shooting")
     trim.method = analysis::TrimMethod::shooting;
   return trim;

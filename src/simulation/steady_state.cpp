@@ -102,13 +102,13 @@ std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& op
 
 analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                           const analysis::TrimOptions& options, analysis::Observer& observer,
-                          MPI_Comm comm) {
+                          MPI_Comm comm, const analysis::Trim* near) {
   const auto name_limit = [&] {
     const std::string words = find_limit(scenario, options);
     if (!words.empty()) throw ConvergenceError("trim: " + words);
   };
   try {
-    return analysis::find_trim(system, options, observer, comm);
+    return analysis::find_trim(system, options, observer, comm, near);
   } catch (const ConvergenceError&) {
     name_limit();
     throw;
@@ -126,6 +126,10 @@ analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem&
 }
 
 std::string roughness(const analysis::Trim& trim) {
+  if (trim.imbalance() <= rough_imbalance && trim.medium_residual > analysis::rough_medium)
+    return "the air at a station is out of balance by " + general(trim.medium_residual, 2) +
+           " of the terms of its equations (more than " + general(analysis::rough_medium, 1) +
+           "); hint: more trim.harmonics";
   if (trim.imbalance() <= rough_imbalance) return "";
   const bool is_of_states = trim.state_residual >= trim.imbalance();
   const std::string part = is_of_states

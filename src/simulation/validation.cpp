@@ -79,6 +79,10 @@ class Validation {
       case Analysis::transient:
         check_transient();
         break;
+      case Analysis::operate:
+        check_steady();
+        check_operation();
+        break;
     }
     return std::move(faults_);
   }
@@ -91,6 +95,35 @@ class Validation {
       add("shaft.speed",
           "must be 0: samara static needs a rotor at rest; hint: use samara trim, or --set "
           "shaft.speed=0");
+  }
+
+  void check_operation() {
+    const OperationSetup& operation = scenario_.operation;
+    if (!turbine_.wind || !turbine_.aero) {
+      add("wind",
+          "operating points need wind and blades with blades.aero_sections; hint: --set "
+          "wind.speed=8");
+      return;
+    }
+    if (operation.wind_speeds.empty() && operation.table_path.empty() &&
+        !(turbine_.wind->speed > 0.0))
+      add("operation.wind_speeds", "missing; hint: --set operation.wind_speeds=[4,6,8,10]");
+    const bool has_law = operation.torque_gain > 0.0 || !operation.torque_table.empty();
+    if (!operation.table_path.empty()) {
+      if (has_law || operation.rated_speed > 0.0 || operation.rated_power > 0.0 ||
+          operation.least_speed > 0.0)
+        add("operation.table", "gives speed and pitch; hint: leave out speeds, power and torque");
+      return;
+    }
+    if (!(operation.rated_speed > 0.0))
+      add("operation", "missing key \"rated_speed\" or \"rated_speed_rpm\"; hint: or table");
+    else if (operation.least_speed >= operation.rated_speed)
+      add("operation.least_speed", "must be below the rated speed");
+    if (!(operation.rated_power > 0.0)) add("operation", "missing key \"rated_power\"");
+    if (!has_law)
+      add("operation",
+          "missing key \"torque_gain\" or \"torque_table\": the torque of the "
+          "generator below the rated speed");
   }
 
   /// Floquet theory needs a period.

@@ -1,5 +1,6 @@
 #include "channel_catalogue.hpp"
 
+#include <array>
 #include <numbers>
 #include <sstream>
 
@@ -20,6 +21,34 @@ std::vector<std::string> split_words(const std::string& text) {
   return words;
 }
 
+struct AirChannel {
+  const char* name;
+  const char* unit;
+  const char* description;
+  double factor = 1.0;
+};
+
+/// Channels of the air at a station, by the names of AeroDyn.
+constexpr std::array<AirChannel, air_values> air_channels{
+    {{"Alpha", "deg", "angle of attack at the aerodynamic centre", to_degrees},
+     {"Phi", "deg", "angle of the relative wind to the plane of the rotor", to_degrees},
+     {"VRel", "m/s", "relative wind in the plane of the section"},
+     {"DynP", "Pa", "dynamic pressure"},
+     {"AxInd", "-", "axial induction factor"},
+     {"TnInd", "-", "tangential induction factor"},
+     {"Vindx", "m/s", "induced velocity along the shaft, downwind"},
+     {"Vindy", "m/s", "induced velocity against the turning of the rotor"},
+     {"Cl", "-", "lift coefficient"},
+     {"Cd", "-", "drag coefficient"},
+     {"Cm", "-", "moment coefficient, nose up"},
+     {"Fl", "N/m", "lift per length"},
+     {"Fd", "N/m", "drag per length"},
+     {"Mm", "N-m/m", "moment of the air about the aerodynamic centre per length, nose up"},
+     {"Fn", "N/m", "force of the air per length, normal to the chord"},
+     {"Ft", "N/m", "force of the air per length, along the chord to the leading edge"},
+     {"Fx", "N/m", "force of the air per length, along the shaft"},
+     {"Fy", "N/m", "force of the air per length, in the sense of the turning"}}};
+
 }  // namespace
 
 ChannelCatalogue::ChannelCatalogue(const TurbineEquations& equations,
@@ -30,6 +59,7 @@ ChannelCatalogue::ChannelCatalogue(const TurbineEquations& equations,
   add_shaft();
   add_yaw_bearing();
   if (turbine_.has_tower) add_tower();
+  if (turbine_.air) add_air();
   for (const components::Channel& declared : equations.declarations().channels) {
     channels.push_back({declared.name, declared.unit, declared.frame, declared.description});
     picks.push_back({-1, declared.factor, declared.unknown});
@@ -183,6 +213,42 @@ void ChannelCatalogue::add_tower() {
   add_moment("TwrBsMzt", base, "tower-base moment, torsion", base_moment + 2);
 }
 
+bool ChannelCatalogue::is_of_air(int slot) const {
+  if (slot < 0) return false;
+  if (slot < whole_slots) return slot >= air_force;
+  const int first = section_slot(0, 0);
+  return slot >= first && (slot - first) % section_slots >= section_air;
+}
+
+void ChannelCatalogue::add_air() {
+  const std::string hub = "hub, turning with it";
+  const char* axes[] = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i)
+    add(std::string("RtAeroF") + axes[i] + "h", "N", hub,
+        std::string("force of the air on the rotor, ") + axes[i], air_force + i, 1.0);
+  for (int i = 0; i < 3; ++i)
+    add(std::string("RtAeroM") + axes[i] + "h", "N-m", hub,
+        std::string("moment of the air on the rotor about its apex, ") + axes[i], air_moment + i,
+        1.0);
+  add("RtAeroPwr", "W", hub, "torque of the air times the speed of the rotor", air_power, 1.0);
+  add("RtVAvgxh", "m/s", hub, "undisturbed wind along the shaft, mean over the rotor", mean_wind,
+      1.0);
+  add("RtAeroCp", "-", hub, "power coefficient, of RtAeroPwr with RtVAvgxh", power_coefficient,
+      1.0);
+  add("RtAeroCq", "-", hub, "torque coefficient", torque_coefficient, 1.0);
+  add("RtAeroCt", "-", hub, "thrust coefficient, of RtAeroFxh", thrust_coefficient, 1.0);
+  add("RtTSR", "-", hub, "tip-speed ratio with RtVAvgxh", tip_speed_ratio, 1.0);
+}
+
+void ChannelCatalogue::add_section_air(const std::string& before, const std::string& place,
+                                       int slot) {
+  for (int i = 0; i < air_values; ++i) {
+    const AirChannel& channel = air_channels[static_cast<std::size_t>(i)];
+    add(before + channel.name, channel.unit, place, channel.description, slot + section_air + i,
+        channel.factor);
+  }
+}
+
 /// The channels of a station. Their names have `before` and `after` around the letters F, M, T, R
 /// and the axis: "B1N1" and "", or "TwHt1" and "t".
 void ChannelCatalogue::add_section(const std::string& before, const std::string& after,
@@ -211,6 +277,10 @@ void ChannelCatalogue::add_blade_sections(int k) {
     add_section("B" + std::to_string(k + 1) + "N" + std::to_string(i + 1), "",
                 blade + ", station " + std::to_string(i + 1), blade + ", coned and pitched",
                 section_slot(k, i));
+  if (!turbine_.air) return;
+  for (std::size_t i = 0; i < count; ++i)
+    add_section_air("B" + std::to_string(k + 1) + "N" + std::to_string(i + 1),
+                    blade + ", station " + std::to_string(i + 1), section_slot(k, i));
 }
 
 void ChannelCatalogue::add_tower_sections() {

@@ -48,13 +48,23 @@ inline constexpr int teeter_rate = 45;
 inline constexpr int rotor_power = 46;
 inline constexpr int generator_torque = 47;
 inline constexpr int brake_torque = 48;
-inline constexpr int whole_slots = 49;
+inline constexpr int air_force = 49;  // of the air on the blades, axes of the hub
+inline constexpr int air_moment = 52;
+inline constexpr int air_power = 55;
+inline constexpr int mean_wind = 56;
+inline constexpr int power_coefficient = 57;
+inline constexpr int torque_coefficient = 58;
+inline constexpr int thrust_coefficient = 59;
+inline constexpr int tip_speed_ratio = 60;
+inline constexpr int whole_slots = 61;
 // Channels of a station:
 inline constexpr int section_force = 0;  // axes of the section
 inline constexpr int section_moment = 3;
 inline constexpr int section_move = 6;  // axes of the root
 inline constexpr int section_turn = 9;
-inline constexpr int section_slots = 12;
+inline constexpr int section_air = 12;  // in the order of air_channels
+inline constexpr int air_values = 18;
+inline constexpr int section_slots = section_air + air_values;
 
 }  // namespace slots
 
@@ -72,6 +82,9 @@ class ChannelCatalogue {
   /// First quantity of a blade (0-based).
   static int blade_slot(int blade) { return slots::whole_slots + blade * slots::blade_slots; }
   int section_slot(int beam, std::size_t i) const;
+
+  /// True if the value in a slot is one of the air.
+  bool is_of_air(int slot) const;
 
   /// Places of the stations of a beam, fractions of its length.
   static const std::vector<double>& stations_of(const model::Beam& beam,
@@ -91,6 +104,8 @@ class ChannelCatalogue {
   void add_shaft();
   void add_yaw_bearing();
   void add_tower();
+  void add_air();
+  void add_section_air(const std::string& before, const std::string& place, int slot);
   void add_section(const std::string& before, const std::string& after, const std::string& place,
                    const std::string& root, int slot);
   void add_blade_sections(int k);

@@ -1,6 +1,7 @@
 #include "samara/turbine/turbine_channels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <map>
@@ -126,6 +127,9 @@ TurbineChannels::TurbineChannels(const TurbineSystem& system, const ChannelStati
 
 void TurbineChannels::place_sections(const ChannelCatalogue& catalogue) {
   size_ = catalogue.section_slot(0, 0);
+  has_air_ = std::any_of(picks_.begin(), picks_.end(), [&catalogue](const ChannelPick& pick) {
+    return catalogue.is_of_air(pick.slot);
+  });
   const std::vector<components::PlacedBeam>& beams = system_.equations().beams();
   for (std::size_t b = 0; b < beams.size(); ++b) {
     const model::Beam& beam = *beams[b].beam;
@@ -233,6 +237,68 @@ class Quantities {
     put(first + section_turn, along_beam<T>(turn));
   }
 
+  using AirReport = std::vector<std::vector<components::AirPointReport<T>>>;
+
+  void add_rotor_air(const AirReport& air) {
+    Vec6<T> load = Vec6<T>::Zero();
+    T wind(0.0);
+    T area(0.0);
+    for (std::size_t k = 0; k < air.size(); ++k)
+      for (std::size_t p = 0; p < air[k].size(); ++p) {
+        const components::AirPointReport<T>& point = air[k][p];
+        const double length = turbine_.blades[k].point_length(static_cast<int>(p));
+        load += point.hub_load * T(length);
+        wind += point.wind * point.radius * length;
+        area += point.radius * length;
+      }
+    wind /= area;
+    const elements::AirRotor& rotor = turbine_.air->rotor;
+    const T& speed = air.front().front().hub_speed;
+    const T power = load(4) * speed;
+    const double disk = std::numbers::pi * rotor.tip_radius * rotor.tip_radius;
+    const T square = wind * wind + T(rotor.least_speed * rotor.least_speed);
+    const T pressure = square * (0.5 * rotor.density * disk);
+    put(air_force, of_body<T>(load.template head<3>()));
+    put(air_moment, of_body<T>(load.template tail<3>()));
+    put(air_power, power);
+    put(mean_wind, wind);
+    put(power_coefficient, power * wind / (pressure * square));
+    put(torque_coefficient, load(4) / (pressure * rotor.tip_radius));
+    put(thrust_coefficient, load(1) / pressure);
+    put(tip_speed_ratio, speed * wind * rotor.tip_radius / square);
+  }
+
+  /// `air`, `stations`: of the blade at its points.
+  void add_section_air(int first, const std::vector<components::AirPointReport<T>>& air,
+                       const std::vector<elements::AirStation>& stations, const PointSum& station) {
+    for (const auto& [p, weight] : station) {
+      const components::AirPointReport<T>& at = air[static_cast<std::size_t>(p)];
+      const double chord = stations[static_cast<std::size_t>(p)].chord;
+      const T per_chord = at.pressure * chord;
+      const std::array<T, air_values> values{at.angle,
+                                             at.inflow_angle,
+                                             at.speed,
+                                             at.pressure,
+                                             at.axial,
+                                             at.tangential,
+                                             at.induced_n,
+                                             -at.induced_t,
+                                             at.lift,
+                                             at.drag,
+                                             at.moment,
+                                             at.lift * per_chord,
+                                             at.drag * per_chord,
+                                             at.moment * per_chord * chord,
+                                             at.normal,
+                                             at.chordwise,
+                                             at.thrust,
+                                             at.driving};
+      for (int i = 0; i < air_values; ++i)
+        values_[static_cast<std::size_t>(first + section_air + i)] +=
+            values[static_cast<std::size_t>(i)] * weight;
+    }
+  }
+
  private:
   void put(int slot, const T& value) { values_[static_cast<std::size_t>(slot)] = value; }
   void put(int slot, const Vec3<T>& v) {
@@ -305,6 +371,15 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
     const components::PlacedBeam& placed =
         system_.equations().beams()[static_cast<std::size_t>(section.beam)];
     quantities.add_section(section.slot, *placed.beam, placed.points, section.place, z, z_dot);
+  }
+  if (has_air_) {
+    const auto air = system_.equations().air_report<T>(t, z, z_dot, inputs);
+    quantities.add_rotor_air(air);
+    for (const Section& section : sections_) {
+      const auto k = static_cast<std::size_t>(section.beam);
+      if (k < air.size())
+        quantities.add_section_air(section.slot, air[k], turbine.air->stations[k], section.place);
+    }
   }
   for (std::size_t i = 0; i < picks_.size(); ++i)
     values[i] = (picks_[i].unknown < 0 ? quantities[picks_[i].slot]

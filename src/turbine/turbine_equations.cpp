@@ -243,6 +243,21 @@ components::BodiesReport<T> TurbineEquations::report(double t, const std::vector
   return bodies_->report(residual);
 }
 
+template <class T>
+std::vector<std::vector<components::AirPointReport<T>>> TurbineEquations::air_report(
+    double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+    const TurbineInputs<T>& inputs) const {
+  std::vector<std::vector<components::AirPointReport<T>>> reports;
+  if (airs_.empty()) return reports;
+  std::vector<T> unused(z.size());  // only the ports count
+  Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
+  if (controller_) controller_->add_to(residual);
+  for (const auto& actuator : actuators_) actuator->add_to(residual);
+  bodies_->add_to(residual);
+  for (const auto& air : airs_) reports.push_back(air->report(residual));
+  return reports;
+}
+
 using Complex = std::complex<double>;
 template void TurbineEquations::evaluate(double, const std::vector<double>&,
                                          const std::vector<double>&, const TurbineInputs<double>&,
@@ -253,6 +268,12 @@ template void TurbineEquations::evaluate(double, const std::vector<Complex>&,
 template components::BodiesReport<double> TurbineEquations::report(
     double, const std::vector<double>&, const std::vector<double>&,
     const TurbineInputs<double>&) const;
+template std::vector<std::vector<components::AirPointReport<double>>> TurbineEquations::air_report(
+    double, const std::vector<double>&, const std::vector<double>&,
+    const TurbineInputs<double>&) const;
+template std::vector<std::vector<components::AirPointReport<Complex>>> TurbineEquations::air_report(
+    double, const std::vector<Complex>&, const std::vector<Complex>&,
+    const TurbineInputs<Complex>&) const;
 template components::BodiesReport<Complex> TurbineEquations::report(
     double, const std::vector<Complex>&, const std::vector<Complex>&,
     const TurbineInputs<Complex>&) const;

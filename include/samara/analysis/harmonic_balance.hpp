@@ -19,10 +19,17 @@ double balance_residual(const system::PeriodicSystem& system, const PeriodicSolu
                         const std::vector<HeldCoordinate>& loads, double shift,
                         MPI_Comm comm = MPI_COMM_SELF);
 
-/// Largest residual of the evolution and definition rows over a period under these loads, each
+/// Residuals of evolution and definition rows, relative to their terms.
+struct StateResidual {
+  double of_medium = 0.0;
+  double of_others = 0.0;
+};
+
+/// Largest residuals of the evolution and definition rows over a period under these loads, each
 /// relative to the largest sum of the moduli of its terms. In these terms states and auxiliaries
-/// are at least a thousandth of their Unknown::scale. The result is 0 without such rows.
-double state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+/// are at least a thousandth of their Unknown::scale, a tenth in a medium. The result is 0 without
+/// such rows.
+StateResidual state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                       const std::vector<HeldCoordinate>& loads, MPI_Comm comm = MPI_COMM_SELF);
 
 /// Fills in the residuals and the load level of a solved trim.

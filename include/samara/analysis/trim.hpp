@@ -42,8 +42,12 @@ struct Trim {
   /// Numbers of harmonics that were tried, each with its residual between the samples (several:
   /// auto).
   std::vector<std::pair<int, double>> attempts = {};
-  /// Largest evolution or definition row, at the samples and between them, relative to its terms.
+  /// Largest evolution or definition row, at the samples and between them, relative to its terms,
+  /// without those of a medium.
   double state_residual = 0.0;
+  /// The same of the rows of a medium. Curves of airfoils have kinks in their second derivatives,
+  /// which few harmonics do not follow.
+  double medium_residual = 0.0;
   /// Harmonic balance only: largest of those harmonics of the balance rows that the solve makes
   /// zero [N, N m]. A larger residual at the samples comes from harmonics that were left out. Not a
   /// number: not known.
@@ -54,16 +58,20 @@ struct Trim {
 /// Largest number of harmonics that `harmonics: auto` tries.
 inline constexpr int auto_harmonics = 60;
 
+/// A larger Trim::medium_residual is rough.
+inline constexpr double rough_medium = 0.01;
+
 /// Number of harmonics of the series from shooting with `steps` steps per revolution.
 int shooting_harmonics(int steps);
 
-/// Solves for the periodic steady state from the undeformed system in its prescribed motion.
-/// `comm`: ranks that share a large mesh in harmonic balance; all of them have the same system and
+/// Solves for the periodic steady state from the undeformed system in its prescribed motion. `near`:
+/// a steady state of a system with the same unknowns, which is tried first as the start; null:
+/// none. `comm`: ranks that share a large mesh in harmonic balance; all of them have the same system and
 /// get the same solution.
 /// @throws ConvergenceError with PETSc's reason and a hint.
 /// @throws InputError at rest where a coordinate may move that nothing restores, or where a part is
 /// held twice.
 Trim find_trim(const system::PeriodicSystem& system, const TrimOptions& options, Observer& observer,
-               MPI_Comm comm = MPI_COMM_SELF);
+               MPI_Comm comm = MPI_COMM_SELF, const Trim* near = nullptr);
 
 }  // namespace samara::analysis

@@ -11,6 +11,25 @@
 
 namespace samara::components {
 
+/// The air at one point of a blade, beside its rows. Loads are per length of the blade, without the
+/// inertia of the air.
+template <class T>
+struct AirPointReport {
+  T angle;                 ///< of attack, at the aerodynamic centre [rad]
+  T inflow_angle;          ///< between the relative wind and the plane of the rotor [rad]
+  T speed;                 ///< of the relative wind [m/s]
+  T pressure;              ///< dynamic pressure [Pa]
+  T axial, tangential;     ///< induction factors a and a'
+  T induced_n, induced_t;  ///< induced velocity [m/s]
+  T lift, drag, moment;    ///< coefficients of the section
+  T normal, chordwise;     ///< force toward the suction side and the leading edge [N/m]
+  T thrust, driving;       ///< force along the rotor's axis and in the sense of its turning [N/m]
+  T wind;                  ///< undisturbed wind against the apex, along the rotor's axis [m/s]
+  T hub_speed;             ///< angular velocity of the rotor about its axis [rad/s]
+  T radius;                ///< distance from the axis [m]
+  Vec6<T> hub_load;        ///< force and moment about the apex in h1 h2 h3 [N/m, N]
+};
+
 class BladeAir final : public Stated<BladeAir> {
  public:
   /// `k`: number of the blade, from 0. `blade`: its beam, with blocks for the air. Both must
@@ -26,6 +45,10 @@ class BladeAir final : public Stated<BladeAir> {
 
   template <class System>
   void state(System& system) const;
+
+  /// The air at each point. `residual`: where the ports have been provided.
+  template <class T>
+  std::vector<AirPointReport<T>> report(const Residual<T>& residual) const;
 
   /// Sets the unknowns of the air in `values` to those of steady air around the blade in its
   /// present motion. `residual`: where the ports have been provided.
@@ -49,7 +72,13 @@ class BladeAir final : public Stated<BladeAir> {
   void connect_point(int p);
   void connect_added_mass(int p);
   template <class T>
+  static elements::HubPose<T> hub_of(const Eigen::Matrix<T, arguments, 1>& x);
+  template <class T>
+  static elements::RootPose<T> root_of(const Eigen::Matrix<T, arguments, 1>& x);
+  template <class T>
   elements::StationMotion<T> motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const;
+  template <class T>
+  AirPointReport<T> report_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const;
 
   const model::Turbine& turbine_;
   std::size_t k_;

@@ -474,6 +474,34 @@ Vec6<T> added_mass_turning(const AirRotor& rotor, const AirStation& station,
   return load;
 }
 
+/// Flow and coefficients of a station in its present state.
+template <class T>
+struct StationAir {
+  T induced_n, induced_t;  ///< induced velocity with the skewed wake [m/s]
+  SectionFlow<T> flow;
+  AirCoefficients<T> coefficients;
+  Eigen::Matrix<T, 4, 1> lags;  ///< rows of x1 to x4
+};
+
+/// `z`, `z_dot`: unknowns of the station and their rates.
+template <class T>
+StationAir<T> station_air(const AirRotor& rotor, const AirStation& station,
+                          const StationMotion<T>& motion,
+                          const Eigen::Matrix<T, air::unknowns, 1>& z,
+                          const Eigen::Matrix<T, 10, 1>& z_dot) {
+  StationAir<T> present;
+  present.induced_n = present.induced_t = T(0.0);
+  if (rotor.models.induction != Induction::none) {
+    present.induced_n = z(air::induced) * skew_factor(rotor, motion, T(z(air::induced)));
+    present.induced_t = z(air::induced + 1);
+  }
+  present.flow = section_flow(station, motion, present.induced_n, present.induced_t);
+  present.coefficients = dynamic_coefficients<T>(
+      rotor.models, station, present.flow, z.template segment<4>(air::wake),
+      z_dot.template segment<4>(air::wake), present.lags);
+  return present;
+}
+
 /// All rows of a station. `z`, `z_dot`: its unknowns and their rates. Rows of unknowns that the
 /// models do not use have no meaning.
 template <class T>
@@ -485,18 +513,10 @@ Eigen::Matrix<T, air::unknowns, 1> air_station_rows(const AirRotor& rotor,
   Eigen::Matrix<T, air::unknowns, 1> rows = z;
   const AirModels& models = rotor.models;
   const bool is_induced = models.induction != Induction::none;
-  T v_n(0.0);
-  T v_t(0.0);
-  if (is_induced) {
-    v_n = z(air::induced) * skew_factor(rotor, motion, T(z(air::induced)));
-    v_t = z(air::induced + 1);
-  }
-  const SectionFlow<T> flow = section_flow(station, motion, v_n, v_t);
-  Eigen::Matrix<T, 4, 1> lags;
-  const AirCoefficients<T> c =
-      dynamic_coefficients<T>(models, station, flow, z.template segment<4>(air::wake),
-                              z_dot.template segment<4>(air::wake), lags);
-  rows.template segment<4>(air::wake) = lags;
+  const StationAir<T> present = station_air<T>(rotor, station, motion, z, z_dot);
+  const SectionFlow<T>& flow = present.flow;
+  const AirCoefficients<T>& c = present.coefficients;
+  rows.template segment<4>(air::wake) = present.lags;
   Vec6<T> load = air_load(rotor, station, flow, c);
   if (models.added_mass) load += added_mass_turning<T>(rotor, station, motion.velocity);
   load *= T(rotor.acting);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "samara/analysis/options.hpp"
@@ -44,6 +45,20 @@ struct LinearizeSetup {
   std::string mat_path;  ///< path of a MAT-file with the same matrices; empty: none
 };
 
+/// Operating points over the wind speed. Speeds are those of the rotor.
+struct OperationSetup {
+  std::vector<double> wind_speeds;  ///< [m/s], ascending; empty: those of `table`, or wind.speed
+  double least_speed = 0.0;         ///< [rad/s]
+  double rated_speed = 0.0;         ///< [rad/s]; 0: not given
+  double rated_power = 0.0;         ///< torque of the generator times its speed [W]; 0: not given
+  /// Torque of the generator between both speeds: gain times the square of its speed
+  /// [N m s^2/rad^2], or a table over its speed [rad/s], [N m].
+  double torque_gain = 0.0;
+  std::vector<std::pair<double, double>> torque_table;
+  std::string table_path;  ///< table of wind speed, pitch and speed, HAWC2's .opt; empty: none
+  std::string opt_path;    ///< file to write in that form; empty: none
+};
+
 /// The input of all analyses. Messages name fields by the keys of a case file (docs/case_file.md).
 struct Scenario {
   model::TurbineDefinition turbine;
@@ -52,6 +67,7 @@ struct Scenario {
   analysis::StaticOptions statics;
   TransientSetup transient;
   LinearizeSetup linearize;
+  OperationSetup operation;
 };
 
 /// The highest harmonic of the rotor speed among loads and prescribed motions. A trim with fewer

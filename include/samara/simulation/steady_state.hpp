@@ -10,12 +10,12 @@
 namespace samara::simulation {
 
 /// Like analysis::find_trim; `system`: of the scenario's turbine; `comm`: ranks that share a large
-/// mesh.
+/// mesh; `near`: a steady state nearby.
 /// @throws ConvergenceError like find_trim; with the limit in the message if a controller needs a
 /// pitch beyond the limits of its actuators
 analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                           const analysis::TrimOptions& options, analysis::Observer& observer,
-                          MPI_Comm comm = MPI_COMM_SELF);
+                          MPI_Comm comm = MPI_COMM_SELF, const analysis::Trim* near = nullptr);
 
 /// The same with the scenario's options. Adds a note if the result is rough.
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,

@@ -9,7 +9,7 @@
 
 namespace samara::simulation {
 
-enum class Analysis { check, statics, modes, trim, floquet, transient, linearize };
+enum class Analysis { check, statics, modes, trim, floquet, transient, linearize, operate };
 
 /// All faults: faults of the turbine (model::find_faults) and settings that the analysis does not
 /// accept.

@@ -73,6 +73,12 @@ class TurbineEquations {
   components::BodiesReport<T> report(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
                                      const TurbineInputs<T>& inputs) const;
 
+  /// The air at each point of each blade; empty without air.
+  template <class T>
+  std::vector<std::vector<components::AirPointReport<T>>> air_report(
+      double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+      const TurbineInputs<T>& inputs) const;
+
  private:
   void make_components();
   components::Registry place();

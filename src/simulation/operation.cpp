@@ -1,0 +1,398 @@
+#include "samara/simulation/operation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
+#include "samara/simulation/steady_state.hpp"
+#include "samara/turbine/turbine_channels.hpp"
+
+namespace samara::simulation {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double rpm = std::numbers::pi / 30.0;
+constexpr double kilo = 1e3;
+
+/// Relative error of the generator's torque at a point.
+constexpr double torque_accuracy = 1e-5;
+/// Tolerance of the steady states of a search, except the last ones.
+constexpr double rough_tolerance = 1e-6;
+/// Expected relative error of the torque below which steady states of a search are not rough.
+constexpr double nearly_found = 1e-3;
+/// Largest pitch, from the pitch of the case.
+constexpr double pitch_range = 80.0 * degree;
+/// Least speed where none is given, relative to the rated one.
+constexpr double least_share = 0.05;
+
+/// Means over a revolution by channels, each with its factor to SI.
+struct Mean {
+  const char* channel;
+  double factor;
+  double OperatingPoint::*value;
+};
+
+const std::vector<Mean>& means_of_rotor() {
+  static const std::vector<Mean> means{{"RotTorq", kilo, &OperatingPoint::torque},
+                                       {"RtAeroPwr", 1.0, &OperatingPoint::power},
+                                       {"RtAeroFxh", 1.0, &OperatingPoint::thrust},
+                                       {"TipDxc1", 1.0, &OperatingPoint::tip_out_of_plane},
+                                       {"TipDyc1", 1.0, &OperatingPoint::tip_in_plane},
+                                       {"TipRDzc1", -degree, &OperatingPoint::tip_twist},
+                                       {"RootMyc1", kilo, &OperatingPoint::root_flap_moment}};
+  return means;
+}
+
+void add_means(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+               OperatingPoint& point) {
+  std::vector<Mean> means = means_of_rotor();
+  if (system.turbine().has_tower)
+    means.push_back({"TwrBsMyt", kilo, &OperatingPoint::tower_moment});
+  std::vector<std::string> names;
+  for (const Mean& mean : means) names.emplace_back(mean.channel);
+  const turbine::TurbineChannels channels(system, {}, names);
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  // Enough to integrate products of the harmonics exactly.
+  const int instants = trim.solution.is_constant() ? 1 : 6 * trim.solution.harmonics() + 1;
+  std::vector<double> values(names.size());
+  for (int i = 0; i < instants; ++i) {
+    trim.solution.evaluate(system.period() * i / instants, z.get(), z_dot.get());
+    channels.evaluate(system.period() * i / instants, z.get(), z_dot.get(), values);
+    for (std::size_t j = 0; j < means.size(); ++j)
+      point.*means[j].value += values[j] * means[j].factor / instants;
+  }
+}
+
+/// End of a search for the zero of a falling function.
+enum class Found { zero, above_range, below_range };
+
+struct Root {
+  Found found = Found::zero;
+  double x = 0.0;
+  double slope = 0.0;  ///< at the zero; 0: not known
+};
+
+/// Range, start and width of a search.
+struct SearchRange {
+  double lowest, highest, start, step;
+  double slope = 0.0;  ///< estimate; 0: none
+};
+
+/// Zero of a function that falls, by secants within the known signs. f(x, is_rough) is relative to
+/// its scale; at the result it was not rough. above_range: f > 0 at the highest x.
+template <class Function>
+Root find_zero(const SearchRange& range, const Function& f) {
+  constexpr int most_steps = 40;
+  std::optional<double> positive, negative;  // x with f > 0, f < 0
+  double x = std::clamp(range.start, range.lowest, range.highest);
+  double slope = range.slope;
+  double expected = 1.0;
+  std::optional<std::pair<double, double>> last;
+  for (int step = 0; step < most_steps; ++step) {
+    const bool is_rough = expected > nearly_found;
+    double value = f(x, is_rough);
+    const bool is_end = std::abs(value) <= torque_accuracy || (value > 0.0 && x >= range.highest) ||
+                        (value < 0.0 && x <= range.lowest);
+    if (is_end && is_rough) value = f(x, false);
+    if (last && last->first != x) slope = (value - last->second) / (x - last->first);
+    if (std::abs(value) <= torque_accuracy) return {Found::zero, x, slope};
+    if (value > 0.0 && x >= range.highest) return {Found::above_range, range.highest, slope};
+    if (value < 0.0 && x <= range.lowest) return {Found::below_range, range.lowest, slope};
+    (value > 0.0 ? positive : negative) = x;
+    last = {x, value};
+    const double most = 4.0 * range.step;
+    double change = slope < 0.0 ? -value / slope : std::copysign(range.step, value);
+    if (!(positive && negative)) change = std::clamp(change, -most, most);
+    double next = std::clamp(x + change, range.lowest, range.highest);
+    // A secant divides the error by the change of the slope on the way.
+    expected = std::abs(value) * (slope < 0.0 ? 0.1 : 1.0);
+    const double left = positive.value_or(range.lowest);
+    const double right = negative.value_or(range.highest);
+    if (positive && negative && !(next > left && next < right)) next = 0.5 * (left + right);
+    if (next == x) break;
+    x = next;
+  }
+  throw ConvergenceError("no torque that balances the wind was found within 40 steady states");
+}
+
+class OperationFinder {
+ public:
+  OperationFinder(const Scenario& scenario, const std::vector<ScheduledPoint>& table,
+                  analysis::Observer& observer)
+      : scenario_(scenario), setup_(scenario.operation), table_(table), observer_(observer) {
+    // The torque is the result.
+    scenario_.turbine.shaft.generator.law = {};
+    scenario_.turbine.controller.reset();
+  }
+
+  std::vector<OperatingPoint> find() {
+    std::vector<double> winds = setup_.wind_speeds;
+    if (winds.empty())
+      for (const ScheduledPoint& row : table_) winds.push_back(row.wind);
+    if (winds.empty()) winds.push_back(scenario_.turbine.wind->speed);
+    std::vector<OperatingPoint> points;
+    for (const double wind : winds) {
+      observer_.progress("operation", static_cast<long>(points.size()),
+                         static_cast<long>(winds.size()));
+      points.push_back(find_at(wind));
+    }
+    return points;
+  }
+
+ private:
+  OperatingPoint find_at(double wind) {
+    const std::string place = "operation at " + general(wind, 6) + " m/s: ";
+    try {
+      OperatingPoint point = table_.empty() ? search(wind) : follow_table(wind);
+      analysis::Observer& observer = observer_;
+      note_roughness(*last_, observer, place + "trim");
+      previous_ = point;
+      return point;
+    } catch (const InputError& error) {
+      throw InputError(place + error.what());
+    } catch (const ConvergenceError& error) {
+      throw ConvergenceError(place + error.what());
+    } catch (const DomainError& error) {
+      throw DomainError(place + error.what());
+    }
+  }
+
+  /// The steady state at a speed and a pitch.
+  const OperatingPoint& evaluate(double wind, double speed, double pitch, bool is_rough = false) {
+    if (present_ && present_->wind == wind && present_->speed == speed &&
+        present_->pitch == pitch && (is_rough || !present_is_rough_))
+      return *present_;
+    Scenario scenario = scenario_;
+    model::TurbineDefinition& turbine = scenario.turbine;
+    turbine.wind->speed = wind;
+    turbine.shaft.speed = speed;
+    turbine.blades.pitch = pitch;
+    const turbine::TurbineSystem system(model::build_turbine(turbine), PETSC_COMM_SELF);
+    analysis::Observer silent;
+    analysis::TrimOptions options = trim_options(scenario);
+    if (is_rough) options.tolerance = std::max(options.tolerance, rough_tolerance);
+    last_ =
+        solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, last_ ? &*last_ : nullptr);
+    OperatingPoint point;
+    point.wind = wind;
+    point.speed = speed;
+    point.pitch = pitch;
+    add_means(system, *last_, point);
+    point.torque /= std::abs(turbine.shaft.gear_ratio);
+    const elements::AirRotor& rotor = system.turbine().air->rotor;
+    const double pressure =
+        0.5 * rotor.density * wind * wind * std::numbers::pi * rotor.tip_radius * rotor.tip_radius;
+    point.power_coefficient = point.power / (pressure * wind);
+    point.thrust_coefficient = point.thrust / pressure;
+    point.tip_speed_ratio = speed * rotor.tip_radius / wind;
+    point.time_constant = rotor.tau1;
+    point.imbalance = last_->imbalance();
+    tip_radius_ = rotor.tip_radius;
+    density_ = rotor.density;
+    present_ = point;
+    present_is_rough_ = is_rough;
+    return *present_;
+  }
+
+  OperatingPoint take(OperatingRegion region) const {
+    OperatingPoint point = *present_;
+    point.region = region;
+    return point;
+  }
+
+  OperatingPoint follow_table(double wind) {
+    if (wind < table_.front().wind || wind > table_.back().wind)
+      throw InputError("operation.table has wind speeds from " + general(table_.front().wind, 6) +
+                       " to " + general(table_.back().wind, 6) + " m/s only");
+    const auto after = std::find_if(table_.begin(), table_.end(),
+                                    [wind](const ScheduledPoint& row) { return row.wind >= wind; });
+    const auto before = after == table_.begin() ? after : after - 1;
+    const double span = after->wind - before->wind;
+    const double share = span > 0.0 ? (wind - before->wind) / span : 0.0;
+    const auto mix = [share](double a, double b) { return a + share * (b - a); };
+    evaluate(wind, mix(before->speed, after->speed), mix(before->pitch, after->pitch));
+    return take(OperatingRegion::given);
+  }
+
+  double gear() const { return std::abs(scenario_.turbine.shaft.gear_ratio); }
+  double fine_pitch() const { return scenario_.turbine.blades.pitch; }
+  double least_speed() const {
+    return setup_.least_speed > 0.0 ? setup_.least_speed : least_share * setup_.rated_speed;
+  }
+  /// Of the generator.
+  double rated_torque() const { return setup_.rated_power / (setup_.rated_speed * gear()); }
+
+  double law_at(double speed) const {
+    const double own = speed * gear();
+    if (setup_.torque_table.empty()) return setup_.torque_gain * own * own;
+    const auto& table = setup_.torque_table;
+    const auto after = std::find_if(table.begin(), table.end(),
+                                    [own](const auto& row) { return row.first >= own; });
+    if (after == table.begin()) return table.front().second;
+    if (after == table.end()) return table.back().second;
+    const auto& [x0, y0] = *(after - 1);
+    const auto& [x1, y1] = *after;
+    return y0 + (y1 - y0) * (own - x0) / (x1 - x0);
+  }
+
+  OperatingPoint search(double wind) {
+    if (!is_above_rated(wind)) {
+      const OperatingPoint* point = search_speed(wind);
+      if (point != nullptr) return *point;
+    }
+    return search_pitch(wind);
+  }
+
+  /// True where the pitch certainly holds the power, so that no steady state at the least pitch is
+  /// needed: there it may not exist.
+  bool is_above_rated(double wind) {
+    if (previous_)
+      return previous_->region == OperatingRegion::rated_power && wind >= previous_->wind;
+    const std::optional<double> rated = estimate_rated_wind();
+    return rated && wind > 1.15 * *rated;
+  }
+
+  /// Wind speed of the rated power at a power coefficient of 0.4; none before the first steady
+  /// state.
+  std::optional<double> estimate_rated_wind() {
+    constexpr double usual = 0.4;
+    if (tip_radius_ == 0.0) {
+      const model::Turbine turbine = model::build_turbine(scenario_.turbine);
+      tip_radius_ = turbine.air->rotor.tip_radius;
+      density_ = turbine.air->rotor.density;
+    }
+    const double disk = std::numbers::pi * tip_radius_ * tip_radius_;
+    return std::cbrt(setup_.rated_power / (0.5 * usual * density_ * disk));
+  }
+
+  /// The speed at the least pitch; null where the torque at the rated speed is above the rated one.
+  const OperatingPoint* search_speed(double wind) {
+    constexpr double usual_ratio = 8.0;
+    estimate_rated_wind();  // for the radius
+    const double torque = rated_torque();
+    SearchRange range{least_speed(), setup_.rated_speed, usual_ratio * wind / tip_radius_,
+                      0.03 * setup_.rated_speed};
+    // At an equal tip-speed ratio the torque grows with the square of the wind speed.
+    if (previous_ && previous_->region != OperatingRegion::rated_power) {
+      range.start = previous_->speed * wind / previous_->wind;
+      range.slope = speed_slope_ * wind / previous_->wind;
+    }
+    const Root root = find_zero(range, [&](double speed, bool is_rough) {
+      return (evaluate(wind, speed, fine_pitch(), is_rough).torque - law_at(speed)) / torque;
+    });
+    if (root.found == Found::zero) {
+      speed_slope_ = root.slope;
+      return keep(OperatingRegion::torque_law);
+    }
+    if (root.found == Found::below_range) {
+      if (!(present_->torque > 0.0))
+        throw InputError("the wind does not drive the rotor at " + general(root.x / rpm, 4) +
+                         " rpm" + (setup_.least_speed > 0.0 ? ", the least speed" : "") +
+                         ": the torque of the generator would be " + general(present_->torque, 3) +
+                         " N m; hint: higher operation.wind_speeds, or a lower "
+                         "operation.least_speed_rpm");
+      return keep(OperatingRegion::least_speed);
+    }
+    if (present_->torque <= torque) return keep(OperatingRegion::rated_speed);
+    return nullptr;
+  }
+
+  const OperatingPoint* keep(OperatingRegion region) {
+    present_->region = region;
+    return &*present_;
+  }
+
+  OperatingPoint search_pitch(double wind) {
+    const double torque = rated_torque();
+    SearchRange range{fine_pitch(), fine_pitch() + pitch_range, start_pitch(wind), 1.0 * degree,
+                      extrapolate(wind, &PitchedPoint::slope, 2).value_or(0.0)};
+    const Root root = find_zero(range, [&](double pitch, bool is_rough) {
+      return (evaluate(wind, setup_.rated_speed, pitch, is_rough).torque - torque) / torque;
+    });
+    if (root.found == Found::above_range)
+      throw InputError("no pitch up to " + general((fine_pitch() + pitch_range) / degree, 3) +
+                       " deg limits the power to operation.rated_power");
+    if (root.found == Found::below_range)
+      throw InputError("operation.rated_power is not reached at the least pitch of " +
+                       general(fine_pitch() / degree, 4) +
+                       " deg and the rated speed: the torque "
+                       "there is " +
+                       general(present_->torque, 4) + " N m of " + general(torque, 4) + " N m");
+    pitched_.push_back({wind, root.x, root.slope});
+    return take(OperatingRegion::rated_power);
+  }
+
+  /// A point at the rated power.
+  struct PitchedPoint {
+    double wind, pitch,
+        slope;  ///< slope: of the torque over the pitch, by the rated torque [1/rad]
+  };
+
+  /// Value at a wind speed of the polynomial through the last points, `most` at the most.
+  std::optional<double> extrapolate(double wind, double PitchedPoint::*value,
+                                    std::size_t most) const {
+    if (pitched_.empty()) return std::nullopt;
+    const std::size_t first = pitched_.size() - std::min(pitched_.size(), most);
+    double sum = 0.0;
+    for (std::size_t i = first; i < pitched_.size(); ++i) {
+      double weight = 1.0;
+      for (std::size_t j = first; j < pitched_.size(); ++j)
+        if (j != i) weight *= (wind - pitched_[j].wind) / (pitched_[i].wind - pitched_[j].wind);
+      sum += weight * pitched_[i].*value;
+    }
+    return sum;
+  }
+
+  /// From the last points, or from a usual schedule: 20 deg (V/V_rated - 1)^0.6.
+  double start_pitch(double wind) {
+    if (const std::optional<double> pitch = extrapolate(wind, &PitchedPoint::pitch, 3))
+      return *pitch;
+    const double beyond = wind / *estimate_rated_wind() - 1.0;
+    return fine_pitch() + 20.0 * degree * std::pow(std::max(beyond, 0.02), 0.6);
+  }
+
+  Scenario scenario_;
+  const OperationSetup& setup_;
+  const std::vector<ScheduledPoint>& table_;
+  analysis::Observer& observer_;
+  std::optional<analysis::Trim> last_;
+  std::optional<OperatingPoint> present_;   ///< of last_
+  std::optional<OperatingPoint> previous_;  ///< of the wind speed before
+  bool present_is_rough_ = false;
+  std::vector<PitchedPoint> pitched_;
+  double speed_slope_ = 0.0;  ///< of the torque less its law, by the rated torque [s/rad]
+  double tip_radius_ = 0.0;
+  double density_ = 0.0;
+};
+
+}  // namespace
+
+std::string region_name(OperatingRegion region) {
+  switch (region) {
+    case OperatingRegion::given:
+      return "table";
+    case OperatingRegion::least_speed:
+      return "least speed";
+    case OperatingRegion::torque_law:
+      return "torque law";
+    case OperatingRegion::rated_speed:
+      return "rated speed";
+    case OperatingRegion::rated_power:
+      return "rated power";
+  }
+  return "";
+}
+
+std::vector<OperatingPoint> find_operation(const Scenario& scenario,
+                                           const std::vector<ScheduledPoint>& table,
+                                           analysis::Observer& observer) {
+  return OperationFinder(scenario, table, observer).find();
+}
+
+}  // namespace samara::simulation
