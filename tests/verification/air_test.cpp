@@ -189,6 +189,51 @@ BOOST_AUTO_TEST_CASE(mesh_of_the_input_has_power_and_thrust_within_6_per_mille) 
   for (const OperatingPoint& at : nrel_points) require_point(at, {}, 6e-3);
 }
 
+// ---- damping of a tower in closed form ---------------------------------------------------------
+
+/// The rigid rotor on a rigid mast that a spring holds in the direction of the wind: its damping
+/// coefficient is dT/dV, the change of the thrust by the wind at constant speed and pitch. Figures
+/// of an independent program for a steady wake, 24 x 2 points.
+BOOST_AUTO_TEST_CASE(a_rotor_on_a_spring_is_damped_by_the_slope_of_its_thrust) {
+  struct Point {
+    double wind, rpm, pitch_deg, damping;  // N s/m
+  };
+  for (const Point& at : {Point{8.0, 9.155, 0.0, 66.7e3}, Point{13.0, 12.1, 6.60, 79.0e3},
+                          Point{18.0, 12.1, 14.92, 77.6e3}}) {
+    io::Case input = rigid_rotor({"blades.elements=24", "blades.order=2", "aero.inflow=equilibrium",
+                                  "wind.speed=" + std::to_string(at.wind),
+                                  "shaft.speed_rpm=" + std::to_string(at.rpm),
+                                  "blades.pitch_deg=" + std::to_string(at.pitch_deg)});
+    // A mast of one rigid element on a spring along n2; it cannot turn.
+    constexpr double stiffness = 2e6;
+    model::TurbineDefinition& turbine = input.turbine;
+    turbine.has_tower = true;
+    turbine.tower.elements = 1;
+    turbine.tower.order = 2;
+    turbine.tower.damping.setZero();
+    for (model::SectionDefinition& section : turbine.tower.sections) {
+      section.rigid.fill(true);
+      section.stiffness.setZero();
+    }
+    model::SupportDefinition& support = turbine.tower.support;
+    support.rigid = {true, true, false, true, true, true};
+    support.stiffness.setZero();
+    support.stiffness(2, 2) = stiffness;
+    support.mass = 1000.0;
+    Steady rotor(input);
+    double found = 0.0;
+    for (const analysis::Mode& mode :
+         rotor.floquet({72, analysis::FloquetPeriod::automatic, 6}).modes)
+      if (!is_of_medium(mode) && mode.exponent.imag() > 0.1) {
+        // m s^2 + c s + k = 0.
+        const double mass = stiffness / std::norm(mode.exponent);
+        found = -2.0 * mass * mode.exponent.real();
+      }
+    BOOST_TEST_CONTEXT(at.wind << " m/s")
+    BOOST_TEST(found == at.damping, tolerance(0.02));
+  }
+}
+
 // ---- analyses agree ----------------------------------------------------------------------------
 
 /// The elastic rotor on the ground in axial wind, without gravity and tilt: constant tangents.
