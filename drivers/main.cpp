@@ -115,7 +115,7 @@ constexpr std::array<Command, 12> commands{{
     {.name = "import",
      .summary = "a case file from a turbine of OpenFAST or windIO",
      .description =
-         "Reads the deck of another program, OpenFAST (ElastoDyn, BeamDyn) or windIO, writes it\n"
+         "Reads the deck of another program, OpenFAST or windIO, structure and air, writes it\n"
          "as a case file, and reports for each key whether it was taken, derived or ignored, and\n"
          "why. See docs/import.md.\n",
      .example = "openfast Main.fst -o turbine.yaml",

@@ -8,10 +8,13 @@
 
 #include "samara/base/error.hpp"
 
+#include "import_aerodyn.hpp"
+#include "import_air.hpp"
 #include "import_beamdyn.hpp"
 #include "import_common.hpp"
 #include "import_elastodyn.hpp"
 #include "import_furling.hpp"
+#include "import_inflow.hpp"
 #include "openfast_import.hpp"
 
 namespace samara::decks {
@@ -29,13 +32,13 @@ struct BladeData {
 /// A module that a main file can switch on, and the effects that are lost without it.
 struct LeftOut {
   const char* key;
-  std::vector<const char*> names;  ///< by the value of the key, from 1
+  std::vector<const char*> names;  ///< by the value of the key, from 1; none: it is read
   const char* words;
 };
 
 const std::vector<LeftOut>& left_out() {
   static const std::vector<LeftOut> modules{
-      {"CompAero", {"AeroDisk or AeroDyn 14", "AeroDyn", "ExtLoads"}, "aerodynamics"},
+      {"CompAero", {"AeroDisk or AeroDyn 14", nullptr, "ExtLoads"}, "aerodynamics"},
       {"CompServo", {"ServoDyn"}, "control of pitch, torque and yaw, and structural control"},
       {"CompHydro", {"HydroDyn"}, "buoyancy, added mass and loads of the water"},
       {"CompMooring", {"MAP++", "FEAMooring", "MoorDyn", "OrcaFlex"}, "mooring lines"},
@@ -62,6 +65,7 @@ class Importer {
     read_tower();
     read_blades();
     read_teeter();
+    if (import_.errors.empty()) read_air();
     import_.errors.throw_if_any();
     warn_of_platform();
     warn_of_modules();
@@ -185,9 +189,11 @@ class Importer {
   void read_yaw() {
     Deck& deck = *elastodyn_;
     import_.note("nacelle.yaw", "YawDOF");
-    import_.ignore(deck, "NacYaw",
-                   "the angle of yaw is 0: without air the direction that the nacelle faces has no "
-                   "effect where the tower is the same in both directions");
+    nacelle_yaw_ = fields::deg.to_si(deck.number_or("NacYaw", 0.0));
+    import_.ignore(
+        deck, "NacYaw",
+        "the angle of yaw is 0: the direction that the nacelle faces has no effect where "
+        "the tower is the same in both directions; a locked yaw turns the wind instead");
     if (!deck.flag("YawDOF")) {
       import_.say(deck, "YawDOF", Fate::taken, "nacelle.yaw: locked");
       return;
@@ -253,6 +259,7 @@ class Importer {
       const double value = main_.number_or(module.key, 0.0);
       if (!(value >= 1.0 && value <= static_cast<double>(module.names.size()))) continue;
       const char* name = module.names[static_cast<std::size_t>(value) - 1];
+      if (name == nullptr) continue;  // read
       import_.say(main_, module.key, Fate::ignored, std::string(name) + ": " + module.words);
       import_.warn(main_.place_of(module.key),
                    std::string(module.key) + ": note: " + name + " is left out: " + module.words);
@@ -456,6 +463,72 @@ class Importer {
       import_.ignore(deck, key, "the hard stop is out of reach of small motions");
   }
 
+  // ---- the air
+
+  /// The path of a file that may be missing: a note says so then.
+  std::string optional_file(const char* key, const char* what) {
+    const std::string path = main_.find_file(key);
+    if (path.empty())
+      import_.warn(main_.place_of(key),
+                   std::string(key) + ": warning: there is no such file: " + what);
+    else
+      import_.say(main_, key, Fate::taken, "read");
+    return path;
+  }
+
+  void read_air() {
+    if (!main_.has("CompAero")) return;
+    const double modules = main_.number("CompAero");
+    if (modules == 0.0) {
+      import_.say(main_, "CompAero", Fate::derived, "0: there is no air at the blades");
+      import_.warn(main_.place_of("CompAero"), "CompAero: note: 0: the case has no air");
+      return;
+    }
+    if (modules != 2.0) return;  // another module, which is left out
+    import_.say(main_, "CompAero", Fate::derived, "2: AeroDyn");
+    if (main_.number_or("MHK", 0.0) != 0.0) {
+      import_.warn(main_.place_of("MHK"),
+                   "MHK: note: the blades turn in water: AeroDyn is left out");
+      return;
+    }
+    const std::string path = optional_file("AeroFile", "AeroDyn is left out, the case has no air");
+    if (path.empty()) return;
+    const AerodynSource source{path, blades_, main_.number_or("AirDens", 0.0)};
+    const AerodynModels models = read_aerodyn(import_, source);
+    const std::optional<model::WindDefinition> wind = read_wind(models);
+    if (!import_.errors.empty()) return;
+    if (wind) {
+      import_.turbine.wind = wind;
+      import_.turbine.aero = models.aero;
+      return;
+    }
+    // `aero` of a case needs the wind.
+    import_.comments.head.push_back(
+        "No air acts before the case has a wind, such as `wind: {speed: 8, density: " +
+        rounded(models.density) + "}`. The deck's models of the air are:");
+    for (const std::string& line : describe_models(models.aero))
+      import_.comments.head.push_back("  " + line);
+  }
+
+  std::optional<model::WindDefinition> read_wind(const AerodynModels& models) {
+    if (main_.number_or("CompInflow", 0.0) != 1.0) {
+      import_.say(main_, "CompInflow", Fate::ignored, "no InflowWind: the case has no wind");
+      import_.warn(main_.place_of("CompInflow"),
+                   "CompInflow: note: there is no InflowWind: the case has no wind; hint: "
+                   "wind.speed of the case states it");
+      return {};
+    }
+    import_.say(main_, "CompInflow", Fate::derived, "1: InflowWind");
+    if (main_.has("AirDens"))
+      import_.say(main_, "AirDens", Fate::derived, "wind.density, where AeroDyn has no other");
+    const std::string path = optional_file("InflowFile", "the case has no wind");
+    if (path.empty()) return {};
+    const bool is_locked = import_.turbine.nacelle.yaw.kind != model::JointKind::free;
+    const InflowSource source{path, elastodyn_->number("TowerBsHt"), is_locked ? nacelle_yaw_ : 0.0,
+                              models.density, "AirDens"};
+    return read_inflow(import_, source);
+  }
+
   // ---- the tower
 
   void read_tower() {
@@ -625,6 +698,7 @@ class Importer {
   bool uses_beamdyn_ = false;
   int blades_ = 3;
   double tip_radius_ = 0.0;
+  double nacelle_yaw_ = 0.0;  ///< [rad]
   double tip_mass_ = 0.0;
   bool flap_ = true;
   bool edge_ = true;

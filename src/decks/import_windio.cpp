@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -10,8 +12,10 @@
 #include "samara/base/error.hpp"
 #include "samara/io/whole_file.hpp"
 #include "samara/io/yaml_tree.hpp"
+#include "samara/model/airfoil.hpp"
 #include "samara/model/definition.hpp"
 
+#include "import_air.hpp"
 #include "import_common.hpp"
 
 namespace samara::decks {
@@ -91,6 +95,7 @@ class Importer {
     }
     if (has_rotor || find("components.tower") != nullptr) read_tower();
     if (has_rotor) read_blade();
+    if (has_rotor && errors_.empty()) read_air();
     errors_.throw_if_any();
     warn_of_left_out();
     report_rest(root_, "");
@@ -107,6 +112,7 @@ class Importer {
                                               rounded(turbine_.nacelle.mass)
                                         : std::string()) +
                              ".");
+    comments_.head.insert(comments_.head.end(), head_.begin(), head_.end());
     result.text = io::write_case_text(turbine_, comments_);
     result.report = std::move(report_);
     result.warnings = std::move(warnings_);
@@ -1184,6 +1190,296 @@ class Importer {
     return entries;
   }
 
+  // ---- the air
+
+  /// An airfoil at a place of the blade.
+  struct AirfoilPlace {
+    double at = 0.0;
+    std::string name;  ///< in the case
+    std::string own;   ///< in the deck
+  };
+
+  void read_air() {
+    const std::string outer =
+        choose({"components.blade.outer_shape", "components.blade.outer_shape_bem"});
+    const std::string listed = choose({outer + ".airfoils", outer + ".airfoil_position"});
+    if (outer.empty() || listed.empty() || find("airfoils") == nullptr) {
+      warn(path_, "note: the deck has no airfoils of the blade: the case has no air");
+      return;
+    }
+    const std::string chord_path = require({outer + ".chord"});
+    const std::string twist_path = require({outer + ".twist"});
+    const std::string offset_path = require({outer + ".section_offset_y", outer + ".pitch_axis"});
+    if (chord_path.empty() || twist_path.empty() || offset_path.empty()) return;
+    const std::vector<AirfoilPlace> places = read_airfoil_places(listed);
+    const Curve chord = curve(chord_path);
+    const Curve twist = curve(twist_path);
+    const Curve offset = curve(offset_path);
+    const std::string thickness_path = choose({outer + ".rthick"});
+    const Curve thickness = thickness_path.empty() ? Curve{} : curve(thickness_path);
+    for (std::size_t i = 0; i < chord.values.size(); ++i)
+      if (!(chord.values[i] > 0.0)) {
+        refuse(chord_path, "expected numbers > 0, got " + rounded(chord.values[i]) + " at " +
+                               rounded(chord.grid[i]) + " of the blade");
+        break;
+      }
+    if (!errors_.empty() || places.empty()) return;
+    for (const AirfoilPlace& place : places)
+      if (place.at < 0.0 || place.at > 1.0 ||
+          (&place != &places[0] && !(place.at > (&place)[-1].at)))
+        refuse(listed, "expected places that rise from 0 to 1, got " + rounded(place.at));
+    if (!errors_.empty()) return;
+
+    std::vector<double> own_grid;
+    for (const AirfoilPlace& place : places) own_grid.push_back(place.at);
+    const bool is_share = offset_path.ends_with(".pitch_axis");
+    for (const Station& station :
+         merge_grids({&chord.grid, &twist.grid, &offset.grid, &thickness.grid, &own_grid})) {
+      if (station.behind) continue;
+      model::AeroSectionDefinition section;
+      section.at = station.place;
+      section.chord = interpolate(chord, station);
+      section.twist = fields::deg.to_si(to_degrees(interpolate(twist, station)));
+      const double axis = interpolate(offset, station) * (is_share ? section.chord : 1.0);
+      const double center = choose_airfoil(places, station, thickness, section.airfoil);
+      // The chord of the section against its structural axes.
+      const double structural = model::interpolate_section(turbine_.blades.beam, section.at).twist;
+      const double ahead = axis - center * section.chord;
+      const double turned = section.twist - structural;
+      section.center = {ahead * std::cos(turned), -ahead * std::sin(turned)};
+      for (double& component : section.center)
+        if (std::abs(component) <= no_distance * turbine_.blades.beam.length) component = 0.0;
+      turbine_.blades.aero_sections.push_back(section);
+    }
+    say(chord_path, Fate::taken, "chord of blades.aero_sections");
+    say(twist_path, is_first_ ? Fate::derived : Fate::taken, "twist_deg of blades.aero_sections");
+    say(offset_path, Fate::derived,
+        std::string("center of blades.aero_sections = ") + (is_share ? "pitch_axis chord" : "it") +
+            " - aerodynamic_center chord along the chord");
+    say(thickness_path, Fate::derived, "airfoils between those of the deck, by their thickness");
+    say(listed, Fate::derived, "airfoil of blades.aero_sections");
+    say("airfoils", Fate::taken, "blades.airfoils");
+    if (const std::string across = choose({outer + ".section_offset_x"}); !across.empty())
+      say_offset_across(across);
+    note("blades.airfoils", std::string("airfoils of windIO") +
+                                (thickness_path.empty() ? ", those between two linear in the span"
+                                                        : ", those between two linear in the "
+                                                          "thickness"));
+    note("blades.aero_sections", std::string("outer shape; center: the aerodynamic centre from ") +
+                                     (is_share ? "pitch_axis" : "section_offset_y"));
+    say_wind();
+  }
+
+  void say_offset_across(const std::string& path) {
+    const Curve across = curve(path);
+    const bool is_zero =
+        std::ranges::all_of(across.values, [](double value) { return value == 0.0; });
+    say(path, Fate::ignored, is_zero ? "0" : "offsets across the chord are left out");
+    if (!is_zero) warn(place(*find(path)), path + ": note: offsets across the chord are left out");
+  }
+
+  /// windIO states the air but no operating wind.
+  void say_wind() {
+    const std::string density = "environment.air_density";
+    std::string words = "note: the deck has no wind: no air acts before the case has one, such as ";
+    std::string wind = "wind: {speed: 8";
+    if (find(density) != nullptr) {
+      const double value = number({density}, Fate::ignored, "wind.density beside a wind.speed");
+      wind += ", density: " + rounded(value);
+    }
+    warn(path_, words + wind + "}");
+    head_.push_back("No air acts before the case has a wind, such as `" + wind + "}`.");
+  }
+
+  std::vector<AirfoilPlace> read_airfoil_places(const std::string& listed) {
+    std::vector<AirfoilPlace> places;
+    const io::YamlNode& node = *find(listed);
+    if (node.kind == io::YamlNode::Kind::list) {  // windIO 2.0
+      for (const io::YamlNode& child : node.children) {
+        const io::YamlNode* name = child.find("name");
+        const io::YamlNode* at = child.find("spanwise_position");
+        if (name == nullptr || at == nullptr) {
+          errors_.add(place(child), listed + ": an airfoil needs name and spanwise_position");
+          return {};
+        }
+        std::string configuration;
+        if (const io::YamlNode* list = child.find("configuration");
+            list != nullptr && !list->children.empty())
+          configuration = list->children[0].text;
+        places.push_back({number_at(listed + ".spanwise_position", *at),
+                          add_airfoil(*name, configuration), name->text});
+      }
+      return places;
+    }
+    const io::YamlNode* grid = node.find("grid");
+    const io::YamlNode* labels = node.find("labels");
+    if (grid == nullptr || labels == nullptr || grid->children.size() != labels->children.size() ||
+        grid->children.empty()) {
+      errors_.add(place(node), listed + ": expected grid and labels of one size");
+      return {};
+    }
+    for (std::size_t i = 0; i < grid->children.size(); ++i)
+      places.push_back({number_at(listed + ".grid", grid->children[i]),
+                        add_airfoil(labels->children[i], ""), labels->children[i].text});
+    return places;
+  }
+
+  /// The name in the case of an airfoil of the deck, which it then has; empty with an error.
+  std::string add_airfoil(const io::YamlNode& label, const std::string& configuration) {
+    const auto known = airfoil_names_.find(label.text + "/" + configuration);
+    if (known != airfoil_names_.end()) return known->second;
+    const io::YamlNode& list = *find("airfoils");
+    const auto found = std::ranges::find_if(list.children, [&](const io::YamlNode& node) {
+      const io::YamlNode* own = node.find("name");
+      return own != nullptr && own->text == label.text;
+    });
+    if (found == list.children.end()) {
+      errors_.add(place(label), "there is no airfoil \"" + label.text + "\" in airfoils");
+      return "";
+    }
+    const std::string name = name_airfoil(clean_text(label.text), turbine_.blades.airfoils);
+    model::AirfoilDefinition airfoil;
+    airfoil.polars = read_polars(*found, configuration);
+    for (const char* key : {"rthick", "relative_thickness"})
+      if (const io::YamlNode* node = found->find(key)) {
+        const double value = number_at("airfoils." + label.text + "." + key, *node);
+        if (value > 0.0 && value <= 1.0) airfoil.thickness = value;
+      }
+    if (const io::YamlNode* node = found->find("aerodynamic_center"))
+      aerodynamic_centers_[name] =
+          number_at("airfoils." + label.text + ".aerodynamic_center", *node);
+    else
+      aerodynamic_centers_[name] = 0.25;
+    turbine_.blades.airfoils[name] = std::move(airfoil);
+    airfoil_names_[label.text + "/" + configuration] = name;
+    return name;
+  }
+
+  /// Polars of one configuration, by default that of the first; at several Reynolds numbers.
+  std::vector<model::PolarDefinition> read_polars(const io::YamlNode& airfoil,
+                                                  std::string configuration) {
+    const std::string where = "airfoils." + airfoil.find("name")->text + ".polars";
+    const io::YamlNode* list = airfoil.find("polars");
+    std::vector<model::PolarDefinition> polars;
+    if (list == nullptr || list->children.empty()) {
+      errors_.add(place(airfoil), where + ": missing, the polars of the airfoil");
+      return polars;
+    }
+    const auto configuration_of = [](const io::YamlNode& node) {
+      const io::YamlNode* own = node.find("configuration");
+      return own == nullptr ? std::string() : own->text;
+    };
+    const bool is_known =
+        std::ranges::find(list->children, configuration, configuration_of) != list->children.end();
+    if (!is_known) configuration = configuration_of(list->children[0]);
+    for (const io::YamlNode& node : list->children) {
+      if (configuration_of(node) != configuration) continue;
+      const io::YamlNode* sets = node.find("re_sets");
+      if (sets == nullptr) {
+        add_polar(node, {"c_l", "c_d", "c_m"}, where, polars);
+        continue;
+      }
+      for (const io::YamlNode& set : sets->children)
+        add_polar(set, {"cl", "cd", "cm"}, where, polars);
+    }
+    std::ranges::sort(polars, {}, &model::PolarDefinition::reynolds);
+    return polars;
+  }
+
+  static bool spans_circle(const std::vector<double>& angles) {
+    constexpr double largest_gap = 2e-3;  // as the polars of a case
+    return std::abs(angles.front() + std::numbers::pi) <= largest_gap &&
+           std::abs(angles.back() - std::numbers::pi) <= largest_gap &&
+           std::ranges::adjacent_find(angles, std::greater_equal<>()) == angles.end();
+  }
+
+  /// Coefficients may have grids of their own. A second polar at a Reynolds number is left out.
+  void add_polar(const io::YamlNode& node, const std::array<const char*, 3>& keys,
+                 const std::string& where, std::vector<model::PolarDefinition>& polars) {
+    model::PolarDefinition polar;
+    if (const io::YamlNode* reynolds = node.find("re"))
+      polar.reynolds = number_at(where + ".re", *reynolds);
+    std::array<Curve, 3> curves;
+    std::vector<double> angles;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const io::YamlNode* own = node.find(keys[k]);
+      if (own == nullptr && k == 2) continue;  // no moment
+      const io::YamlNode* grid = own == nullptr ? nullptr : own->find("grid");
+      const io::YamlNode* values = own == nullptr ? nullptr : own->find("values");
+      if (grid == nullptr || values == nullptr) {
+        errors_.add(place(own == nullptr ? node : *own),
+                    where + ": missing " + keys[k] + " with grid and values");
+        return;
+      }
+      curves[k] = {numbers_at(where + "." + keys[k] + ".grid", *grid),
+                   numbers_at(where + "." + keys[k] + ".values", *values)};
+      if (curves[k].grid.size() != curves[k].values.size() || curves[k].grid.empty()) {
+        errors_.add(place(*values), where + "." + keys[k] + ": grid has " +
+                                        std::to_string(curves[k].grid.size()) + " angles, values " +
+                                        std::to_string(curves[k].values.size()));
+        return;
+      }
+      for (double& angle : curves[k].grid) {
+        angle = is_first_ ? angle : fields::deg.to_si(angle);
+        angles.push_back(angle);
+      }
+      if (!spans_circle(curves[k].grid)) {
+        errors_.add(place(*grid), where + "." + keys[k] +
+                                      ".grid: expected rising angles from -180 to 180 degrees" +
+                                      (is_first_ ? ", in radians" : "") + "; hint: angles are in " +
+                                      (is_first_ ? "radians in 1.0" : "degrees in 2.0"));
+        return;
+      }
+    }
+    polar.angles = merge_angles(std::move(angles));
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      std::vector<double>& values = k == 0 ? polar.lift : k == 1 ? polar.drag : polar.moment;
+      for (const double angle : polar.angles)
+        values.push_back(curves[k].grid.empty() ? 0.0
+                                                : interpolate(curves[k], Station{angle, false}));
+    }
+    if (const std::string fault = model::find_polar_fault(polar); !fault.empty()) {
+      errors_.add(place(node), where + ": " + fault);
+      return;
+    }
+    if (std::ranges::find(polars, polar.reynolds, &model::PolarDefinition::reynolds) ==
+        polars.end())
+      polars.push_back(std::move(polar));
+  }
+
+  /// Sets the airfoil at a station and returns its aerodynamic centre behind the leading edge [of
+  /// the chord]. Between two airfoils of the deck it is one of its own, linear in the relative
+  /// thickness, or in the span where they or the blade state none.
+  double choose_airfoil(const std::vector<AirfoilPlace>& places, const Station& station,
+                        const Curve& thickness, std::string& name) {
+    constexpr double steps = 1000.0;  // of the weights, which are parts of names
+    auto& airfoils = turbine_.blades.airfoils;
+    const auto behind =
+        std::ranges::upper_bound(places, station.place + straight_tolerance, {}, &AirfoilPlace::at);
+    const AirfoilPlace& a = behind == places.begin() ? places.front() : *(behind - 1);
+    const AirfoilPlace& b = behind == places.end() ? places.back() : *behind;
+    double weight = a.at == b.at ? 0.0 : (station.place - a.at) / (b.at - a.at);
+    const std::optional<double> from = airfoils[a.name].thickness;
+    const std::optional<double> to = airfoils[b.name].thickness;
+    if (!thickness.grid.empty() && from && to && *from != *to)
+      weight = (interpolate(thickness, station) - *from) / (*to - *from);
+    const double step = std::round(std::clamp(weight, 0.0, 1.0) * steps);
+    const double center_a = aerodynamic_centers_[a.name];
+    const double center_b = aerodynamic_centers_[b.name];
+    if (a.name == b.name || step == 0.0) {
+      name = a.name;
+      return center_a;
+    }
+    if (step == steps) {
+      name = b.name;
+      return center_b;
+    }
+    name = a.name + " to " + b.name + " " + std::to_string(std::lround(step));
+    if (!airfoils.contains(name))
+      airfoils[name] = mix_airfoils(airfoils[a.name], airfoils[b.name], step / steps);
+    return center_a + step / steps * (center_b - center_a);
+  }
+
   // ---- keys that are left out
 
   /// Warns of the parts that are left out, by name.
@@ -1192,7 +1488,7 @@ class Importer {
     const auto add = [&](const char* path, const char* words) {
       if (find(path) != nullptr) names += (names.empty() ? "" : ", ") + std::string(words);
     };
-    add("airfoils", "airfoils (aerodynamics)");
+    if (turbine_.blades.aero_sections.empty()) add("airfoils", "airfoils (aerodynamics)");
     add("control", "control");
     add("components.mooring", "mooring lines");
     add("components.foundation", "the foundation");
@@ -1244,6 +1540,9 @@ class Importer {
   std::vector<ImportLine> report_;
   std::vector<std::string> warnings_;
   std::set<std::string> used_;
+  std::vector<std::string> head_;                      ///< further lines at the top of the case
+  std::map<std::string, std::string> airfoil_names_;   ///< in the case, by name and configuration
+  std::map<std::string, double> aerodynamic_centers_;  ///< behind the leading edge [of the chord]
   bool is_first_ = false;
   bool is_upwind_ = true;
   bool blade_shear_is_rigid_ = false;

@@ -235,6 +235,13 @@ void Deck::set_order(const std::vector<std::string>& keys) {
   for (const std::string& key : keys) order_.push_back(fold(key));
 }
 
+void Deck::choose(const std::string& key, std::size_t number) {
+  for (Index* index : {&index_, &free_text_})
+    if (const auto found = index->find(fold(key));
+        found != index->end() && number < found->second.size())
+      found->second = {found->second[number]};
+}
+
 std::vector<std::size_t> Deck::named_so(const std::string& folded) const {
   for (const Index* index : {&index_, &free_text_})
     if (const auto found = index->find(folded); found != index->end()) return found->second;
@@ -358,8 +365,17 @@ double Deck::number_or(const std::string& key, double value) {
 
 bool Deck::flag_or(const std::string& key, bool value) { return has(key) ? flag(key) : value; }
 
-std::string Deck::full_path(const std::string& key) {
-  std::string name = text(key);
+bool Deck::is_default(const std::string& key) { return !has(key) || fold(text(key)) == "default"; }
+
+double Deck::number_or_default(const std::string& key, double value) {
+  return is_default(key) ? value : number(key);
+}
+
+bool Deck::flag_or_default(const std::string& key, bool value) {
+  return is_default(key) ? value : flag(key);
+}
+
+std::string Deck::full_path(std::string name) const {
   if (name.empty()) return name;
   std::replace(name.begin(), name.end(), '\\', '/');
   const fs::path path(name);
@@ -368,7 +384,7 @@ std::string Deck::full_path(const std::string& key) {
 }
 
 std::string Deck::find_file(const std::string& key) {
-  std::string full = has(key) ? full_path(key) : std::string();
+  std::string full = has(key) ? full_path(text(key)) : std::string();
   std::error_code error;
   return fs::is_regular_file(full, error) ? full : std::string();
 }
@@ -390,16 +406,21 @@ Vector3 Deck::point(const std::string& key, const std::string& ending) {
 }
 
 std::string Deck::file(const std::string& key) {
-  const std::string full = full_path(key);
+  const DeckEntry* entry = find(key, true);
+  return entry == nullptr ? "" : file_named(entry->values[0].text, entry->line, key);
+}
+
+std::string Deck::file_named(const std::string& name, int line, const std::string& key) {
+  const std::string full = full_path(name);
   if (full.empty()) return full;
   std::error_code error;
   if (fs::exists(full, error)) return full;
   const std::string other = find_in_other_case(full);
-  errors_.add(place_of(key), key + ": no such file " + full +
-                                 (other.empty() ? std::string()
-                                                : "; hint: there is " + other +
-                                                      ", upper and lower case are not the same "
-                                                      "on this system"));
+  errors_.add(place(line), key + ": no such file " + full +
+                               (other.empty() ? std::string()
+                                              : "; hint: there is " + other +
+                                                    ", upper and lower case are not the same "
+                                                    "on this system"));
   return "";
 }
 
@@ -458,8 +479,9 @@ DeckTable Deck::table(const std::vector<std::string>& names, int count,
   for (; i < lines_.size(); ++i) {
     const std::vector<DeckWord>& words = lines_[i];
     if (words.empty()) continue;
-    if (is_heading(words[0].text)) break;
     const bool is_complete = static_cast<int>(table.lines.size()) >= count;
+    if (!is_complete && words[0].text.starts_with("!")) continue;  // a comment between rows
+    if (is_heading(words[0].text)) break;
     // A number and the name of its key: the table has ended.
     if (words.size() > 1 && is_key(words[1].text) && !parse_deck_number(words[1].text)) break;
     if (is_complete && !parse_deck_number(words[0].text)) break;
@@ -510,6 +532,19 @@ std::vector<std::vector<double>> Deck::rows_behind(const std::string& key, int c
     }
   }
   return rows;
+}
+
+std::vector<Deck::Word> Deck::first_words(const std::string& key, int count) const {
+  std::vector<Word> found;
+  const std::vector<std::size_t>& places = places_of(key);
+  if (places.empty()) return found;
+  for (auto i = static_cast<std::size_t>(entries_[places.front()].line) - 1;
+       i < lines_.size() && static_cast<int>(found.size()) < count; ++i) {
+    const std::vector<DeckWord>& words = lines_[i];
+    if (words.empty() || (!words[0].quoted && is_heading(words[0].text))) continue;
+    found.push_back({static_cast<int>(i + 1), words[0].text});
+  }
+  return found;
 }
 
 std::vector<DeckRow> Deck::rows_after(int line) {

@@ -74,6 +74,8 @@ class Deck {
   /// The keys of this kind of file in their order: one that is not found by its name is the line
   /// between its neighbours.
   void set_order(const std::vector<std::string>& keys);
+  /// Of a key that one kind of file has several times, the `number`-th counts, from 0.
+  void choose(const std::string& key, std::size_t number);
   /// Keys are compared without case, and `Key(1)` is `Key1`.
   bool has(const std::string& key) const;
   /// Counts the line of the key as read.
@@ -91,11 +93,16 @@ class Deck {
   std::string text(const std::string& key);
   /// The same where the key may be missing.
   double number_or(const std::string& key, double value);
+  /// The same where it may be missing or `default`.
+  double number_or_default(const std::string& key, double value);
+  bool flag_or_default(const std::string& key, bool value);
   bool flag_or(const std::string& key, bool value);
   /// The path of a file, relative to this one; an error where there is none.
   std::string file(const std::string& key);
   /// The same, empty where there is none.
   std::string find_file(const std::string& key);
+  /// The same of a name in a line without a key of its own; `key` is its name in errors.
+  std::string file_named(const std::string& name, int line, const std::string& key);
   /// Three numbers, of one key, or of three with x, y and z before the `ending` of their names.
   Vector3 point(const std::string& key, const std::string& ending);
 
@@ -110,6 +117,12 @@ class Deck {
   }
   /// The leading numbers of the next `count` lines behind a key, headings skipped.
   std::vector<std::vector<double>> rows_behind(const std::string& key, int count) const;
+  /// The first words of `count` lines from that of a key on, headings and empty lines skipped.
+  struct Word {
+    int line = 0;
+    std::string text;
+  };
+  std::vector<Word> first_words(const std::string& key, int count) const;
   /// Rows of one or six numbers behind a line, to the end of the file.
   std::vector<DeckRow> rows_after(int line);
 
@@ -118,7 +131,8 @@ class Deck {
 
  private:
   DeckEntry* find(const std::string& key, bool required);
-  std::string full_path(const std::string& key);
+  bool is_default(const std::string& key);
+  std::string full_path(std::string name) const;
   void parse_line(int number);
   const std::vector<std::size_t>& places_of(const std::string& key) const;
   std::vector<std::size_t> named_so(const std::string& key) const;

@@ -232,6 +232,9 @@ class PolarReader {
         add_table(std::move(polar), line.number);
         reynolds = 0.0;
         if (static_cast<int>(polars_.size()) == stated) break;
+      } else if (const std::size_t columns = numbers_of(line).size();
+                 columns > 2 && columns == line.words.size()) {
+        fail(line.number, "a row of numbers outside a table; hint: NumAlf stands above a table");
       }
     }
     if (stated > 0 && stated != static_cast<int>(polars_.size()))

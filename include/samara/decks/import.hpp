@@ -49,7 +49,8 @@ struct Import {
   std::vector<std::string> warnings;  ///< facts that the user would not expect, `place: words`
 };
 
-/// Reads the main file of OpenFAST (8.16 to 5.0) and the files of ElastoDyn and BeamDyn it names.
+/// Reads the main file of OpenFAST (8.16 to 5.0) and the files of ElastoDyn, BeamDyn, AeroDyn and
+/// InflowWind that it names.
 /// @throws InputError with every error found, one a line, `file:line: key: fault`.
 Import import_openfast(const std::string& path, const ImportOptions& options);
 

@@ -1,0 +1,233 @@
+#include "import_inflow.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+#include "samara/base/error.hpp"
+#include "samara/io/whole_file.hpp"
+
+#include "import_common.hpp"
+
+namespace samara::decks {
+namespace {
+
+using model::WindDefinition;
+
+constexpr std::size_t max_megabytes = 64;
+constexpr double whole_turn = 360.0;
+
+/// Columns of a file of uniform wind behind the time.
+enum Column { speed, direction, vertical, shear_left, power, shear_up, gust, upflow, columns };
+using Row = std::array<double, columns>;
+
+struct UniformFile {
+  std::vector<double> times;
+  std::vector<Row> rows;
+};
+
+/// An angle in degrees as it is between -180 and 180.
+double wrap(double angle) { return std::remainder(angle, whole_turn); }
+
+class InflowImporter {
+ public:
+  InflowImporter(OpenfastImport& import, const InflowSource& source)
+      : import_(import), source_(source) {}
+
+  std::optional<WindDefinition> read() {
+    deck_ = import_.open(source_.path);
+    if (!deck_) return {};
+    const int type = deck_->integer("WindType", 0, 10);
+    const std::size_t errors_before = import_.errors.size();
+    if (type == 1)
+      read_steady();
+    else if (type == 2)
+      read_uniform();
+    else
+      leave_out(type);
+    has_wind_ &= import_.errors.size() == errors_before;
+    if (has_wind_) finish();
+    import_.report_unused(*deck_);
+    return has_wind_ ? std::optional<WindDefinition>(wind_) : std::nullopt;
+  }
+
+ private:
+  void leave_out(int type) {
+    const std::string words =
+        std::to_string(type) + ": a file of turbulence is not read, the case has no wind";
+    import_.say(*deck_, "WindType", Fate::ignored, words);
+    import_.warn(deck_->place_of("WindType"),
+                 "WindType: note: " + words + "; hint: wind.speed of the case states a steady one");
+  }
+
+  void derive(const std::string& key, const std::string& words) {
+    if (deck_->has(key)) import_.say(*deck_, key, Fate::derived, words);
+  }
+
+  /// The speed counts at a height above the foot of the tower.
+  void set_height(const std::string& key) {
+    wind_.height = deck_->number(key) - source_.foot;
+    derive(key, source_.foot == 0.0 ? "wind.height" : "wind.height = " + key + " - TowerBsHt");
+    import_.note("wind.height", source_.foot == 0.0 ? key : key + " - TowerBsHt");
+    import_.require(wind_.height > 0.0, *deck_, key, "expected a height above the tower's foot");
+  }
+
+  void set_power(double exponent, const std::string& key) {
+    if (exponent == 0.0) return;
+    wind_.profile = WindDefinition::Profile::power;
+    wind_.exponent = exponent;
+    import_.note("wind.shear.power", key);
+    if (source_.foot != 0.0)
+      import_.warn(deck_->place_of("WindType"),
+                   "WindType: note: heights of wind.shear.power count from the foot of the tower, "
+                   "at " +
+                       rounded(source_.foot) + " m, those of " + key + " from the ground");
+  }
+
+  void read_steady() {
+    import_.say(*deck_, "WindType", Fate::derived, "1: steady wind");
+    wind_.speed = import_.take(*deck_, "HWindSpeed", "wind.speed");
+    import_.require(wind_.speed >= 0.0, *deck_, "HWindSpeed", "expected a number >= 0");
+    deck_->choose("RefHt", 0);
+    set_height("RefHt");
+    set_power(deck_->number("PLExp"), "PLExp");
+    derive("PLExp", wind_.exponent == 0.0 ? "0: no shear" : "wind.shear.power");
+    has_wind_ = true;
+  }
+
+  void read_uniform() {
+    // Older files have the same names for steady, uniform and turbulent wind.
+    deck_->choose("Filename", 0);
+    deck_->choose("RefHt", 1);
+    const std::string key = deck_->has("FileName_Uni") ? "FileName_Uni" : "Filename";
+    const std::string path = deck_->file(key);
+    if (path.empty()) return;
+    import_.say(*deck_, "WindType", Fate::derived, "2: uniform wind");
+    try {
+      use(read_file(path), path, key);
+    } catch (const InputError& error) {
+      import_.errors.add_message(error.what());
+    }
+  }
+
+  /// Lines of the time and seven or eight numbers; text starts with an exclamation mark.
+  static UniformFile read_file(const std::string& path) {
+    std::istringstream text(io::read_whole_file(path, max_megabytes, "wind file"));
+    UniformFile file;
+    int number = 0;
+    for (std::string line; std::getline(text, line);) {
+      ++number;
+      std::ranges::replace_if(
+          line, [](char c) { return c == ',' || c == '\t' || c == '\r'; }, ' ');
+      const std::string place = path + ":" + std::to_string(number);
+      std::istringstream words(line.substr(0, std::min(line.find('!'), line.size())));
+      std::vector<double> values;
+      for (std::string word; words >> word;) {
+        const std::optional<double> value = parse_deck_number(word);
+        if (!value && values.size() >= upflow + 1) break;  // a remark
+        if (!value)
+          throw InputError(place + ": expected a number, got \"" + word +
+                           "\"; hint: lines of text start with !");
+        values.push_back(*value);
+      }
+      if (values.empty()) continue;
+      if (values.size() < upflow + 1)
+        throw InputError(place +
+                         ": expected 8 or 9 columns (time, speed, direction, vertical "
+                         "speed, horizontal shear, power law, linear shear, gust), got " +
+                         std::to_string(values.size()));
+      Row row{};
+      std::copy_n(values.begin() + 1, std::min<std::size_t>(values.size() - 1, columns),
+                  row.begin());
+      file.times.push_back(values[0]);
+      file.rows.push_back(row);
+    }
+    if (file.rows.empty()) throw InputError(path + ": has no line of numbers");
+    return file;
+  }
+
+  static Row at_start(const UniformFile& file) {
+    const auto next = std::ranges::lower_bound(file.times, 0.0);
+    if (next == file.times.begin()) return file.rows.front();
+    if (next == file.times.end()) return file.rows.back();
+    const auto i = static_cast<std::size_t>(next - file.times.begin());
+    const double part = -file.times[i - 1] / (file.times[i] - file.times[i - 1]);
+    Row row{};
+    for (std::size_t c = 0; c < row.size(); ++c)
+      row[c] = file.rows[i - 1][c] + part * (file.rows[i][c] - file.rows[i - 1][c]);
+    return row;
+  }
+
+  void use(const UniformFile& file, const std::string& path, const std::string& key) {
+    const bool is_steady =
+        std::ranges::all_of(file.rows, [&](const Row& row) { return row == file.rows.front(); });
+    const Row row = at_start(file);
+    const std::string source = is_steady ? "the wind of the file" : "the wind of the file at 0 s";
+    import_.say(*deck_, key, Fate::derived, "wind: " + source);
+    if (!is_steady)
+      import_.warn(path, "note: the wind changes with time: the case has that of 0 s");
+    const double ahead = row[speed] + row[gust];
+    wind_.speed = std::hypot(ahead, row[vertical]);
+    if (row[gust] != 0.0 || row[vertical] != 0.0)
+      import_.warn(path,
+                   "note: gust and vertical speed are part of wind.speed and wind.upflow_deg, with "
+                   "the shear of the wind");
+    if (ahead < 0.0) throw InputError(path + ": a speed below 0");
+    rise_ = row[upflow] + fields::deg.from_si(std::atan2(row[vertical], ahead));
+    turned_ = row[direction];
+    import_.note("wind.speed", source);
+    const std::string height = deck_->has("RefHt_Uni") ? "RefHt_Uni" : "RefHt";
+    set_height(height);
+    set_power(row[power], "the file");
+    wind_.shear_left = row[shear_left];
+    wind_.shear_up = row[shear_up];
+    if (wind_.shear_left != 0.0 || wind_.shear_up != 0.0) {
+      wind_.shear_length = deck_->number("RefLength");
+      import_.say(*deck_, "RefLength", Fate::taken, "wind.shear.length");
+      import_.require(wind_.shear_length > 0.0, *deck_, "RefLength", "expected a number > 0");
+    }
+    has_wind_ = true;
+  }
+
+  /// Directions turn clockwise in OpenFAST. The nacelle of a case faces along the shaft at rest, so
+  /// its yaw turns the wind instead.
+  void finish() {
+    const double propagation = deck_->number("PropagationDir");
+    const double yaw = fields::deg.from_si(source_.yaw);
+    const double angle = wrap(-propagation - turned_ - yaw);
+    wind_.direction = fields::deg.to_si(angle);
+    const std::string words = std::string("wind.direction_deg = -PropagationDir") +
+                              (turned_ != 0.0 ? " - the file's" : "") +
+                              (yaw != 0.0 ? " - NacYaw" : "");
+    derive("PropagationDir", words);
+    if (angle != 0.0) import_.note("wind.direction_deg", words.substr(words.find('=') + 2));
+    const bool has_upflow = deck_->has("VFlowAng") || deck_->has("VelInterpCubic");
+    if (has_upflow) rise_ += deck_->number("VFlowAng");
+    wind_.upflow = fields::deg.to_si(rise_);
+    derive("VFlowAng", "wind.upflow_deg");
+    import_.require(std::abs(rise_) < 90.0, *deck_, "VFlowAng",
+                    "expected an angle between -90 and 90 degrees");
+    wind_.density = source_.density;
+    import_.note("wind.density", source_.density_key);
+  }
+
+  OpenfastImport& import_;
+  const InflowSource& source_;
+  std::unique_ptr<Deck> deck_;
+  WindDefinition wind_;
+  double turned_ = 0.0;  ///< direction of a file, clockwise [deg]
+  double rise_ = 0.0;    ///< upflow [deg]
+  bool has_wind_ = false;
+};
+
+}  // namespace
+
+std::optional<WindDefinition> read_inflow(OpenfastImport& import, const InflowSource& source) {
+  return InflowImporter(import, source).read();
+}
+
+}  // namespace samara::decks
