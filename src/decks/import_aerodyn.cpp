@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "samara/base/error.hpp"
+#include "samara/base/words.hpp"
 #include "samara/io/polar_file.hpp"
 #include "samara/io/whole_file.hpp"
 #include "samara/model/airfoil.hpp"
@@ -80,7 +81,7 @@ class AerodynImporter {
     }
     say_left_out();
     import_.report_unused(*deck_);
-    return std::move(models_);
+    return models_;
   }
 
  private:
@@ -372,7 +373,7 @@ class AerodynImporter {
   /// The reader of polars takes as many tables as NumTabs states.
   static void keep_first_table(std::string& text) {
     const std::string key = "numtabs";
-    const auto is_same = [](char a, char b) { return std::tolower(a) == b; };
+    const auto is_same = [](char a, char b) { return to_lower(a) == b; };
     const auto found = std::search(text.begin(), text.end(), key.begin(), key.end(), is_same);
     if (found == text.end()) return;
     const auto place = static_cast<std::size_t>(found - text.begin());

@@ -1220,7 +1220,8 @@ class Importer {
     for (std::size_t i = 0; i < chord.values.size(); ++i)
       if (!(chord.values[i] > 0.0)) {
         refuse(chord_path, "expected numbers > 0, got " + rounded(chord.values[i]) + " at " +
-                               rounded(chord.grid[i]) + " of the blade");
+                               rounded(chord.grid[i]) +
+                               " of the blade; hint: a tip that ends in a point has a small chord");
         break;
       }
     if (!errors_.empty() || places.empty()) return;
