@@ -30,8 +30,11 @@ struct UniformFile {
   std::vector<Row> rows;
 };
 
-/// An angle in degrees as it is between -180 and 180.
-double wrap(double angle) { return std::remainder(angle, whole_turn); }
+/// An angle in degrees as it is between -180 and 180, without the round-off of sums.
+double wrap(double angle) {
+  constexpr double per_degree = 1e9;
+  return std::round(std::remainder(angle, whole_turn) * per_degree) / per_degree;
+}
 
 class InflowImporter {
  public:

@@ -496,9 +496,9 @@ StationAir<T> station_air(const AirRotor& rotor, const AirStation& station,
     present.induced_t = z(air::induced + 1);
   }
   present.flow = section_flow(station, motion, present.induced_n, present.induced_t);
-  present.coefficients = dynamic_coefficients<T>(
-      rotor.models, station, present.flow, z.template segment<4>(air::wake),
-      z_dot.template segment<4>(air::wake), present.lags);
+  present.coefficients =
+      dynamic_coefficients<T>(rotor.models, station, present.flow, z.template segment<4>(air::wake),
+                              z_dot.template segment<4>(air::wake), present.lags);
   return present;
 }
 
