@@ -73,7 +73,7 @@ class TurbineChannels {
   std::vector<Channel> channels_;
   std::vector<ChannelPick> picks_;
   std::vector<Section> sections_;
-  int size_ = 0;  ///< number of quantities
+  int size_ = 0;          ///< number of quantities
   bool has_air_ = false;  ///< quantities of the air are needed
 };
 
