@@ -30,7 +30,8 @@ struct StateResidual {
 /// are at least a thousandth of their Unknown::scale, a tenth in a medium. The result is 0 without
 /// such rows.
 StateResidual state_residual(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                      const std::vector<HeldCoordinate>& loads, MPI_Comm comm = MPI_COMM_SELF);
+                             const std::vector<HeldCoordinate>& loads,
+                             MPI_Comm comm = MPI_COMM_SELF);
 
 /// Fills in the residuals and the load level of a solved trim.
 void finish_trim(const system::PeriodicSystem& system, Trim& trim, MPI_Comm comm = MPI_COMM_SELF);

@@ -64,10 +64,10 @@ inline constexpr double rough_medium = 0.01;
 /// Number of harmonics of the series from shooting with `steps` steps per revolution.
 int shooting_harmonics(int steps);
 
-/// Solves for the periodic steady state from the undeformed system in its prescribed motion. `near`:
-/// a steady state of a system with the same unknowns, which is tried first as the start; null:
-/// none. `comm`: ranks that share a large mesh in harmonic balance; all of them have the same system and
-/// get the same solution.
+/// Solves for the periodic steady state from the undeformed system in its prescribed motion.
+/// `near`: a steady state of a system with the same unknowns, which is tried first as the start;
+/// null: none. `comm`: ranks that share a large mesh in harmonic balance; all of them have the same
+/// system and get the same solution.
 /// @throws ConvergenceError with PETSc's reason and a hint.
 /// @throws InputError at rest where a coordinate may move that nothing restores, or where a part is
 /// held twice.

@@ -523,8 +523,8 @@ Eigen::Matrix<T, air::unknowns, 1> air_station_rows(const AirRotor& rotor,
   rows.template segment<3>(air::force) -= motion.R * Vec3<T>(load.template head<3>());
   rows.template segment<3>(air::moment) -= motion.R * Vec3<T>(load.template tail<3>());
   if (!is_induced) return rows;
-  const T Q_n = z(air::quasi_steady);
-  const T Q_t = z(air::quasi_steady + 1);
+  const T& Q_n = z(air::quasi_steady);
+  const T& Q_t = z(air::quasi_steady + 1);
   rows.template segment<2>(air::quasi_steady) =
       models.closure == MomentumLoad::equilibrium
           ? steady_momentum_rows<T>(rotor, station, motion, Q_n, Q_t)
@@ -534,9 +534,9 @@ Eigen::Matrix<T, air::unknowns, 1> air_station_rows(const AirRotor& rotor,
   const double outward = station.radius / rotor.tip_radius;
   const double tau2 = (0.39 - 0.26 * outward * outward) * rotor.tau1;
   for (int i = 0; i < 2; ++i) {
-    const T W = z(air::induced + i);
-    const T Q = z(air::quasi_steady + i);
-    const T R = z(air::reduced + i);
+    const T& W = z(air::induced + i);
+    const T& Q = z(air::quasi_steady + i);
+    const T& R = z(air::reduced + i);
     if (models.inflow == Inflow::equilibrium) {
       rows(air::induced + i) = W - Q;
       continue;
