@@ -257,7 +257,7 @@ std::vector<std::pair<std::string, std::string>> air_lines(
   for (const elements::AirStation& station : air.stations.front())
     if (!station.has_dynamics(models)) ++still;
   const char* dynamics[] = {"hgm", "oye", "quasi_steady", "static"};
-  const char* thrust[] = {"glauert_skew", "buhl", "buhl_f"};
+  const char* thrust[] = {"glauert_skew", "buhl", "buhl_f", "madsen"};
   std::string words = count(static_cast<int>(air.stations.front().size()), "station") +
                       " a blade; airfoil dynamics " +
                       dynamics[static_cast<std::size_t>(models.dynamics)];
@@ -271,7 +271,8 @@ std::vector<std::pair<std::string, std::string>> air_lines(
     words += std::string("; thrust ") + thrust[static_cast<std::size_t>(models.thrust)] +
              (models.inflow == elements::Inflow::oye
                   ? ", dynamic inflow with tau1 " + general(air.rotor.tau1, 4) + " s"
-                  : ", inflow in equilibrium");
+              : models.inflow == elements::Inflow::frozen ? ", frozen wake"
+                                                          : ", inflow in equilibrium");
   lines.emplace_back("air", words);
   return lines;
 }

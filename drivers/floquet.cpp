@@ -41,8 +41,9 @@ void run_floquet(const Job& job) {
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = simulation::find_trim(job.input, system, progress, PETSC_COMM_WORLD);
+  const auto held = simulation::hold_wake(system);
   const analysis::Floquet floquet = analysis::find_floquet_modes(
-      system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
+      held ? *held : system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
   progress.finish();
   if (!is_first) return;
   const simulation::StabilityAssessment assessment = simulation::assess_stability(floquet.set);

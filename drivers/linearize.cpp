@@ -69,8 +69,9 @@ void run_linearize(const Job& job) {
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
   const analysis::Trim trim = simulation::find_trim(job.input, system, progress, PETSC_COMM_WORLD);
-  const linear::Linearization linear = linear::linearize(system, input_output, trim.solution,
-                                                         turbine.azimuth, asked.options, progress);
+  const auto held = simulation::hold_wake(system);
+  const linear::Linearization linear = linear::linearize(
+      held ? *held : system, input_output, trim.solution, turbine.azimuth, asked.options, progress);
   progress.finish();
   if (!is_first) return;
   std::string text = summary(job.input, linear) + form_table(linear, asked.options.series);

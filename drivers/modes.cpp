@@ -43,7 +43,8 @@ void run_modes(const Job& job) {
         ": the coefficients are periodic, the steady state changes with the "
         "azimuth; hint: samara floquet, or samara modes --parked for the rotor at rest");
   simulation::note_roughness(trim, progress);
-  const analysis::ModeSet set = analysis::find_constant_modes(system, trim.solution);
+  const auto held = simulation::hold_wake(system);
+  const analysis::ModeSet set = analysis::find_constant_modes(held ? *held : system, trim.solution);
   progress.finish();
   if (!is_first) return;
   const simulation::StabilityAssessment assessment = simulation::assess_stability(set);

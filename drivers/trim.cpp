@@ -2,14 +2,13 @@
 #include "samara/analysis/trim.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/spanwise_air.hpp"
 #include "samara/simulation/steady_state.hpp"
-#include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
@@ -161,20 +160,50 @@ std::string generator_words(const io::Case& input, double shaft_load, double sha
 
 /// Mean speed, torque and pitch of the controller over a revolution.
 std::string controller_words(const turbine::TurbineSystem& system, const Trim& trim) {
-  const turbine::TurbineChannels channels(system, {}, {"GenSpeed", "GenTq", "BldPitch1"});
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  std::array<double, 3> sum{};
-  for (int i = 0; i < instants; ++i) {
-    const double t = system.period() * i / instants;
-    trim.solution.evaluate(t, z.get(), z_dot.get());
-    std::array<double, 3> values{};
-    channels.evaluate(t, z.get(), z_dot.get(), values);
-    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += values[j] / instants;
+  const std::vector<double> means =
+      simulation::mean_channels(system, trim, {"GenSpeed", "GenTq", "BldPitch1"});
+  return "controller   holds the generator at " + general(means[0], 6) + " rpm, with " +
+         general(1e3 * means[1], 5) + " N m against its turning and a pitch of " +
+         general(means[2], 5) + " deg\n";
+}
+
+/// Power and thrust of the air at the rotor, means over a revolution.
+std::string air_words(const turbine::TurbineSystem& system, const Trim& trim) {
+  const model::Air& air = *system.turbine().air;
+  const std::vector<double> means =
+      simulation::mean_channels(system, trim, {"RtAeroPwr", "RtAeroFxh"});
+  std::string text = "air          power " + general(1e-3 * means[0], 4) + " kW, thrust " +
+                     general(1e-3 * means[1], 4) + " kN";
+  const double wind = air.hub_wind;
+  if (wind > 0.0 && system.turbine().speed > 0.0) {
+    const double radius = air.rotor.tip_radius;
+    const double load = 0.5 * air.rotor.density * wind * wind * std::numbers::pi * radius * radius;
+    text += "; C_P " + general(means[0] / (load * wind), 4) + ", C_T " +
+            general(means[1] / load, 4) + " with the wind at the hub, " + general(wind, 4) + " m/s";
   }
-  return "controller   holds the generator at " + general(sum[0], 6) + " rpm, with " +
-         general(1e3 * sum[1], 5) + " N m against its turning and a pitch of " +
-         general(sum[2], 5) + " deg\n";
+  return text + "\n";
+}
+
+void write_air(io::ResultFile& file, const simulation::SpanwiseAir& air) {
+  if (air.quantities.empty()) return;
+  const std::string group = "/trim/air/";
+  const std::string rotor = "none";
+  file.write_values(group + "station", air.fractions,
+                    {"1", rotor, "places of the stations, fractions of the length", {"station"}});
+  file.write_values(group + "radius", air.radii,
+                    {"m", rotor, "undeformed distance from the shaft axis", {"station"}});
+  file.write_values(group + "chord", air.chords, {"m", rotor, "chord", {"station"}});
+  const std::vector<std::size_t> shape{air.blades, air.fractions.size()};
+  const auto write = [&](const std::string& name, const std::vector<double>& values,
+                         const std::string& unit, const std::string& words) {
+    file.write_array(group + name, values, shape, {unit, rotor, words, {"blade", "station"}});
+  };
+  for (const simulation::SpanwiseQuantity& quantity : air.quantities) {
+    const std::string& name = quantity.name;
+    write(name, quantity.mean, quantity.unit, "mean over a revolution: " + quantity.description);
+    write(name + "_least", quantity.least, quantity.unit, "least value over a revolution");
+    write(name + "_largest", quantity.largest, quantity.unit, "largest value over a revolution");
+  }
 }
 
 std::string summary(const io::Case& input, const turbine::TurbineSystem& system, const Trim& trim) {
@@ -210,6 +239,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
             (is_zero ? "0" : general(held.load, 4)) + " " + held.unit +
             (is_zero ? "" : " (not 0: no equilibrium there)") + "\n";
   }
+  if (system.turbine().air) text += air_words(system, trim);
   return text + "\n";
 }
 
@@ -230,6 +260,7 @@ void run_trim(const Job& job) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
+        write_air(file, simulation::find_spanwise_air(system, trim));
       },
       [&](const std::string& path) { io::write_trim_table(path, system, trim); });
 }

@@ -7,9 +7,12 @@
 namespace samara::analysis {
 namespace {
 
-/// A block belongs to the border if more blocks than this refer to it. (A node of a chain has two
-/// neighbours, and is in the rows of joints and reactions.)
+/// A block belongs to the border if more blocks than this refer to it, some of them at a distance
+/// of more than this many times their number. (A node of a chain has two neighbours, and is in the
+/// rows of joints and reactions. The blocks of an element of a high order, with the air at its
+/// points, are many neighbours, but all of them are near.)
 constexpr std::size_t most_neighbours = 8;
+constexpr std::size_t near = 3;
 /// Smallest piece of a chain, in blocks.
 constexpr Eigen::Index least_piece = 100;
 /// Largest border that a distribution may have, as a part of all blocks.
@@ -76,12 +79,19 @@ std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size
   std::vector<std::set<PetscInt>> users(static_cast<std::size_t>(pattern.cols() / block_size));
   for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
     for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
-      std::set<PetscInt>& own = users[static_cast<std::size_t>(it.col() / block_size)];
-      if (own.size() <= most_neighbours) own.insert(i / block_size);
+      users[static_cast<std::size_t>(it.col() / block_size)].insert(i / block_size);
     }
   std::vector<char> border;
-  for (const std::set<PetscInt>& own : users)
-    border.push_back(own.size() > most_neighbours ? 1 : 0);
+  for (std::size_t b = 0; b < users.size(); ++b) {
+    const std::set<PetscInt>& own = users[b];
+    bool is_border = own.size() > most_neighbours;
+    if (is_border) {
+      const auto place = static_cast<PetscInt>(b);
+      const PetscInt distance = std::max(place - *own.begin(), *own.rbegin() - place);
+      is_border = static_cast<std::size_t>(distance) > near * own.size();
+    }
+    border.push_back(is_border ? 1 : 0);
+  }
   for (const system::UnconstrainedCoordinate& coordinate : held)
     for (const PetscInt i : {coordinate.unknown, coordinate.row})
       border[static_cast<std::size_t>(i / block_size)] = 1;

@@ -1231,6 +1231,7 @@ class Importer {
         refuse(listed, "expected places that rise from 0 to 1, got " + rounded(place.at));
     if (!errors_.empty()) return;
 
+    const bool by_thickness = !thickness.grid.empty() && have_thickness(places);
     std::vector<double> own_grid;
     for (const AirfoilPlace& place : places) own_grid.push_back(place.at);
     const bool is_share = offset_path.ends_with(".pitch_axis");
@@ -1242,7 +1243,8 @@ class Importer {
       section.chord = interpolate(chord, station);
       section.twist = fields::deg.to_si(to_degrees(interpolate(twist, station)));
       const double axis = interpolate(offset, station) * (is_share ? section.chord : 1.0);
-      const double center = choose_airfoil(places, station, thickness, section.airfoil);
+      const double center = by_thickness ? choose_thickness(thickness, station, section.thickness)
+                                         : choose_airfoil(places, station, section.airfoil);
       // The chord of the section against its structural axes.
       const double structural = model::interpolate_section(turbine_.blades.beam, section.at).twist;
       const double ahead = axis - center * section.chord;
@@ -1257,15 +1259,19 @@ class Importer {
     say(offset_path, Fate::derived,
         std::string("center of blades.aero_sections = ") + (is_share ? "pitch_axis chord" : "it") +
             " - aerodynamic_center chord along the chord");
-    say(thickness_path, Fate::derived, "airfoils between those of the deck, by their thickness");
-    say(listed, Fate::derived, "airfoil of blades.aero_sections");
+    if (by_thickness) {
+      say(thickness_path, Fate::taken, "thickness of blades.aero_sections");
+      say(listed, Fate::derived, "airfoils of the case, chosen by their thickness");
+    } else {
+      if (!thickness_path.empty())
+        say(thickness_path, Fate::ignored, "two airfoils of one thickness, or one without");
+      say(listed, Fate::derived, "airfoil of blades.aero_sections");
+    }
     say("airfoils", Fate::taken, "blades.airfoils");
     if (const std::string across = choose({outer + ".section_offset_x"}); !across.empty())
       say_offset_across(across);
     note("blades.airfoils", std::string("airfoils of windIO") +
-                                (thickness_path.empty() ? ", those between two linear in the span"
-                                                        : ", those between two linear in the "
-                                                          "thickness"));
+                                (by_thickness ? "" : ", those between two linear in the span"));
     note("blades.aero_sections", std::string("outer shape; center: the aerodynamic centre from ") +
                                      (is_share ? "pitch_axis" : "section_offset_y"));
     say_wind();
@@ -1448,22 +1454,43 @@ class Importer {
       polars.push_back(std::move(polar));
   }
 
+  /// Whether all airfoils of the blade have a thickness of their own, so that sections with a
+  /// thickness have an airfoil.
+  bool have_thickness(const std::vector<AirfoilPlace>& places) {
+    std::map<double, std::string> names;
+    for (const AirfoilPlace& place : places) {
+      const std::optional<double> own = turbine_.blades.airfoils[place.name].thickness;
+      if (!own || names.try_emplace(*own, place.name).first->second != place.name) return false;
+    }
+    return true;
+  }
+
+  /// Sets the thickness of a section, within the range of the airfoils, and returns the aerodynamic
+  /// centre behind the leading edge [of the chord], linear between those of the airfoils.
+  double choose_thickness(const Curve& thickness, const Station& station,
+                          std::optional<double>& own) {
+    const auto sorted = model::sort_by_thickness(turbine_.blades.airfoils);
+    own = std::clamp(interpolate(thickness, station), sorted.front().first, sorted.back().first);
+    const auto thicker =
+        std::ranges::lower_bound(sorted, *own, {}, &std::pair<double, std::string>::first);
+    const double center = aerodynamic_centers_[thicker->second];
+    if (thicker == sorted.begin()) return center;
+    const auto& [least, thinner] = *(thicker - 1);
+    const double before = aerodynamic_centers_[thinner];
+    return before + (*own - least) / (thicker->first - least) * (center - before);
+  }
+
   /// Sets the airfoil at a station and returns its aerodynamic centre behind the leading edge [of
-  /// the chord]. Between two airfoils of the deck it is one of its own, linear in the relative
-  /// thickness, or in the span where they or the blade state none.
+  /// the chord]. Between two airfoils of the deck it is one of its own, linear in the span.
   double choose_airfoil(const std::vector<AirfoilPlace>& places, const Station& station,
-                        const Curve& thickness, std::string& name) {
+                        std::string& name) {
     constexpr double steps = 1000.0;  // of the weights, which are parts of names
     auto& airfoils = turbine_.blades.airfoils;
     const auto behind =
         std::ranges::upper_bound(places, station.place + straight_tolerance, {}, &AirfoilPlace::at);
     const AirfoilPlace& a = behind == places.begin() ? places.front() : *(behind - 1);
     const AirfoilPlace& b = behind == places.end() ? places.back() : *behind;
-    double weight = a.at == b.at ? 0.0 : (station.place - a.at) / (b.at - a.at);
-    const std::optional<double> from = airfoils[a.name].thickness;
-    const std::optional<double> to = airfoils[b.name].thickness;
-    if (!thickness.grid.empty() && from && to && *from != *to)
-      weight = (interpolate(thickness, station) - *from) / (*to - *from);
+    const double weight = a.at == b.at ? 0.0 : (station.place - a.at) / (b.at - a.at);
     const double step = std::round(std::clamp(weight, 0.0, 1.0) * steps);
     const double center_a = aerodynamic_centers_[a.name];
     const double center_b = aerodynamic_centers_[b.name];

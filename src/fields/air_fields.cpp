@@ -45,6 +45,32 @@ void declare_shear(Visitor& fields, WindDefinition& wind) {
                 wind.shear_length);
 }
 
+void declare_tower_flow(Visitor& fields, model::TowerFlowDefinition& tower) {
+  using Potential = elements::TowerPotential;
+  using Wake = elements::TowerWake;
+  fields.table(Field("sections", "m, m, 1",
+                     "`[[height, diameter, drag], ...]`: height above the foot, rising, diameter "
+                     "and drag coefficient of the round tower; constant beyond both ends")
+                   .required("[[height, diameter, drag coefficient], ...]"),
+               {{"height", Unit("m"), &tower.heights},
+                {"diameter", Unit("m"), &tower.diameters},
+                {"drag", Unit(""), &tower.drags}});
+  fields.choice({"potential",
+                 "flow ahead of the tower and beside it: `bak`, potential flow with the drag (Bak, "
+                 "Madsen, Johansen 2001); `plain`, without it; `none`"},
+                tower.potential,
+                {{"bak", Potential::bak}, {"plain", Potential::plain}, {"none", Potential::none}});
+  fields.choice({"wake",
+                 "behind the tower: `powles`, a cosine; `eames`, a bell curve that widens with the "
+                 "turbulence; `none`"},
+                tower.wake,
+                {{"none", Wake::none}, {"powles", Wake::powles}, {"eames", Wake::eames}});
+  fields.number({"turbulence", "", positive, "intensity of the turbulence, of `eames`"},
+                tower.turbulence);
+  fields.flag({"drag_load", "the drag of the wind acts on the tower, if there is one"},
+              tower.drag_load);
+}
+
 void declare_wind_keys(Visitor& fields, WindDefinition& wind) {
   fields.number(Field("speed", "m/s", non_negative, "at `height`").required(), wind.speed);
   fields.number(Field("height", "m", positive,
@@ -68,6 +94,8 @@ void declare_wind_keys(Visitor& fields, WindDefinition& wind) {
                 wind.veer);
   fields.number({"upflow_deg", deg, quarter_turn, "> 0: the wind rises"}, wind.upflow);
   fields.number({"density", "kg/m^3", positive, "of the air"}, wind.density);
+  fields.block(Field("tower", "flow around the tower, [below](#wind)").or_else("none"), wind.tower,
+               [&](model::TowerFlowDefinition& tower) { declare_tower_flow(fields, tower); });
 }
 
 // ---- models ------------------------------------------------------------------------------------
@@ -105,10 +133,13 @@ void declare_inflow(Visitor& fields, AeroDefinition& aero) {
        "`axial`, along the shaft alone; `none`"},
       aero.induction,
       {{"full", Induction::full}, {"axial", Induction::axial}, {"none", Induction::none}});
-  fields.choice({"inflow",
-                 "`oye`: the induced velocity follows its quasi-steady value with two lags in "
-                 "series (Oye 1990); `equilibrium`: it is that value"},
-                aero.inflow, {{"oye", Inflow::oye}, {"equilibrium", Inflow::equilibrium}});
+  fields.choice(
+      {"inflow",
+       "`oye`: the induced velocity follows its quasi-steady value with two lags in "
+       "series (Oye 1990); `equilibrium`: it is that value; `frozen`: it is that value in "
+       "the steady state, and motions about it do not change it (not in time series)"},
+      aero.inflow,
+      {{"oye", Inflow::oye}, {"equilibrium", Inflow::equilibrium}, {"frozen", Inflow::frozen}});
   declare_tau1(fields, aero.tau1);
   fields.choice({"closure",
                  "load in the balance of momentum: `equilibrium`, of the polars at the "
@@ -118,11 +149,13 @@ void declare_inflow(Visitor& fields, AeroDefinition& aero) {
   fields.choice({"thrust",
                  "thrust of an annulus over its induction: `glauert_skew`, with the wind in the "
                  "plane of the rotor; `buhl`, of axial wind; `buhl_f`, the same with the tip loss "
-                 "in its coefficients (AeroDyn)"},
+                 "in its coefficients (AeroDyn); `madsen`, the polynomial of Madsen et al. (2020, "
+                 "HAWC2)"},
                 aero.thrust,
                 {{"glauert_skew", ThrustLaw::glauert_skew},
                  {"buhl", ThrustLaw::buhl},
-                 {"buhl_f", ThrustLaw::buhl_f}});
+                 {"buhl_f", ThrustLaw::buhl_f},
+                 {"madsen", ThrustLaw::madsen}});
   fields.flag({"tip_loss", "Prandtl's factor of the blade tips"}, aero.tip_loss);
   fields.flag({"hub_loss", "the same of the blade roots"}, aero.hub_loss);
   fields.flag({"axial_drag", "the drag takes part in the axial balance of momentum"},
@@ -218,8 +251,19 @@ void declare_aero_section(Visitor& fields, bool is_single, model::AeroSectionDef
                  "of the chord from the b2 of the root, > 0 toward feather. The twist of the "
                  "structural sections is not added"},
                 section.twist);
-  fields.text(Field("airfoil", "a name of `airfoils`").required("a name of blades.airfoils"),
+  fields.exclusive({{"airfoil"}, {"thickness"}});
+  fields.at_least_one({"airfoil", "thickness"}, "a name of blades.airfoils, or a thickness");
+  fields.text(Field("airfoil",
+                    "a name of `airfoils`; between two sections the coefficients are linear along "
+                    "the blade. Either this or `thickness`")
+                  .or_else(""),
               "a name of blades.airfoils", section.airfoil);
+  fields.number(Field("thickness", "", beyond_the_root,
+                      "relative to the chord, instead of `airfoil` and at all sections: the "
+                      "thickness is linear along the blade, and the coefficients are linear in it "
+                      "between the airfoils of the next smaller and larger `thickness`")
+                    .or_else("none"),
+                section.thickness);
   fields.numbers({"center", "m",
                   "`[b2, b3]`, offset of the aerodynamic centre from the reference line, in the "
                   "axes of the structural section"},

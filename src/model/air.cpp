@@ -21,6 +21,11 @@ struct Between {
   const AeroSectionDefinition* before = nullptr;
   const AeroSectionDefinition* behind = nullptr;
   double weight = 0.0;
+
+  /// A property of the sections, linear between them.
+  double of(auto member) const {
+    return (1.0 - weight) * member(*before) + weight * member(*behind);
+  }
 };
 
 Between find_sections(const std::vector<AeroSectionDefinition>& sections, double at) {
@@ -36,22 +41,44 @@ Between find_sections(const std::vector<AeroSectionDefinition>& sections, double
 class AirfoilShelf {
  public:
   explicit AirfoilShelf(const std::map<std::string, AirfoilDefinition>& airfoils)
-      : airfoils_(airfoils) {}
+      : airfoils_(airfoils), by_thickness_(sort_by_thickness(airfoils)) {}
 
   std::shared_ptr<const elements::AirfoilCurves> at(const Between& place, double reynolds) {
-    const bool is_one = place.before->airfoil == place.behind->airfoil;
-    const double weight = is_one ? 0.0 : place.weight;
-    const bool has_many = airfoil(place.before->airfoil).polars.size() > 1 ||
-                          airfoil(place.behind->airfoil).polars.size() > 1;
-    auto& curves =
-        made_[{place.before->airfoil, place.behind->airfoil, weight, has_many ? reynolds : 0.0}];
-    if (!curves)
-      curves = std::make_shared<const elements::AirfoilCurves>(make_curves(
-          airfoil(place.before->airfoil), airfoil(place.behind->airfoil), weight, reynolds));
-    return curves;
+    if (place.before->thickness) return at_thickness(place, reynolds);
+    return between(place.before->airfoil, place.behind->airfoil, place.weight, reynolds);
   }
 
  private:
+  std::shared_ptr<const elements::AirfoilCurves> between(const std::string& a, const std::string& b,
+                                                         double weight, double reynolds) {
+    if (a == b) weight = 0.0;
+    const bool has_many = airfoil(a).polars.size() > 1 || airfoil(b).polars.size() > 1;
+    auto& curves = made_[{a, b, weight, has_many ? reynolds : 0.0}];
+    if (!curves)
+      curves = std::make_shared<const elements::AirfoilCurves>(
+          make_curves(airfoil(a), airfoil(b), weight, reynolds));
+    return curves;
+  }
+
+  std::shared_ptr<const elements::AirfoilCurves> at_thickness(const Between& place,
+                                                              double reynolds) {
+    const double thickness = place.of([](const AeroSectionDefinition& s) {
+      if (!s.thickness)
+        throw InputError("blades.aero_sections: expected a thickness at all sections or at none");
+      return *s.thickness;
+    });
+    if (by_thickness_.empty())
+      throw InputError("blades.aero_sections: there is no airfoil with a thickness");
+    const auto thicker = std::ranges::lower_bound(by_thickness_, thickness, {},
+                                                  &std::pair<double, std::string>::first);
+    if (thicker == by_thickness_.begin())
+      return between(thicker->second, thicker->second, 0.0, reynolds);
+    const auto& [least, thinner] = *(thicker - 1);
+    if (thicker == by_thickness_.end()) return between(thinner, thinner, 0.0, reynolds);
+    return between(thinner, thicker->second, (thickness - least) / (thicker->first - least),
+                   reynolds);
+  }
+
   const AirfoilDefinition& airfoil(const std::string& name) const {
     const auto found = airfoils_.find(name);
     if (found == airfoils_.end())
@@ -60,6 +87,7 @@ class AirfoilShelf {
   }
 
   const std::map<std::string, AirfoilDefinition>& airfoils_;
+  std::vector<std::pair<double, std::string>> by_thickness_;
   std::map<std::tuple<std::string, std::string, double, double>,
            std::shared_ptr<const elements::AirfoilCurves>>
       made_;
@@ -82,6 +110,24 @@ elements::MeanWind wind_of(const WindDefinition& definition) {
   return wind;
 }
 
+elements::TowerFlow tower_flow_of(const TowerFlowDefinition& definition, const Turbine& turbine) {
+  elements::TowerFlow flow;
+  flow.potential = definition.potential;
+  flow.wake = definition.wake;
+  flow.turbulence = definition.turbulence;
+  flow.top = Vector3(turbine.tower.tip(1), turbine.tower.tip(2), turbine.tower.tip(0));
+  const auto curve_of = [&definition](const std::vector<double>& values) {
+    std::vector<math::TimeCurve::Point> points;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      points.emplace_back(definition.heights[i], values[i]);
+    if (points.size() == 1) points.emplace_back(points[0].first + 1.0, points[0].second);
+    return math::TimeCurve::through(points);
+  };
+  flow.diameter = curve_of(definition.diameters);
+  flow.drag = curve_of(definition.drags);
+  return flow;
+}
+
 /// Undeformed distance from the shaft axis.
 double radius_of(const BladeRoot& root, const Vector3& x) {
   const Vector3 place = root.position + root.C_Ha * x;
@@ -102,7 +148,7 @@ HubWind find_hub_wind(const elements::MeanWind& wind, const Turbine& turbine) {
                  bearing * Vector3(0.0, chain.overhang + chain.undersling, 0.0);
   if (turbine.has_tower)
     apex += Vector3(turbine.tower.tip(1), turbine.tower.tip(2), turbine.tower.tip(0));
-  const Vector3 v = wind.at<double>(apex);
+  const Vector3 v = wind.undisturbed_at<double>(apex);
   return {v.dot(bearing.col(1)), v.norm()};
 }
 
@@ -155,17 +201,15 @@ void place_stations(const TurbineDefinition& definition, const Turbine& turbine,
       const auto at = static_cast<std::size_t>(p);
       const double fraction = beam.fractions[at];
       const Between place = find_sections(definition.blades.aero_sections, fraction);
-      const auto mix = [&place](auto member) {
-        return (1.0 - place.weight) * member(*place.before) + place.weight * member(*place.behind);
-      };
       elements::AirStation station;
       station.x = beam.points[at].x;
       station.turned = beam.points[at].reference * beam.points[at].C_ab;
-      station.chord = mix([](const AeroSectionDefinition& s) { return s.chord; });
-      station.twist = mix([](const AeroSectionDefinition& s) { return s.twist; }) -
+      station.chord = place.of([](const AeroSectionDefinition& s) { return s.chord; });
+      station.twist = place.of([](const AeroSectionDefinition& s) { return s.twist; }) -
                       interpolate_section(definition.blades.beam, fraction).twist;
-      station.center = Vector3(0.0, mix([](const AeroSectionDefinition& s) { return s.center[0]; }),
-                               mix([](const AeroSectionDefinition& s) { return s.center[1]; }));
+      station.center =
+          Vector3(0.0, place.of([](const AeroSectionDefinition& s) { return s.center[0]; }),
+                  place.of([](const AeroSectionDefinition& s) { return s.center[1]; }));
       station.arc_to_tip = (1.0 - fraction) * beam.length;
       station.arc_to_hub = fraction * beam.length;
       station.radius = radius_of(root, station.x);
@@ -188,6 +232,10 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
   elements::AirRotor& rotor = air.rotor;
   rotor.models = *definition.aero;
   rotor.wind = wind_of(*definition.wind);
+  if (definition.wind->tower) {
+    rotor.wind.tower = tower_flow_of(*definition.wind->tower, turbine);
+    air.tower_has_drag = definition.wind->tower->drag_load;
+  }
   rotor.density = definition.wind->density;
   rotor.blades = static_cast<int>(turbine.blades.size());
   rotor.hub_radius = definition.hub.radius;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "samara/base/format.hpp"
 #include "samara/base/words.hpp"
@@ -33,6 +35,7 @@ class AirValidation {
     if (turbine_.aero) check_aero(*turbine_.aero);
     if (turbine_.blades.count == 0) return std::move(faults_);
     for (const auto& [name, airfoil] : turbine_.blades.airfoils) check_airfoil(name, airfoil);
+    by_thickness_ = sort_by_thickness(turbine_.blades.airfoils);
     for (std::size_t i = 0; i < turbine_.blades.aero_sections.size(); ++i) check_section(i);
     return std::move(faults_);
   }
@@ -46,6 +49,7 @@ class AirValidation {
   void check_wind(const WindDefinition& wind) {
     using Profile = WindDefinition::Profile;
     if (turbine_.blades.count == 0) return add("wind", "there are no blades");
+    if (wind.tower) check_tower(*wind.tower);
     const bool needs_height =
         wind.profile != Profile::uniform || wind.shear_up != 0.0 || wind.veer != 0.0;
     if (needs_height && !(wind.height > 0.0))
@@ -67,6 +71,24 @@ class AirValidation {
           {"wind.shear.left", "wind.shear.up"});
   }
 
+  void check_tower(const TowerFlowDefinition& tower) {
+    const std::string place = "wind.tower.sections";
+    if (tower.heights.empty() || tower.diameters.size() != tower.heights.size() ||
+        tower.drags.size() != tower.heights.size())
+      return add(place, "expected one height, diameter and drag coefficient or more");
+    for (std::size_t i = 0; i < tower.heights.size(); ++i) {
+      if (i > 0 && !(tower.heights[i] > tower.heights[i - 1]))
+        add(place, "the heights do not rise (" + general(tower.heights[i - 1], 6) + ", then " +
+                       general(tower.heights[i], 6) + ")");
+      if (!(tower.diameters[i] > 0.0))
+        add(place, "expected diameters > 0, got " + general(tower.diameters[i], 6));
+      if (!(tower.drags[i] >= 0.0))
+        add(place, "expected drag coefficients >= 0, got " + general(tower.drags[i], 6));
+    }
+    if (!(tower.turbulence > 0.0)) add("wind.tower.turbulence", "expected a number > 0");
+    if (!turbine_.has_tower) add("wind.tower", "there is no tower", {"tower"});
+  }
+
   void check_aero(const AeroDefinition& aero) {
     const BladesDefinition& blades = turbine_.blades;
     if (blades.count == 0)
@@ -74,8 +96,6 @@ class AirValidation {
     else if (blades.aero_sections.empty())
       add("aero", "needs blades.aero_sections, the chords and airfoils of the blades",
           {"blades.aero_sections"});
-    if (blades.count > 0 && !turbine_.wind)
-      add("aero", "needs the wind; hint: wind: {speed: 8}, or aero: none", {"wind"});
     if (!(aero.wake[2] > 0.0 && aero.wake[3] > 0.0))
       add("aero.wake_constants", "expected decay rates b1, b2 > 0");
   }
@@ -110,6 +130,9 @@ class AirValidation {
           "expected more than the section before has, got " + general(section.at, 6));
     if (!(section.chord > 0.0))
       add(place + ".chord", "expected a number > 0, got " + general(section.chord, 6));
+    if (section.thickness.has_value() != sections[0].thickness.has_value())
+      return add(place, "expected a thickness at all sections or at none");
+    if (section.thickness) return check_thickness(i);
     const auto& airfoils = turbine_.blades.airfoils;
     if (airfoils.contains(section.airfoil)) return;
     std::vector<std::string> names;
@@ -118,7 +141,34 @@ class AirValidation {
                                 suggest(section.airfoil, names));
   }
 
+  void check_thickness(std::size_t i) {
+    const AeroSectionDefinition& section = turbine_.blades.aero_sections[i];
+    const std::string place = indexed("blades.aero_sections", i);
+    if (!section.airfoil.empty())
+      add(place, "airfoil and thickness cannot both be given", {place + ".thickness"});
+    if (i == 0) check_airfoils_by_thickness();
+    if (by_thickness_.empty()) return;
+    constexpr double round_off = 1e-9;
+    const double least = by_thickness_.front().first;
+    const double largest = by_thickness_.back().first;
+    if (!(*section.thickness >= least - round_off && *section.thickness <= largest + round_off))
+      add(place + ".thickness", "expected " + general(least, 6) + " to " + general(largest, 6) +
+                                    ", those of blades.airfoils, got " +
+                                    general(*section.thickness, 6));
+  }
+
+  void check_airfoils_by_thickness() {
+    if (by_thickness_.empty())
+      add("blades.aero_sections[0].thickness", "no airfoil of blades.airfoils has a thickness");
+    for (std::size_t k = 1; k < by_thickness_.size(); ++k)
+      if (by_thickness_[k].first == by_thickness_[k - 1].first)
+        add("blades.airfoils." + by_thickness_[k].second + ".thickness",
+            "that of airfoil \"" + by_thickness_[k - 1].second +
+                "\"; sections with a thickness need airfoils that differ in it");
+  }
+
   const TurbineDefinition& turbine_;
+  std::vector<std::pair<double, std::string>> by_thickness_;
   std::vector<Fault> faults_;
 };
 
@@ -134,10 +184,14 @@ std::vector<Fault> find_air_notes(const TurbineDefinition& turbine) {
     return {{"wind", "without effect, there are no blades.aero_sections"}};
   if (!turbine.aero) return {};
   std::vector<Fault> notes;
+  if (!turbine.wind) notes.push_back({"aero", "without effect, there is no wind"});
+  const bool has_thickness = !blades.aero_sections.empty() && blades.aero_sections[0].thickness;
   for (const auto& [name, airfoil] : blades.airfoils) {
-    if (std::ranges::find(blades.aero_sections, name, &AeroSectionDefinition::airfoil) ==
-        blades.aero_sections.end())
-      continue;
+    const bool is_used =
+        (has_thickness && airfoil.thickness) ||
+        std::ranges::find(blades.aero_sections, name, &AeroSectionDefinition::airfoil) !=
+            blades.aero_sections.end();
+    if (!is_used) continue;
     for (std::size_t i = 0; i < airfoil.polars.size(); ++i) {
       if (!find_polar_fault(airfoil.polars[i]).empty()) continue;
       for (const std::string& text : find_polar_notes(airfoil.polars[i]))

@@ -25,6 +25,8 @@ constexpr double zero_lift_range = 15.0 * degree;
 constexpr double slope_before = 2.0 * degree;  // of the zero of the lift
 constexpr double slope_behind = 7.0 * degree;
 constexpr double least_slope = 1.0;  // [1/rad]
+/// Lift coefficient up to which a section is a cylinder, which needs no airfoil dynamics.
+constexpr double lift_of_cylinder = 1e-3;
 
 using Values = std::vector<double>;
 
@@ -168,8 +170,8 @@ bool is_finite(const Values& values) {
 
 std::string note_on_dynamics(const PolarDefinition& polar) {
   const double slope = find_lift_slope(polar);
-  if (slope >= least_slope || std::ranges::all_of(polar.lift, [](double c) { return c == 0.0; }))
-    return {};
+  const auto is_small = [](double lift) { return std::abs(lift) <= lift_of_cylinder; };
+  if (slope >= least_slope || std::ranges::all_of(polar.lift, is_small)) return {};
   if (slope == 0.0)
     return "the lift has no zero with positive slope within 15 degrees: no airfoil dynamics";
   return "the slope of the lift, " + general(slope, 3) + ", is less than 1: no airfoil dynamics";
@@ -277,6 +279,15 @@ PolarDefinition polar_at(const AirfoilDefinition& airfoil, double reynolds) {
   PolarDefinition polar = blend(on_grid(before), on_grid(**behind), weight);
   polar.reynolds = reynolds;
   return polar;
+}
+
+std::vector<std::pair<double, std::string>> sort_by_thickness(
+    const std::map<std::string, AirfoilDefinition>& airfoils) {
+  std::vector<std::pair<double, std::string>> sorted;
+  for (const auto& [name, airfoil] : airfoils)
+    if (airfoil.thickness) sorted.emplace_back(*airfoil.thickness, name);
+  std::ranges::sort(sorted);
+  return sorted;
 }
 
 elements::AirfoilCurves make_curves(const PolarDefinition& polar,

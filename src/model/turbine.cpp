@@ -275,7 +275,7 @@ Turbine build_turbine(const TurbineDefinition& given) {
     if (hinge->free) ++turbine.degrees_of_freedom;
   for (const BladeRoot& root : turbine.roots)
     turbine.degrees_of_freedom += static_cast<int>(root.hinges.size());
-  if (definition.aero) turbine.air = build_air(definition, turbine);
+  if (definition.aero && definition.wind) turbine.air = build_air(definition, turbine);
   for (const MassDamper& damper : turbine.mass_dampers)
     turbine.degrees_of_freedom += static_cast<int>(damper.definition.axes.size());
   return turbine;

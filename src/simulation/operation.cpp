@@ -55,18 +55,9 @@ void add_means(const turbine::TurbineSystem& system, const analysis::Trim& trim,
     means.push_back({"TwrBsMyt", kilo, &OperatingPoint::tower_moment});
   std::vector<std::string> names;
   for (const Mean& mean : means) names.emplace_back(mean.channel);
-  const turbine::TurbineChannels channels(system, {}, names);
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  // Enough to integrate products of the harmonics exactly.
-  const int instants = trim.solution.is_constant() ? 1 : 6 * trim.solution.harmonics() + 1;
-  std::vector<double> values(names.size());
-  for (int i = 0; i < instants; ++i) {
-    trim.solution.evaluate(system.period() * i / instants, z.get(), z_dot.get());
-    channels.evaluate(system.period() * i / instants, z.get(), z_dot.get(), values);
-    for (std::size_t j = 0; j < means.size(); ++j)
-      point.*means[j].value += values[j] * means[j].factor / instants;
-  }
+  const std::vector<double> values = mean_channels(system, trim, names);
+  for (std::size_t j = 0; j < means.size(); ++j)
+    point.*means[j].value = values[j] * means[j].factor;
 }
 
 /// End of a search for the zero of a falling function.

@@ -1,7 +1,6 @@
 #include "samara/simulation/steady_state.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -17,23 +16,6 @@ namespace {
 constexpr double rough_imbalance = 1e-4;
 
 constexpr double degree = std::numbers::pi / 180.0;
-
-/// The mean pitch of a blade over a revolution [rad].
-double mean_pitch(const turbine::TurbineSystem& system, const analysis::Trim& trim, int blade) {
-  constexpr int instants = 36;
-  const turbine::TurbineChannels channels(system, {}, {"BldPitch" + std::to_string(blade)});
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  double sum = 0.0;
-  for (int i = 0; i < instants; ++i) {
-    const double t = system.period() * i / instants;
-    trim.solution.evaluate(t, z.get(), z_dot.get());
-    std::array<double, 1> value{};
-    channels.evaluate(t, z.get(), z_dot.get(), value);
-    sum += value[0] * degree;
-  }
-  return sum / instants;
-}
 
 /// Range of the pitch of the blades [rad], and the key that sets each bound.
 struct PitchRange {
@@ -81,7 +63,8 @@ std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& op
     const analysis::Trim trim = analysis::find_trim(system, options, silent);
     for (int k = 1; k <= turbine.blades.count; ++k) {
       const PitchRange range = pitch_range(turbine, k);
-      const double pitch = mean_pitch(system, trim, k);
+      const double pitch =
+          mean_channels(system, trim, {"BldPitch" + std::to_string(k)})[0] * degree;
       const bool is_high = pitch > range.highest;
       if (!is_high && !(pitch < range.lowest)) continue;
       return "the controller needs a pitch of " + general(pitch / degree, 4) + " deg, but " +
@@ -123,6 +106,35 @@ analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem&
   analysis::Trim trim = solve_trim(scenario, system, trim_options(scenario), observer, comm);
   note_roughness(trim, observer);
   return trim;
+}
+
+int instants_of_means(const analysis::Trim& trim) {
+  return trim.solution.is_constant() ? 1 : 6 * trim.solution.harmonics() + 1;
+}
+
+std::vector<double> mean_channels(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                                  const std::vector<std::string>& names) {
+  const turbine::TurbineChannels channels(system, {}, names);
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const int instants = instants_of_means(trim);
+  std::vector<double> means(names.size(), 0.0);
+  std::vector<double> values(names.size());
+  for (int i = 0; i < instants; ++i) {
+    const double t = system.period() * i / instants;
+    trim.solution.evaluate(t, z.get(), z_dot.get());
+    channels.evaluate(t, z.get(), z_dot.get(), values);
+    for (std::size_t j = 0; j < means.size(); ++j) means[j] += values[j] / instants;
+  }
+  return means;
+}
+
+std::unique_ptr<turbine::TurbineSystem> hold_wake(const turbine::TurbineSystem& system) {
+  const std::optional<model::Air>& air = system.turbine().air;
+  if (!air || air->rotor.models.inflow != elements::Inflow::frozen) return nullptr;
+  model::Turbine held = system.turbine();
+  held.air->rotor.wake_is_held = true;
+  return std::make_unique<turbine::TurbineSystem>(held, system.comm());
 }
 
 std::string roughness(const analysis::Trim& trim) {

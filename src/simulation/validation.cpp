@@ -78,6 +78,7 @@ class Validation {
         break;
       case Analysis::transient:
         check_transient();
+        check_inflow();
         break;
       case Analysis::operate:
         check_steady();
@@ -95,6 +96,12 @@ class Validation {
       add("shaft.speed",
           "must be 0: samara static needs a rotor at rest; hint: use samara trim, or --set "
           "shaft.speed=0");
+  }
+
+  void check_inflow() {
+    if (turbine_.aero && turbine_.aero->inflow == model::Inflow::frozen)
+      add("aero.inflow",
+          "frozen is for small motions about a steady state; hint: oye or equilibrium");
   }
 
   void check_operation() {

@@ -114,6 +114,10 @@ void TurbineEquations::make_components() {
     airs_.push_back(std::make_unique<components::BladeAir>(turbine_, k, *beams_[k]));
     components_.push_back(airs_.back().get());
   }
+  if (turbine_.has_tower && turbine_.air && turbine_.air->tower_has_drag) {
+    tower_air_ = std::make_unique<components::TowerAir>(turbine_, *beams_.back());
+    components_.push_back(tower_air_.get());
+  }
   for (const model::MassDamper& damper : turbine_.mass_dampers) {
     const bool is_on_blade = damper.blade >= 0;
     components::MassDamperSetting setting;
@@ -175,6 +179,7 @@ void TurbineEquations::describe(components::Registry& registry) {
     airs_[k]->tie(bodies_->pose_port(), bodies_->roots()[k].pose_port());
     airs_[k]->describe(registry);
   }
+  if (tower_air_) tower_air_->describe(registry);
   for (const auto& damper : mass_dampers_) {
     damper->set_yaw(layout_.yaw());
     damper->describe(registry);

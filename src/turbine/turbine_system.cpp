@@ -345,6 +345,12 @@ void TurbineSystem::reference_state(double t, Vec z) const {
   assembly.write_own(values, z);
 }
 
+void TurbineSystem::settle(double t, Vec z) const {
+  std::vector<double> values = assembly_->gathered(z);
+  assembly_->equations.settle_air(t, values);
+  assembly_->write_own(values, z);
+}
+
 std::unique_ptr<system::PeriodicSystem> TurbineSystem::unloaded() const {
   model::Turbine bare = turbine();
   bare.chain.gravity = 0.0;

@@ -11,18 +11,27 @@ namespace samara::elements {
 /// Mean wind over the height.
 enum class WindProfile : std::uint8_t { uniform, power, logarithmic };
 
+/// Flow ahead of the tower and beside it. plain: potential flow around a cylinder; bak: the same a
+/// tenth of a radius farther upwind, with a source of the drag (Bak, Madsen & Johansen 2001).
+enum class TowerPotential : std::uint8_t { none, plain, bak };
+/// Wake of the tower. powles: a cosine (Powles 1983); eames: a bell curve that the turbulence
+/// widens (Eames, Jonsson & Johnson 2011).
+enum class TowerWake : std::uint8_t { none, powles, eames };
+
 /// Components of the induced velocity that the balance of momentum gives.
 enum class Induction : std::uint8_t { none, axial, full };
 /// Relation of the induced velocity W to its quasi-steady value Q. equilibrium: W = Q; oye: two
-/// lags in series (Oye 1990).
-enum class Inflow : std::uint8_t { equilibrium, oye };
+/// lags in series (Oye 1990); frozen: W = Q in the steady state, without change in a motion about
+/// it.
+enum class Inflow : std::uint8_t { equilibrium, oye, frozen };
 /// Load in the balance of momentum. equilibrium: of the polars at the quasi-steady induced
 /// velocity; actual: of the airfoil dynamics.
 enum class MomentumLoad : std::uint8_t { equilibrium, actual };
 /// Thrust over induction of an annulus. glauert_skew: with the component of the wind in the plane
 /// of the disk; buhl: for axial wind, with a tip loss that multiplies it; buhl_f: the same with the
-/// tip loss in its coefficients (Buhl 2005, AeroDyn).
-enum class ThrustLaw : std::uint8_t { glauert_skew, buhl, buhl_f };
+/// tip loss in its coefficients (Buhl 2005, AeroDyn); madsen: the induction as a polynomial of the
+/// thrust (Madsen et al. 2020, HAWC2).
+enum class ThrustLaw : std::uint8_t { glauert_skew, buhl, buhl_f, madsen };
 /// Airfoil dynamics. hgm: shed wake, pressure lag and separation lag (Hansen, Gaunaa, Madsen 2004);
 /// oye: separation lag; quasi_steady: none, angle of attack at three quarters of the chord;
 /// static_polar: the same at the aerodynamic centre.

@@ -51,6 +51,9 @@ struct AirRotor {
   double least_speed = 0.01;  ///< eps of the balance of momentum [m/s]
   double acting = 1.0;        ///< factor of the load on the blades
   double loading = 1.0;  ///< factor of the load in the balance of momentum, 0 for a rotor at rest
+  /// With `inflow: frozen`: the present induced velocity is that of the steady state. It satisfies
+  /// its rows, and no other unknown changes it.
+  bool wake_is_held = false;
 };
 
 /// Constants of a station.
@@ -408,6 +411,23 @@ T annulus_thrust(const AirRotor& rotor, const StationMotion<T>& motion, const T&
   return ((T(1.0) - s) * glauert + s * empirical) * F * T(sign);
 }
 
+/// Axial row of the balance of momentum with the polynomial of Madsen et al. (2020) [m^2/s^2]:
+/// F^3 a = k1 F^2 c + k2 F c^2 + k3 c^3, times 4 u^2. a = -Q_n/U_n; c: thrust coefficient without
+/// the loss factor F. `thrust`: axial load divided by rho pi r [m^2/s^2].
+template <class T>
+T madsen_row(const AirRotor& rotor, const StationMotion<T>& motion, const T& Q_n, const T& F,
+             const T& thrust) {
+  using std::sqrt;
+  constexpr double k1 = 0.2460;
+  constexpr double k2 = 0.0586;
+  constexpr double k3 = 0.0883;
+  const double sign = math::plain_value(motion.wind_axial) < 0.0 ? -1.0 : 1.0;
+  const T square = motion.wind_axial * motion.wind_axial + T(rotor.least_speed * rotor.least_speed);
+  const T c = thrust * T(sign) / square;
+  const T polynomial = ((c * T(k3) + F * T(k2)) * c + F * F * T(k1)) * c;
+  return (polynomial * square * T(sign) + F * F * F * sqrt(square) * Q_n) * T(4.0);
+}
+
 /// The two rows of the balance of momentum, divided by rho pi r_0 [m^2/s^2]. `lift`, `drag`: force
 /// per length and density in B.
 template <class T>
@@ -424,7 +444,9 @@ Eigen::Matrix<T, 2, 1> momentum_rows(const AirRotor& rotor, const AirStation& st
   T axial = dot(lift, motion.axial);
   if (models.axial_drag) axial += dot(drag, motion.axial);
   Eigen::Matrix<T, 2, 1> rows;
-  rows(0) = axial * T(per_ring) - ring * annulus_thrust(rotor, motion, Q_n, F);
+  rows(0) = models.thrust == ThrustLaw::madsen
+                ? T(ring * madsen_row(rotor, motion, Q_n, F, T(axial * T(per_ring) / ring)))
+                : T(axial * T(per_ring) - ring * annulus_thrust(rotor, motion, Q_n, F));
   rows(1) = Q_t;
   if (models.induction != Induction::full) return rows;
   T tangential = dot(lift, motion.tangential);
@@ -537,8 +559,8 @@ Eigen::Matrix<T, air::unknowns, 1> air_station_rows(const AirRotor& rotor,
     const T& W = z(air::induced + i);
     const T& Q = z(air::quasi_steady + i);
     const T& R = z(air::reduced + i);
-    if (models.inflow == Inflow::equilibrium) {
-      rows(air::induced + i) = W - Q;
+    if (models.inflow != Inflow::oye) {
+      rows(air::induced + i) = rotor.wake_is_held ? T(W - T(math::plain_value(W))) : T(W - Q);
       continue;
     }
     rows(air::reduced + i) =

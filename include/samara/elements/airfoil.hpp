@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "samara/math/linearized.hpp"
-#include "samara/math/monotone_curve.hpp"
 #include "samara/math/periodic_spline.hpp"
 #include "samara/math/scalar.hpp"
 #include "samara/math/smooth.hpp"
+#include "samara/math/smoothed_curve.hpp"
 
 namespace samara::elements {
 
@@ -22,7 +22,7 @@ struct AirfoilCurves {
   /// Change of the lift coefficient with the separation point f: the lift of a flow with f instead
   /// of its steady value f_st is Cl + (f - f_st) dC.
   math::PeriodicSpline deficit;
-  math::MonotoneCurve separation;  ///< f_st: 1 attached flow, 0 separated flow
+  math::SmoothedCurve separation;  ///< f_st: 1 attached flow, 0 separated flow
   double zero_lift = 0.0;          ///< angle without lift in attached flow [rad]
   double lift_slope = 0.0;         ///< of attached flow [1/rad]
   /// Zero lift and slope exist. Without them f_st and the deficit are zero: the lift is the steady

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "samara/elements/air_models.hpp"
+#include "samara/elements/tower_flow.hpp"
 #include "samara/math/linearized.hpp"
 #include "samara/math/smooth.hpp"
 #include "samara/math/types.hpp"
@@ -20,10 +21,17 @@ struct MeanWind {
   double direction = 0.0;   ///< 0: along n2; > 0: counter-clockwise seen from above [rad]
   double veer = 0.0;        ///< change of the direction with the height [rad/m]
   double upflow = 0.0;      ///< > 0: the wind rises [rad]
+  TowerFlow tower;
 
-  /// Velocity at a place [m/s].
+  /// Velocity at a place, with the influence of the tower [m/s].
   template <class T>
-  Vec3<T> at(const Vec3<T>& place) const;
+  Vec3<T> at(const Vec3<T>& place) const {
+    const Vec3<T> wind = undisturbed_at(place);
+    return tower.disturbs() ? tower.disturb(wind, place) : wind;
+  }
+  /// The same without the tower.
+  template <class T>
+  Vec3<T> undisturbed_at(const Vec3<T>& place) const;
 
  private:
   template <class T>
@@ -41,7 +49,7 @@ T MeanWind::profile_factor(const T& z) const {
 }
 
 template <class T>
-Vec3<T> MeanWind::at(const Vec3<T>& place) const {
+Vec3<T> MeanWind::undisturbed_at(const Vec3<T>& place) const {
   using std::cos;
   using std::sin;
   T factor = profile_factor<T>(place(2)) * T(speed);

@@ -11,6 +11,22 @@
 
 namespace samara::model {
 
+/// The tower in the wind, a body of round sections.
+struct TowerFlowDefinition {
+  using Potential = elements::TowerPotential;
+  using Wake = elements::TowerWake;
+
+  std::vector<double> heights;    ///< above the foot, rising [m]
+  std::vector<double> diameters;  ///< at each height [m], > 0
+  std::vector<double> drags;      ///< drag coefficient at each height, >= 0
+  Potential potential = Potential::bak;
+  Wake wake = Wake::none;
+  double turbulence = 0.1;  ///< intensity, for the wake of Eames et al., > 0
+  bool drag_load = true;    ///< the drag of the wind acts on the tower
+
+  bool operator==(const TowerFlowDefinition&) const = default;
+};
+
 /// Mean wind: steady, a function of the place.
 struct WindDefinition {
   using Profile = elements::WindProfile;
@@ -30,6 +46,7 @@ struct WindDefinition {
   double veer = 0.0;       ///< change of the direction with the height [rad/m]
   double upflow = 0.0;     ///< > 0: the wind rises [rad]
   double density = 1.225;  ///< of the air [kg/m^3], > 0
+  std::optional<TowerFlowDefinition> tower;
 
   bool operator==(const WindDefinition&) const = default;
 };
@@ -56,12 +73,16 @@ struct AirfoilDefinition {
 
 /// Aerodynamic properties of a blade section.
 struct AeroSectionDefinition {
-  double at = 0.0;     ///< fraction of the blade's length
-  double chord = 0.0;  ///< [m], > 0
-  double twist = 0.0;  ///< of the chord, from b2 of the root toward feather [rad]
-  std::string airfoil;
+  double at = 0.0;      ///< fraction of the blade's length
+  double chord = 0.0;   ///< [m], > 0
+  double twist = 0.0;   ///< of the chord, from b2 of the root toward feather [rad]
+  std::string airfoil;  ///< name; empty: by the thickness
   /// Aerodynamic centre from the reference line along b2 and b3 of the structural section [m].
   std::array<double, 2> center{};
+  /// Relative to the chord, linear along the blade. The coefficients are linear in the thickness
+  /// between those of the next thinner and the next thicker airfoil. Either all sections have it,
+  /// or none.
+  std::optional<double> thickness = std::nullopt;
 
   bool operator==(const AeroSectionDefinition&) const = default;
 };
@@ -73,7 +94,7 @@ using elements::MomentumLoad;
 using elements::ThrustLaw;
 using elements::WakeConstants;
 
-/// Models of the air around the rotor.
+/// Models of the air around the rotor. Without a wind they have no effect.
 struct AeroDefinition : elements::AirModels {
   std::optional<double> tau1;  ///< first time constant of the dynamic inflow [s]; none: from the
                                ///< mean induction of the rigid rotor

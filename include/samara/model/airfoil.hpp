@@ -2,8 +2,10 @@
 // (docs/theory.md, section 11).
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "samara/elements/airfoil.hpp"
@@ -37,6 +39,10 @@ PolarDefinition blend(const PolarDefinition& a, const PolarDefinition& b, double
 /// Reynolds number only count where no polar has one; then, and of several with the same one, the
 /// first counts.
 PolarDefinition polar_at(const AirfoilDefinition& airfoil, double reynolds);
+
+/// Thickness and name of all airfoils that have a thickness, the thinnest first.
+std::vector<std::pair<double, std::string>> sort_by_thickness(
+    const std::map<std::string, AirfoilDefinition>& airfoils);
 
 /// The curves of a polar on the common grid. `lift_slope`: replaces that of the polar [1/rad].
 elements::AirfoilCurves make_curves(const PolarDefinition& polar,

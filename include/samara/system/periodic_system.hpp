@@ -73,6 +73,10 @@ class PeriodicSystem {
   /// constraints_are_autonomous() is false.
   virtual void reference_state(double t, Vec z) const = 0;
 
+  /// Sets the unknowns of a medium to their steady values at the motion in `z`; the other unknowns
+  /// stay. Without a medium nothing changes.
+  virtual void settle(double /*t*/, Vec /*z*/) const {}
+
   virtual petsc::Handle<Vec> make_state() const = 0;
   /// Preallocated for K + shift M.
   virtual petsc::Handle<Mat> make_jacobian() const = 0;

@@ -14,6 +14,7 @@
 #include "samara/components/mass_damper.hpp"
 #include "samara/components/pitch_actuator.hpp"
 #include "samara/components/rigid_bodies.hpp"
+#include "samara/components/tower_air.hpp"
 #include "samara/model/turbine.hpp"
 #include "samara/turbine/turbine_layout.hpp"
 
@@ -94,6 +95,7 @@ class TurbineEquations {
   std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< one per blade, if any
   std::unique_ptr<components::RigidBodies> bodies_;
   std::vector<std::unique_ptr<components::BladeAir>> airs_;  ///< one per blade, or none
+  std::unique_ptr<components::TowerAir> tower_air_;          ///< null: none
   std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
   std::vector<components::Component*> components_;  ///< in the order of their equations
   components::Declarations declarations_;

@@ -38,6 +38,7 @@ class TurbineSystem final : public system::PeriodicSystem {
   std::unique_ptr<system::MotionEnergies> motion_energies(double t, Vec steady) const override;
   std::vector<system::MeshError> mesh_errors() const override;
   void reference_state(double t, Vec z) const override;
+  void settle(double t, Vec z) const override;
   petsc::Handle<Vec> make_state() const override;
   petsc::Handle<Mat> make_jacobian() const override;
   petsc::Handle<Mat> make_mass() const override;
