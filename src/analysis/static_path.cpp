@@ -13,6 +13,8 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
+#include "held_columns.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -121,7 +123,7 @@ class Equilibrium {
   /// Solves K columns = columns at a point.
   void solve(const Point& point, Eigen::MatrixXd& columns) {
     assemble(point);
-    replace_held_columns();
+    hold_coordinates(jacobian_.get(), held_);
     solver_.factor(jacobian_.get());
     solver_.solve(columns);
   }
@@ -272,26 +274,6 @@ class Equilibrium {
     for (std::size_t n = 0; n < easing_.unknowns.size(); ++n)
       petsc::check(MatSetValue(jacobian_.get(), easing_.rows[n], easing_.unknowns[n],
                                -easing_.remaining * easing_.stiffness, ADD_VALUES));
-    petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
-    petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
-  }
-
-  void replace_held_columns() {
-    if (held_.empty()) return;
-    std::vector<std::pair<PetscInt, PetscInt>> entries;
-    for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i) {
-      PetscInt count = 0;
-      const PetscInt* columns = nullptr;
-      petsc::check(MatGetRow(jacobian_.get(), i, &count, &columns, nullptr));
-      for (const system::UnconstrainedCoordinate& held : held_)
-        if (std::find(columns, columns + count, held.unknown) != columns + count)
-          entries.emplace_back(i, held.unknown);
-      petsc::check(MatRestoreRow(jacobian_.get(), i, &count, &columns, nullptr));
-    }
-    for (const auto& [row, column] : entries)
-      petsc::check(MatSetValue(jacobian_.get(), row, column, 0.0, INSERT_VALUES));
-    for (const system::UnconstrainedCoordinate& held : held_)
-      petsc::check(MatSetValue(jacobian_.get(), held.row, held.unknown, 1.0, INSERT_VALUES));
     petsc::check(MatAssemblyBegin(jacobian_.get(), MAT_FINAL_ASSEMBLY));
     petsc::check(MatAssemblyEnd(jacobian_.get(), MAT_FINAL_ASSEMBLY));
   }

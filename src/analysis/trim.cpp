@@ -11,6 +11,8 @@
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
+#include "settled_start.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -66,6 +68,19 @@ bool is_balanced(const system::PeriodicSystem& system) {
   return size == 0.0;
 }
 
+bool has_medium(const system::PeriodicSystem& system) {
+  return std::ranges::any_of(system.unknowns(), [](const system::Unknown& unknown) {
+    return unknown.owner.kind == system::PartKind::medium;
+  });
+}
+
+Eigen::VectorXd undeformed_state(const system::PeriodicSystem& system) {
+  const petsc::Handle<Vec> z = system.make_state();
+  system.reference_state(0.0, z.get());
+  const petsc::ReadView view(z.get());
+  return Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
+}
+
 /// Solves at rest. A hinge that only loads restore has a singular tangent in the undeformed state:
 /// the start is then the end of the static path. Without loads the undeformed state is the
 /// solution.
@@ -77,11 +92,24 @@ Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance, MPI_C
       throw InputError(error.what());
     }
   };
-  if (system.free_coordinates().empty() || is_balanced(system)) return solve(nullptr);
+  // Where Newton's method does not converge, it does so from a state with a settled medium.
+  const auto solve_or_settle = [&](const PeriodicSolution* start) {
+    try {
+      return solve(start);
+    } catch (const ConvergenceError&) {
+      if (!has_medium(system)) throw;
+      const std::optional<PeriodicSolution> settled = find_settled_start(
+          system, start == nullptr ? undeformed_state(system)
+                                   : Eigen::VectorXd(start->coefficients().col(0)));
+      if (!settled) throw;
+      return solve(&*settled);
+    }
+  };
+  if (system.free_coordinates().empty() || is_balanced(system)) return solve_or_settle(nullptr);
   Observer silent;
   const StaticPath path = find_static_path(system, {}, silent);
   const PeriodicSolution start(path.states.back().z, 0.0);
-  return solve(&start);
+  return solve_or_settle(&start);
 }
 
 /// Tries a constant solution; an unbalanced rotor may have none.

@@ -163,6 +163,78 @@ BOOST_AUTO_TEST_CASE(wind_without_sections_is_noted) {
              boost::test_tools::per_element());
 }
 
+BOOST_AUTO_TEST_CASE(models_without_wind_are_kept_and_noted) {
+  const Case input = parse_case("case.yaml", blades + sections + "aero: {tau1: 5}\n", {});
+  BOOST_TEST(input.turbine.aero->tau1.value() == 5.0);
+  BOOST_TEST(!model::build_turbine(input.turbine).air.has_value());
+  BOOST_TEST(input.notes == Strings{"case.yaml:12:1: aero: note: without effect, there is no wind"},
+             boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(the_tower_in_the_wind_is_read) {
+  const std::string tower = R"(tower:
+  length: 30
+  sections:
+    - {mass: 5, inertia: [1, 0.5, 0.5], stiffness: {EA: 1, GA2: 1, GA3: 1, GJ: 1, EI2: 1, EI3: 1}}
+)";
+  const model::TowerFlowDefinition flow = read(blades + sections + tower + R"(wind:
+  speed: 8
+  tower:
+    sections: [[0, 6, 0.5], [30, 4, 0.7]]
+    potential: plain
+    wake: eames
+    turbulence: 0.2
+    drag_load: false
+)")
+                                              .wind->tower.value();
+  BOOST_TEST(flow.heights == (std::vector{0.0, 30.0}), boost::test_tools::per_element());
+  BOOST_TEST(flow.diameters == (std::vector{6.0, 4.0}), boost::test_tools::per_element());
+  BOOST_TEST(flow.drags == (std::vector{0.5, 0.7}), boost::test_tools::per_element());
+  BOOST_TEST((flow.potential == elements::TowerPotential::plain));
+  BOOST_TEST((flow.wake == elements::TowerWake::eames));
+  BOOST_TEST(flow.turbulence == 0.2);
+  BOOST_TEST(!flow.drag_load);
+  const std::string wind = "wind: {speed: 8, tower: {sections: ";
+  check_error(blades + tower + wind + "[[0, 6, 0.5], [0, 4, 0.5]]}}\n",
+              "13:36: wind.tower.sections: the heights do not rise (0, then 0)");
+  check_error(blades + tower + wind + "[[0, 0, 0.5]]}}\n",
+              "13:36: wind.tower.sections: expected diameters > 0, got 0");
+  check_error(blades + wind + "[[0, 6, 0.5]]}}\n", "9:25: wind.tower: there is no tower");
+}
+
+BOOST_AUTO_TEST_CASE(sections_by_thickness_are_read) {
+  const std::string airfoils = R"(  airfoils:
+    thin: {thickness: 0.2, polars: [{table: [[-180, 0, 0.1, 0], [180, 0, 0.1, 0]]}]}
+    thick: {thickness: 0.6, polars: [{table: [[-180, 0, 0.5, 0], [180, 0, 0.5, 0]]}]}
+    other: {polars: [{table: [[-180, 0, 9, 0], [180, 0, 9, 0]]}]}
+)";
+  const auto with = [&](const std::string& list) {
+    return blades + airfoils + "  aero_sections: " + list + "\nwind: {speed: 8}\n";
+  };
+  const model::TurbineDefinition turbine =
+      read(with("[{at: 0, chord: 1, thickness: 0.6}, {at: 1, chord: 1, thickness: 0.4}]"));
+  BOOST_TEST(turbine.blades.aero_sections[1].thickness.value() == 0.4);
+  BOOST_TEST(turbine.blades.aero_sections[1].airfoil.empty());
+  // Drag 0.5 at thickness 0.6, 0.1 at 0.2: linear in the thickness, which is linear in the span.
+  const model::Turbine built = model::build_turbine(turbine);
+  for (std::size_t p = 0; p < built.air->stations[0].size(); ++p) {
+    const double thickness = 0.6 - 0.2 * built.blades[0].fractions[p];
+    BOOST_TEST(built.air->stations[0][p].airfoil->drag_at(0.1) == 0.5 - 0.6 + thickness,
+               boost::test_tools::tolerance(1e-12));
+  }
+  check_error(with("[{at: 0, chord: 1}]"),
+              "13:19: blades.aero_sections[0]: missing key \"airfoil\" (a name of "
+              "blades.airfoils, or a thickness)");
+  check_error(with("[{at: 0, chord: 1, airfoil: thin}, {at: 1, chord: 1, thickness: 0.4}]"),
+              "13:54: blades.aero_sections[1]: expected a thickness at all sections or at none");
+  check_error(with("[{at: 0, chord: 1, thickness: 0.1}]"),
+              "13:49: blades.aero_sections[0].thickness: expected 0.2 to 0.6, those of "
+              "blades.airfoils, got 0.1");
+  check_error(with("[{at: 0, chord: 1, airfoil: thin, thickness: 0.4}]"),
+              "13:53: blades.aero_sections[0].thickness: given together with airfoil; leave one of "
+              "them out");
+}
+
 BOOST_AUTO_TEST_CASE(airfoils_and_sections_are_read) {
   const model::BladesDefinition definition = read(blades + R"(  airfoils:
     FFA-W3-241:
@@ -293,8 +365,6 @@ BOOST_AUTO_TEST_CASE(polars_of_a_case_are_limited) {
 // ---- faults ------------------------------------------------------------------------------------
 
 BOOST_AUTO_TEST_CASE(air_needs_wind_and_sections) {
-  check_error(blades + sections + "aero: {}\n",
-              "12:1: aero: needs the wind; hint: wind: {speed: 8}, or aero: none");
   check_error(blades + "wind: {speed: 8}\naero: {}\n",
               "10:1: aero: needs blades.aero_sections, the chords and airfoils of the blades");
   check_error(blades + sections + "wind: {height: 90}\n", "12:1: wind: missing key \"speed\"");
@@ -352,8 +422,8 @@ BOOST_AUTO_TEST_CASE(values_of_wind_and_models_are_checked) {
               "13:8: aero.wake_constants: expected decay rates b1, b2 > 0");
   check_error(
       aero + "aero: {thrust: glauert}\n",
-      "13:8: aero.thrust: expected glauert_skew, buhl or buhl_f, got \"glauert\"; did you mean "
-      "\"glauert_skew\"?");
+      "13:8: aero.thrust: expected glauert_skew, buhl, buhl_f or madsen, got \"glauert\"; did you "
+      "mean \"glauert_skew\"?");
   check_error(aero + "aero: {cut_out_deg: 4}\n",
               "13:8: aero.cut_out_deg: expected an angle from 5 to 180 degrees, got 4");
 }

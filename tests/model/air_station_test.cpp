@@ -500,11 +500,59 @@ BOOST_AUTO_TEST_CASE(dynamic_inflow_overshoots_as_in_an_independent_program) {
   BOOST_TEST(rows.head<6>().cwiseAbs().maxCoeff() < 1e-7);
 }
 
+/// With the law of Madsen et al. and without losses the induction is the polynomial of the thrust
+/// coefficient; with losses F^3 a = k1 F^2 c + k2 F c^2 + k3 c^3, from the loads that result.
+BOOST_AUTO_TEST_CASE(induction_is_madsens_polynomial_of_the_thrust) {
+  // Two constants of the polynomial: C_T = 8/9 has a = 0.327.
+  BOOST_TEST(std::abs(0.2460 * 8 / 9 + 0.0586 * 64 / 81 + 0.0883 * 512 / 729 - 0.327) < 5e-5);
+  for (const bool has_losses : {false, true}) {
+    AirRotor rotor = nrel_rotor(8.0, ThrustLaw::madsen);
+    rotor.models.tip_loss = rotor.models.hub_loss = has_losses;
+    for (std::size_t i = 0; i < nrel_blade.size(); ++i) {
+      const AirStation station = nrel_station(nrel_blade[i], 0.0);
+      const double speed = 9.155 * pi / 30.0;
+      const Annulus found = steady_annulus(rotor, station, speed);
+      const double F =
+          loss_factor<double>(rotor, station, turning(rotor, station, speed), found.Q_n, found.Q_t);
+      const double c = 3.0 * found.f_n / (pi * nrel_blade[i].r * 1.225 * 64.0) / F;
+      const double a = 0.2460 * c + 0.0586 * c * c + 0.0883 * c * c * c;
+      BOOST_TEST_CONTEXT("r = " << nrel_blade[i].r << ", c = " << c)
+      BOOST_TEST(std::abs(-found.Q_n / 8.0 - a) < 1e-3 * a);  // the least speed is 0.08 m/s
+    }
+  }
+}
+
+/// A held wake satisfies its rows at any induced velocity, which nothing changes.
+BOOST_AUTO_TEST_CASE(a_held_wake_does_not_change) {
+  AirRotor rotor = nrel_rotor(8.0, ThrustLaw::buhl);
+  rotor.models.inflow = Inflow::frozen;
+  const AirStation station = nrel_station(nrel_blade[11], 0.0);
+  const StationMotion<double> motion = turning(rotor, station, 9.155 * pi / 30.0);
+  Eigen::Matrix<double, air::unknowns, 1> z = steady_air(rotor, station, motion);
+  BOOST_TEST(z(air::induced) == z(air::quasi_steady));
+  const Eigen::Matrix<double, 10, 1> rest = Eigen::Matrix<double, 10, 1>::Zero();
+  const auto derivative = [&](int row, int column) {
+    using Dual = math::Dual<1>;
+    Eigen::Matrix<Dual, air::unknowns, 1> x = z.cast<Dual>();
+    x(column) = math::independent<1>(z(column), 0);
+    return air_station_rows<Dual>(rotor, station, constant_motion<Dual>(motion), x,
+                                  Eigen::Matrix<Dual, 10, 1>(rest.cast<Dual>()))(row)
+        .derivatives()(0);
+  };
+  BOOST_TEST(derivative(air::induced, air::quasi_steady) == -1.0);
+  rotor.wake_is_held = true;
+  z(air::induced) += 0.3;
+  BOOST_TEST(air_station_rows<double>(rotor, station, motion, z, rest)(air::induced) == 0.0);
+  BOOST_TEST(derivative(air::induced, air::induced) == 1.0);
+  BOOST_TEST(derivative(air::induced, air::quasi_steady) == 0.0);
+}
+
 /// The balance of momentum has a solution at all operating points, in skewed wind and in stall.
 BOOST_AUTO_TEST_CASE(balance_of_momentum_is_solved_from_the_same_start_at_all_states) {
   int tried = 0;
   int failed = 0;
-  for (const ThrustLaw thrust : {ThrustLaw::buhl, ThrustLaw::glauert_skew, ThrustLaw::buhl_f})
+  for (const ThrustLaw thrust :
+       {ThrustLaw::buhl, ThrustLaw::glauert_skew, ThrustLaw::buhl_f, ThrustLaw::madsen})
     for (const double yaw : {0.0, 30.0, 60.0, 85.0})
       for (const double wind : {3.0, 10.0, 25.0})
         for (const double ratio : {1.5, 4.0, 7.5, 12.0, 20.0})
@@ -549,11 +597,14 @@ BOOST_AUTO_TEST_CASE(derivatives_agree_with_a_complex_step) {
   };
   for (int trial = 0; trial < 300; ++trial) {
     AirRotor rotor =
-        nrel_rotor(10.0, std::array{ThrustLaw::glauert_skew, ThrustLaw::buhl,
-                                    ThrustLaw::buhl_f}[static_cast<std::size_t>(trial % 3)]);
+        nrel_rotor(10.0, std::array{ThrustLaw::glauert_skew, ThrustLaw::buhl, ThrustLaw::buhl_f,
+                                    ThrustLaw::madsen}[static_cast<std::size_t>(trial % 4)]);
     rotor.models.dynamics =
         std::array{AirfoilDynamics::hgm, AirfoilDynamics::oye, AirfoilDynamics::quasi_steady,
                    AirfoilDynamics::static_polar}[static_cast<std::size_t>(trial / 3 % 4)];
+    rotor.models.inflow = std::array{Inflow::oye, Inflow::equilibrium,
+                                     Inflow::frozen}[static_cast<std::size_t>(trial % 3)];
+    rotor.wake_is_held = trial % 6 == 2;
     rotor.models.closure = trial % 2 == 0 ? MomentumLoad::equilibrium : MomentumLoad::actual;
     rotor.models.skew = pitt_peters_skew;
     rotor.models.added_mass = trial % 5 == 0;
@@ -567,6 +618,14 @@ BOOST_AUTO_TEST_CASE(derivatives_agree_with_a_complex_step) {
     const AirStation station = nrel_station(nrel_blade[static_cast<std::size_t>(trial % 17)], 0.0);
     Eigen::Matrix<double, count, 1> x;
     for (int i = 0; i < count; ++i) x(i) = any(random);
+    if (trial % 2 == 1) {  // a tower downwind or upwind of the root
+      rotor.wind.tower.potential = trial % 4 == 1 ? TowerPotential::bak : TowerPotential::plain;
+      rotor.wind.tower.wake = trial % 8 < 4 ? TowerWake::powles : TowerWake::eames;
+      rotor.wind.tower.top = Vector3(0.3, 0.5, 1e4);
+      rotor.wind.tower.diameter = math::TimeCurve::through({{0.0, 4.0}, {60.0, 3.0}, {99.0, 2.0}});
+      rotor.wind.tower.drag = math::TimeCurve::through({{0.0, 0.5}, {99.0, 0.7}});
+      x(39) += trial % 16 < 8 ? 75.0 : -75.0;  // places are up to 62 m from the root
+    }
     x.segment<3>(6) *= trial % 3 == 0 ? 5.0 : 60.0;  // V
     x(40) += 80.0;                                   // height of the root
     x.segment<3>(43) += Vector3(-10.0, 2.0, 40.0);

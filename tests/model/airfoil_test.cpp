@@ -90,15 +90,43 @@ std::vector<PolarDefinition> read_polars(const std::filesystem::path& file) {
   return polars;
 }
 
-/// Angles of the grid [degrees] next to the zero of the lift at which the separation point is zero.
-std::pair<double, double> separated_outside(const AirfoilCurves& curves) {
-  double before = -180.0;
-  for (const double angle : model::polar_grid()) {
-    if (curves.separation.at(angle).value > 0.0) continue;
-    if (angle > curves.zero_lift) return {before, angle / degree};
-    before = angle / degree;
+/// The separation point before it is smoothed: at each point of the grid by Kirchhoff's formula
+/// from the zero of the lift outward, zero from the first zero on.
+std::vector<double> kirchhoff_points(const PolarDefinition& polar, const AirfoilCurves& curves) {
+  const double d = curves.lift_slope * 1.5 * degree;
+  const auto f_of = [&](std::size_t i) {
+    const double lift = inviscid_lift(curves, polar.angles[i]);
+    const double q = (polar.lift[i] * lift + d * d) / (lift * lift + d * d);
+    return std::min(1.0, std::pow(2.0 * std::sqrt(std::max(q, 0.25)) - 1.0, 2));
+  };
+  std::vector<double> f(polar.angles.size(), 0.0);
+  std::size_t start = 0;
+  while (polar.angles[start] < curves.zero_lift) ++start;
+  for (std::size_t i = start; i < f.size() && f_of(i) > 0.0; ++i) f[i] = f_of(i);
+  for (std::size_t i = start; i-- > 0 && f_of(i) > 0.0;) f[i] = f_of(i);
+  return f;
+}
+
+/// Angles of the grid [degrees] next to the zero of the lift at which that point is zero. The
+/// smoothed one is zero from the next point on.
+std::pair<double, double> separated_outside(const PolarDefinition& polar,
+                                            const AirfoilCurves& curves) {
+  const std::vector<double> f = kirchhoff_points(polar, curves);
+  std::pair<double, double> outside{-180.0, 180.0};
+  std::size_t last = f.size();
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    if (f[i] > 0.0) continue;
+    if (polar.angles[i] > curves.zero_lift) {
+      outside.second = polar.angles[i] / degree;
+      if (i + 1 < f.size()) BOOST_TEST(curves.separation.at(polar.angles[i + 1]).value < 1e-14);
+      break;
+    }
+    outside.first = polar.angles[i] / degree;
+    last = i;
   }
-  return {before, 180.0};
+  if (last != f.size() && last > 0)
+    BOOST_TEST(curves.separation.at(polar.angles[last - 1]).value < 1e-14);
+  return outside;
 }
 
 /// The lift of attached flow at the grid and its regularization: d^2/(Cinv^2 + d^2).
@@ -118,10 +146,12 @@ Attached attached_at(const AirfoilCurves& curves, double angle) {
 /// (f - f_st)/(1 - f_st).
 void check_identity(const PolarDefinition& polar, const AirfoilCurves& curves) {
   int points = 0;
+  const std::vector<double> separation = kirchhoff_points(polar, curves);
   for (std::size_t i = 1; i + 1 < polar.angles.size(); ++i) {
     const double angle = polar.angles[i];
     const double lift = polar.lift[i];
-    const double steady = curves.separation.at(angle).value;
+    const double steady = separation[i];
+    BOOST_TEST(std::abs(curves.separation.at(angle).value - steady) < 0.05);
     const auto [attached, regular] = attached_at(curves, angle);
     const double missing = attached - lift;
     if (steady > 0.999 || missing * attached < 0.0) continue;
@@ -198,21 +228,28 @@ BOOST_AUTO_TEST_CASE(polars_reach_the_grid_by_lines_and_their_ends_by_the_mean) 
 }
 
 BOOST_AUTO_TEST_CASE(zero_slope_and_separation_of_a_kirchhoff_polar_are_those_it_was_made_with) {
-  const AirfoilCurves curves = model::make_curves(kirchhoff_polar());
+  const PolarDefinition polar = kirchhoff_polar();
+  const AirfoilCurves curves = model::make_curves(polar);
   BOOST_TEST(curves.has_dynamics);
   BOOST_TEST(std::abs(curves.zero_lift - zero_lift) < 1e-9);  // the spline is not the line
   BOOST_TEST(std::abs(curves.lift_slope - lift_slope) < 1e-6);
   // q = (k Cinv^2 + d^2)/(Cinv^2 + d^2) is 1/4 where k = 1/4 - 3/4 (1.5/y)^2: at y = 24.047
   // degrees, that is at -28.047 and 20.047 degrees. f_st is zero at the next point of the grid.
-  const auto [before, behind] = separated_outside(curves);
+  const auto [before, behind] = separated_outside(polar, curves);
   BOOST_TEST(std::abs(before + 28.25) < 1e-9);
   BOOST_TEST(std::abs(behind - 20.25) < 1e-9);
-  for (const double angle : model::polar_grid()) {
+  const auto f_at = [&](double angle) {
     const double y = std::abs(angle - zero_lift) / degree;
     const double k = attached_share(angle - zero_lift);
     const double q = (k * y * y + 1.5 * 1.5) / (y * y + 1.5 * 1.5);
-    const double f = y < 24.1 ? std::pow(2.0 * std::sqrt(std::max(q, 0.25)) - 1.0, 2) : 0.0;
+    return y < 24.1 ? std::pow(2.0 * std::sqrt(std::max(q, 0.25)) - 1.0, 2) : 0.0;
+  };
+  const double step = 0.25 * degree;
+  for (const double angle : model::polar_grid()) {
+    if (std::abs(angle) > 29.6 * degree) continue;  // equal distances on both sides
+    const double f = (f_at(angle - step) + 4.0 * f_at(angle) + f_at(angle + step)) / 6.0;
     BOOST_TEST(std::abs(curves.separation.at(angle).value - f) < 1e-6);
+    BOOST_TEST(std::abs(curves.separation.at(angle).value - f_at(angle)) < 2e-3);
   }
 }
 
@@ -224,14 +261,14 @@ BOOST_AUTO_TEST_CASE(the_lift_is_a_mixture_of_attached_and_separated_flow) {
 BOOST_AUTO_TEST_CASE(the_deficit_has_the_values_of_its_formula) {
   const PolarDefinition polar = kirchhoff_polar();
   const AirfoilCurves curves = model::make_curves(polar);
+  const std::vector<double> separation = kirchhoff_points(polar, curves);
   for (std::size_t i = 0; i < polar.angles.size(); ++i) {
     const double angle = polar.angles[i];
     const auto [attached, regular] = attached_at(curves, angle);
     const double q = (1.0 - regular) * (attached == 0.0 ? 1.0 : polar.lift[i] / attached) + regular;
     const double root = std::sqrt(q);
-    const double expected = curves.separation.at(angle).value > 0.0
-                                ? attached * (1.0 + root) / (4.0 * root)
-                                : attached * (1.0 - q);
+    const double expected =
+        separation[i] > 0.0 ? attached * (1.0 + root) / (4.0 * root) : attached * (1.0 - q);
     BOOST_TEST(std::abs(curves.deficit.at(angle).value - expected) < 1e-12);
   }
   BOOST_TEST(std::abs(curves.deficit.at(curves.zero_lift).value) < 1e-4);
@@ -408,7 +445,7 @@ BOOST_AUTO_TEST_CASE(airfoils_of_the_nrel_5_mw_turbine_have_known_zeros_slopes_a
       const AirfoilCurves curves = model::make_curves(grid);
       BOOST_TEST(std::abs(curves.zero_lift / degree - gate.zero) < 0.0051);  // printed digits
       BOOST_TEST(std::abs(curves.lift_slope - gate.slope) < 0.00051);
-      const auto [before, behind] = separated_outside(curves);
+      const auto [before, behind] = separated_outside(grid, curves);
       BOOST_TEST(std::abs(before - gate.before) < 1e-9);
       BOOST_TEST(std::abs(behind - gate.behind) < 1e-9);
       check_identity(grid, curves);

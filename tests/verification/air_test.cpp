@@ -11,6 +11,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/constant_modes.hpp"
+#include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 
 #include "turning.hpp"
@@ -39,7 +40,9 @@ struct Steady {
     return analysis::find_constant_modes(system, trim.solution);
   }
   analysis::ModeSet floquet(const analysis::FloquetOptions& options) {
-    return analysis::find_floquet_modes(system, trim.solution, options, PETSC_COMM_SELF, observer)
+    const auto held = simulation::hold_wake(system);
+    return analysis::find_floquet_modes(held ? *held : system, trim.solution, options,
+                                        PETSC_COMM_SELF, observer)
         .set;
   }
   /// Values of channels at t = 0.
@@ -94,6 +97,33 @@ BOOST_AUTO_TEST_CASE(goland_wing_flutters_at_the_speed_of_strip_theory) {
   }
   BOOST_TEST(low == 137.335, tolerance(1e-4));
   BOOST_TEST(growth(low).imag() == 69.346, tolerance(1e-4));
+}
+
+/// Divergence of a uniform cantilever wing in strip theory: q_D = (pi/2L)^2 GJ/(c e a), with the
+/// aerodynamic centre e = 0.08 c ahead of the elastic axis and the slope a = 2 pi.
+BOOST_AUTO_TEST_CASE(goland_wing_diverges_at_the_speed_in_closed_form) {
+  constexpr double chord = 1.8288;
+  const double pressure =
+      std::pow(pi / (2.0 * 6.096), 2) * 0.987e6 / (chord * 0.08 * chord * 2.0 * pi);
+  const double expected = std::sqrt(2.0 * pressure / 1.225);
+  const auto growth = [](double speed) {
+    const Steady wing(io::read_case(
+        input_path("goland/wing"),
+        {"blades.elements=3", "blades.order=4", "wind.speed=" + std::to_string(speed)}));
+    double largest = -1e300;
+    for (const analysis::Mode& mode : wing.constant_modes().modes)
+      if (std::abs(mode.exponent.imag()) < 1e-3) largest = std::max(largest, mode.exponent.real());
+    return largest;
+  };
+  double low = 0.99 * expected;
+  double high = 1.01 * expected;
+  BOOST_REQUIRE(growth(low) < 0.0);
+  BOOST_REQUIRE(growth(high) > 0.0);
+  while (high - low > 1e-6 * expected) {
+    const double middle = 0.5 * (low + high);
+    (growth(middle) > 0.0 ? high : low) = middle;
+  }
+  BOOST_TEST(low == expected, tolerance(1e-5));
 }
 
 // ---- flap damping in closed form ---------------------------------------------------------------
@@ -193,17 +223,22 @@ BOOST_AUTO_TEST_CASE(mesh_of_the_input_has_power_and_thrust_within_6_per_mille) 
 
 /// The rigid rotor on a rigid mast that a spring holds in the direction of the wind: its damping
 /// coefficient is dT/dV, the change of the thrust by the wind at constant speed and pitch. Figures
-/// of an independent program for a steady wake, 24 x 2 points.
+/// of an independent program for a wake in equilibrium and a frozen one, 24 x 2 points.
 BOOST_AUTO_TEST_CASE(a_rotor_on_a_spring_is_damped_by_the_slope_of_its_thrust) {
   struct Point {
-    double wind, rpm, pitch_deg, damping;  // N s/m
+    double wind, rpm, pitch_deg;
+    const char* inflow;
+    double damping;  // N s/m
   };
-  for (const Point& at : {Point{8.0, 9.155, 0.0, 66.7e3}, Point{13.0, 12.1, 6.60, 79.0e3},
-                          Point{18.0, 12.1, 14.92, 77.6e3}}) {
-    io::Case input = rigid_rotor({"blades.elements=24", "blades.order=2", "aero.inflow=equilibrium",
-                                  "wind.speed=" + std::to_string(at.wind),
-                                  "shaft.speed_rpm=" + std::to_string(at.rpm),
-                                  "blades.pitch_deg=" + std::to_string(at.pitch_deg)});
+  for (const Point& at :
+       {Point{8.0, 9.155, 0.0, "equilibrium", 66.7e3},
+        Point{13.0, 12.1, 6.60, "equilibrium", 79.0e3},
+        Point{18.0, 12.1, 14.92, "equilibrium", 77.6e3}, Point{8.0, 9.155, 0.0, "frozen", 68.9e3},
+        Point{13.0, 12.1, 6.60, "frozen", 94.2e3}, Point{18.0, 12.1, 14.92, "frozen", 92.3e3}}) {
+    io::Case input = rigid_rotor(
+        {"blades.elements=24", "blades.order=2", std::string("aero.inflow=") + at.inflow,
+         "wind.speed=" + std::to_string(at.wind), "shaft.speed_rpm=" + std::to_string(at.rpm),
+         "blades.pitch_deg=" + std::to_string(at.pitch_deg)});
     // A mast of one rigid element on a spring along n2; it cannot turn.
     constexpr double stiffness = 2e6;
     model::TurbineDefinition& turbine = input.turbine;
@@ -229,9 +264,48 @@ BOOST_AUTO_TEST_CASE(a_rotor_on_a_spring_is_damped_by_the_slope_of_its_thrust) {
         const double mass = stiffness / std::norm(mode.exponent);
         found = -2.0 * mass * mode.exponent.real();
       }
-    BOOST_TEST_CONTEXT(at.wind << " m/s")
+    BOOST_TEST_CONTEXT(at.wind << " m/s, " << at.inflow)
     BOOST_TEST(found == at.damping, tolerance(0.02));
   }
+}
+
+// ---- the tower in the wind ---------------------------------------------------------------------
+
+/// A tower alone in a wind that the blades do not feel: the force at its foot is the integral of
+/// rho/2 C_d D v^2.
+BOOST_AUTO_TEST_CASE(the_drag_of_the_tower_is_at_its_foot) {
+  const std::string text = R"(samara: 1
+gravity: 0
+tower:
+  length: 30
+  elements: 8
+  sections:
+    - {mass: 500, inertia: [100, 50, 50], stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}
+shaft: {speed: 0}
+hub: {radius: 1}
+wind:
+  speed: 20
+  height: 30
+  shear: {power: 0.5}
+  tower: {sections: [[0, 4, 0.5], [30, 4, 0.5]], potential: none}
+aero: {induction: none, airfoil_dynamics: static}
+blades:
+  count: 1
+  length: 10
+  sections:
+    - {mass: 8, inertia: [1, 0.5, 0.5], stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}
+  airfoils:
+    none: {polars: [{table: [[-180, 0, 0, 0], [180, 0, 0, 0]]}]}
+  aero_sections: [{at: 0, chord: 0.5, airfoil: none}]
+)";
+  const auto foot_force = [&](const std::vector<std::string>& settings) {
+    const Steady tower(io::parse_case("tower", text, settings));
+    return tower.trim.solution.coefficients()(tower.system.layout().tower_root() + 2, 0);
+  };
+  // v^2 = 400 z/30, except below 1 m: the integral is 400 x 15 = 6000 to 1e-3.
+  const double expected = 0.5 * 1.225 * 0.5 * 4.0 * 6000.0;
+  BOOST_TEST(std::abs(foot_force({}) / expected - 1.0) < 2e-3);
+  BOOST_TEST(std::abs(foot_force({"wind.tower.drag_load=false"})) < 1e-6 * expected);
 }
 
 // ---- analyses agree ----------------------------------------------------------------------------
