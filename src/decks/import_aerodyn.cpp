@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,7 @@ class AerodynImporter {
     read_induction();
     read_skew();
     read_dynamics();
+    read_tower();
     read_airfoils();
     read_blades();
     if (import_.errors.empty()) {
@@ -171,11 +173,13 @@ class AerodynImporter {
       import_.ignore(deck(), "tau1_const", "there is no dynamic wake");
       return;
     }
-    if (mode < 0)
-      replace("DBEMT_Mod",
-              "-1, a frozen wake: the case has one that follows with its lags, aero.inflow: oye");
-    else
-      derive("DBEMT_Mod", "aero.inflow: oye");
+    if (mode < 0) {
+      models_.aero.inflow = Inflow::frozen;
+      derive("DBEMT_Mod", "aero.inflow: frozen");
+      import_.ignore(deck(), "tau1_const", "the wake is frozen");
+      return;
+    }
+    derive("DBEMT_Mod", "aero.inflow: oye");
     if (mode != 1 && mode != 3) {
       import_.ignore(deck(), "tau1_const", "aero.tau1 follows from the wind, as with DBEMT_Mod 2");
       return;
@@ -262,6 +266,68 @@ class AerodynImporter {
     }
   }
 
+  /// A number, or a flag in other versions; 0 without.
+  double number_or_flag(const char* key) {
+    if (!deck().has(key)) return 0.0;
+    const std::optional<double> value = parse_deck_number(deck().text(key));
+    return value ? *value : (deck().flag(key) ? 1.0 : 0.0);
+  }
+
+  /// The flow around the tower and its drag.
+  void read_tower() {
+    using Flow = model::TowerFlowDefinition;
+    const int potential = static_cast<int>(number_or_flag("TwrPotent"));
+    const int shadow = static_cast<int>(number_or_flag("TwrShadow"));
+    const bool has_drag = number_or_flag("TwrAero") != 0.0;
+    for (const auto& [key, value, most] :
+         {std::tuple("TwrPotent", potential, 2), std::tuple("TwrShadow", shadow, 2)})
+      if (deck().has(key))
+        import_.require(value >= 0 && value <= most, deck(), key, "expected 0, 1 or 2");
+    const std::vector<const char*> keys{"TwrPotent", "TwrShadow", "TwrAero"};
+    if (potential == 0 && shadow == 0 && !has_drag) {
+      for (const char* key : keys) import_.ignore(deck(), key, "off");
+      import_.ignore(deck(), "NumTwrNds", "the tower is not in the wind");
+      return;
+    }
+    Flow flow;
+    flow.potential = potential == 0   ? Flow::Potential::none
+                     : potential == 1 ? Flow::Potential::plain
+                                      : Flow::Potential::bak;
+    flow.wake = shadow == 0   ? Flow::Wake::none
+                : shadow == 1 ? Flow::Wake::powles
+                              : Flow::Wake::eames;
+    flow.drag_load = has_drag;
+    derive("TwrPotent", "wind.tower.potential");
+    derive("TwrShadow", "wind.tower.wake");
+    derive("TwrAero", "wind.tower.drag_load");
+    std::vector<std::string> columns{"TwrElev", "TwrDiam", "TwrCd"};
+    if (shadow == 2) columns.emplace_back("TwrTI");
+    const std::size_t errors_before = import_.errors.size();
+    const int count = deck().integer("NumTwrNds", 1, most_nodes);
+    if (import_.errors.size() > errors_before) return;
+    const DeckTable table = deck().table(columns, count, "NumTwrNds");
+    if (import_.errors.size() > errors_before) return;
+    import_.say(deck(), "NumTwrNds", Fate::derived, "wind.tower.sections");
+    flow.heights = table.columns[0];
+    flow.diameters = table.columns[1];
+    flow.drags = table.columns[2];
+    for (std::size_t i = 0; i < flow.heights.size(); ++i) {
+      const auto require = [&](bool holds, const std::string& words) {
+        if (!holds) import_.errors.add(deck().path() + ":" + std::to_string(table.lines[i]), words);
+      };
+      require(i == 0 || flow.heights[i] > flow.heights[i - 1], "TwrElev: the heights do not rise");
+      require(flow.diameters[i] > 0.0, "TwrDiam: expected a number > 0");
+      require(flow.drags[i] >= 0.0, "TwrCd: expected a number >= 0");
+    }
+    if (shadow == 2) {
+      flow.turbulence = 0.0;
+      for (const double intensity : table.columns[3])
+        flow.turbulence += intensity / static_cast<double>(count);
+      import_.require(flow.turbulence > 0.0, deck(), "TwrShadow", "expected TwrTI > 0");
+    }
+    models_.tower = flow;
+  }
+
   void say_left_out() {
     std::string names;
     const auto leave = [&](const char* key, bool is_on, const char* words) {
@@ -269,15 +335,7 @@ class AerodynImporter {
       import_.ignore(deck(), key, is_on ? std::string(words) + " is left out" : "off");
       if (is_on) names += (names.empty() ? "" : ", ") + std::string(words) + " (" + key + ")";
     };
-    const auto is_set = [&](const char* key) {  // a number or a flag, by version
-      if (!deck().has(key)) return false;
-      const std::string text = deck().text(key);
-      const std::optional<double> value = parse_deck_number(text);
-      return value ? *value != 0.0 : deck().flag(key);
-    };
-    leave("TwrPotent", is_set("TwrPotent"), "the flow around the tower");
-    leave("TwrShadow", is_set("TwrShadow"), "the wake of the tower");
-    leave("TwrAero", is_set("TwrAero"), "the air at the tower");
+    const auto is_set = [&](const char* key) { return number_or_flag(key) != 0.0; };
     leave("TFinAero", is_set("TFinAero"), "the air at the tail fin");
     leave("NacelleDrag", is_set("NacelleDrag"), "the drag of the nacelle");
     leave("Buoyancy", is_set("Buoyancy"), "buoyancy");

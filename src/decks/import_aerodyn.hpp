@@ -1,6 +1,7 @@
 // The files of AeroDyn 15: models of the air, airfoils and aerodynamic sections of the blades.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "openfast_import.hpp"
@@ -16,7 +17,8 @@ struct AerodynSource {
 /// What of a deck belongs to the wind and the models of the air of a case.
 struct AerodynModels {
   model::AeroDefinition aero;
-  double density = 0.0;  ///< [kg/m^3]
+  double density = 0.0;                             ///< [kg/m^3]
+  std::optional<model::TowerFlowDefinition> tower;  ///< its heights count from the ground
 };
 
 /// Fills airfoils and aerodynamic sections of the blades, whose beam is known, and returns the

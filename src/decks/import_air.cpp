@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <utility>
 
-#include "samara/io/case_text.hpp"
 #include "samara/model/airfoil.hpp"
 #include "samara/model/reference_line.hpp"
 
@@ -112,20 +110,6 @@ model::AirfoilDefinition mix_airfoils(const model::AirfoilDefinition& a,
     mixed.polars.push_back(std::move(polar));
   }
   return mixed;
-}
-
-std::vector<std::string> describe_models(const model::AeroDefinition& aero) {
-  model::TurbineDefinition turbine;
-  turbine.wind.emplace();
-  turbine.aero = aero;
-  std::istringstream text(io::write_case_text(turbine, {}));
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(text, line);)
-    if (line.starts_with("aero:") || (!lines.empty() && line.starts_with(" ")))
-      lines.push_back(line);
-    else if (!lines.empty())
-      break;
-  return lines;
 }
 
 }  // namespace samara::decks

@@ -44,8 +44,4 @@ model::PolarDefinition mix_polars(const model::PolarDefinition& a, const model::
 model::AirfoilDefinition mix_airfoils(const model::AirfoilDefinition& a,
                                       const model::AirfoilDefinition& b, double weight);
 
-/// Lines that state models of the air as the text of a case, for a case that has none because it
-/// has no wind.
-std::vector<std::string> describe_models(const model::AeroDefinition& aero);
-
 }  // namespace samara::decks

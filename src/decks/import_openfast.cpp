@@ -497,17 +497,26 @@ class Importer {
     const AerodynModels models = read_aerodyn(import_, source);
     const std::optional<model::WindDefinition> wind = read_wind(models);
     if (!import_.errors.empty()) return;
+    import_.turbine.aero = models.aero;
     if (wind) {
       import_.turbine.wind = wind;
-      import_.turbine.aero = models.aero;
+      if (models.tower) place_tower_flow(*models.tower);
       return;
     }
-    // `aero` of a case needs the wind.
     import_.comments.head.push_back(
         "No air acts before the case has a wind, such as `wind: {speed: 8, density: " +
-        rounded(models.density) + "}`. The deck's models of the air are:");
-    for (const std::string& line : describe_models(models.aero))
-      import_.comments.head.push_back("  " + line);
+        rounded(models.density) + "}`.");
+    if (models.tower)
+      import_.warn(path, "note: left out: the flow around the tower, which needs a steady wind");
+  }
+
+  /// Heights of a case count from the foot of the tower.
+  void place_tower_flow(model::TowerFlowDefinition flow) {
+    const double foot = elastodyn_->number("TowerBsHt");
+    for (double& height : flow.heights) height -= foot;
+    import_.turbine.wind->tower = std::move(flow);
+    import_.note("wind.tower",
+                 foot == 0.0 ? "TwrElev, TwrDiam, TwrCd" : "TwrElev - TowerBsHt, TwrDiam, TwrCd");
   }
 
   std::optional<model::WindDefinition> read_wind(const AerodynModels& models) {

@@ -179,7 +179,6 @@ BOOST_AUTO_TEST_CASE(what_a_case_cannot_have_is_said) {
   const Import import = import_main(folder);
   BOOST_TEST(warns(import, "OLAF"));
   BOOST_TEST(warns(import, "UA_Mod: note: 3"));
-  BOOST_TEST(warns(import, "TwrShadow"));
   BOOST_TEST(warns(import, "airfoils differ in A1"));
 }
 
@@ -305,17 +304,37 @@ BOOST_AUTO_TEST_CASE(names_of_older_inflow_files_are_read_by_their_section) {
   BOOST_TEST(read(folder).wind->height == 40.0);
 }
 
-BOOST_AUTO_TEST_CASE(without_a_steady_wind_the_case_states_its_models_in_a_comment) {
+BOOST_AUTO_TEST_CASE(the_tower_in_the_wind_is_imported) {
+  const auto with = [](const std::string& wake, const std::string& rows) {
+    const DeckFolder folder("three");
+    folder.replace("AeroDyn.dat", "1             TwrShadow", wake + "             TwrShadow");
+    folder.replace("AeroDyn.dat", "3             NumTwrNds", rows);
+    return import_main(folder);
+  };
+  const Import import = with("2", "3             NumTwrNds");
+  const model::TowerFlowDefinition flow = parse(import).turbine.wind->tower.value();
+  BOOST_TEST((flow.potential == elements::TowerPotential::none));
+  BOOST_TEST((flow.wake == elements::TowerWake::eames));
+  BOOST_TEST(!flow.drag_load);
+  // The foot of the tower is 1 m above the ground.
+  BOOST_TEST(flow.heights == (std::vector{-1.0, 19.0, 39.0}), boost::test_tools::per_element());
+  BOOST_TEST(flow.diameters == (std::vector{3.0, 2.5, 2.0}), boost::test_tools::per_element());
+  BOOST_TEST(flow.drags == (std::vector{0.5, 0.6, 0.7}), boost::test_tools::per_element());
+  BOOST_TEST(is_near(flow.turbulence, 0.2));
+  BOOST_TEST(!parse(with("0", "3             NumTwrNds")).turbine.wind->tower.has_value());
+}
+
+BOOST_AUTO_TEST_CASE(without_a_steady_wind_the_case_has_models_without_air) {
   const DeckFolder folder("three");
   folder.replace("Inflow.dat", "1             WindType", "3             WindType");
   const Import import = import_main(folder);
   const model::TurbineDefinition t = parse(import).turbine;
   BOOST_TEST(!t.wind.has_value());
-  BOOST_TEST(!t.aero.has_value());
+  BOOST_TEST(t.aero.value().tau1.value() == 2.5);
   BOOST_TEST(t.blades.aero_sections.size() == 4u);
   BOOST_TEST(warns(import, "turbulence is not read"));
+  BOOST_TEST(warns(import, "the flow around the tower, which needs a steady wind"));
   BOOST_TEST(holds(import.text, "density: 1.2}"));
-  BOOST_TEST(holds(import.text, "#     tau1: 2.5"));
 }
 
 BOOST_AUTO_TEST_CASE(decks_without_air_stay_structures) {
