@@ -23,7 +23,8 @@ TurbineDefinition rotor() {
   turbine.blades.beam.sections = {section};
   turbine.blades.airfoils["circle"].polars = {circle()};
   turbine.blades.aero_sections = {{0.2, 1.0, 0.0, "circle", {}}, {0.8, 0.5, 0.0, "circle", {}}};
-  turbine.wind = WindDefinition{.speed = 8.0};
+  turbine.wind.emplace();
+  turbine.wind->speed = 8.0;
   turbine.aero.emplace();
   return turbine;
 }
