@@ -8,6 +8,7 @@
 #include "samara/io/time_series_file.hpp"
 #include "samara/io/transient_start.hpp"
 #include "samara/io/whole_file.hpp"
+#include "samara/io/wind_files.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/simulation/transient_simulation.hpp"
 #include "samara/simulation/validation.hpp"
@@ -91,8 +92,14 @@ void run_transient(const Job& job) {
   const simulation::TransientSetup& transient = job.input.transient;
   if (transient.start == simulation::TransientOrigin::result && job.restart_path.empty())
     require_other_path(job.result_path, {transient.start_path});
+  io::Case input = job.input;
+  if (input.transient.wind && input.turbine.wind)
+    at_place(input.path + ": transient.wind", [&] {
+      io::read_wind_files(*input.transient.wind, io::folder_of(input.path),
+                          input.turbine.wind->speed);
+    });
   simulation::TransientSimulation simulation =
-      at_place(job.input.path, [&] { return simulation::TransientSimulation(job.input); });
+      at_place(input.path, [&] { return simulation::TransientSimulation(input); });
   Progress progress(true);
   for (const std::string& note : simulation::transient_notes(job.input)) progress.note(note);
   start(job, simulation, progress);

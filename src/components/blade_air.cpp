@@ -95,7 +95,7 @@ void BladeAir::describe(Registry& registry) {
 void BladeAir::describe_point(Registry& registry, int p) const {
   const elements::AirRotor& rotor = air().rotor;
   const double velocity =
-      std::max({turbine_.speed * rotor.tip_radius, rotor.wind.speed, 1.0}) / 10.0;
+      std::max({turbine_.speed * rotor.tip_radius, rotor.wind.mean.speed, 1.0}) / 10.0;
   const double load = 50.0 * rotor.density * velocity * velocity * station(p).chord;
   const int first = blade_.placed().air[at(p)];
   for (int i = 0; i < air::unknowns; ++i) {
@@ -184,22 +184,24 @@ elements::RootPose<T> BladeAir::root_of(const Eigen::Matrix<T, arguments, 1>& x)
 }
 
 template <class T>
-elements::StationMotion<T> BladeAir::motion_at(int p,
-                                               const Eigen::Matrix<T, arguments, 1>& x) const {
+elements::StationMotion<T> BladeAir::motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x,
+                                               double t) const {
   return elements::station_motion<T>(air().rotor, station(p), x.template head<12>(), root_of<T>(x),
-                                     hub_of<T>(x));
+                                     hub_of<T>(x), t);
 }
 
 template <class System>
 void BladeAir::state(System& system) const {
   system.add(linear_);
+  const double t = system.time();
+  const Memory memory = air().rotor.wind.changing ? Memory::none : Memory::of_arguments;
   for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {
     const auto rows_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
-      return elements::air_station_rows<T>(air().rotor, station(p), motion_at<T>(p, x),
+      return elements::air_station_rows<T>(air().rotor, station(p), motion_at<T>(p, x, t),
                                            x.template segment<air::unknowns>(at_air),
                                            x.template segment<rate_count>(at_rates));
     };
-    system.template add<arguments, air::unknowns>(points_[at(p)], rows_of, Memory::of_arguments);
+    system.template add<arguments, air::unknowns>(points_[at(p)], rows_of, memory);
     if (inertias_.empty()) continue;
     const auto inertia_of = [&]<class T>(const Eigen::Matrix<T, 9, 1>& x) {
       const Mat3<T> R = math::direction_cosines<T>(x.template head<3>()).transpose() *
@@ -216,7 +218,8 @@ void BladeAir::state(System& system) const {
 }
 
 template <class T>
-AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const {
+AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1>& x,
+                                      double t) const {
   using math::cross;
   using math::dot;
   using std::sqrt;
@@ -224,7 +227,7 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   const AirStation& station = this->station(p);
   const elements::HubPose<T> hub = hub_of<T>(x);
   const elements::RootPose<T> root = root_of<T>(x);
-  const elements::StationMotion<T> motion = motion_at<T>(p, x);
+  const elements::StationMotion<T> motion = motion_at<T>(p, x, t);
   const elements::StationAir<T> present =
       elements::station_air<T>(rotor, station, motion, x.template segment<air::unknowns>(at_air),
                                x.template segment<rate_count>(at_rates));
@@ -249,8 +252,9 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   report.inflow_angle = math::arctangent(T(dot(relative, hub.axis)), T(-dot(relative, e_t)));
   report.speed = flow.speed;
   report.pressure = flow.speed * flow.speed * T(0.5 * rotor.density);
-  report.wind = dot(Vec3<T>(rotor.wind.at<T>(place) - hub.velocity), hub.axis);
+  report.wind = dot(Vec3<T>(rotor.wind.undisturbed_at<T>(place, t) - hub.velocity), hub.axis);
   report.hub_speed = hub.speed;
+  report.hub_wind = rotor.wind.undisturbed_at<T>(hub.place, t);
   const auto share_of = [&](const T& induced, const T& whole) {
     return -(induced * whole) / (whole * whole + T(rotor.least_speed * rotor.least_speed));
   };
@@ -278,8 +282,8 @@ template <class T>
 std::vector<AirPointReport<T>> BladeAir::report(const Residual<T>& residual) const {
   std::vector<AirPointReport<T>> reports;
   for (std::size_t p = 0; p < points_.size(); ++p)
-    reports.push_back(
-        report_at<T>(static_cast<int>(p), residual.template gather<arguments>(points_[p])));
+    reports.push_back(report_at<T>(
+        static_cast<int>(p), residual.template gather<arguments>(points_[p]), residual.time()));
   return reports;
 }
 
@@ -291,7 +295,7 @@ void BladeAir::settle(const Residual<double>& residual, std::vector<double>& val
   for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {
     const auto x = residual.gather<arguments>(points_[at(p)]);
     const Eigen::Matrix<double, air::unknowns, 1> steady =
-        elements::steady_air(air().rotor, station(p), motion_at<double>(p, x));
+        elements::steady_air(air().rotor, station(p), motion_at<double>(p, x, residual.time()));
     for (const Share& share : points_[at(p)].shares) values[at(share.row)] = steady(share.value);
   }
 }

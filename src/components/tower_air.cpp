@@ -19,7 +19,7 @@ void TowerAir::describe(Registry&) {
 
 /// The tower's axes a1 a2 a3 are n3 n1 n2.
 template <class T>
-Vec3<T> TowerAir::load_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const {
+Vec3<T> TowerAir::load_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t) const {
   using std::sqrt;
   constexpr double least = 1e-6;  // square of a speed [m^2/s^2]
   const model::Air& air = *turbine_.air;
@@ -28,7 +28,7 @@ Vec3<T> TowerAir::load_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const 
   const Mat3<T> R = math::direction_cosines<T>(x.template segment<3>(3)).transpose() *
                     Matrix3(point.reference * point.C_ab).template cast<T>();
   const Vec3<T> place = point.x.template cast<T>() + x.template head<3>();
-  const Vec3<T> wind = air.rotor.wind.undisturbed_at<T>(Vec3<T>(place(1), place(2), place(0)));
+  const Vec3<T> wind = air.rotor.wind.undisturbed_at<T>(Vec3<T>(place(1), place(2), place(0)), t);
   const Vec3<T> relative =
       R.transpose() * Vec3<T>(wind(2), wind(0), wind(1)) - x.template segment<3>(6);
   const T speed = sqrt(T(relative(1) * relative(1) + relative(2) * relative(2) + T(least)));
@@ -40,11 +40,13 @@ Vec3<T> TowerAir::load_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const 
 
 template <class System>
 void TowerAir::state(System& system) const {
+  const double t = system.time();
+  const Memory memory = turbine_.air->rotor.wind.changing ? Memory::none : Memory::of_arguments;
   for (int p = 0; p < tower_.placed().beam->point_count(); ++p) {
     const auto load_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
-      return load_at<T>(p, x);
+      return load_at<T>(p, x, t);
     };
-    system.template add<arguments, 3>(points_[at(p)], load_of, Memory::of_arguments);
+    system.template add<arguments, 3>(points_[at(p)], load_of, memory);
   }
 }
 

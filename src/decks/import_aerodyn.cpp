@@ -269,7 +269,7 @@ class AerodynImporter {
   /// A number, or a flag in other versions; 0 without.
   double number_or_flag(const char* key) {
     if (!deck().has(key)) return 0.0;
-    const std::optional<double> value = parse_deck_number(deck().text(key));
+    const std::optional<double> value = parse_number(deck().text(key));
     return value ? *value : (deck().flag(key) ? 1.0 : 0.0);
   }
 

@@ -1,34 +1,23 @@
 #include "import_inflow.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <sstream>
 #include <vector>
 
 #include "samara/base/error.hpp"
-#include "samara/io/whole_file.hpp"
+#include "samara/io/wind_files.hpp"
 
 #include "import_common.hpp"
 
 namespace samara::decks {
 namespace {
 
+using io::UniformWindRow;
 using model::WindDefinition;
 
-constexpr std::size_t max_megabytes = 64;
 constexpr double whole_turn = 360.0;
-
-/// Columns of a file of uniform wind behind the time.
-enum Column { speed, direction, vertical, shear_left, power, shear_up, gust, upflow, columns };
-using Row = std::array<double, columns>;
-
-struct UniformFile {
-  std::vector<double> times;
-  std::vector<Row> rows;
-};
 
 /// An angle in degrees as it is between -180 and 180, without the round-off of sums.
 double wrap(double angle) {
@@ -111,83 +100,58 @@ class InflowImporter {
     if (path.empty()) return;
     import_.say(*deck_, "WindType", Fate::derived, "2: uniform wind");
     try {
-      use(read_file(path), path, key);
+      use(io::read_uniform_wind(path), path, key);
     } catch (const InputError& error) {
       import_.errors.add_message(error.what());
     }
   }
 
-  /// Lines of the time and seven or eight numbers; text starts with an exclamation mark.
-  static UniformFile read_file(const std::string& path) {
-    std::istringstream text(io::read_whole_file(path, max_megabytes, "wind file"));
-    UniformFile file;
-    int number = 0;
-    for (std::string line; std::getline(text, line);) {
-      ++number;
-      std::ranges::replace_if(
-          line, [](char c) { return c == ',' || c == '\t' || c == '\r'; }, ' ');
-      const std::string place = path + ":" + std::to_string(number);
-      std::istringstream words(line.substr(0, std::min(line.find('!'), line.size())));
-      std::vector<double> values;
-      for (std::string word; words >> word;) {
-        const std::optional<double> value = parse_deck_number(word);
-        if (!value && values.size() >= upflow + 1) break;  // a remark
-        if (!value)
-          throw InputError(place + ": expected a number, got \"" + word +
-                           "\"; hint: lines of text start with !");
-        values.push_back(*value);
-      }
-      if (values.empty()) continue;
-      if (values.size() < upflow + 1)
-        throw InputError(place +
-                         ": expected 8 or 9 columns (time, speed, direction, vertical "
-                         "speed, horizontal shear, power law, linear shear, gust), got " +
-                         std::to_string(values.size()));
-      Row row{};
-      std::copy_n(values.begin() + 1, std::min<std::size_t>(values.size() - 1, columns),
-                  row.begin());
-      file.times.push_back(values[0]);
-      file.rows.push_back(row);
-    }
-    if (file.rows.empty()) throw InputError(path + ": has no line of numbers");
-    return file;
-  }
-
-  static Row at_start(const UniformFile& file) {
-    const auto next = std::ranges::lower_bound(file.times, 0.0);
-    if (next == file.times.begin()) return file.rows.front();
-    if (next == file.times.end()) return file.rows.back();
-    const auto i = static_cast<std::size_t>(next - file.times.begin());
-    const double part = -file.times[i - 1] / (file.times[i] - file.times[i - 1]);
-    Row row{};
-    for (std::size_t c = 0; c < row.size(); ++c)
-      row[c] = file.rows[i - 1][c] + part * (file.rows[i][c] - file.rows[i - 1][c]);
+  static UniformWindRow at_start(const std::vector<UniformWindRow>& rows) {
+    const auto next = std::ranges::lower_bound(rows, 0.0, {}, &UniformWindRow::time);
+    if (next == rows.begin()) return rows.front();
+    if (next == rows.end()) return rows.back();
+    const UniformWindRow& before = *(next - 1);
+    const double part = -before.time / (next->time - before.time);
+    UniformWindRow row;
+    for (double UniformWindRow::*value :
+         {&UniformWindRow::speed, &UniformWindRow::direction, &UniformWindRow::vertical,
+          &UniformWindRow::shear_left, &UniformWindRow::exponent, &UniformWindRow::shear_up,
+          &UniformWindRow::gust, &UniformWindRow::upflow})
+      row.*value = before.*value + part * ((*next).*value - before.*value);
     return row;
   }
 
-  void use(const UniformFile& file, const std::string& path, const std::string& key) {
-    const bool is_steady =
-        std::ranges::all_of(file.rows, [&](const Row& row) { return row == file.rows.front(); });
-    const Row row = at_start(file);
+  static bool is_same_wind(UniformWindRow a, const UniformWindRow& b) {
+    a.time = b.time;
+    return a == b;
+  }
+
+  void use(const std::vector<UniformWindRow>& rows, const std::string& path,
+           const std::string& key) {
+    const bool is_steady = std::ranges::all_of(
+        rows, [&](const UniformWindRow& row) { return is_same_wind(row, rows.front()); });
+    const UniformWindRow row = at_start(rows);
     const std::string source = is_steady ? "the wind of the file" : "the wind of the file at 0 s";
     import_.say(*deck_, key, Fate::derived, "wind: " + source);
     if (!is_steady)
-      import_.warn(path, "note: the wind changes with time: the case has that of 0 s");
-    const double ahead = row[speed] + row[gust];
-    wind_.speed = std::hypot(ahead, row[vertical]);
-    if (row[gust] != 0.0 || row[vertical] != 0.0)
+      import_.warn(path,
+                   "note: the wind changes with time: the case has that of 0 s; hint: "
+                   "transient.wind.table of the case names this file");
+    const double ahead = row.speed + row.gust;
+    wind_.speed = std::hypot(ahead, row.vertical);
+    if (row.gust != 0.0 || row.vertical != 0.0)
       import_.warn(path,
                    "note: gust and vertical speed are part of wind.speed and wind.upflow_deg, with "
                    "the shear of the wind");
     if (ahead < 0.0) throw InputError(path + ": a speed below 0");
-    rise_ = row[upflow] + fields::deg.from_si(std::atan2(row[vertical], ahead));
-    turned_ = row[direction];
+    rise_ = row.upflow + fields::deg.from_si(std::atan2(row.vertical, ahead));
+    turned_ = row.direction;
     import_.note("wind.speed", source);
     const std::string height = deck_->has("RefHt_Uni") ? "RefHt_Uni" : "RefHt";
     set_height(height);
-    set_power(row[power], "the file");
-    wind_.shear_left = row[shear_left];
-    wind_.shear_up = row[shear_up];
+    set_power(row.exponent, "the file");
+    wind_.shear_left = row.shear_left;
+    wind_.shear_up = row.shear_up;
     if (wind_.shear_left != 0.0 || wind_.shear_up != 0.0) {
       wind_.shear_length = deck_->number("RefLength");
       import_.say(*deck_, "RefLength", Fate::taken, "wind.shear.length");

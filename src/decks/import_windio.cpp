@@ -61,7 +61,7 @@ io::YamlNode parse_deck(const std::string& path) {
 /// YAML 1.1 has "15.e+6" and "+1."; from_chars reads all but the sign.
 std::optional<double> parse_number(const io::YamlNode& node) {
   if (node.kind != io::YamlNode::Kind::scalar || node.quoted) return {};
-  return parse_deck_number(node.text);
+  return parse_number(node.text);
 }
 
 class Importer {

@@ -156,22 +156,6 @@ void DeckErrors::throw_if_any() const {
   throw InputError(text);
 }
 
-std::optional<double> parse_deck_number(const std::string& word) {
-  std::string text = word;
-  for (char& c : text)
-    if (c == 'd' || c == 'D') c = 'e';
-  const char* first = text.data();
-  const char* last = first + text.size();
-  if (first != last && *first == '+') {
-    ++first;
-    if (first != last && *first == '-') return {};
-  }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(first, last, value);
-  if (error != std::errc{} || end != last || !std::isfinite(value)) return {};
-  return value;
-}
-
 Deck::Deck(std::string path, DeckErrors& errors) : path_(std::move(path)), errors_(errors) {
   const std::string text = read_text(path_);
   ends_with_line_ = text.empty() || text.back() == '\n' || text.back() == '\r';
@@ -184,7 +168,7 @@ Deck::Deck(std::string path, DeckErrors& errors) : path_(std::move(path)), error
     // The second line is free text; it could look like a key.
     if (i == 1 && is_heading(lines_[0].empty() ? "" : lines_[0][0].text)) {
       const bool could_be_value =
-          words[0].quoted || parse_deck_number(words[0].text) || parse_flag(words[0].text);
+          words[0].quoted || parse_number(words[0].text) || parse_flag(words[0].text);
       if (!could_be_value) {
         if (!is_heading(words[0].text)) title_ = lines[i].substr(lines[i].find_first_not_of(" \t"));
         continue;
@@ -210,10 +194,10 @@ void Deck::parse_line(int number) {
   entry.values.push_back(words[0]);
   std::size_t i = 1;
   while (i < words.size() && (words[i].quoted || words[i - 1].comma ||
-                              parse_deck_number(words[i].text) || parse_flag(words[i].text)))
+                              parse_number(words[i].text) || parse_flag(words[i].text)))
     entry.values.push_back(words[i++]);
   const bool starts_with_value =
-      words[0].quoted || parse_deck_number(words[0].text) || parse_flag(words[0].text);
+      words[0].quoted || parse_number(words[0].text) || parse_flag(words[0].text);
   if (i < words.size() && !words[i].quoted && is_key(words[i].text)) {
     entry.key = words[i].text;
     if (const bool ends = words[i++].comma || i == words.size(); !ends) {
@@ -327,7 +311,7 @@ double Deck::number(const std::string& key) {
   const DeckEntry* entry = find(key, true);
   if (entry == nullptr) return 0.0;
   const DeckWord& word = entry->values[0];
-  const std::optional<double> value = parse_deck_number(word.text);
+  const std::optional<double> value = parse_number(word.text);
   if (!value) errors_.add(place(entry->line), key + ": expected a number" + got(word.text));
   if (value && entry->values.size() > 1)
     errors_.add(place(entry->line), key + ": expected one number, got " +
@@ -397,7 +381,7 @@ Vector3 Deck::point(const std::string& key, const std::string& ending) {
   Vector3 point = Vector3::Zero();
   bool is_whole = entry->values.size() == 3;
   for (std::size_t i = 0; i < 3 && is_whole; ++i) {
-    const std::optional<double> value = parse_deck_number(entry->values[i].text);
+    const std::optional<double> value = parse_number(entry->values[i].text);
     is_whole = value.has_value();
     point(static_cast<Eigen::Index>(i)) = value.value_or(0.0);
   }
@@ -483,14 +467,14 @@ DeckTable Deck::table(const std::vector<std::string>& names, int count,
     if (!is_complete && words[0].text.starts_with("!")) continue;  // a comment between rows
     if (is_heading(words[0].text)) break;
     // A number and the name of its key: the table has ended.
-    if (words.size() > 1 && is_key(words[1].text) && !parse_deck_number(words[1].text)) break;
-    if (is_complete && !parse_deck_number(words[0].text)) break;
+    if (words.size() > 1 && is_key(words[1].text) && !parse_number(words[1].text)) break;
+    if (is_complete && !parse_number(words[0].text)) break;
     const int line = static_cast<int>(i + 1);
     std::vector<double> row;
     std::string bad;
     for (std::size_t k = 0; k < table.names.size(); ++k) {
       const std::optional<double> value =
-          k < words.size() ? parse_deck_number(words[k].text) : std::nullopt;
+          k < words.size() ? parse_number(words[k].text) : std::nullopt;
       if (!value) {
         bad = k < words.size()
                   ? "column " + table.names[k] + ": expected a number" + got(words[k].text)
@@ -501,7 +485,7 @@ DeckTable Deck::table(const std::vector<std::string>& names, int count,
       row.push_back(*value);
     }
     if (bad.empty() && words.size() > table.names.size() &&
-        parse_deck_number(words[table.names.size()].text))
+        parse_number(words[table.names.size()].text))
       bad = "expected " + std::to_string(table.names.size()) +
             " numbers in this row of the table, got more";
     if (!bad.empty()) {
@@ -526,7 +510,7 @@ std::vector<std::vector<double>> Deck::rows_behind(const std::string& key, int c
     if (lines_[i].empty() || is_heading(lines_[i][0].text)) continue;
     rows.emplace_back();
     for (const DeckWord& word : lines_[i]) {
-      const std::optional<double> value = parse_deck_number(word.text);
+      const std::optional<double> value = parse_number(word.text);
       if (!value) break;
       rows.back().push_back(*value);
     }
@@ -556,7 +540,7 @@ std::vector<DeckRow> Deck::rows_after(int line) {
     row.line = static_cast<int>(i + 1);
     for (const DeckWord& word : words) {
       if (is_heading(word.text)) break;
-      const std::optional<double> value = parse_deck_number(word.text);
+      const std::optional<double> value = parse_number(word.text);
       if (!value) {
         // Text behind one or six numbers is a comment.
         const bool is_row = row.numbers.size() == 1 || row.numbers.size() == 6;

@@ -10,6 +10,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "samara/base/number.hpp"
 #include "samara/math/types.hpp"
 
 namespace samara::decks {
@@ -57,9 +58,6 @@ struct DeckRow {
   int line = 0;
   std::vector<double> numbers;
 };
-
-/// Reads "1.5", "-2.D+03", ".5e1"; no value where the word is not a finite number.
-std::optional<double> parse_deck_number(const std::string& word);
 
 class Deck {
  public:

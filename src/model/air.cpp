@@ -101,8 +101,8 @@ elements::MeanWind wind_of(const WindDefinition& definition) {
   wind.exponent = definition.exponent;
   wind.roughness = definition.roughness;
   if (definition.shear_length > 0.0) {
-    wind.shear_left = definition.shear_left / definition.shear_length;
-    wind.shear_up = definition.shear_up / definition.shear_length;
+    wind.shear_left = definition.speed * definition.shear_left / definition.shear_length;
+    wind.shear_up = definition.speed * definition.shear_up / definition.shear_length;
   }
   wind.direction = definition.direction;
   wind.veer = definition.veer;
@@ -148,7 +148,7 @@ HubWind find_hub_wind(const elements::MeanWind& wind, const Turbine& turbine) {
                  bearing * Vector3(0.0, chain.overhang + chain.undersling, 0.0);
   if (turbine.has_tower)
     apex += Vector3(turbine.tower.tip(1), turbine.tower.tip(2), turbine.tower.tip(0));
-  const Vector3 v = wind.undisturbed_at<double>(apex);
+  const Vector3 v = wind.at<double>(apex);
   return {v.dot(bearing.col(1)), v.norm()};
 }
 
@@ -156,7 +156,7 @@ HubWind find_hub_wind(const elements::MeanWind& wind, const Turbine& turbine) {
 double find_mean_induction(const Air& air, const Turbine& turbine, double wind_axial) {
   elements::AirRotor rotor = air.rotor;
   rotor.wind = {};
-  rotor.wind.speed = wind_axial;  // along n2, which is the rotor's axis here
+  rotor.wind.mean.speed = wind_axial;  // along n2, which is the rotor's axis here
   elements::HubPose<double> hub;
   hub.speed = turbine.speed;
   double sum = 0.0;
@@ -231,7 +231,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
   Air air;
   elements::AirRotor& rotor = air.rotor;
   rotor.models = *definition.aero;
-  rotor.wind = wind_of(*definition.wind);
+  rotor.wind.mean = wind_of(*definition.wind);
   if (definition.wind->tower) {
     rotor.wind.tower = tower_flow_of(*definition.wind->tower, turbine);
     air.tower_has_drag = definition.wind->tower->drag_load;
@@ -243,7 +243,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
     rotor.tip_radius =
         std::max(rotor.tip_radius, radius_of(turbine.roots[k], turbine.blades[k].tip));
   place_stations(definition, turbine, air);
-  const HubWind wind = find_hub_wind(rotor.wind, turbine);
+  const HubWind wind = find_hub_wind(rotor.wind.mean, turbine);
   air.hub_wind = wind.speed;
   air.hub_wind_axial = wind.axial;
   constexpr double share = 0.01;

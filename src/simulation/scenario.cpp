@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
+
 namespace samara::simulation {
 
 int highest_harmonic(const model::TurbineDefinition& turbine) {
@@ -20,6 +23,43 @@ analysis::TrimOptions trim_options(const Scenario& scenario) {
   return options;
 }
 
+namespace {
+
+double rotor_height(const model::Turbine& turbine) {
+  return turbine.chain.height + (turbine.has_tower ? turbine.tower.tip(0) : 0.0);
+}
+
+/// A box must hold the rotor at rest over the whole run.
+void require_enough(const model::WindBox& box, const model::Turbine& turbine, double duration) {
+  const double radius = turbine.air->rotor.tip_radius;
+  const double hub = rotor_height(turbine);
+  const double half = 0.5 * box.width * (box.columns - 1);
+  const double top = box.bottom + box.height * (box.rows - 1);
+  const std::string place = "transient.wind.box: ";
+  if (half < radius || top < hub + radius || box.bottom > hub - radius)
+    throw InputError(place + "is smaller than the rotor: it is " + general(2.0 * half, 4) +
+                     " m wide and reaches from " + general(box.bottom, 4) + " to " +
+                     general(top, 4) + " m above the ground, the rotor has a radius of " +
+                     general(radius, 4) + " m and its hub a height of " + general(hub, 4) + " m");
+  const double end = box.duration() - (box.front + radius) / box.speed;
+  if (!box.is_periodic && end < duration)
+    throw InputError(place + "is too short: its wind is known to t = " + general(end, 4) +
+                     " s, transient.duration is " + general(duration, 6) + " s");
+}
+
+void change_wind(const Scenario& scenario, model::Turbine& turbine) {
+  if (!turbine.air)
+    throw InputError("transient.wind: there is no air; hint: wind.speed and blades.aero_sections");
+  const model::WindChange& change = *scenario.transient.wind;
+  if (change.box) require_enough(*change.box, turbine, scenario.transient.options.duration);
+  const model::GustSite site{turbine.air->hub_wind, rotor_height(turbine),
+                             2.0 * turbine.air->rotor.tip_radius};
+  turbine.air->rotor.wind.changing = model::make_changing_wind(
+      change, turbine.air->rotor.wind.mean, scenario.turbine.wind->shear_length, site);
+}
+
+}  // namespace
+
 model::Turbine build_operated_turbine(const Scenario& scenario) {
   model::Turbine turbine = model::build_turbine(scenario.turbine);
   const TransientSetup& transient = scenario.transient;
@@ -28,6 +68,7 @@ model::Turbine build_operated_turbine(const Scenario& scenario) {
   if (transient.pitch) turbine.operation.pitch.assign(turbine.blades.size(), transient.pitch);
   turbine.operation.yaw = transient.yaw;
   turbine.operation.teeter = transient.teeter;
+  if (transient.wind) change_wind(scenario, turbine);
   return turbine;
 }
 

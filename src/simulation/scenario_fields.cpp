@@ -190,6 +190,108 @@ void declare_curve(Visitor& fields, const Field& field, double duration,
   });
 }
 
+void declare_gust(Visitor& fields, model::GustDefinition& gust) {
+  using Type = model::GustDefinition::Type;
+  fields.choice(Field("type",
+                      "of IEC 61400-1: `eog`, extreme operating gust; `edc`, extreme direction "
+                      "change; `ecd`, extreme coherent gust with direction change; `ews_vertical` "
+                      "and `ews_horizontal`, extreme wind shear")
+                    .required("eog, edc, ecd, ews_vertical or ews_horizontal"),
+                gust.type,
+                {{"eog", Type::operating},
+                 {"edc", Type::direction},
+                 {"ecd", Type::coherent},
+                 {"ews_vertical", Type::vertical_shear},
+                 {"ews_horizontal", Type::horizontal_shear}});
+  fields.number({"start", "s", fields::non_negative, ""}, gust.start);
+  fields.number({"turbulence", "", positive, "I_ref: 0.16 of class A, 0.14 of B, 0.12 of C"},
+                gust.turbulence);
+  fields.number(
+      {"reference_speed", "m/s", positive, "V_ref: 50 of class I, 42.5 of II, 37.5 of III"},
+      gust.reference_speed);
+  fields.flag({"negative", "change of direction or shear with the other sign"}, gust.is_negative);
+}
+
+void declare_box(Visitor& fields, model::WindChange& wind) {
+  fields.exclusive({{"file"}, {"files"}});
+  fields.at_least_one({"file", "files"}, "or \"files\"");
+  std::string turbsim = wind.box_path.size() == 1 ? wind.box_path[0] : "";
+  std::vector<std::string> hawc =
+      wind.box_path.size() == 3 ? wind.box_path : std::vector<std::string>();
+  fields.text(Field("file", "of TurbSim, NAME.bts: the whole wind").or_else(""),
+              "the name of a file", turbsim);
+  fields.name_list(Field("files",
+                         "`[u, v, w]`, three files of HAWC2: fluctuations, which are added to the "
+                         "mean wind, with the centre of the box at `height`")
+                       .or_else(""),
+                   hawc);
+  if (fields.reads()) wind.box_path = hawc;
+  if (fields.reads() && !turbsim.empty()) wind.box_path = {turbsim};
+  if (fields.reads() && !hawc.empty() && hawc.size() != 3)
+    fields.refuse("files", "expected three files: u, v, w");
+  if (!fields.describes() && wind.box_path.size() != 3) return;
+  model::WindBox& box = wind.box_shape;
+  std::array<int, 3> points{box.times, box.columns, box.rows};
+  std::array<double, 3> distances{box.step, box.width, box.height};
+  double center = box.bottom + 0.5 * box.height * (box.rows - 1);
+  fields.integer(Field("times", "", integers(2, 1000000), "planes along the wind, of `files`")
+                     .required("the number of planes"),
+                 points[0]);
+  fields.integer(Field("columns", "", integers(2, 10000), "points across the wind")
+                     .required("the number of points"),
+                 points[1]);
+  fields.integer(
+      Field("rows", "", integers(2, 10000), "points up").required("the number of points"),
+      points[2]);
+  fields.numbers(Field("distances", "m", positive, "`[along the wind, across, up]` of the points")
+                     .required("[along the wind, across, up]"),
+                 distances, false);
+  fields.number(Field("height", "m", positive, "of the centre of the box above the foot")
+                    .required("the height of the centre of the box"),
+                center);
+  fields.numbers({"scale", "", fields::any_number, "factors of u, v and w"}, wind.box_scale, false);
+  if (!fields.reads()) return;
+  box.times = points[0];
+  box.columns = points[1];
+  box.rows = points[2];
+  box.step = distances[0];
+  box.width = distances[1];
+  box.height = distances[2];
+  box.bottom = center - 0.5 * box.height * (box.rows - 1);
+}
+
+void declare_wind_change(Visitor& fields, double duration, model::WindChange& wind) {
+  const auto curve = [&](const Field& field, std::optional<math::TimeCurve>& value) {
+    declare_curve(fields, field, duration, value);
+  };
+  curve(Field("speed", "m/s",
+              "at `wind.height`: `{table: [[t, value], ...]}`, straight lines that reach over the "
+              "run, or `{formula: ...}`")
+            .or_else("`wind.speed`"),
+        wind.speed);
+  curve(Field("direction_deg", deg, "a table is joined by a curve without kinks or overshoot")
+            .or_else("`wind.direction_deg`"),
+        wind.direction);
+  curve(Field("upflow_deg", deg, "the same way").or_else("`wind.upflow_deg`"), wind.upflow);
+  curve(Field("power", "", "exponent of the power law").or_else("`wind.shear.power`"),
+        wind.exponent);
+  curve(Field("left", "", "as of `wind.shear`, whose `length` counts").or_else("`wind.shear.left`"),
+        wind.shear_left);
+  curve(Field("up", "", "the same").or_else("`wind.shear.up`"), wind.shear_up);
+  fields.text(
+      Field("table",
+            "file of a uniform wind of InflowWind: time, speed, direction, vertical speed, "
+            "horizontal shear, power law, linear shear, gust and upflow, joined by straight "
+            "lines; the keys above have priority")
+          .or_else("none"),
+      "the name of a file", wind.table_path);
+  fields.block(Field("gust", "of IEC 61400-1, on the mean wind").or_else("none"), wind.standard,
+               [&](model::GustDefinition& gust) { declare_gust(fields, gust); });
+  fields.block(Field("box", "turbulence").or_else("none"),
+               Presence{[&] { return !wind.box_path.empty(); }, [] {}},
+               [&] { declare_box(fields, wind); });
+}
+
 void declare_trigger(Visitor& fields, double duration, turbine::EventTrigger& trigger) {
   fields.exclusive({{"at"}, {"when"}});
   double time = trigger.time.value_or(0.0);
@@ -343,6 +445,11 @@ void declare_transient(Visitor& fields, const model::TurbineDefinition& turbine,
                 transient.yaw);
   declare_curve(fields, Field("teeter_deg", deg, prescribed).or_else(""), options.duration,
                 transient.teeter);
+  fields.block(Field("wind", "a wind that changes with time, [below](#wind-in-time)")
+                   .or_else("`wind` of the case"),
+               transient.wind, [&](model::WindChange& wind) {
+                 declare_wind_change(fields, options.duration, wind);
+               });
   fields.list(
       Field("events", "a list, see below"), "events", 1, transient.events,
       [&](turbine::TurbineEvent& event) { declare_event(fields, options.duration, event); });

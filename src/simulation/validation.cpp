@@ -98,6 +98,32 @@ class Validation {
           "shaft.speed=0");
   }
 
+  void check_wind(const model::WindChange& wind) {
+    const double duration = scenario_.transient.options.duration;
+    if (!turbine_.wind || !turbine_.aero) {
+      add("transient.wind", "there is no air; hint: a case with wind and blades.aero_sections");
+      return;
+    }
+    const bool has_shear = turbine_.wind->shear_length > 0.0;
+    if ((wind.shear_left || wind.shear_up) && !has_shear)
+      add("wind.shear.length", "missing key \"length\" of the shears of transient.wind");
+    const bool has_power = turbine_.wind->profile == model::WindDefinition::Profile::power &&
+                           turbine_.wind->height > 0.0;
+    if (wind.exponent && !has_power)
+      add("transient.wind.power", "needs the power law; hint: wind.shear.power and wind.height");
+    if (wind.standard && !(turbine_.wind->speed > 0.0))
+      add("transient.wind.gust", "needs a mean wind; hint: wind.speed");
+    if (wind.standard && !(wind.standard->start < duration))
+      add("transient.wind.gust.start",
+          "never comes: transient.duration is " + general(duration, 6) + " s");
+    const bool is_hawc = wind.box_path.size() == 3;
+    if (is_hawc && !(turbine_.wind->speed > 0.0))
+      add("transient.wind.box", "needs the speed with which it moves; hint: wind.speed");
+    if (wind.box_path.size() == 1 && (wind.speed || wind.standard || !wind.table_path.empty()))
+      add("transient.wind.box",
+          "has the whole wind; hint: leave out speed, gust and table, or take a box of HAWC2");
+  }
+
   void check_inflow() {
     if (turbine_.aero && turbine_.aero->inflow == model::Inflow::frozen)
       add("aero.inflow",
@@ -231,6 +257,7 @@ class Validation {
       add("transient.output.every", "expected a multiple of transient.step");
     if (transient.start == TransientOrigin::trim) check_steady();
     check_curves();
+    if (transient.wind) check_wind(*transient.wind);
     for (std::size_t i = 0; i < transient.events.size(); ++i) check_event(i);
     for (std::size_t i = 0; i < turbine_.loads.size(); ++i) {
       const auto& table = turbine_.loads[i].variation.table;

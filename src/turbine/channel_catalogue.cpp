@@ -238,6 +238,10 @@ void ChannelCatalogue::add_air() {
   add("RtAeroCq", "-", hub, "torque coefficient", torque_coefficient, 1.0);
   add("RtAeroCt", "-", hub, "thrust coefficient, of RtAeroFxh", thrust_coefficient, 1.0);
   add("RtTSR", "-", hub, "tip-speed ratio with RtVAvgxh", tip_speed_ratio, 1.0);
+  const std::string ground = "ground";
+  add("Wind1VelX", "m/s", ground, "undisturbed wind at the hub, along n2", hub_wind, 1.0);
+  add("Wind1VelY", "m/s", ground, "the same to the left, against n1", hub_wind + 1, 1.0);
+  add("Wind1VelZ", "m/s", ground, "the same up, along n3", hub_wind + 2, 1.0);
 }
 
 void ChannelCatalogue::add_section_air(const std::string& before, const std::string& place,

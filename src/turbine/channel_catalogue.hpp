@@ -56,7 +56,8 @@ inline constexpr int power_coefficient = 57;
 inline constexpr int torque_coefficient = 58;
 inline constexpr int thrust_coefficient = 59;
 inline constexpr int tip_speed_ratio = 60;
-inline constexpr int whole_slots = 61;
+inline constexpr int hub_wind = 61;  // downwind, left, up
+inline constexpr int whole_slots = 64;
 // Channels of a station:
 inline constexpr int section_force = 0;  // axes of the section
 inline constexpr int section_moment = 3;

@@ -266,6 +266,10 @@ class Quantities {
     put(torque_coefficient, load(4) / (pressure * rotor.tip_radius));
     put(thrust_coefficient, load(1) / pressure);
     put(tip_speed_ratio, speed * wind * rotor.tip_radius / square);
+    const Vec3<T>& hub_wind_velocity = air.front().front().hub_wind;
+    put(hub_wind, hub_wind_velocity(1));
+    put(hub_wind + 1, T(-hub_wind_velocity(0)));
+    put(hub_wind + 2, hub_wind_velocity(2));
   }
 
   /// `air`, `stations`: of the blade at its points.

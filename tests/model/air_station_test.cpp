@@ -348,7 +348,7 @@ AirRotor nrel_rotor(double wind, ThrustLaw thrust) {
   rotor.models.dynamics = AirfoilDynamics::static_polar;
   rotor.models.thrust = thrust;
   rotor.models.skew = 0.0;
-  rotor.wind.speed = wind;
+  rotor.wind.mean.speed = wind;
   rotor.blades = 3;
   rotor.tip_radius = 63.0;
   rotor.hub_radius = 1.5;
@@ -559,7 +559,7 @@ BOOST_AUTO_TEST_CASE(balance_of_momentum_is_solved_from_the_same_start_at_all_st
           for (const double pitch : {-5.0, 0.0, 10.0, 30.0, 45.0})
             for (const std::size_t i : {2U, 4U, 9U, 13U, 16U}) {
               AirRotor rotor = nrel_rotor(wind, thrust);
-              rotor.wind.direction = yaw * degree;
+              rotor.wind.mean.direction = yaw * degree;
               const AirStation station = nrel_station(nrel_blade[i], pitch);
               const StationMotion<double> motion =
                   turning(rotor, station, ratio * wind / rotor.tip_radius);
@@ -608,13 +608,13 @@ BOOST_AUTO_TEST_CASE(derivatives_agree_with_a_complex_step) {
     rotor.models.closure = trial % 2 == 0 ? MomentumLoad::equilibrium : MomentumLoad::actual;
     rotor.models.skew = pitt_peters_skew;
     rotor.models.added_mass = trial % 5 == 0;
-    rotor.wind.profile = trial % 7 < 4 ? WindProfile::power : WindProfile::logarithmic;
-    rotor.wind.height = 90.0;
-    rotor.wind.exponent = 0.2;
-    rotor.wind.roughness = 0.1;
-    rotor.wind.direction = trial % 4 == 0 ? 0.5 : 0.1;
-    rotor.wind.veer = 0.001;
-    rotor.wind.shear_left = 0.01;
+    rotor.wind.mean.profile = trial % 7 < 4 ? WindProfile::power : WindProfile::logarithmic;
+    rotor.wind.mean.height = 90.0;
+    rotor.wind.mean.exponent = 0.2;
+    rotor.wind.mean.roughness = 0.1;
+    rotor.wind.mean.direction = trial % 4 == 0 ? 0.5 : 0.1;
+    rotor.wind.mean.veer = 0.001;
+    rotor.wind.mean.shear_left = 0.01;
     const AirStation station = nrel_station(nrel_blade[static_cast<std::size_t>(trial % 17)], 0.0);
     Eigen::Matrix<double, count, 1> x;
     for (int i = 0; i < count; ++i) x(i) = any(random);

@@ -20,9 +20,9 @@ using std::numbers::pi;
 constexpr double round_off = 1e-12;
 
 /// A vertical tower of 2 m radius and 80 m height.
-MeanWind wind_of(TowerPotential potential, TowerWake wake = TowerWake::none, double drag = 0.5) {
-  MeanWind wind;
-  wind.speed = 10.0;
+Wind wind_of(TowerPotential potential, TowerWake wake = TowerWake::none, double drag = 0.5) {
+  Wind wind;
+  wind.mean.speed = 10.0;
   wind.tower.potential = potential;
   wind.tower.wake = wake;
   wind.tower.top = Vector3(0.0, 0.0, 80.0);
@@ -32,8 +32,8 @@ MeanWind wind_of(TowerPotential potential, TowerWake wake = TowerWake::none, dou
 }
 
 /// Velocity at a place in tower radii; n2 is downwind.
-Vector3 at(const MeanWind& wind, double downwind, double left, double height = 40.0) {
-  return wind.at<double>(Vector3(-2.0 * left, 2.0 * downwind, height));
+Vector3 at(const Wind& wind, double downwind, double left, double height = 40.0) {
+  return wind.at<double>(Vector3(-2.0 * left, 2.0 * downwind, height), 0.0);
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ Vector3 at(const MeanWind& wind, double downwind, double left, double height = 4
 BOOST_AUTO_TEST_SUITE(tower_flow)
 
 BOOST_AUTO_TEST_CASE(potential_flow_has_its_stagnation_point_and_twice_the_speed_at_the_side) {
-  const MeanWind wind = wind_of(TowerPotential::plain);
+  const Wind wind = wind_of(TowerPotential::plain);
   BOOST_TEST(at(wind, -1.0, 0.0).norm() < 1e-6);
   BOOST_TEST(std::abs(at(wind, 0.0, 1.0)(1) - 20.0) < 1e-6);
   // The velocity is that of the potential x (1 + 1/r^2).
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(potential_flow_has_its_stagnation_point_and_twice_the_speed
 
 /// The formula of the potential with the drag, written out at a point 2.5 radii upwind.
 BOOST_AUTO_TEST_CASE(bak_shifts_the_cylinder_and_adds_a_source) {
-  const MeanWind wind = wind_of(TowerPotential::bak);
+  const Wind wind = wind_of(TowerPotential::bak);
   const double X = -2.4;
   const double expected = 1.0 - 1.0 / (X * X) + 0.5 / (2.0 * pi * X);
   BOOST_TEST(std::abs(at(wind, -2.5, 0.0)(1) - 10.0 * expected) < 1e-6);
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(bak_shifts_the_cylinder_and_adds_a_source) {
 }
 
 BOOST_AUTO_TEST_CASE(wakes_have_their_deficits) {
-  const MeanWind powles = wind_of(TowerPotential::none, TowerWake::powles);
+  const Wind powles = wind_of(TowerPotential::none, TowerWake::powles);
   BOOST_TEST(std::abs(at(powles, 9.0, 0.0)(1) - 10.0 * (1.0 - 0.5 / 3.0)) < 1e-6);
   // Half way to the edge the cosine squared is one half; the edge is at sqrt(d).
   const double y = 1.5;
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(wakes_have_their_deficits) {
   BOOST_TEST(std::abs(at(powles, 9.0, y)(1) - 10.0 * (1.0 - 0.5 / width * shape)) < 1e-6);
   BOOST_TEST(at(powles, 9.0, 3.2)(1) == 10.0);
   BOOST_TEST(at(powles, -3.0, 0.0)(1) == 10.0);
-  MeanWind eames = wind_of(TowerPotential::none, TowerWake::eames);
+  Wind eames = wind_of(TowerPotential::none, TowerWake::eames);
   eames.tower.turbulence = 0.2;
   const double spread = 0.2 * 12.0;
   const double deficit = 0.5 / (spread * std::sqrt(2.0 * pi));
@@ -89,19 +89,19 @@ BOOST_AUTO_TEST_CASE(wakes_have_their_deficits) {
 }
 
 BOOST_AUTO_TEST_CASE(the_flow_turns_with_the_wind_and_ends_above_the_top) {
-  MeanWind wind = wind_of(TowerPotential::bak, TowerWake::powles);
+  Wind wind = wind_of(TowerPotential::bak, TowerWake::powles);
   const Vector3 place(3.0, 5.0, 40.0);
-  const Vector3 there = wind.at<double>(place);
+  const Vector3 there = wind.at<double>(place, 0.0);
   constexpr double angle = 0.7;
-  wind.direction = angle;
+  wind.mean.direction = angle;
   const Matrix3 turn(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
-  BOOST_TEST((wind.at<double>(turn * place) - turn * there).norm() < round_off);
-  BOOST_TEST((wind.at<double>(Vector3(3.0, 5.0, 84.0)) -
-              wind.undisturbed_at<double>(Vector3(3.0, 5.0, 84.0)))
+  BOOST_TEST((wind.at<double>(turn * place, 0.0) - turn * there).norm() < round_off);
+  BOOST_TEST((wind.at<double>(Vector3(3.0, 5.0, 84.0), 0.0) -
+              wind.undisturbed_at<double>(Vector3(3.0, 5.0, 84.0), 0.0))
                  .norm() == 0.0);
-  const Vector3 disturbed = there - wind_of(TowerPotential::none).at<double>(place);
+  const Vector3 disturbed = there - wind_of(TowerPotential::none).at<double>(place, 0.0);
   const Vector3 above =
-      wind_of(TowerPotential::bak, TowerWake::powles).at<double>(Vector3(3.0, 5.0, 82.0)) -
+      wind_of(TowerPotential::bak, TowerWake::powles).at<double>(Vector3(3.0, 5.0, 82.0), 0.0) -
       Vector3(0.0, 10.0, 0.0);
   BOOST_TEST((above - 0.5 * disturbed).norm() < round_off);  // one radius above the top
 }
@@ -110,14 +110,15 @@ BOOST_AUTO_TEST_CASE(the_flow_turns_with_the_wind_and_ends_above_the_top) {
 BOOST_AUTO_TEST_CASE(slopes_are_continuous) {
   constexpr double h = 1e-6;
   for (const TowerWake wake : {TowerWake::powles, TowerWake::eames}) {
-    const MeanWind wind = wind_of(TowerPotential::bak, wake, 1.0);
+    const Wind wind = wind_of(TowerPotential::bak, wake, 1.0);
     const auto along = [&](const Vector3& from, const Vector3& to) {
       double last = 0.0;
       for (int i = 0; i <= 4000; ++i) {
         const Vector3 place = from + (to - from) * i / 4000.0;
         const Vector3 step = (to - from).normalized() * h;
         const double slope =
-            (wind.at<double>(place + step) - wind.at<double>(place - step))(1) / (2.0 * h);
+            (wind.at<double>(place + step, 0.0) - wind.at<double>(place - step, 0.0))(1) /
+            (2.0 * h);
         if (i > 0) BOOST_TEST(std::abs(slope - last) < 0.2);  // the curvature times the step
         last = slope;
       }

@@ -5,6 +5,7 @@
 #include <complex>
 #include <fstream>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/simulation/steady_state.hpp"
+#include "samara/simulation/transient_simulation.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 
 #include "turning.hpp"
@@ -267,6 +269,94 @@ BOOST_AUTO_TEST_CASE(a_rotor_on_a_spring_is_damped_by_the_slope_of_its_thrust) {
     BOOST_TEST_CONTEXT(at.wind << " m/s, " << at.inflow)
     BOOST_TEST(found == at.damping, tolerance(0.02));
   }
+}
+
+// ---- a wind that changes -----------------------------------------------------------------------
+
+/// Rows of two channels.
+class Rows final : public simulation::TransientOutput {
+ public:
+  void row(double t, std::span<const double> values) override {
+    times.push_back(t);
+    this->values.emplace_back(values.begin(), values.end());
+  }
+  std::vector<double> times;
+  std::vector<std::vector<double>> values;
+};
+
+Rows run(const simulation::Scenario& scenario) {
+  simulation::TransientSimulation simulation(scenario);
+  analysis::Observer observer;
+  simulation.start(observer);
+  Rows rows;
+  simulation.run(rows);
+  return rows;
+}
+
+/// The wind at a rigid wing turns by half a degree within a hundredth of a half chord: the lift
+/// grows with Wagner's function, in R. T. Jones's form 1 - 0.165 exp(-0.0455 s) - 0.335 exp(-0.3
+/// s), s the half chords travelled.
+BOOST_AUTO_TEST_CASE(lift_after_a_turn_of_the_wind_is_that_of_wagner) {
+  constexpr double speed = 50.0;
+  constexpr double angle = 0.5;                  // [deg]
+  constexpr double time = 0.5 * 1.8288 / speed;  // of a half chord
+  constexpr double ramp = 0.01 * time;
+  io::Case input = io::read_case(input_path("goland/wing"),
+                                 {"wind.speed=50", "blades.elements=1", "blades.order=1",
+                                  "transient={duration: 0.2, step: 9.144e-5, checkpoint: none}"});
+  for (model::SectionDefinition& section : input.turbine.blades.beam.sections) {
+    section.rigid.fill(true);
+    section.stiffness.setZero();
+  }
+  simulation::Scenario scenario = input;
+  scenario.transient.channels = {"B1N1Cl", "Wind1VelY"};
+  scenario.transient.stations.blade = {0.5};
+  model::WindChange change;
+  constexpr double degree = pi / 180.0;
+  change.direction = math::TimeCurve::along(
+      {{0.0, 90.0 * degree}, {ramp, (90.0 - angle) * degree}, {1.0, (90.0 - angle) * degree}});
+  scenario.transient.wind = change;
+  const Rows rows = run(scenario);
+  BOOST_REQUIRE(rows.times.size() > 2000u);
+  BOOST_TEST(rows.values.back()[1] == speed * std::cos(angle * degree), tolerance(1e-9));
+  const double steady = 2.0 * pi * std::sin(angle * degree);
+  for (const double s : {0.5, 1.0, 2.0, 5.0, 10.0}) {
+    const auto i = static_cast<std::size_t>(std::lround(s * time / 9.144e-5));
+    // The mean over the ramp.
+    const double t = rows.times[i] / time - 0.5 * ramp / time;
+    const double wagner = 1.0 - 0.165 * std::exp(-0.0455 * t) - 0.335 * std::exp(-0.3 * t);
+    BOOST_TEST_CONTEXT(s << " half chords")
+    BOOST_TEST(std::abs(rows.values[i][0]) / steady == wagner, tolerance(1e-4));
+  }
+}
+
+/// In a change that is slow against all lags the turbine is in its steady state of each instant.
+BOOST_AUTO_TEST_CASE(a_slow_change_of_the_wind_passes_through_steady_states) {
+  simulation::Scenario scenario =
+      rigid_rotor({"blades.elements=3", "blades.order=2", "wind.speed=8", "shaft.speed_rpm=9.155",
+                   "transient={duration: 900, step: 0.5, checkpoint: none}", "aero.inflow=oye"});
+  scenario.transient.channels = {"RtAeroFxh", "RtAeroPwr"};
+  model::WindChange change;
+  change.speed = math::TimeCurve::ramp(0.0, 8.0, 10.0, 0.004);
+  scenario.transient.wind = change;
+  const Rows rows = run(scenario);
+  const Steady end(rigid_rotor({"blades.elements=3", "blades.order=2", "wind.speed=10",
+                                "shaft.speed_rpm=9.155", "aero.inflow=oye"}));
+  const std::vector<double> expected = end.channels({"RtAeroFxh", "RtAeroPwr"});
+  for (std::size_t c = 0; c < 2; ++c)
+    BOOST_TEST(rows.values.back()[c] == expected[c],
+               tolerance(1e-3));  // tau1 follows the mean wind
+}
+
+/// Linear shear as the documentation of the case states it: speed (1 + left y/L + up (z -
+/// height)/L).
+BOOST_AUTO_TEST_CASE(linear_shear_is_a_part_of_the_speed) {
+  const io::Case input =
+      io::read_case(input_path("nrel5mw/land"),
+                    {"wind={speed: 12, height: 90, shear: {left: 0.2, up: 0.1, length: 126}}"});
+  const elements::Wind wind = model::build_turbine(input.turbine).air->rotor.wind;
+  const Vector3 there = wind.at<double>(Vector3(-21.0, -5.0, 111.0), 0.0);  // 21 m left and up
+  BOOST_TEST(there(1) == 12.0 * (1.0 + 0.3 * 21.0 / 126.0), tolerance(1e-12));
 }
 
 // ---- the tower in the wind ---------------------------------------------------------------------

@@ -28,6 +28,7 @@ struct AirPointReport {
   T hub_speed;             ///< angular velocity of the rotor about its axis [rad/s]
   T radius;                ///< distance from the axis [m]
   Vec6<T> hub_load;        ///< force and moment about the apex in h1 h2 h3 [N/m, N]
+  Vec3<T> hub_wind;        ///< undisturbed wind at the apex in n1 n2 n3 [m/s]
 };
 
 class BladeAir final : public Stated<BladeAir> {
@@ -76,9 +77,10 @@ class BladeAir final : public Stated<BladeAir> {
   template <class T>
   static elements::RootPose<T> root_of(const Eigen::Matrix<T, arguments, 1>& x);
   template <class T>
-  elements::StationMotion<T> motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const;
+  elements::StationMotion<T> motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x,
+                                       double t) const;
   template <class T>
-  AirPointReport<T> report_at(int p, const Eigen::Matrix<T, arguments, 1>& x) const;
+  AirPointReport<T> report_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t) const;
 
   const model::Turbine& turbine_;
   std::size_t k_;

@@ -42,7 +42,7 @@ inline constexpr double direct_share = 0.6;
 /// Constants of a rotor in the air.
 struct AirRotor {
   AirModels models;
-  MeanWind wind;
+  Wind wind;
   double density = 1.225;  ///< [kg/m^3]
   int blades = 1;
   double tip_radius = 0.0;    ///< undeformed, normal to the shaft [m]
@@ -147,11 +147,11 @@ T dynamics_share(const AirModels& models, const SectionFlow<T>& flow, const T& a
 
 }  // namespace air
 
-/// Motion of a station with u, theta; V, Omega, and the wind there.
+/// Motion of a station with u, theta; V, Omega, and the wind there at the time t.
 template <class T>
 StationMotion<T> station_motion(const AirRotor& rotor, const AirStation& station,
                                 const Eigen::Matrix<T, 12, 1>& z, const RootPose<T>& root,
-                                const HubPose<T>& hub) {
+                                const HubPose<T>& hub, double t = 0.0) {
   using math::cross;
   using math::dot;
   using std::sqrt;
@@ -162,7 +162,7 @@ StationMotion<T> station_motion(const AirRotor& rotor, const AirStation& station
   const Vec3<T> local = station.x.cast<T>() + z.template head<3>();
   const Vec3<T> place = root.place + root.axes * local;
   const Mat3<T> axes = root.axes * motion.R;  // of the section, as columns in N
-  const Vec3<T> wind = rotor.wind.at<T>(place);
+  const Vec3<T> wind = rotor.wind.at<T>(place, t);
   motion.velocity = z.template segment<6>(6);
   motion.relative = axes.transpose() * wind - z.template segment<3>(6) -
                     cross(omega, Vec3<T>(station.center.cast<T>()));

@@ -1,5 +1,8 @@
-// The mean wind as a function of the place (docs/theory.md, section 11.1).
+// The wind as a function of the place, and of time (docs/theory.md, section 11.1).
 #pragma once
+
+#include <cmath>
+#include <memory>
 
 #include "samara/elements/air_models.hpp"
 #include "samara/elements/tower_flow.hpp"
@@ -21,17 +24,11 @@ struct MeanWind {
   double direction = 0.0;   ///< 0: along n2; > 0: counter-clockwise seen from above [rad]
   double veer = 0.0;        ///< change of the direction with the height [rad/m]
   double upflow = 0.0;      ///< > 0: the wind rises [rad]
-  TowerFlow tower;
+  double gust = 0.0;        ///< added to the speed at all places [m/s]
 
-  /// Velocity at a place, with the influence of the tower [m/s].
+  /// Velocity at a place [m/s].
   template <class T>
-  Vec3<T> at(const Vec3<T>& place) const {
-    const Vec3<T> wind = undisturbed_at(place);
-    return tower.disturbs() ? tower.disturb(wind, place) : wind;
-  }
-  /// The same without the tower.
-  template <class T>
-  Vec3<T> undisturbed_at(const Vec3<T>& place) const;
+  Vec3<T> at(const Vec3<T>& place) const;
 
  private:
   template <class T>
@@ -49,7 +46,7 @@ T MeanWind::profile_factor(const T& z) const {
 }
 
 template <class T>
-Vec3<T> MeanWind::undisturbed_at(const Vec3<T>& place) const {
+Vec3<T> MeanWind::at(const Vec3<T>& place) const {
   using std::cos;
   using std::sin;
   T factor = profile_factor<T>(place(2)) * T(speed);
@@ -62,8 +59,60 @@ Vec3<T> MeanWind::undisturbed_at(const Vec3<T>& place) const {
   }
   if (shear_left != 0.0) factor -= (cosine * place(0) + sine * place(1)) * T(shear_left);
   if (shear_up != 0.0) factor += (place(2) - T(height)) * T(shear_up);
+  if (gust != 0.0) factor += T(gust);
   const T level = factor * T(std::cos(upflow));
   return Vec3<T>(-(level * sine), level * cosine, factor * T(std::sin(upflow)));
 }
+
+/// A wind that changes with time.
+class ChangingWind {
+ public:
+  /// Velocity [m/s] and its derivatives by the place, dv_i/dx_j [1/s]; components n1 n2 n3.
+  struct Sample {
+    Vector3 velocity = Vector3::Zero();
+    Matrix3 gradient = Matrix3::Zero();
+  };
+
+  ChangingWind() = default;
+  ChangingWind(const ChangingWind&) = delete;
+  ChangingWind& operator=(const ChangingWind&) = delete;
+  virtual ~ChangingWind() = default;
+
+  /// @throws DomainError where the wind is not known
+  virtual Sample at(const Vector3& place, double t) const = 0;
+};
+
+/// The wind around a turbine.
+struct Wind {
+  MeanWind mean;
+  std::shared_ptr<const ChangingWind> changing;  ///< instead of the mean wind; null: none
+  TowerFlow tower;
+
+  /// Velocity at a place and a time without the tower [m/s].
+  template <class T>
+  Vec3<T> undisturbed_at(const Vec3<T>& place, double t) const {
+    if (!changing) return mean.at<T>(place);
+    Vector3 plain;
+    for (int i = 0; i < 3; ++i) plain(i) = math::plain_value(place(i));
+    ChangingWind::Sample sample;
+    if (plain.allFinite())
+      sample = changing->at(plain, t);
+    else  // dependences, or no place at all
+      sample = {Vector3::Constant(std::nan("")), Matrix3::Constant(std::nan(""))};
+    Vec3<T> velocity;
+    for (int i = 0; i < 3; ++i) {
+      velocity(i) = T(sample.velocity(i));
+      for (int j = 0; j < 3; ++j)
+        velocity(i) += (place(j) - T(plain(j))) * T(sample.gradient(i, j));
+    }
+    return velocity;
+  }
+  /// The same with the influence of the tower on the blades.
+  template <class T>
+  Vec3<T> at(const Vec3<T>& place, double t) const {
+    const Vec3<T> wind = undisturbed_at<T>(place, t);
+    return tower.disturbs() ? tower.disturb(wind, place) : wind;
+  }
+};
 
 }  // namespace samara::elements

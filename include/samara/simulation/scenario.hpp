@@ -8,6 +8,7 @@
 
 #include "samara/analysis/options.hpp"
 #include "samara/linear/linearization.hpp"
+#include "samara/model/changing_wind.hpp"
 #include "samara/model/definition.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_events.hpp"
@@ -34,6 +35,7 @@ struct TransientSetup {
   std::optional<math::TimeCurve> pitch;   ///< pitch of all blades [rad]
   std::optional<math::TimeCurve> yaw;     ///< [rad]
   std::optional<math::TimeCurve> teeter;  ///< [rad]
+  std::optional<model::WindChange> wind;  ///< instead of the mean wind
   std::vector<turbine::TurbineEvent> events;
 };
 
@@ -77,8 +79,10 @@ int highest_harmonic(const model::TurbineDefinition& turbine);
 /// The trim's options, with the harmonics that the turbine requires.
 analysis::TrimOptions trim_options(const Scenario& scenario);
 
-/// The turbine with the prescribed motions of the transient.
-/// @throws InputError as model::build_turbine
+/// The turbine with the prescribed motions and the wind of the transient, whose files have been
+/// read (io/wind_files.hpp).
+/// @throws InputError as model::build_turbine, and for a box of turbulence that is smaller than the
+/// rotor or too short
 model::Turbine build_operated_turbine(const Scenario& scenario);
 
 }  // namespace samara::simulation
