@@ -160,7 +160,7 @@ BOOST_AUTO_TEST_CASE(every_choice_of_wind_and_air_comes_back) {
   turbine.wind->profile = Profile::logarithmic;
   turbine.wind->roughness = 0.03;
   check_round_trip(turbine, "roughness");
-  turbine.wind = model::WindDefinition{.speed = 0.0};
+  turbine.wind.emplace();
   check_round_trip(turbine, "still air");
   turbine.aero.emplace();
   BOOST_TEST(write_case_text(turbine, {}).find("aero: {}") != std::string::npos);
