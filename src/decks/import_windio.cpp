@@ -59,7 +59,7 @@ io::YamlNode parse_deck(const std::string& path) {
 }
 
 /// YAML 1.1 has "15.e+6" and "+1."; from_chars reads all but the sign.
-std::optional<double> parse_number(const io::YamlNode& node) {
+std::optional<double> number_of(const io::YamlNode& node) {
   if (node.kind != io::YamlNode::Kind::scalar || node.quoted) return {};
   return parse_number(node.text);
 }
@@ -220,7 +220,7 @@ class Importer {
   bool is_stated(const std::string& key) const { return options_.stated.contains(key); }
 
   double number_at(const std::string& path, const io::YamlNode& node) {
-    const std::optional<double> value = parse_number(node);
+    const std::optional<double> value = number_of(node);
     if (!value)
       errors_.add(place(node),
                   path + ": expected a number" +
@@ -356,7 +356,7 @@ class Importer {
     if (inertia.empty()) return "";
     double most = 0.0;
     for (const io::YamlNode& value : find(inertia)->children)
-      most = std::max(most, std::abs(parse_number(value).value_or(0.0)));
+      most = std::max(most, std::abs(number_of(value).value_or(0.0)));
     return most > most_mass ? " (its mass of up to " + rounded(most) + " kg/m is implausible, too)"
                             : "";
   }
@@ -684,7 +684,7 @@ class Importer {
   /// True where the deck's matrices have a shear stiffness.
   bool states_shear(const std::string& elastic) const {
     const auto is_positive = [](const io::YamlNode& value) {
-      return parse_number(value).value_or(0.0) > 0.0;
+      return number_of(value).value_or(0.0) > 0.0;
     };
     for (const char* key : {".stiffness_matrix.K11", ".stiffness_matrix.K22"})
       if (const io::YamlNode* values = find(elastic + key);
