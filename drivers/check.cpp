@@ -256,13 +256,14 @@ std::vector<std::pair<std::string, std::string>> air_lines(
   int still = 0;
   for (const elements::AirStation& station : air.stations.front())
     if (!station.has_dynamics(models)) ++still;
-  const char* dynamics[] = {"hgm", "oye", "quasi_steady", "static"};
+  const char* dynamics[] = {"hgm", "oye", "quasi_steady", "static", "peters"};
   const char* thrust[] = {"glauert_skew", "buhl", "buhl_f", "madsen"};
   std::string words = count(static_cast<int>(air.stations.front().size()), "station") +
                       " a blade; airfoil dynamics " +
                       dynamics[static_cast<std::size_t>(models.dynamics)];
   const bool has_lags = models.dynamics == elements::AirfoilDynamics::hgm ||
-                        models.dynamics == elements::AirfoilDynamics::oye;
+                        models.dynamics == elements::AirfoilDynamics::oye ||
+                        models.dynamics == elements::AirfoilDynamics::peters;
   if (has_lags && still > 0)
     words += " (" + std::to_string(still) + " without: their polars have no attached lift)";
   if (models.induction == elements::Induction::none)

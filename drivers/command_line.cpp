@@ -104,6 +104,8 @@ class Parser {
       line_.report = true;
     else if (word == "--all")
       line_.all_modes = true;
+    else if (word == "--air")
+      line_.air_part = true;
     else if (word == "--parked")
       line_.parked = true;
     else if (name == "--first")
@@ -157,9 +159,10 @@ class Parser {
   }
 
   static std::string unknown_option_words(const std::string& name) {
-    std::vector<std::string> known{"--set",    "--csv",     "--all",        "--first",
-                                   "--parked", "--restart", "--mu-order",   "--report",
-                                   "--help",   "--version", "--tower-only", "--help-options"};
+    std::vector<std::string> known{"--set",         "--csv",    "--all",     "--air",
+                                   "--first",       "--parked", "--restart", "--mu-order",
+                                   "--report",      "--help",   "--version", "--tower-only",
+                                   "--help-options"};
     for (const decks::StatedQuantity& quantity : decks::stated_quantities())
       known.push_back(std::string("--") + quantity.option);
     const std::string suggestion = suggest(name, known);
@@ -275,6 +278,8 @@ class Parser {
     }
     if (line_.all_modes && !line_.command->lists_modes)
       throw InputError("--all: samara " + name + " lists no modes; modes and floquet do");
+    if (line_.air_part && !line_.command->lists_modes)
+      throw InputError("--air: samara " + name + " lists no modes; modes and floquet do");
     if (line_.first_modes > 0 && !line_.command->lists_modes)
       throw InputError("--first: samara " + name + " lists no modes; modes and floquet do");
     if (line_.parked && name != "modes")
@@ -365,6 +370,8 @@ constexpr char option_lines[] =
                     Only a file that samara wrote is ever overwritten
   --csv FILE.csv    the table as comma-separated values, too
   --all             lists unresolved modes, too (modes, floquet)
+  --air             part of the air in the damping, by the modes under constant air loads (modes,
+                    floquet; takes about twice the time)
   --first N         lists the first N modes; the verdict counts all (modes, floquet)
   --parked          the rotor stands still, as with --set shaft.speed=0 (modes)
   --restart FILE.h5 continues from the last checkpoint of a result (transient)

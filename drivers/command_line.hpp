@@ -47,6 +47,7 @@ struct CommandLine {
   std::string windio_option;  ///< last given option that only windIO has; empty: none
   bool report = false;        ///< --report: print the report, even without a case file
   bool all_modes = false;
+  bool air_part = false;
   int first_modes = 0;  ///< rows of a table of modes; 0: all
   bool parked = false;
   std::vector<std::string> settings;

@@ -1,10 +1,13 @@
 // samara floquet: the stability of the periodic steady state.
 #include "samara/analysis/floquet.hpp"
 
+#include <optional>
+
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/air_part.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
@@ -44,19 +47,28 @@ void run_floquet(const Job& job) {
   const auto held = simulation::hold_wake(system);
   const analysis::Floquet floquet = analysis::find_floquet_modes(
       held ? *held : system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
+  std::optional<simulation::AirPart> air;
+  if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr)
+    air = simulation::find_air_part(
+        system, trim.solution, floquet.set,
+        analysis::find_floquet_modes(*still, trim.solution, job.input.floquet, PETSC_COMM_WORLD,
+                                     progress)
+            .set);
   progress.finish();
   if (!is_first) return;
   const simulation::StabilityAssessment assessment = simulation::assess_stability(floquet.set);
   deliver(
       job,
       headline(job.input, floquet, system.size()) +
-          mode_table(floquet.set, assessment, {job.all_modes, job.first_modes}) + "\n" +
-          verdict_text(floquet.set, assessment, job.all_modes),
+          mode_table(floquet.set, assessment,
+                     {job.all_modes, job.first_modes, air ? &*air : nullptr}) +
+          "\n" + verdict_text(floquet.set, assessment, job.all_modes),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
         file.write_floquet(floquet);
+        if (air) write_air_part(file, "/floquet", *air, turbine.blades.size());
       },
       [&](const std::string& path) { io::write_mode_table(path, floquet.set); });
   require_verdict(floquet.set, assessment);

@@ -19,6 +19,7 @@ struct Job {
   std::string csv_path;                ///< empty: no table
   std::shared_ptr<io::FileLock> lock;  ///< lock of the result; only on the first rank
   bool all_modes = false;              ///< also list modes that are not resolved
+  bool air_part = false;               ///< also find the part of the air in the damping
   int first_modes = 0;                 ///< number of listed rows; 0: all
   std::string restart_path;            ///< empty: the run starts at its beginning
   /// Results that the command reads, if any; `input` is the case of the first.

@@ -218,6 +218,7 @@ Job prepare(const CommandLine& line) {
   job.csv_path = line.csv_path;
   job.restart_path = line.restart_path;
   job.all_modes = line.all_modes;
+  job.air_part = line.air_part;
   job.first_modes = line.first_modes;
   if (job.result_path.empty() && line.command->writes_result)
     job.result_path = std::filesystem::path(line.case_path).stem().string() + ".h5";

@@ -81,7 +81,7 @@ std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
 }
 
 std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& assessment,
-                                std::size_t m) {
+                                std::size_t m, const simulation::AirPart* air) {
   const Mode& mode = set.modes[m];
   const Motion motion = assessment.motions[m];
   const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
@@ -99,6 +99,10 @@ std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& a
                       : "-");
   row.push_back(
       frequency == 0.0 || !is_known ? "-" : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
+  if (air != nullptr)
+    row.push_back(frequency == 0.0 || !is_known || std::isnan(air->held_damping[m])
+                      ? "-"
+                      : fixed(100.0 * (mode.damping_ratio - air->held_damping[m]), 3));
   row.push_back(frequency == 0.0 || !is_known
                     ? "-"
                     : fixed(has_rate ? 100.0 * logarithmic_decrement(mode) : 0.0, 3));
@@ -288,6 +292,7 @@ std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment
   table.add_column(set.rotor_speed > 0.0 ? "" : "frequency", "Hz");
   if (has_fixed_frame(set)) table.add_column("fixed frame", "Hz");
   table.add_column("damping", "%");
+  if (listing.air != nullptr) table.add_column("of the air", "%");
   table.add_column("log decr", "%");
   table.add_column("growth", "1/s");
   if (set.participation.size() > 0) table.add_column("harmonic", "k");
@@ -301,11 +306,39 @@ std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment
   const std::size_t shown = listing.first > 0
                                 ? std::min(rows.size(), static_cast<std::size_t>(listing.first))
                                 : rows.size();
-  for (std::size_t i = 0; i < shown; ++i) table.add_row(row_of(set, assessment, rows[i]));
+  for (std::size_t i = 0; i < shown; ++i)
+    table.add_row(row_of(set, assessment, rows[i], listing.air));
   return table.text() + (shown < rows.size()
                              ? "the first " + std::to_string(shown) + " of " +
                                    count(static_cast<int>(rows.size()), "mode") + " (--first)\n"
                              : "");
+}
+
+void write_air_part(io::ResultFile& file, const std::string& group, const simulation::AirPart& part,
+                    std::size_t blades) {
+  file.write_values(group + "/held_air_damping", part.held_damping,
+                    {"1",
+                     "none",
+                     "damping ratio of the same mode under the constant air loads of the steady "
+                     "state; the part of the air is the difference to damping_ratio",
+                     {"mode"}});
+  file.write_values(group + "/held_air_likeness", part.likeness,
+                    {"1", "none", "modal assurance criterion of both shapes", {"mode"}});
+  const std::size_t stations = part.lengths.size() / blades;
+  const auto count = static_cast<Eigen::Index>(part.lengths.size());
+  std::vector<double> work;
+  for (Eigen::Index m = 0; m < part.work.rows(); ++m)
+    for (Eigen::Index i = 0; i < count; ++i) work.push_back(part.work(m, i));
+  file.write_array(group + "/air_work", work,
+                   {static_cast<std::size_t>(part.work.rows()), blades, stations},
+                   {"J/m",
+                    "none",
+                    "work of the air per cycle and length of the blade, at the amplitude of the "
+                    "mode's shape; positive where the air feeds the motion",
+                    {"mode", "blade", "station"}});
+  file.write_values(group + "/air_length",
+                    {part.lengths.begin(), part.lengths.begin() + static_cast<long>(stations)},
+                    {"m", "none", "length that each station stands for", {"station"}});
 }
 
 std::string verdict_text(const ModeSet& set, const StabilityAssessment& assessment, bool all) {

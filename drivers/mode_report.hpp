@@ -4,15 +4,22 @@
 #include <string>
 
 #include "samara/analysis/mode.hpp"
+#include "samara/io/result_file.hpp"
+#include "samara/simulation/air_part.hpp"
 #include "samara/simulation/stability.hpp"
 
 namespace samara::drivers {
 
 /// Selection of the listed modes.
 struct ModeListing {
-  bool all = false;  ///< also modes that are not resolved
-  int first = 0;     ///< number of rows; 0: all
+  bool all = false;                          ///< also modes that are not resolved
+  int first = 0;                             ///< number of rows; 0: all
+  const simulation::AirPart* air = nullptr;  ///< its part in the damping; null: not known
 };
+
+/// Writes `group`/held_air_damping, held_air_likeness, air_work and the lengths of the stations.
+void write_air_part(io::ResultFile& file, const std::string& group, const simulation::AirPart& part,
+                    std::size_t blades);
 
 /// One line per mode, with its number in the result. Modes that are not resolved are below the
 /// others. Harmonics are listed if the set has participations.

@@ -1,9 +1,12 @@
 // samara modes: the modes for constant tangents (a parked rotor, or a balanced one in its axes).
+#include <optional>
+
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/air_part.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
@@ -45,18 +48,24 @@ void run_modes(const Job& job) {
   simulation::note_roughness(trim, progress);
   const auto held = simulation::hold_wake(system);
   const analysis::ModeSet set = analysis::find_constant_modes(held ? *held : system, trim.solution);
+  std::optional<simulation::AirPart> air;
+  if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr)
+    air = simulation::find_air_part(system, trim.solution, set,
+                                    analysis::find_constant_modes(*still, trim.solution));
   progress.finish();
   if (!is_first) return;
   const simulation::StabilityAssessment assessment = simulation::assess_stability(set);
   deliver(
       job,
-      headline(job.input, set) + mode_table(set, assessment, {job.all_modes, job.first_modes}) +
+      headline(job.input, set) +
+          mode_table(set, assessment, {job.all_modes, job.first_modes, air ? &*air : nullptr}) +
           "\n" + verdict_text(set, assessment, job.all_modes),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
         file.write_modes(set);
+        if (air) write_air_part(file, "/modes", *air, turbine.blades.size());
       },
       [&](const std::string& path) { io::write_mode_table(path, set); });
   require_verdict(set, assessment);

@@ -41,12 +41,27 @@ constexpr std::array<NamedUnknown, air::unknowns> air_unknowns{{{"W_n", "m/s"},
                                                                 {"m2", "N"},
                                                                 {"m3", "N"}}};
 
+/// Whether an unknown is a state of the shed wake.
+bool is_of_wake(const AirModels& models, int i) {
+  if (models.dynamics == AirfoilDynamics::peters)
+    return (i >= air::wake && i < air::force) || (i >= air::reduced && i < air::quasi_steady);
+  return i >= air::wake && i < air::lift;
+}
+
 /// Part after which exponents are named.
-const char* part_of(int i) {
-  return i < air::wake    ? "inflow"
-         : i < air::lift  ? "shed wake"
-         : i < air::force ? "stall"
-                          : "air load";
+const char* part_of(const AirModels& models, int i) {
+  return is_of_wake(models, i) ? "shed wake"
+         : i < air::wake       ? "inflow"
+         : i < air::force      ? "stall"
+                               : "air load";
+}
+
+/// Name and unit of an unknown.
+NamedUnknown name_of(const AirModels& models, int i) {
+  constexpr std::array<const char*, 6> states{"mu5", "mu6", "mu1", "mu2", "mu3", "mu4"};
+  if (models.dynamics != AirfoilDynamics::peters || !is_of_wake(models, i))
+    return air_unknowns[at(i)];
+  return {states[at(i < air::wake ? i - air::reduced : 2 + i - air::wake)], "m/s"};
 }
 
 /// Role of unknown i of a station, and whether the models have it.
@@ -54,11 +69,12 @@ enum class Use { none, state, auxiliary };
 
 Use use_of(const AirModels& models, const AirStation& station, int i) {
   if (i >= air::force) return Use::auxiliary;
+  const bool has_dynamics = station.has_dynamics(models);
   if (i >= air::wake) {
-    if (!station.has_dynamics(models)) return Use::none;
-    const bool is_used = models.dynamics == AirfoilDynamics::hgm || i == air::separation;
-    return is_used ? Use::state : Use::none;
+    if (!has_dynamics) return Use::none;
+    return models.dynamics != AirfoilDynamics::oye || i == air::separation ? Use::state : Use::none;
   }
+  if (has_dynamics && is_of_wake(models, i)) return Use::state;
   if (models.induction == Induction::none) return Use::none;
   if (models.induction == Induction::axial && i % 2 == 1) return Use::none;
   if (i >= air::quasi_steady) return Use::auxiliary;
@@ -101,14 +117,16 @@ void BladeAir::describe_point(Registry& registry, int p) const {
   for (int i = 0; i < air::unknowns; ++i) {
     const Use use = use_of(rotor.models, station(p), i);
     if (use == Use::none) continue;
-    const system::Owner owner(system::PartKind::medium, part_of(i), static_cast<int>(k_) + 1);
+    const system::Owner owner(system::PartKind::medium, part_of(rotor.models, i),
+                              static_cast<int>(k_) + 1);
+    const NamedUnknown named = name_of(rotor.models, i);
     system::Unknown unknown{owner,
                             "point " + std::to_string(p + 1),
-                            air_unknowns[at(i)].name,
-                            air_unknowns[at(i)].unit,
+                            named.name,
+                            named.unit,
                             use == Use::state ? UnknownRole::state : UnknownRole::auxiliary,
                             system::Frame::rotating};
-    if (i < air::lift) unknown.scale = velocity;
+    if (i < air::lift || is_of_wake(rotor.models, i)) unknown.scale = velocity;
     if (i >= air::force) unknown.scale = i < air::moment ? load : load * station(p).chord;
     registry.describe(first + i, unknown,
                       use == Use::state ? RowRole::evolution : RowRole::definition);
@@ -273,6 +291,11 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   axes.col(0) = x.template segment<3>(at_hub + 3);
   axes.col(1) = hub.axis;
   axes.col(2) = cross(Vec3<T>(axes.col(0)), Vec3<T>(axes.col(1)));
+  report.place = place;
+  report.force = force;
+  report.couple = moment;
+  report.section_axes = section;
+  report.hub_axes = axes;
   report.hub_load << axes.transpose() * force,
       axes.transpose() * Vec3<T>(cross(arm, force) + moment);
   return report;

@@ -9,6 +9,33 @@ namespace {
 
 using Pair = math::Dual<2>;
 
+/// A = D + d b^T + c d^T + c b^T/2 with D, b, c, d of the paper; n counts from 1.
+FiniteStates make_finite_states() {
+  constexpr int N = FiniteStates::count;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  const auto factorial = [](int n) { return std::tgamma(n + 1.0); };
+  Matrix D = Matrix::Zero();
+  FiniteStates::Vector b;
+  FiniteStates::Vector c;
+  const FiniteStates::Vector d = 0.5 * FiniteStates::Vector::Unit(0);
+  for (int n = 1; n <= N; ++n) {
+    const double sign = n % 2 == 1 ? 1.0 : -1.0;
+    b(n - 1) =
+        n == N ? sign
+               : sign * factorial(N + n - 1) / (factorial(N - n - 1) * factorial(n) * factorial(n));
+    c(n - 1) = 2.0 / n;
+    if (n == N) continue;
+    D(n, n - 1) = 1.0 / (2.0 * (n + 1));
+    D(n - 1, n) = -1.0 / (2.0 * n);
+  }
+  const Matrix A = D + d * b.transpose() + c * d.transpose() + 0.5 * c * b.transpose();
+  FiniteStates states;
+  states.inverse = A.inverse();
+  states.feed = states.inverse * c;
+  states.weights = 0.5 * b;
+  return states;
+}
+
 /// The rows of the balance of momentum and their derivatives by Q.
 Eigen::Vector2d balance(const AirRotor& rotor, const AirStation& station,
                         const StationMotion<double>& motion, const Eigen::Vector2d& Q,
@@ -21,6 +48,11 @@ Eigen::Vector2d balance(const AirRotor& rotor, const AirStation& station,
 }
 
 }  // namespace
+
+const FiniteStates& finite_states() {
+  static const FiniteStates states = make_finite_states();
+  return states;
+}
 
 Eigen::Vector2d steady_induction(const AirRotor& rotor, const AirStation& station,
                                  const StationMotion<double>& motion) {
@@ -60,7 +92,14 @@ Eigen::Matrix<double, air::unknowns, 1> steady_air(const AirRotor& rotor, const 
   z.segment<2>(air::induced) = z.segment<2>(air::quasi_steady) = Q;
   if (models.inflow == Inflow::oye) z.segment<2>(air::reduced) = (1.0 - direct_share) * Q;
   // Each lag depends on those before it: four passes settle all.
-  if (station.has_dynamics(models)) {
+  if (station.has_dynamics(models) && models.dynamics == AirfoilDynamics::peters) {
+    // lambda = 0 in steady air.
+    const SectionFlow<double> flow = station_air<double>(rotor, station, motion, z, no_rates).flow;
+    const FiniteStates::Vector mu =
+        -finite_states().feed * air::three_quarter_velocity(station, flow);
+    z.segment<4>(air::wake) = mu.head<4>();
+    z.segment<2>(air::reduced) = mu.tail<2>();
+  } else if (station.has_dynamics(models)) {
     const auto& [A1, A2, b1, b2] = models.wake;
     for (int pass = 0; pass < 4; ++pass) {
       const Rows rows = air_station_rows<double>(rotor, station, motion, z, no_rates);

@@ -170,12 +170,14 @@ void declare_dynamics(Visitor& fields, AeroDefinition& aero) {
                  "`hgm`: shed wake, lag of the pressure and lag of the separation (Hansen, Gaunaa, "
                  "Madsen 2004); `oye`: lag of the separation; `quasi_steady`: the polar at the "
                  "angle of attack at three quarters of the chord; `static`: the polar at that at "
-                 "the aerodynamic centre"},
+                 "the aerodynamic centre; `peters`: shed wake of attached flow by six states "
+                 "(Peters, Karunamoorthy, Cao 1995), with the slope of the lift alone"},
                 aero.dynamics,
                 {{"hgm", AirfoilDynamics::hgm},
                  {"oye", AirfoilDynamics::oye},
                  {"quasi_steady", AirfoilDynamics::quasi_steady},
-                 {"static", AirfoilDynamics::static_polar}});
+                 {"static", AirfoilDynamics::static_polar},
+                 {"peters", AirfoilDynamics::peters}});
   bool is_jones = aero.wake == elements::jones_constants;
   fields.numbers({"wake_constants", "", non_negative,
                   "`[A1, A2, b1, b2]` of the shed wake of `hgm`: lift deficits, and their decay "

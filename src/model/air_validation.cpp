@@ -96,6 +96,11 @@ class AirValidation {
     else if (blades.aero_sections.empty())
       add("aero", "needs blades.aero_sections, the chords and airfoils of the blades",
           {"blades.aero_sections"});
+    if (aero.dynamics == AirfoilDynamics::peters && aero.induction != Induction::none &&
+        aero.inflow == Inflow::oye)
+      add("aero.airfoil_dynamics",
+          "peters has no dynamic inflow beside it; hint: inflow: equilibrium, or induction: none",
+          {"aero.inflow"});
     if (!(aero.wake[2] > 0.0 && aero.wake[3] > 0.0))
       add("aero.wake_constants", "expected decay rates b1, b2 > 0");
   }

@@ -105,16 +105,19 @@ BOOST_AUTO_TEST_CASE(static_load_of_a_flat_plate) {
 }
 
 /// The typical section of Hodges and Pierce: plunge h (down) and pitch about the reference line,
-/// x1 to x4. Half chord, density and pitch frequency are 1.
+/// the states of the wake. Half chord, density and pitch frequency are 1.
+template <int states = 4>
 class TypicalSection {
  public:
-  static constexpr int size = 8;  // h, theta, their rates, x1 to x4
+  static constexpr int size = 4 + states;  // h, theta, their rates, x1 to x4 (or mu1 to mu6)
 
   explicit TypicalSection(AirfoilDynamics dynamics = AirfoilDynamics::hgm) {
     rotor_ = rotor_without_induction(dynamics);
     rotor_.density = 1.0;
     rotor_.models.added_mass = true;
-    station_.airfoil = curves_of(flat_plate());
+    model::AirfoilDefinition plate = flat_plate();
+    if (dynamics == AirfoilDynamics::peters) plate.lift_slope = 2.0 * pi;
+    station_.airfoil = curves_of(plate);
     station_.chord = 2.0;
     station_.center = Vector3(0.0, 0.3, 0.0);  // a quarter of the chord; pitch axis at a = -1/5
   }
@@ -125,7 +128,7 @@ class TypicalSection {
     Eigen::Matrix<T, size, 1> z;
     Eigen::Matrix<T, size, 1> z_dot;
     for (int i = 0; i < size; ++i) {
-      z(i) = math::independent<2 * size>(i == 7 ? 1.0 : 0.0, i);
+      z(i) = math::independent<2 * size>(states == 4 && i == 7 ? 1.0 : 0.0, i);
       z_dot(i) = math::independent<2 * size>(0.0, size + i);
     }
     const Eigen::Matrix<T, size, 1> rows = residual<T>(U, still_air, z, z_dot);
@@ -159,12 +162,16 @@ class TypicalSection {
     motion.relative =
         R.transpose() * wind - Vec3<T>(point.template segment<3>(6)) -
         math::cross(Vec3<T>(point.template segment<3>(9)), Vec3<T>(station_.center.cast<T>()));
-    Eigen::Matrix<T, air::unknowns, 1> states = Eigen::Matrix<T, air::unknowns, 1>::Zero();
+    Eigen::Matrix<T, air::unknowns, 1> own_states = Eigen::Matrix<T, air::unknowns, 1>::Zero();
     Eigen::Matrix<T, 10, 1> rates = Eigen::Matrix<T, 10, 1>::Zero();
-    states.template segment<4>(air::wake) = z.template tail<4>();
-    rates.template segment<4>(air::wake) = z_dot.template tail<4>();
+    own_states.template segment<4>(air::wake) = z.template segment<4>(4);
+    rates.template segment<4>(air::wake) = z_dot.template segment<4>(4);
+    if constexpr (states == 6) {
+      own_states.template segment<2>(air::reduced) = z.template tail<2>();
+      rates.template segment<2>(air::reduced) = z_dot.template tail<2>();
+    }
     const Eigen::Matrix<T, air::unknowns, 1> rows =
-        air_station_rows<T>(rotor_, station_, motion, states, rates);
+        air_station_rows<T>(rotor_, station_, motion, own_states, rates);
     // Rates of V and Omega in B, with R of the present angle.
     Vec6<T> velocity_dot = Vec6<T>::Zero();
     const Vec3<T> turning(z(3), T(0.0), T(0.0));
@@ -180,7 +187,8 @@ class TypicalSection {
     r(1) = z_dot(1) - z(3);
     r(2) = (z_dot(2) + z_dot(3) * arm) * mass + z(0) * plunge + force(2);
     r(3) = z_dot(3) * inertia + z_dot(2) * (mass * arm) + z(1) * inertia - moment;
-    r.template tail<4>() = rows.template segment<4>(air::wake);
+    r.template segment<4>(4) = rows.template segment<4>(air::wake);
+    if constexpr (states == 6) r.template tail<2>() = rows.template segment<2>(air::reduced);
     return r;
   }
 
@@ -206,7 +214,7 @@ BOOST_AUTO_TEST_CASE(typical_section_has_the_eigenvalues_of_theodorsens_loads) {
        {2.0, {Complex(-0.072686), -0.385647, {-0.172736, 0.521491}, {-0.066052, 0.702986}}},
        {2.5, {Complex(-0.050697), -0.274882, {0.084480, 0.601219}, {-0.506633, 0.551897}}}}};
   constexpr double printed = 1e-6;
-  const TypicalSection section;
+  const TypicalSection<> section;
   for (const Expected& expected : all) {
     const Eigen::VectorXcd found = section.eigenvalues(expected.U);
     for (const Complex& value : expected.values) {
@@ -217,9 +225,9 @@ BOOST_AUTO_TEST_CASE(typical_section_has_the_eigenvalues_of_theodorsens_loads) {
   }
 }
 
-/// Flutter speed with Jones's constants: U/(b omega_theta) = 2.17036, frequency 0.644334.
-BOOST_AUTO_TEST_CASE(typical_section_flutters_at_the_speed_of_jones_constants) {
-  const TypicalSection section;
+/// Speed at which a section begins to flutter, and its frequency.
+template <class Section>
+std::pair<double, double> find_flutter(const Section& section) {
   const auto growth = [&section](double U) {
     const Eigen::VectorXcd found = section.eigenvalues(U);
     Eigen::Index least = 0;
@@ -232,13 +240,82 @@ BOOST_AUTO_TEST_CASE(typical_section_flutters_at_the_speed_of_jones_constants) {
     const double middle = 0.5 * (low + high);
     (growth(middle).real() > 0.0 ? high : low) = middle;
   }
-  BOOST_TEST(std::abs(low - 2.17036) < 1e-5);
-  BOOST_TEST(std::abs(std::abs(growth(low).imag()) - 0.644334) < 1e-5);
+  return {low, std::abs(growth(low).imag())};
+}
+
+/// Flutter speed with Jones's constants: U/(b omega_theta) = 2.17036, frequency 0.644334.
+BOOST_AUTO_TEST_CASE(typical_section_flutters_at_the_speed_of_jones_constants) {
+  const auto [speed, frequency] = find_flutter(TypicalSection<>());
+  BOOST_TEST(std::abs(speed - 2.17036) < 1e-5);
+  BOOST_TEST(std::abs(frequency - 0.644334) < 1e-5);
+}
+
+/// The same section with six finite states, by an independent program.
+BOOST_AUTO_TEST_CASE(typical_section_with_finite_states_agrees_with_an_independent_program) {
+  using Complex = std::complex<double>;
+  const TypicalSection<6> section(AirfoilDynamics::peters);
+  const auto [speed, frequency] = find_flutter(section);
+  BOOST_TEST(std::abs(speed - 2.165420) < 1e-6);
+  BOOST_TEST(std::abs(frequency - 0.654518) < 1e-6);
+  const Eigen::VectorXcd found = section.eigenvalues(2.0);
+  for (const Complex& value :
+       {Complex(-0.088960), Complex(-0.522497), Complex(-3.989423), Complex(-5.174727),
+        Complex(-0.175127, 0.497881), Complex(-0.054034, 0.710102), Complex(-4.570257, 11.043529)})
+    BOOST_TEST_CONTEXT(value) BOOST_TEST(distance_to(found, value) < 1e-6);
+  const Eigen::VectorXcd moving = section.eigenvalues(2.0, true);
+  for (const Complex& value : found) BOOST_TEST(distance_to(moving, value) < 1e-9);
+}
+
+/// The lift of an oscillating normal velocity with six finite states, by an independent program.
+BOOST_AUTO_TEST_CASE(finite_states_approach_theodorsens_function) {
+  using T = math::Dual<13>;  // w_n, mu1 to mu6, their rates
+  const AirRotor rotor = rotor_without_induction(AirfoilDynamics::peters);
+  AirStation station;
+  model::AirfoilDefinition plate = flat_plate();
+  plate.lift_slope = 2.0 * pi;
+  station.airfoil = curves_of(plate);
+  station.chord = 2.0;
+  constexpr double U = 10.0;
+  SectionFlow<T> flow;
+  flow.c = math::constant<13>(-U);
+  flow.n = math::independent<13>(0.0, 0);
+  flow.speed = math::constant<13>(U);
+  flow.omega = math::constant<13>(0.0);
+  flow.half_chord_time = math::constant<13>(1.0 / U);
+  Eigen::Matrix<T, 6, 1> mu;
+  Eigen::Matrix<T, 6, 1> mu_dot;
+  for (int i = 0; i < 6; ++i) {
+    mu(i) = math::independent<13>(0.0, 1 + i);
+    mu_dot(i) = math::independent<13>(0.0, 7 + i);
+  }
+  Eigen::Matrix<T, 6, 1> rows;
+  const T lift = finite_state_coefficients<T>(rotor.models, station, flow, mu, mu_dot, rows).lift;
+  const std::array<std::pair<double, std::complex<double>>, 6> expected{
+      {{0.05, {0.905568, -0.145588}},
+       {0.1, {0.819138, -0.168634}},
+       {0.2, {0.732863, -0.177693}},
+       {0.3, {0.675163, -0.177071}},
+       {0.5, {0.602508, -0.155132}},
+       {1.0, {0.539310, -0.100891}}}};
+  for (const auto& [k, C] : expected) {
+    const std::complex<double> rate(0.0, k * U);
+    Eigen::Matrix<std::complex<double>, 6, 6> matrix;
+    Eigen::Matrix<std::complex<double>, 6, 1> right;
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j)
+        matrix(i, j) = rows(i).derivatives()(1 + j) + rate * rows(i).derivatives()(7 + j);
+      right(i) = -rows(i).derivatives()(0);
+    }
+    const Eigen::Matrix<std::complex<double>, 6, 1> states = matrix.partialPivLu().solve(right);
+    std::complex<double> found = lift.derivatives()(0);
+    for (int j = 0; j < 6; ++j) found += lift.derivatives()(1 + j) * states(j);
+    BOOST_TEST_CONTEXT("k = " << k) BOOST_TEST(std::abs(found / (2.0 * pi / U) - C) < 1e-6);
+  }
 }
 
 /// A section that moves through still air has the exponents of one in wind.
 BOOST_AUTO_TEST_CASE(wind_and_motion_are_relative) {
-  const TypicalSection section;
+  const TypicalSection<> section;
   const Eigen::VectorXcd in_wind = section.eigenvalues(2.0);
   const Eigen::VectorXcd moving = section.eigenvalues(2.0, true);
   for (const std::complex<double>& value : in_wind) BOOST_TEST(distance_to(moving, value) < 1e-9);
@@ -601,7 +678,8 @@ BOOST_AUTO_TEST_CASE(derivatives_agree_with_a_complex_step) {
                                     ThrustLaw::madsen}[static_cast<std::size_t>(trial % 4)]);
     rotor.models.dynamics =
         std::array{AirfoilDynamics::hgm, AirfoilDynamics::oye, AirfoilDynamics::quasi_steady,
-                   AirfoilDynamics::static_polar}[static_cast<std::size_t>(trial / 3 % 4)];
+                   AirfoilDynamics::static_polar,
+                   AirfoilDynamics::peters}[static_cast<std::size_t>(trial / 3 % 5)];
     rotor.models.inflow = std::array{Inflow::oye, Inflow::equilibrium,
                                      Inflow::frozen}[static_cast<std::size_t>(trial % 3)];
     rotor.wake_is_held = trial % 6 == 2;

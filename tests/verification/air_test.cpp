@@ -12,6 +12,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "samara/analysis/constant_modes.hpp"
+#include "samara/simulation/air_part.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/simulation/transient_simulation.hpp"
 #include "samara/turbine/turbine_channels.hpp"
@@ -99,6 +100,24 @@ BOOST_AUTO_TEST_CASE(goland_wing_flutters_at_the_speed_of_strip_theory) {
   }
   BOOST_TEST(low == 137.335, tolerance(1e-4));
   BOOST_TEST(growth(low).imag() == 69.346, tolerance(1e-4));
+}
+
+/// The same with six finite states: 136.12901 m/s, 70.04582 rad/s.
+BOOST_AUTO_TEST_CASE(goland_wing_with_finite_states_flutters_at_the_speed_of_strip_theory) {
+  const auto growth = [](double speed) {
+    return fastest_growth({"blades.elements=3", "blades.order=4", "aero.airfoil_dynamics=peters",
+                           "wind.speed=" + std::to_string(speed)});
+  };
+  double low = 136.0;
+  double high = 136.3;
+  BOOST_REQUIRE(growth(low).real() < 0.0);
+  BOOST_REQUIRE(growth(high).real() > 0.0);
+  while (high - low > 1e-4) {
+    const double middle = 0.5 * (low + high);
+    (growth(middle).real() > 0.0 ? high : low) = middle;
+  }
+  BOOST_TEST(low == 136.12901, tolerance(1e-5));
+  BOOST_TEST(growth(low).imag() == 70.04582, tolerance(1e-5));
 }
 
 /// Divergence of a uniform cantilever wing in strip theory: q_D = (pi/2L)^2 GJ/(c e a), with the
@@ -396,6 +415,45 @@ blades:
   const double expected = 0.5 * 1.225 * 0.5 * 4.0 * 6000.0;
   BOOST_TEST(std::abs(foot_force({}) / expected - 1.0) < 2e-3);
   BOOST_TEST(std::abs(foot_force({"wind.tower.drag_load=false"})) < 1e-6 * expected);
+}
+
+// ---- the part of the air in the damping -------------------------------------------------------
+
+/// A rigid blade on a flap hinge without other damping: all damping is that of the air, and the
+/// work per cycle is that of a damper, pi c omega a^2 = 2 pi (2 sigma) omega T with the kinetic
+/// energy T = I a^2/2 at the amplitude a and the growth sigma.
+BOOST_AUTO_TEST_CASE(work_of_the_air_on_flapping_is_that_of_its_damping) {
+  const std::string slope = std::to_string(0.2 * 30.0 * pi / 180.0);  // light damping
+  const std::string text =
+      "samara: 1\ngravity: 0\nshaft: {speed: 15}\nhub: {radius: 3}\nwind: {speed: 0}\naero: "
+      "{induction: none, airfoil_dynamics: static}\nblades:\n  count: 1\n  length: 7\n  "
+      "elements: 2\n  order: 3\n  hinges: [{axis: flap, offset: 0, joint: free}]\n  sections:\n  "
+      "  - {mass: 8, inertia: [0, 0, 0], stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, "
+      "EI2: rigid, EI3: rigid}}\n  airfoils:\n    line: {polars: [{table: [[-180, 0, 0, 0], [-30, "
+      "-" +
+      slope + ", 0, 0], [30, " + slope +
+      ", 0, 0], [180, 0, 0, 0]]}]}\n  aero_sections:\n    - {at: 0, chord: 0.5, airfoil: line}\n";
+  const Steady rotor(io::parse_case("hinged blade", text, {}));
+  const analysis::ModeSet set = rotor.constant_modes();
+  const auto still = simulation::hold_air(rotor.system);
+  const simulation::AirPart part =
+      simulation::find_air_part(rotor.system, rotor.trim.solution, set,
+                                analysis::find_constant_modes(*still, rotor.trim.solution));
+  bool is_found = false;
+  for (std::size_t m = 0; m < set.modes.size(); ++m) {
+    const analysis::Mode& mode = set.modes[m];
+    if (mode.label.find("flap") == std::string::npos) continue;
+    is_found = true;
+    BOOST_TEST(std::abs(part.held_damping[m]) < 1e-8);
+    BOOST_TEST(part.likeness[m] > 0.9999);
+    const double a = std::abs(set.shapes[m](rotor.system.layout().hinge(0, 0), 0));
+    const double I = 8.0 * (1000.0 - 27.0) / 3.0;
+    const double sigma = mode.exponent.real();
+    const double omega = mode.exponent.imag();
+    const double work = 2.0 * pi * sigma * I * a * a * std::norm(mode.exponent) / omega;
+    BOOST_TEST(part.whole_work(m) == work, tolerance(1e-5));
+  }
+  BOOST_TEST(is_found);
 }
 
 // ---- analyses agree ----------------------------------------------------------------------------

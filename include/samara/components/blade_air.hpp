@@ -28,6 +28,11 @@ struct AirPointReport {
   T hub_speed;             ///< angular velocity of the rotor about its axis [rad/s]
   T radius;                ///< distance from the axis [m]
   Vec6<T> hub_load;        ///< force and moment about the apex in h1 h2 h3 [N/m, N]
+  Vec3<T> place;           ///< components n1 n2 n3 [m]
+  Vec3<T> force;           ///< the same [N/m]
+  Vec3<T> couple;          ///< moment about the reference line, the same [N]
+  Mat3<T> section_axes;    ///< B as columns, components n1 n2 n3
+  Mat3<T> hub_axes;        ///< h1 h2 h3 as columns
   Vec3<T> hub_wind;        ///< undisturbed wind at the apex in n1 n2 n3 [m/s]
 };
 

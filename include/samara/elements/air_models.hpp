@@ -34,8 +34,9 @@ enum class MomentumLoad : std::uint8_t { equilibrium, actual };
 enum class ThrustLaw : std::uint8_t { glauert_skew, buhl, buhl_f, madsen };
 /// Airfoil dynamics. hgm: shed wake, pressure lag and separation lag (Hansen, Gaunaa, Madsen 2004);
 /// oye: separation lag; quasi_steady: none, angle of attack at three quarters of the chord;
-/// static_polar: the same at the aerodynamic centre.
-enum class AirfoilDynamics : std::uint8_t { hgm, oye, quasi_steady, static_polar };
+/// static_polar: the same at the aerodynamic centre; peters: shed wake of attached flow by finite
+/// states (Peters, Karunamoorthy & Cao 1995).
+enum class AirfoilDynamics : std::uint8_t { hgm, oye, quasi_steady, static_polar, peters };
 
 /// Constants of the shed wake: lift deficits A1, A2 and decay rates b1, b2 per half chord
 /// travelled.

@@ -5,7 +5,8 @@
 // e_t, the direction in which a rotor with positive speed moves; R_n, R_t, intermediate velocities
 // of the dynamic inflow; Q_n, Q_t, quasi-steady induced velocity; x1, x2, shed wake; x3, lagged
 // lift coefficient; x4, separation point; f(3), m(3), force and moment per length about the
-// reference line, components in a.
+// reference line, components in a. With finite states of the shed wake, x1 to x4, R_n and R_t are
+// these six; the dynamic inflow then has no intermediate velocity.
 #pragma once
 
 #include <algorithm>
@@ -36,6 +37,16 @@ inline constexpr int moment = 13;       ///< m [N m/m]
 inline constexpr int unknowns = 16;
 }  // namespace air
 
+/// The finite-state airloads of Peters, Karunamoorthy and Cao (1995) with six states.
+struct FiniteStates {
+  static constexpr int count = 6;
+  using Vector = Eigen::Matrix<double, count, 1>;
+  Eigen::Matrix<double, count, count> inverse;  ///< A^-1
+  Vector feed;                                  ///< A^-1 c
+  Vector weights;                               ///< b/2: lambda_0 = weights . lambda
+};
+const FiniteStates& finite_states();
+
 /// Share of the quasi-steady velocity that reaches W without the first lag (Oye 1990).
 inline constexpr double direct_share = 0.6;
 
@@ -54,6 +65,8 @@ struct AirRotor {
   /// With `inflow: frozen`: the present induced velocity is that of the steady state. It satisfies
   /// its rows, and no other unknown changes it.
   bool wake_is_held = false;
+  /// No motion changes the loads of the air: the present loads satisfy their rows.
+  bool load_is_held = false;
 };
 
 /// Constants of a station.
@@ -71,7 +84,8 @@ struct AirStation {
   /// Dynamics of the wake and of separation, beside the steady polar.
   bool has_dynamics(const AirModels& models) const {
     return airfoil->has_dynamics &&
-           (models.dynamics == AirfoilDynamics::hgm || models.dynamics == AirfoilDynamics::oye);
+           (models.dynamics == AirfoilDynamics::hgm || models.dynamics == AirfoilDynamics::oye ||
+            models.dynamics == AirfoilDynamics::peters);
   }
 };
 
@@ -223,6 +237,48 @@ T skew_factor(const AirRotor& rotor, const StationMotion<T>& motion, const T& in
          T(1.0);
 }
 
+/// Coefficients of attached flow whose shed wake induces the velocity `induced` at the section:
+/// Cl_alpha ((w_34 - induced)/U - alpha_0) + pi T_u omega. Where g < 1 the rest is the polar.
+template <class T>
+AirCoefficients<T> attached_coefficients(const AirStation& station, const SectionFlow<T>& flow,
+                                         const T& g, const T& angle, const T& induced) {
+  const AirfoilCurves& airfoil = *station.airfoil;
+  const T w_34 = air::three_quarter_velocity(station, flow);
+  const T turning = flow.half_chord_time * flow.omega;
+  const T attached = ((w_34 - induced) / flow.speed - T(airfoil.zero_lift)) * T(airfoil.lift_slope);
+  AirCoefficients<T> c;
+  c.lift = g * (attached + turning * T(std::numbers::pi)) + (T(1.0) - g) * airfoil.lift_at(angle);
+  c.drag = airfoil.drag_at(air::angle_of(flow, T(g * w_34 + (T(1.0) - g) * flow.n)));
+  c.moment = airfoil.moment_at(angle) - g * turning * T(0.5 * std::numbers::pi);
+  return c;
+}
+
+/// The same with finite states and their rows: T_u mu_dot + A^-1 (mu + A^-1 c w_34) = 0. With
+/// lambda = mu + A^-1 c w_34 this is A lambda_dot + lambda/T_u = c dw_34/dt, without the rate of a
+/// velocity.
+template <class T>
+AirCoefficients<T> finite_state_coefficients(const AirModels& models, const AirStation& station,
+                                             const SectionFlow<T>& flow,
+                                             const Eigen::Matrix<T, FiniteStates::count, 1>& mu,
+                                             const Eigen::Matrix<T, FiniteStates::count, 1>& mu_dot,
+                                             Eigen::Matrix<T, FiniteStates::count, 1>& rows) {
+  const FiniteStates& wake = finite_states();
+  const T angle = air::angle_of(flow, flow.n);
+  const T g = air::dynamics_share(models, flow, angle);
+  const T w_34 = air::three_quarter_velocity(station, flow);
+  Eigen::Matrix<T, FiniteStates::count, 1> lambda;
+  T induced(0.0);
+  for (int n = 0; n < FiniteStates::count; ++n) {
+    lambda(n) = mu(n) + w_34 * T(wake.feed(n));
+    induced += lambda(n) * T(wake.weights(n));
+  }
+  for (int n = 0; n < FiniteStates::count; ++n) {
+    rows(n) = mu_dot(n) * flow.half_chord_time;
+    for (int k = 0; k < FiniteStates::count; ++k) rows(n) += lambda(k) * T(wake.inverse(n, k));
+  }
+  return attached_coefficients(station, flow, g, angle, induced);
+}
+
 /// Coefficients of a steady flow, from which the balance of momentum with `closure: equilibrium`
 /// takes its load: of the polar at the aerodynamic centre (static_polar), else at three quarters of
 /// the chord.
@@ -237,6 +293,8 @@ AirCoefficients<T> steady_coefficients(const AirModels& models, const AirStation
   const T g = air::dynamics_share(models, flow, angle);
   const T normal = g * air::three_quarter_velocity(station, flow) + (T(1.0) - g) * flow.n;
   const T at_three_quarters = air::angle_of(flow, normal);
+  if (models.dynamics == AirfoilDynamics::peters)
+    return attached_coefficients(station, flow, g, angle, T(0.0));
   c = {airfoil.lift_at(at_three_quarters), airfoil.drag_at(at_three_quarters),
        airfoil.moment_at(at_three_quarters)};
   if (models.dynamics == AirfoilDynamics::oye) return c;
@@ -503,6 +561,7 @@ struct StationAir {
   SectionFlow<T> flow;
   AirCoefficients<T> coefficients;
   Eigen::Matrix<T, 4, 1> lags;  ///< rows of x1 to x4
+  Eigen::Matrix<T, 2, 1> more;  ///< rows of R_n, R_t where they are states of the shed wake
 };
 
 /// `z`, `z_dot`: unknowns of the station and their rates.
@@ -518,6 +577,20 @@ StationAir<T> station_air(const AirRotor& rotor, const AirStation& station,
     present.induced_t = z(air::induced + 1);
   }
   present.flow = section_flow(station, motion, present.induced_n, present.induced_t);
+  present.more = z.template segment<2>(air::reduced);
+  if (rotor.models.dynamics == AirfoilDynamics::peters && station.has_dynamics(rotor.models)) {
+    using States = Eigen::Matrix<T, FiniteStates::count, 1>;
+    States mu;
+    States mu_dot;
+    States rows;
+    mu << z.template segment<4>(air::wake), z.template segment<2>(air::reduced);
+    mu_dot << z_dot.template segment<4>(air::wake), z_dot.template segment<2>(air::reduced);
+    present.coefficients =
+        finite_state_coefficients<T>(rotor.models, station, present.flow, mu, mu_dot, rows);
+    present.lags = rows.template head<4>();
+    present.more = rows.template tail<2>();
+    return present;
+  }
   present.coefficients =
       dynamic_coefficients<T>(rotor.models, station, present.flow, z.template segment<4>(air::wake),
                               z_dot.template segment<4>(air::wake), present.lags);
@@ -539,11 +612,16 @@ Eigen::Matrix<T, air::unknowns, 1> air_station_rows(const AirRotor& rotor,
   const SectionFlow<T>& flow = present.flow;
   const AirCoefficients<T>& c = present.coefficients;
   rows.template segment<4>(air::wake) = present.lags;
+  rows.template segment<2>(air::reduced) = present.more;
   Vec6<T> load = air_load(rotor, station, flow, c);
   if (models.added_mass) load += added_mass_turning<T>(rotor, station, motion.velocity);
   load *= T(rotor.acting);
-  rows.template segment<3>(air::force) -= motion.R * Vec3<T>(load.template head<3>());
-  rows.template segment<3>(air::moment) -= motion.R * Vec3<T>(load.template tail<3>());
+  if (rotor.load_is_held) {
+    for (int i = air::force; i < air::unknowns; ++i) rows(i) -= T(math::plain_value(z(i)));
+  } else {
+    rows.template segment<3>(air::force) -= motion.R * Vec3<T>(load.template head<3>());
+    rows.template segment<3>(air::moment) -= motion.R * Vec3<T>(load.template tail<3>());
+  }
   if (!is_induced) return rows;
   const T& Q_n = z(air::quasi_steady);
   const T& Q_t = z(air::quasi_steady + 1);

@@ -1,0 +1,221 @@
+#include "samara/simulation/air_part.hpp"
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/QR>
+
+#include "samara/math/rotation.hpp"
+
+namespace samara::simulation {
+namespace {
+
+using analysis::Mode;
+using analysis::ModeSet;
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Report = components::AirPointReport<Complex>;
+
+/// Least likeness of two shapes of the same mode.
+constexpr double least_likeness = 0.5;
+
+bool oscillates(const ModeSet& set, std::size_t m) {
+  const Mode& mode = set.modes[m];
+  return mode.resolved && !is_of_medium(mode) && set.shapes[m].size() > 0 &&
+         std::abs(mode.exponent.imag()) > analysis::zero_exponent * std::max(set.rotor_speed, 1.0);
+}
+
+/// The scaled positions of a shape.
+Eigen::MatrixXcd positions_of(const turbine::TurbineSystem& system, const Eigen::MatrixXcd& shape) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < system.unknowns().size(); ++i)
+    if (system.unknowns()[i].role == system::UnknownRole::position)
+      rows.push_back(static_cast<Index>(i));
+  return shape(rows, Eigen::all);
+}
+
+/// Both exponents are known up to multiples of the rotor speed: the other shape is turned by the
+/// multiple that brings its frequency nearest.
+double likeness_of(const ModeSet& set, const Mode& mode, const Eigen::MatrixXcd& shape,
+                   const Mode& other, Eigen::MatrixXcd other_shape) {
+  if (shape.cols() != other_shape.cols()) return 0.0;
+  const double apart = other.exponent.imag() - mode.exponent.imag();
+  const double multiple = set.rotor_speed > 0.0 ? std::round(apart / set.rotor_speed) : 0.0;
+  for (Index k = 0; k < shape.cols(); ++k)
+    other_shape.col(k) *=
+        std::polar(1.0, multiple * set.rotor_speed * set.shape_times[static_cast<std::size_t>(k)]);
+  const double product = std::norm(shape.conjugate().cwiseProduct(other_shape).sum());
+  return product / (shape.squaredNorm() * other_shape.squaredNorm());
+}
+
+/// Place, turning, force and moment of a station in axes of the steady hub.
+struct Change {
+  Eigen::Vector3cd place, turning, force, moment;
+};
+
+/// Changes of all stations by a shape at an instant, per unit of the shape.
+class Changes {
+ public:
+  Changes(const turbine::TurbineSystem& system, const analysis::PeriodicSolution& steady, double t)
+      : system_(system), t_(t) {
+    const petsc::Handle<Vec> z = system.make_state();
+    const petsc::Handle<Vec> z_dot = system.make_state();
+    steady.evaluate(t, z.get(), z_dot.get());
+    z_ = values_of(z.get());
+    z_dot_ = values_of(z_dot.get());
+    const auto reports = system.equations().air_report<double>(t, z_, z_dot_, {});
+    axes_ = reports.front().front().hub_axes.transpose();
+  }
+
+  std::vector<Change> of(const Eigen::VectorXcd& shape) const {
+    std::vector<Change> changes;
+    const auto real = reports_of(shape.real());
+    const auto imaginary = reports_of(shape.imag());
+    for (std::size_t k = 0; k < real.size(); ++k)
+      for (std::size_t p = 0; p < real[k].size(); ++p) {
+        const auto pick = [&](auto part) -> Eigen::Vector3cd {
+          const Vector3 re = part(real[k][p]);
+          const Vector3 im = part(imaginary[k][p]);
+          return axes_.cast<Complex>() *
+                 (re.cast<Complex>() + Complex(0.0, 1.0) * im.cast<Complex>());
+        };
+        changes.push_back({pick([](const Report& r) { return derivative(r.place); }),
+                           pick([](const Report& r) { return turning_of(r); }),
+                           pick([](const Report& r) { return derivative(r.force); }),
+                           pick([](const Report& r) { return derivative(r.couple); })});
+      }
+    return changes;
+  }
+
+ private:
+  static constexpr double tiny = 1e-30;  // a complex step
+
+  static Vector3 derivative(const Vec3<Complex>& value) {
+    return Vector3(value(0).imag(), value(1).imag(), value(2).imag()) / tiny;
+  }
+  /// w of de = w x e, from three orthonormal vectors e: half the sum of e x de.
+  static Vector3 turning_of(const Report& report) {
+    Vector3 sum = Vector3::Zero();
+    for (int i = 0; i < 3; ++i) {
+      const Vec3<Complex> e = report.section_axes.col(i);
+      const Vector3 plain(e(0).real(), e(1).real(), e(2).real());
+      sum += plain.cross(derivative(e));
+    }
+    return 0.5 * sum;
+  }
+
+  std::vector<double> values_of(Vec vector) const {
+    const petsc::ReadView view(vector);
+    return {view.data(), view.data() + system_.size()};
+  }
+
+  std::vector<std::vector<Report>> reports_of(const Eigen::VectorXd& direction) const {
+    std::vector<Complex> z(z_.begin(), z_.end());
+    const std::vector<Complex> z_dot(z_dot_.begin(), z_dot_.end());
+    for (std::size_t i = 0; i < z.size(); ++i)
+      z[i] += Complex(0.0, tiny * direction(static_cast<Index>(i)));
+    return system_.equations().air_report<Complex>(t_, z, z_dot, {});
+  }
+
+  const turbine::TurbineSystem& system_;
+  double t_;
+  std::vector<double> z_;
+  std::vector<double> z_dot_;
+  Matrix3 axes_;
+};
+
+/// Rate of a periodic vector times exp(lambda t), divided by exp(lambda t): lambda q + q_dot, with
+/// q_dot of the Fourier series through the instants.
+Eigen::MatrixXcd rates_of(const Eigen::MatrixXcd& q, Complex exponent,
+                          const std::vector<double>& times, double speed) {
+  const Index n = q.cols();
+  if (n == 1) return exponent * q;
+  const Index most = (n - 1) / 2;
+  Eigen::MatrixXcd series(n, 2 * most + 1);  // instants x harmonics
+  for (Index k = 0; k < n; ++k)
+    for (Index h = -most; h <= most; ++h)
+      series(k, h + most) =
+          std::polar(1.0, static_cast<double>(h) * speed * times[static_cast<std::size_t>(k)]);
+  Eigen::MatrixXcd rates = series;
+  for (Index h = -most; h <= most; ++h)
+    rates.col(h + most) *= Complex(0.0, static_cast<double>(h) * speed);
+  const Eigen::MatrixXcd derivative =
+      rates * series.completeOrthogonalDecomposition().pseudoInverse();
+  return exponent * q + q * derivative.transpose();
+}
+
+}  // namespace
+
+double AirPart::whole_work(std::size_t mode) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    sum += work(static_cast<Index>(mode), static_cast<Index>(i)) * lengths[i];
+  return sum;
+}
+
+std::unique_ptr<turbine::TurbineSystem> hold_air(const turbine::TurbineSystem& system) {
+  if (!system.turbine().air) return nullptr;
+  model::Turbine held = system.turbine();
+  held.air->rotor.load_is_held = true;
+  held.air->rotor.wake_is_held = held.air->rotor.models.inflow == elements::Inflow::frozen;
+  return std::make_unique<turbine::TurbineSystem>(held, system.comm());
+}
+
+AirPart find_air_part(const turbine::TurbineSystem& system,
+                      const analysis::PeriodicSolution& steady, const ModeSet& modes,
+                      const ModeSet& held) {
+  AirPart part;
+  const model::Turbine& turbine = system.turbine();
+  for (const model::Beam& blade : turbine.blades)
+    for (int p = 0; p < blade.point_count(); ++p) part.lengths.push_back(blade.point_length(p));
+  part.held_damping.assign(modes.modes.size(), std::numeric_limits<double>::quiet_NaN());
+  part.likeness.assign(modes.modes.size(), 0.0);
+  part.work = Eigen::MatrixXd::Zero(static_cast<Index>(modes.modes.size()),
+                                    static_cast<Index>(part.lengths.size()));
+  std::vector<Eigen::MatrixXcd> others;
+  for (std::size_t k = 0; k < held.modes.size(); ++k)
+    others.push_back(oscillates(held, k) ? positions_of(system, held.shapes[k])
+                                         : Eigen::MatrixXcd());
+  std::vector<Changes> instants;
+  for (const double t : modes.shape_times) instants.emplace_back(system, steady, t);
+  for (std::size_t m = 0; m < modes.modes.size(); ++m) {
+    if (!oscillates(modes, m)) continue;
+    const Mode& mode = modes.modes[m];
+    const Eigen::MatrixXcd shape = positions_of(system, modes.shapes[m]);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      if (others[k].size() == 0) continue;
+      const double likeness = likeness_of(modes, mode, shape, held.modes[k], others[k]);
+      if (likeness < least_likeness || likeness <= part.likeness[m]) continue;
+      part.likeness[m] = likeness;
+      part.held_damping[m] = held.modes[k].damping_ratio;
+    }
+    const auto n = static_cast<Index>(instants.size());
+    const auto stations = static_cast<Index>(part.lengths.size());
+    Eigen::MatrixXcd motion(6 * stations, n);
+    Eigen::MatrixXcd load(6 * stations, n);
+    for (Index k = 0; k < n; ++k) {
+      const std::vector<Change> changes =
+          instants[static_cast<std::size_t>(k)].of(modes.shapes[m].col(k));
+      for (Index s = 0; s < stations; ++s) {
+        const Change& change = changes[static_cast<std::size_t>(s)];
+        motion.col(k).segment<3>(6 * s) = change.place;
+        motion.col(k).segment<3>(6 * s + 3) = change.turning;
+        load.col(k).segment<3>(6 * s) = change.force;
+        load.col(k).segment<3>(6 * s + 3) = change.moment;
+      }
+    }
+    const Eigen::MatrixXcd rate =
+        rates_of(motion, mode.exponent, modes.shape_times, modes.rotor_speed);
+    const double cycle = 2.0 * std::numbers::pi / std::abs(mode.exponent.imag());
+    for (Index s = 0; s < stations; ++s) {
+      const Complex power =
+          load.middleRows(6 * s, 6).conjugate().cwiseProduct(rate.middleRows(6 * s, 6)).sum();
+      part.work(static_cast<Index>(m), s) = 0.5 * power.real() / static_cast<double>(n) * cycle;
+    }
+  }
+  return part;
+}
+
+}  // namespace samara::simulation
