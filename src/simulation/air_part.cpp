@@ -101,7 +101,7 @@ class Changes {
     for (int i = 0; i < 3; ++i) {
       const Vec3<Complex> e = report.section_axes.col(i);
       const Vector3 plain(e(0).real(), e(1).real(), e(2).real());
-      sum += plain.cross(derivative(e));
+      sum += math::cross(plain, derivative(e));
     }
     return 0.5 * sum;
   }

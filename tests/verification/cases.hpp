@@ -34,6 +34,12 @@ inline io::Case lee(const std::string& name, const std::vector<std::string>& set
   return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/lee2002/" + name + ".yaml", all);
 }
 
+/// An input without its air, for tests of the structure.
+inline io::Case structure(const std::string& name, std::vector<std::string> settings = {}) {
+  settings.emplace_back("aero=none");
+  return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings);
+}
+
 /// The same mesh on all beams, where there is a tower.
 inline std::vector<std::string> mesh(bool tower, int elements, int order) {
   std::vector<std::string> settings;

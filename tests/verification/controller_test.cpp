@@ -179,12 +179,12 @@ BOOST_AUTO_TEST_CASE(a_large_pitch_of_a_teetering_rotor_is_found) {
   constexpr double by_pitch = 4e6;
   const double generator_torque = 20000.0;
   const auto rotor_of = [&](double pitch_deg, double torque) {
-    return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/two_bladed/teetering.yaml",
-                         {"blades.pitch_deg=" + general(pitch_deg, 17), "trim={harmonics: 4}",
-                          "shaft.generator={joint: free, own_inertia: 534.116, torque: " +
-                              general(generator_torque, 17) + "}",
-                          "shaft.rotor={torque: " + general(torque, 17) + ", torque_slope: -4e5, " +
-                              "torque_pitch_slope: " + general(-by_pitch, 17) + "}"});
+    return structure("two_bladed/teetering",
+                     {"blades.pitch_deg=" + general(pitch_deg, 17), "trim={harmonics: 4}",
+                      "shaft.generator={joint: free, own_inertia: 534.116, torque: " +
+                          general(generator_torque, 17) + "}",
+                      "shaft.rotor={torque: " + general(torque, 17) + ", torque_slope: -4e5, " +
+                          "torque_pitch_slope: " + general(-by_pitch, 17) + "}"});
   };
   const std::vector<std::string> names{"TipDxb1",  "TipDyb1",  "RootMyc1",
                                        "TeetDefl", "TwrBsMyt", "BldPitch1"};

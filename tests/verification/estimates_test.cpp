@@ -55,9 +55,7 @@ constexpr double round_off = 1e-8;
 constexpr std::size_t compared = 15;
 
 analysis::ModeSet modes_of(const Input& input, Mesh used, Rule rule) {
-  const io::Case found =
-      io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + input.name + ".yaml",
-                    mesh(input.has_tower, used.elements, used.order));
+  const io::Case found = structure(input.name, mesh(input.has_tower, used.elements, used.order));
   return floquet_of(found.turbine, rule.steps, found.floquet.period, found.trim, PETSC_COMM_SELF,
                     rule.order)
       .set;
@@ -151,9 +149,8 @@ BOOST_AUTO_TEST_CASE(accuracy_keeps_its_promise) {
   int kept = 0;
   for (const Input& input : all_inputs()) {
     if (input.is_large && !all) continue;
-    const io::Case found =
-        io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + input.name + ".yaml",
-                      mesh(input.has_tower, input.meshes[0].elements, input.meshes[0].order));
+    const io::Case found = structure(
+        input.name, mesh(input.has_tower, input.meshes[0].elements, input.meshes[0].order));
     const turbine::TurbineSystem system(model::build_turbine(found.turbine), PETSC_COMM_SELF);
     analysis::Observer observer;
     const analysis::Trim trim = analysis::find_trim(system, found.trim, observer);

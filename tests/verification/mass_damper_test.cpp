@@ -286,8 +286,7 @@ BOOST_AUTO_TEST_CASE(on_the_parked_5_mw_turbine_it_moves_as_on_its_first_mode) {
     std::vector<std::string> all{"shaft.speed=0", "gravity=0", "tower.damping=0",
                                  "blades.damping=0"};
     all.insert(all.end(), settings.begin(), settings.end());
-    return constant_modes_of(
-        io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml", all).turbine);
+    return constant_modes_of(structure("nrel5mw/land", all).turbine);
   };
   const auto first = [](const analysis::ModeSet& set) {
     for (const analysis::Mode& mode : set.modes)

@@ -12,9 +12,8 @@ namespace {
 /// The NREL 5 MW turbine without gravity and tilt: coned and twisted blades, flexible tower and
 /// drivetrain, all damped.
 model::TurbineDefinition isotropic_nrel5mw() {
-  return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml",
-                       {"gravity=0", "shaft.tilt_deg=0", "blades.elements=2", "blades.order=2",
-                        "tower.elements=2", "tower.order=2"})
+  return structure("nrel5mw/land", {"gravity=0", "shaft.tilt_deg=0", "blades.elements=2",
+                                    "blades.order=2", "tower.elements=2", "tower.order=2"})
       .turbine;
 }
 

@@ -13,7 +13,7 @@ using boost::test_tools::tolerance;
 namespace {
 
 io::Case input(const std::string& name, const std::vector<std::string>& settings) {
-  return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings);
+  return structure(name, settings);
 }
 
 io::Case parsed(const std::string& text, const std::vector<std::string>& settings = {}) {

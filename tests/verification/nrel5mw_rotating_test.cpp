@@ -14,8 +14,7 @@ using boost::test_tools::tolerance;
 namespace {
 
 io::Case beam_blades(const std::vector<std::string>& settings) {
-  return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/beam_blades.yaml",
-                       settings);
+  return structure("nrel5mw/beam_blades", settings);
 }
 
 std::vector<std::string> coarse() {
@@ -151,8 +150,7 @@ BOOST_AUTO_TEST_CASE(edge_modes_of_the_nrel5mw_blade_are_flap_modes_less_the_spe
   // ElastoDyn's blade, which bends alone, without twist and cone: pitched by 90 degrees it flaps in
   // its edge modes. In the plane of rotation the centrifugal force follows the motion:
   // omega_edge^2 = omega_flap^2 - Omega^2.
-  model::TurbineDefinition turbine =
-      io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml", coarse()).turbine;
+  model::TurbineDefinition turbine = structure("nrel5mw/land", coarse()).turbine;
   turbine.has_tower = false;
   turbine.has_nacelle = false;
   turbine.gravity = 0.0;

@@ -17,8 +17,8 @@ namespace {
 constexpr double blade_mass = 17740.0;
 constexpr double deck_blade_mass = 17608.8;
 
-io::Case land(std::vector<std::string> settings) {
-  return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml", settings);
+io::Case land(const std::vector<std::string>& settings) {
+  return structure("nrel5mw/land", settings);
 }
 
 /// At rest, with blades as heavy as the report says.

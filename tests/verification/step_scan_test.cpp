@@ -53,7 +53,7 @@ std::vector<std::string> scanned_damping() {
 }
 
 analysis::Floquet run(const ScanCase& scan, int steps, const std::vector<std::string>& more = {}) {
-  const io::Case input = io::read_case(scan.path, with(scan.settings, more));
+  const io::Case input = io::read_case(scan.path, with(with(scan.settings, more), {"aero=none"}));
   return floquet_of(input.turbine, steps, input.floquet.period, input.trim);
 }
 
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(modes_that_a_coarse_step_mixes_are_not_resolved) {
     return modes;
   };
   const auto run_with_order_6 = [&scan](int steps) {
-    const io::Case input = io::read_case(scan.path, scan.settings);
+    const io::Case input = io::read_case(scan.path, with(scan.settings, {"aero=none"}));
     return floquet_of(input.turbine, steps, input.floquet.period, input.trim, PETSC_COMM_SELF, 6);
   };
   const analysis::Floquet fine = run_with_order_6(200);

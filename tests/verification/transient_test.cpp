@@ -153,9 +153,8 @@ BOOST_AUTO_TEST_CASE(both_integrators_are_of_second_order_on_the_turbine_with_gr
 }
 
 BOOST_AUTO_TEST_CASE(stable_machine_stays_on_its_steady_state) {
-  const io::Case input =
-      io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml",
-                    {"blades.elements=3", "blades.order=2", "tower.elements=3", "tower.order=2"});
+  const io::Case input = structure(
+      "nrel5mw/land", {"blades.elements=3", "blades.order=2", "tower.elements=3", "tower.order=2"});
   const auto system = system_of(input.turbine);
   const analysis::Trim trim = trim_of(*system, 8);
   const double duration = 10.0 * system->period();

@@ -64,9 +64,8 @@ BOOST_AUTO_TEST_CASE(coarse_and_fine_meshes_of_a_large_turbine_are_balanced_in_f
   // linear solves of all steps, not the first alone, have to be exact.
   for (const auto& [blades, tower] : {std::pair{1, 1}, std::pair{1, 2}, std::pair{2, 2}}) {
     const io::Case input =
-        io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml",
-                      {"blades.elements=" + std::to_string(blades), "blades.order=2",
-                       "tower.elements=" + std::to_string(tower), "tower.order=2"});
+        structure("nrel5mw/land", {"blades.elements=" + std::to_string(blades), "blades.order=2",
+                                   "tower.elements=" + std::to_string(tower), "tower.order=2"});
     const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
     const analysis::Trim trim = solve_harmonic_balance(system, 4, tight, nullptr);
     BOOST_TEST(trim.newton_steps <= 5);
@@ -98,17 +97,17 @@ struct Steady {
 /// Gravity, tilt, a free and a turned yaw, teeter, hinges, a free generator, cyclic pitch, unequal
 /// blades, a constant state.
 std::vector<Steady> steady_states() {
-  return {{"nrel5mw/land.yaml", {"shaft.generator.joint=free"}, 4},
-          {"nrel5mw/land.yaml", {"nacelle.yaw={joint: prescribed, angle_deg: 20}"}, 6},
-          {"nrel5mw/land.yaml", {"blades.each={2: {pitch_deg: 3, mass_factor: 1.1}}"}, 5},
-          {"nrel5mw/land.yaml",
+  return {{"nrel5mw/land", {"shaft.generator.joint=free"}, 4},
+          {"nrel5mw/land", {"nacelle.yaw={joint: prescribed, angle_deg: 20}"}, 6},
+          {"nrel5mw/land", {"blades.each={2: {pitch_deg: 3, mass_factor: 1.1}}"}, 5},
+          {"nrel5mw/land",
            {"blades.hinges=[{axis: flap, joint: free, stiffness: 1e8}, {axis: pitch, joint: "
             "prescribed, harmonic: {per_rev: 1, amplitude_deg: 4}}]"},
            6},
-          {"two_bladed/teetering.yaml", {}, 4},
-          {"lee2002/baseline.yaml", {"gravity=9.81"}, 8},
-          {"iea15mw/land.yaml", {}, 4},
-          {"ground_resonance/hammond.yaml", {}, 0}};
+          {"two_bladed/teetering", {}, 4},
+          {"lee2002/baseline", {"gravity=9.81"}, 8},
+          {"iea15mw/land", {}, 4},
+          {"ground_resonance/hammond", {}, 0}};
 }
 
 }  // namespace
@@ -116,8 +115,7 @@ std::vector<Steady> steady_states() {
 BOOST_AUTO_TEST_CASE(preconditioned_and_direct_linear_solvers_find_the_same_steady_state) {
   for (const Steady& one : steady_states()) {
     BOOST_TEST_CONTEXT(one.input) {
-      const io::Case input =
-          io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + one.input, one.settings);
+      const io::Case input = structure(one.input, one.settings);
       const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
       const analysis::Trim trim = solve_harmonic_balance(system, one.harmonics, tight, nullptr);
       BOOST_TEST(trim.linear_solver.find("harmonics with a border") != std::string::npos);

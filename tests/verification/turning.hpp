@@ -12,8 +12,7 @@ namespace samara::test {
 struct Turning {
   /// `name`: of a file in inputs, without its ending; `settings`: keys that are replaced.
   Turning(const std::string& name, const std::vector<std::string>& settings)
-      : input(
-            io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings)),
+      : input(structure(name, settings)),
         system(model::build_turbine(input.turbine), PETSC_COMM_SELF),
         trim(analysis::find_trim(system, input.trim, observer)) {}
 
