@@ -7,12 +7,14 @@
 namespace samara::analysis {
 namespace {
 
-/// A block belongs to the border if more blocks than this refer to it, some of them at a distance
-/// of more than this many times their number. (A node of a chain has two neighbours, and is in the
-/// rows of joints and reactions. The blocks of an element of a high order, with the air at its
-/// points, are many neighbours, but all of them are near.)
+/// A block belongs to the border if more blocks than this refer to it, and some of them are far. (A
+/// node of a chain has two neighbours, and is in the rows of joints and reactions. The blocks of an
+/// element of a high order, with the air at its points, are many neighbours, but all of them are
+/// near.)
 constexpr std::size_t most_neighbours = 8;
-constexpr std::size_t near = 3;
+/// Largest distance of near blocks, and the same as a part of all blocks.
+constexpr PetscInt near = 40;
+constexpr PetscInt near_part = 3;
 /// Smallest piece of a chain, in blocks.
 constexpr Eigen::Index least_piece = 100;
 /// Largest border that a distribution may have, as a part of all blocks.
@@ -81,15 +83,13 @@ std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size
     for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
       users[static_cast<std::size_t>(it.col() / block_size)].insert(i / block_size);
     }
+  const PetscInt most = std::min(near, static_cast<PetscInt>(users.size()) / near_part);
   std::vector<char> border;
   for (std::size_t b = 0; b < users.size(); ++b) {
     const std::set<PetscInt>& own = users[b];
-    bool is_border = own.size() > most_neighbours;
-    if (is_border) {
-      const auto place = static_cast<PetscInt>(b);
-      const PetscInt distance = std::max(place - *own.begin(), *own.rbegin() - place);
-      is_border = static_cast<std::size_t>(distance) > near * own.size();
-    }
+    const auto place = static_cast<PetscInt>(b);
+    const bool is_border = own.size() > most_neighbours &&
+                           std::max(place - *own.begin(), *own.rbegin() - place) > most;
     border.push_back(is_border ? 1 : 0);
   }
   for (const system::UnconstrainedCoordinate& coordinate : held)

@@ -1,5 +1,6 @@
 #include "samara/simulation/air_part.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -36,18 +37,25 @@ Eigen::MatrixXcd positions_of(const turbine::TurbineSystem& system, const Eigen:
   return shape(rows, Eigen::all);
 }
 
-/// Both exponents are known up to multiples of the rotor speed: the other shape is turned by the
-/// multiple that brings its frequency nearest.
+/// Both exponents are known up to multiples of the rotor speed, and the air changes frequencies: the
+/// largest likeness of the shapes for multiples near the difference of both frequencies.
 double likeness_of(const ModeSet& set, const Mode& mode, const Eigen::MatrixXcd& shape,
-                   const Mode& other, Eigen::MatrixXcd other_shape) {
+                   const Mode& other, const Eigen::MatrixXcd& other_shape) {
+  constexpr int nearby = 2;
   if (shape.cols() != other_shape.cols()) return 0.0;
+  const double scale = shape.squaredNorm() * other_shape.squaredNorm();
+  const Eigen::RowVectorXcd products = shape.conjugate().cwiseProduct(other_shape).colwise().sum();
+  if (set.rotor_speed == 0.0) return std::norm(products.sum()) / scale;
   const double apart = other.exponent.imag() - mode.exponent.imag();
-  const double multiple = set.rotor_speed > 0.0 ? std::round(apart / set.rotor_speed) : 0.0;
-  for (Index k = 0; k < shape.cols(); ++k)
-    other_shape.col(k) *=
-        std::polar(1.0, multiple * set.rotor_speed * set.shape_times[static_cast<std::size_t>(k)]);
-  const double product = std::norm(shape.conjugate().cwiseProduct(other_shape).sum());
-  return product / (shape.squaredNorm() * other_shape.squaredNorm());
+  double likeness = 0.0;
+  for (int k = -nearby; k <= nearby; ++k) {
+    const double turning = (std::round(apart / set.rotor_speed) + k) * set.rotor_speed;
+    Complex sum(0.0);
+    for (Index n = 0; n < products.size(); ++n)
+      sum += products(n) * std::polar(1.0, turning * set.shape_times[static_cast<std::size_t>(n)]);
+    likeness = std::max(likeness, std::norm(sum) / scale);
+  }
+  return likeness;
 }
 
 /// Place, turning, force and moment of a station in axes of the steady hub.

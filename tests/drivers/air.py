@@ -55,7 +55,7 @@ class Commands(ProgramTest):
 
     def test_operation_needs_its_keys(self):
         wind = ["--set", "wind.speed=8"]
-        self.refuse("operate", LAND, words="operating points need wind")
+        self.refuse("operate", LAND, "--set", "aero=none", words="operating points need wind")
         self.refuse("operate", LAND, *wind, "--set",
                     "operation={rated_speed_rpm: 12.1, torque_gain: 2}",
                     words='missing key "rated_power"')

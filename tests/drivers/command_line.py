@@ -179,8 +179,8 @@ class Tables(ProgramTest):
     def test_growth_that_the_step_makes_of_a_free_motion_is_no_verdict(self):
         # The generator turns freely and gravity makes it swing: its whole motion a moment later is
         # a motion again, with a multiplier of one.
-        text = self.succeed("floquet", SOURCE / "inputs/nrel5mw/land.yaml", "--set",
-                            "blades.order=3", "--set", "tower.order=3", "--set",
+        text = self.succeed("floquet", SOURCE / "inputs/nrel5mw/land.yaml", "--set", "aero=none",
+                            "--set", "blades.order=3", "--set", "tower.order=3", "--set",
                             "shaft.generator.joint=free").stdout
         self.assertRegex(text, r"(?m)^neutral: ")
 
@@ -285,7 +285,7 @@ class Inputs(ProgramTest):
     def test_some_modes_by_hills_method(self):
         case = SOURCE / "inputs/nrel5mw/land.yaml"
         coarse = [part for key in ("blades.elements=1", "blades.order=3", "tower.elements=1",
-                                   "tower.order=3") for part in ("--set", key)]
+                                   "tower.order=3", "aero=none") for part in ("--set", key)]
         text = self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", "-o",
                             "some.h5").stdout
         self.assertRegex(text, r"(?m)^rotor speed .*; 324 unknowns; Hill's method, ")
@@ -328,7 +328,7 @@ class Inputs(ProgramTest):
     def test_slowest_decays(self):
         case = SOURCE / "inputs/nrel5mw/land.yaml"
         coarse = ("--set", "blades.elements=1", "--set", "blades.order=3", "--set",
-                  "tower.elements=1", "--set", "tower.order=3")
+                  "tower.elements=1", "--set", "tower.order=3", "--set", "aero=none")
         text = self.succeed("floquet", case, *coarse, "--set", "floquet.least_damped=5", "-o",
                             "some.h5").stdout
         self.assertIn("none is missing there", text)
@@ -353,7 +353,7 @@ class Inputs(ProgramTest):
     def test_the_teetering_turbine_is_stable(self):
         case = SOURCE / "inputs/two_bladed/teetering.yaml"
         coarse = ("--set", "blades.elements=2", "--set", "tower.elements=2",
-                  "--set", "floquet.steps=48")
+                  "--set", "floquet.steps=48", "--set", "aero=none")
         text = self.succeed("check", case).stdout
         self.assertRegex(text, r"teeter free, \S+ N m s/rad")
         self.assertRegex(self.succeed("trim", case, *coarse).stdout, r"(?m)^teeter +deg +0 ")

@@ -19,7 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
 from program import LONGEST_RUN, MINIMAL, MPIEXEC, PROGRAM, SOURCE, ProgramTest  # noqa: E402
 
 COARSE_TURBINE = SOURCE / "inputs/nrel5mw/land.yaml"
-COARSE = ["--set", "blades.elements=2", "--set", "tower.elements=2"]
+COARSE = ["--set", "blades.elements=2", "--set", "tower.elements=2", "--set", "aero=none"]
 
 
 def block(duration, checkpoint=0.5, channels="RotSpeed, RootMxb1"):

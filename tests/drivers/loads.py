@@ -16,7 +16,8 @@ LAND = SOURCE / "inputs/nrel5mw/land.yaml"
 PERIOD = 5.0
 DURATION = 20.0
 TURNING = ["--set", "blades.elements=2", "--set", "tower.elements=2", "--set", "gravity=9.81",
-           "--set", f"shaft.speed={2 * numpy.pi / PERIOD!r}", "--set", "trim.harmonics=8"]
+           "--set", f"shaft.speed={2 * numpy.pi / PERIOD!r}", "--set", "trim.harmonics=8", "--set",
+           "aero=none"]
 CHANNELS = ["RootMxb1", "RootMyb1", "RootFzb1", "LSSTipMys", "TwrBsMyt", "TTDspFA"]
 
 
