@@ -2,6 +2,8 @@
 
 import math
 import pathlib
+import re
+import struct
 import sys
 import unittest
 
@@ -23,6 +25,77 @@ class Commands(ProgramTest):
         text = self.succeed("check", LAND, *WIND).stdout
         self.assertIn("tip-speed ratio", text)
         self.assertIn("hgm", text)
+
+    def test_the_part_of_the_air_in_the_damping(self):
+        quick = [*QUICK, "--set", "trim.harmonics=6"]
+        text = self.succeed("floquet", LAND, *quick, "--air", "-o", "air.h5").stdout
+        self.assertIn("of the air", text)
+        self.succeed("floquet", LAND, *quick, "-o", "alone.h5")
+        with h5py.File(self.folder / "air.h5") as file, h5py.File(self.folder / "alone.h5") as alone:
+            group = file["floquet"]
+            numpy.testing.assert_allclose(group["damping_ratio"][:], alone["floquet/damping_ratio"][:],
+                                          rtol=1e-6)
+            labels = list(group["label"].asstr()[:])
+            held = group["held_air_damping"][:]
+            work = group["air_work"][:]
+            self.assertEqual(work.shape, (len(labels), 3, 6))
+            whole = (work * group["air_length"][:]).sum(axis=(1, 2))
+            for mode in ("blade flap collective 1", "tower fore-aft 1"):
+                i = labels.index(mode)
+                self.assertLess(held[i], 0.5 * group["damping_ratio"][i], mode)
+                self.assertLess(whole[i], 0, mode)  # the air takes energy out
+        self.refuse("trim", LAND, "--air", words="--air: samara trim lists no modes")
+
+    def test_spanwise_air_of_a_steady_state(self):
+        text = self.succeed("trim", LAND, *QUICK, *WIND, "-o", "steady.h5").stdout
+        power = float(re.search(r"(?m)^air +power (\S+) kW", text).group(1))
+        with h5py.File(self.folder / "steady.h5") as file:
+            air = file["trim/air"]
+            self.assertEqual(air["normal_force"].shape, (3, 6))
+            self.assertEqual(air["angle_of_attack"].attrs["unit"], "deg")
+            self.assertTrue((air["Cl_least"][:] <= air["Cl"][:]).all())
+            self.assertTrue((air["Cl"][:] <= air["Cl_largest"][:]).all())
+            # Three Gauss points an element of half the blade; lengths and radii are undeformed.
+            weights = numpy.tile([5 / 18, 8 / 18, 5 / 18], 2) * 61.5 / 2
+            torque = (air["tangential_force"][:] * air["radius"][:] * weights).sum()
+        self.assertAlmostEqual(torque * 9.155 * math.pi / 30 / (1e3 * power), 1, delta=0.02)
+
+    def test_time_series_in_winds_that_change(self):
+        series = ("duration: 4, step: 0.02, output: {channels: [Wind1VelX, Wind1VelY, RotThrust]}")
+        def values(wind, *more):
+            self.succeed("transient", LAND, *QUICK, *WIND, *more, "-o", "run.h5", "--set",
+                         f"transient={{{series}, wind: {wind}}}")
+            with h5py.File(self.folder / "run.h5") as file:
+                return file["transient/time"][:], file["transient/values"][:]
+        times, found = values("{speed: {table: [[0, 8], [1, 8], [2, 9], [9, 9]]}}")
+        numpy.testing.assert_allclose(found[:, 0], numpy.interp(times, [1, 2], [8, 9]), rtol=1e-6)
+        self.assertGreater(found[-1, 2], found[0, 2])
+        # A table of InflowWind turns clockwise: to the right, against Wind1VelY.
+        self.write("gust.wnd", "! t V dir\n0 8 0 0 0 0 0 0\n2 8 10 0 0 0 0 0\n9 8 10 0 0 0 0 0\n")
+        _, found = values(f"{{table: {self.folder / 'gust.wnd'}}}")
+        self.assertAlmostEqual(found[-1, 1], -8 * math.sin(math.radians(10)), places=6)
+        # The same wind as a box.
+        half = struct.pack("<hiiiiffffff", 8, 2, 2, 0, 3, 200, 200, 3, 8, 90, 1)
+        half += struct.pack("<ffffffi", 100, 0, 100, 0, 100, 0, 0)
+        (self.folder / "flat.bts").write_bytes(half + struct.pack("<36h", *([800, 0, 0] * 12)))
+        _, box = values(f"{{box: {{file: {self.folder / 'flat.bts'}}}}}")
+        _, steady = values("{speed: {formula: 8}}")
+        numpy.testing.assert_allclose(box, steady, rtol=1e-5, atol=1e-5)
+        for wind, words in (("{box: {file: none.bts}}", "none.bts"),
+                            ("{gust: {type: eog, start: 9}}", "never comes"),
+                            ("{table: none.wnd}", "none.wnd"),
+                            ("{left: {formula: 0.1}}", "length")):
+            self.refuse("transient", LAND, *QUICK, *WIND, "--set",
+                        f"transient={{{series}, wind: {wind}}}", words=words)
+        (self.folder / "small.bts").write_bytes(
+            struct.pack("<hiiiiffffff", 8, 2, 2, 0, 3, 50, 50, 3, 8, 90, 60) +
+            struct.pack("<ffffffi", 100, 0, 100, 0, 100, 0, 0) +
+            struct.pack("<36h", *([800, 0, 0] * 12)))
+        self.refuse("transient", LAND, *QUICK, *WIND, "--set",
+                    f"transient={{{series}, wind: {{box: {{file: {self.folder / 'small.bts'}}}}}}}",
+                    words="smaller than the rotor")
+        self.refuse("transient", LAND, *QUICK, *WIND, "--set", "aero.inflow=frozen", "--set",
+                    f"transient={{{series}}}", words="frozen is for small motions")
 
     def test_operation_in_all_forms(self):
         text = self.succeed("operate", LAND, *QUICK, "--set", "wind.speed=8", *OPERATION, "-o",

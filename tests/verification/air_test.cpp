@@ -147,6 +147,50 @@ BOOST_AUTO_TEST_CASE(goland_wing_diverges_at_the_speed_in_closed_form) {
   BOOST_TEST(low == expected, tolerance(1e-5));
 }
 
+// ---- the typical section -----------------------------------------------------------------------
+
+/// Exponents of the input from an independent program that has Theodorsen's loads with R. T.
+/// Jones's constants, and with six finite states of Peters.
+BOOST_AUTO_TEST_CASE(typical_section_has_the_exponents_of_theodorsens_loads) {
+  struct Expected {
+    const char* dynamics;
+    double speed;
+    std::vector<Complex> exponents;
+  };
+  const std::vector<Expected> all{
+      {"hgm",
+       1.0,
+       {{-0.044206, 0.0}, {-0.275051, 0.0}, {-0.035119, 0.403721}, {-0.039229, 0.960490}}},
+      {"hgm",
+       2.0,
+       {{-0.072686, 0.0}, {-0.385647, 0.0}, {-0.172736, 0.521491}, {-0.066052, 0.702986}}},
+      {"hgm",
+       2.5,
+       {{-0.050697, 0.0}, {-0.274882, 0.0}, {0.084480, 0.601219}, {-0.506633, 0.551897}}},
+      {"peters",
+       2.0,
+       {{-0.088960, 0.0},
+        {-0.522497, 0.0},
+        {-3.989423, 0.0},
+        {-5.174727, 0.0},
+        {-0.175127, 0.497881},
+        {-0.054034, 0.710102},
+        {-4.570257, 11.043529}}}};
+  for (const Expected& expected : all) {
+    const Steady section(io::read_case(input_path("typical_section/section"),
+                                       {std::string("aero.airfoil_dynamics=") + expected.dynamics,
+                                        "wind.speed=" + std::to_string(expected.speed)}));
+    const std::vector<analysis::Mode> modes = section.constant_modes().modes;
+    for (const Complex& value : expected.exponents) {
+      double best = 1e300;
+      for (const analysis::Mode& mode : modes)
+        best = std::min(best, std::abs(mode.exponent - value));
+      BOOST_TEST_CONTEXT(expected.dynamics << ", U = " << expected.speed << ", " << value)
+      BOOST_TEST(best < 1e-5);
+    }
+  }
+}
+
 // ---- flap damping in closed form ---------------------------------------------------------------
 
 /// A rigid blade on a flap hinge at the axis in still air, Cl = a alpha, no drag, no induced
