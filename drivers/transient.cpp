@@ -95,8 +95,7 @@ void run_transient(const Job& job) {
   io::Case input = job.input;
   if (input.transient.wind && input.turbine.wind)
     at_place(input.path + ": transient.wind", [&] {
-      io::read_wind_files(*input.transient.wind, io::folder_of(input.path),
-                          input.turbine.wind->speed);
+      io::read_wind_files(*input.transient.wind, io::folder_of(input.path), *input.turbine.wind);
     });
   simulation::TransientSimulation simulation =
       at_place(input.path, [&] { return simulation::TransientSimulation(input); });

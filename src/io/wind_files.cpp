@@ -199,7 +199,7 @@ std::vector<UniformWindRow> read_uniform_wind(const std::string& path) {
 }
 
 void read_wind_files(model::WindChange& change, const std::filesystem::path& folder,
-                     double mean_speed) {
+                     const model::WindDefinition& mean) {
   constexpr double degree = std::numbers::pi / 180.0;
   const auto path_of = [&](const std::string& name) { return (folder / name).string(); };
   if (!change.table_path.empty()) {
@@ -219,9 +219,16 @@ void read_wind_files(model::WindChange& change, const std::filesystem::path& fol
     take(change.gust, [&](const auto& row) { return row.gust / std::cos(rise(row)); });
     take(change.direction, [](const auto& row) { return -row.direction * degree; });
     take(change.upflow, [&](const auto& row) { return row.upflow * degree + rise(row); });
-    take(change.exponent, [](const auto& row) { return row.exponent; });
-    take(change.shear_left, [](const auto& row) { return row.shear_left; });
-    take(change.shear_up, [](const auto& row) { return row.shear_up; });
+    const auto is_zero = [&rows](double UniformWindRow::*value) {
+      return std::ranges::all_of(rows, [&](const auto& row) { return row.*value == 0.0; });
+    };
+    if (mean.profile == model::WindDefinition::Profile::power ||
+        !is_zero(&UniformWindRow::exponent))
+      take(change.exponent, [](const auto& row) { return row.exponent; });
+    if (mean.shear_length > 0.0 || !is_zero(&UniformWindRow::shear_left))
+      take(change.shear_left, [](const auto& row) { return row.shear_left; });
+    if (mean.shear_length > 0.0 || !is_zero(&UniformWindRow::shear_up))
+      take(change.shear_up, [](const auto& row) { return row.shear_up; });
   }
   if (change.box_path.empty()) return;
   if (change.box_path.size() == 1) {
@@ -230,8 +237,8 @@ void read_wind_files(model::WindChange& change, const std::filesystem::path& fol
     return;
   }
   model::WindBox shape = change.box_shape;
-  shape.speed = mean_speed;
-  shape.step = mean_speed > 0.0 ? change.box_shape.step / mean_speed : 0.0;
+  shape.speed = mean.speed;
+  shape.step = mean.speed > 0.0 ? change.box_shape.step / mean.speed : 0.0;
   change.box = std::make_shared<const model::WindBox>(read_hawc_box(
       {path_of(change.box_path[0]), path_of(change.box_path[1]), path_of(change.box_path[2])},
       shape, change.box_scale));

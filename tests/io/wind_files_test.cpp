@@ -169,8 +169,10 @@ BOOST_AUTO_TEST_CASE(a_table_sets_the_curves_that_are_not_given) {
                "0 8 0 0 0 0.1 0 0 0\n10, 12, 10, 0, 0.2, 0.3, -0.1, 1, 5 remark\n");
   model::WindChange change;
   change.table_path = "a.wnd";
+  model::WindDefinition mean;
+  mean.speed = 8.0;
   change.exponent = math::TimeCurve::along({{0.0, 0.7}, {1.0, 0.7}});
-  io::read_wind_files(change, folder.path, 8.0);
+  io::read_wind_files(change, folder.path, mean);
   BOOST_TEST(change.speed->at(5.0).value == 10.0);
   BOOST_TEST(std::abs(change.direction->at(10.0).value + 10.0 * degree) < 1e-12);
   BOOST_TEST(std::abs(change.upflow->at(10.0).value - 5.0 * degree) < 1e-12);
@@ -179,7 +181,7 @@ BOOST_AUTO_TEST_CASE(a_table_sets_the_curves_that_are_not_given) {
   BOOST_TEST(std::abs(change.shear_up->at(5.0).value + 0.05) < 1e-12);
   BOOST_TEST(change.gust->at(20.0).value == 1.0);
   folder.write("a.wnd", "0 8 0 0 0 0.1 0 0\n0 9 0 0 0 0.1 0 0\n");
-  BOOST_TEST(has(fault_of([&] { io::read_wind_files(change, folder.path, 8.0); }),
+  BOOST_TEST(has(fault_of([&] { io::read_wind_files(change, folder.path, mean); }),
                  "a.wnd:2: the times do not rise"));
 }
 

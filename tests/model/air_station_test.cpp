@@ -135,8 +135,8 @@ class TypicalSection {
     Eigen::Matrix<double, size, size> K;
     Eigen::Matrix<double, size, size> M;
     for (int i = 0; i < size; ++i) {
-      K.row(i) = rows(i).derivatives().head<size>().transpose();
-      M.row(i) = rows(i).derivatives().tail<size>().transpose();
+      K.row(i) = rows(i).derivatives().template head<size>().transpose();
+      M.row(i) = rows(i).derivatives().template tail<size>().transpose();
     }
     return Eigen::EigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(-M.inverse() * K)).eigenvalues();
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "samara/model/air_definition.hpp"
 #include "samara/model/changing_wind.hpp"
 
 namespace samara::io {
@@ -43,10 +44,11 @@ struct UniformWindRow {
 /// @throws InputError with path and line
 std::vector<UniformWindRow> read_uniform_wind(const std::string& path);
 
-/// Reads the files that a change of the wind names: the table sets curves that are not given, the
-/// box is filled. Paths count from `folder`. `mean_speed`: of the mean wind [m/s].
+/// Reads the files that a change of the wind names: the table sets curves that are not given (of
+/// shears, where they or those of the mean wind are not zero), the box is filled. Paths count from
+/// `folder`.
 /// @throws InputError with the path
 void read_wind_files(model::WindChange& change, const std::filesystem::path& folder,
-                     double mean_speed);
+                     const model::WindDefinition& mean);
 
 }  // namespace samara::io
