@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "samara/model/airfoil.hpp"
 #include "samara/model/beam_modes.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/simulation/transient_simulation.hpp"
@@ -28,6 +29,14 @@ constexpr double no_damping = 1e-12;
 /// Limits that no turbine exceeds [m/s], [m].
 constexpr double usual_tip_speed = 120.0;
 constexpr double usual_tower = 300.0;
+/// Of airfoils and aerodynamic sections.
+constexpr double least_lift_slope = 4.0;  // [1/rad]
+constexpr double largest_lift_slope = 9.0;
+constexpr double usual_zero_lift = 10.0 * std::numbers::pi / 180.0;
+constexpr double usual_lift = 2.5;
+constexpr double usual_chord = 0.3;  // of the length of a blade
+constexpr double usual_ratio = 2.0;  // of neighbouring chords
+constexpr double usual_turn = 15.0 * std::numbers::pi / 180.0;
 
 std::string triple(const Vector3& v) {
   std::string text;
@@ -152,8 +161,53 @@ double rotor_radius(const model::TurbineDefinition& definition) {
 }
 
 /// Warnings on figures that no turbine has, one line each; the usual cause is a wrong unit.
-std::string unusual_figures(const model::TurbineDefinition& definition) {
+std::string unusual_air(const model::BladesDefinition& blades, double length) {
   std::string text;
+  const auto say = [&text](const std::string& what, const std::string& hint) {
+    text += "unusual: " + what + "; hint: " + hint + "\n";
+  };
+  for (const auto& [name, airfoil] : blades.airfoils) {
+    const model::PolarDefinition& polar = airfoil.polars.front();
+    const elements::AirfoilCurves curves =
+        model::make_curves(model::on_grid(polar), airfoil.lift_slope);
+    const std::string of = " of airfoil \"" + name + "\"";
+    if (curves.has_dynamics &&
+        (curves.lift_slope < least_lift_slope || curves.lift_slope > largest_lift_slope))
+      say("slope of the lift" + of + ", " + general(curves.lift_slope, 3) + " by rad",
+          "angles of attack are in degrees; 2 pi belongs to a thin plate");
+    if (curves.has_dynamics && std::abs(curves.zero_lift) > usual_zero_lift)
+      say("zero of the lift" + of + " at " + degrees(curves.zero_lift) + " deg",
+          "the columns are the angle, Cl, Cd, Cm");
+    const double largest = *std::ranges::max_element(polar.lift);
+    if (largest > usual_lift)
+      say("lift coefficient" + of + " of " + general(largest, 3),
+          "the columns are the angle, Cl, Cd, Cm");
+  }
+  for (std::size_t i = 0; i < blades.aero_sections.size(); ++i) {
+    const model::AeroSectionDefinition& section = blades.aero_sections[i];
+    const std::string of = " of blades.aero_sections[" + std::to_string(i) + "]";
+    if (section.chord > usual_chord * length)
+      say("chord" + of + ", " + general(section.chord, 4) + " m on a blade of " +
+              general(length, 4) + " m",
+          "chord is in m");
+    if (std::hypot(section.center[0], section.center[1]) > section.chord)
+      say("aerodynamic centre" + of + ", more than a chord off the reference line",
+          "center is in m, from the reference line");
+    if (i == 0) continue;
+    const model::AeroSectionDefinition& before = blades.aero_sections[i - 1];
+    const double ratio = section.chord / before.chord;
+    if (ratio > usual_ratio || ratio < 1.0 / usual_ratio)
+      say("chord" + of + " is " + general(ratio, 3) + " times that before it", "chord is in m");
+    if (std::abs(section.twist - before.twist) > usual_turn)
+      say("twist" + of + " differs by " + degrees(section.twist - before.twist) +
+              " deg from that before it",
+          "twist_deg is in degrees");
+  }
+  return text;
+}
+
+std::string unusual_figures(const model::TurbineDefinition& definition) {
+  std::string text = unusual_air(definition.blades, definition.blades.beam.length);
   const double tip_speed = std::abs(definition.shaft.speed) * rotor_radius(definition);
   if (tip_speed > usual_tip_speed)
     text += "unusual: tip speed " + general(tip_speed, 4) + " m/s, above " +
@@ -278,6 +332,71 @@ std::vector<std::pair<std::string, std::string>> air_lines(
   return lines;
 }
 
+/// The airfoils of the blades by their first polar, at angles of attack in degrees.
+std::string airfoil_table(const model::BladesDefinition& blades) {
+  Table table;
+  table.add_column("airfoil", "", Align::left);
+  table.add_column("thickness", "");
+  table.add_column("polars", "");
+  table.add_column("points", "");
+  table.add_column("zero lift", "deg");
+  table.add_column("slope", "1/rad");
+  table.add_column("largest Cl", "");
+  table.add_column("at", "deg");
+  table.add_column("least Cd", "");
+  table.add_column("separated below", "deg");
+  table.add_column("above", "deg");
+  for (const auto& [name, airfoil] : blades.airfoils) {
+    const model::PolarDefinition& polar = airfoil.polars.front();
+    const model::PolarDefinition grid = model::on_grid(polar);
+    const elements::AirfoilCurves curves = model::make_curves(grid, airfoil.lift_slope);
+    // Of the flow from the front.
+    std::size_t most = grid.angles.size() / 2;
+    for (std::size_t i = 0; i < grid.angles.size(); ++i)
+      if (std::abs(grid.angles[i]) < 0.25 * std::numbers::pi && grid.lift[i] > grid.lift[most])
+        most = i;
+    double below = grid.angles.front();
+    double above = grid.angles.back();
+    for (const double angle : grid.angles) {
+      if (!curves.has_dynamics || curves.separation_at(angle) > 0.0) continue;
+      if (angle < curves.zero_lift) below = angle;
+      if (angle > curves.zero_lift) above = std::min(above, angle);
+    }
+    const auto known = [&curves](const std::string& words) {
+      return curves.has_dynamics ? words : std::string("-");
+    };
+    table.add_row({name, airfoil.thickness ? general(*airfoil.thickness, 4) : "-",
+                   std::to_string(airfoil.polars.size()), std::to_string(polar.angles.size()),
+                   known(degrees(curves.zero_lift)), known(fixed(curves.lift_slope, 3)),
+                   fixed(grid.lift[most], 3), degrees(grid.angles[most]),
+                   fixed(*std::ranges::min_element(polar.drag), 4), known(degrees(below)),
+                   known(degrees(above))});
+  }
+  return table.text();
+}
+
+/// The aerodynamic sections of a blade.
+std::string section_table(const model::BladesDefinition& blades) {
+  Table table;
+  table.add_column("section", "");
+  table.add_column("at", "");
+  table.add_column("chord", "m");
+  table.add_column("twist", "deg");
+  table.add_column("airfoil or thickness", "", Align::left);
+  for (std::size_t i = 0; i < blades.aero_sections.size(); ++i) {
+    const model::AeroSectionDefinition& section = blades.aero_sections[i];
+    table.add_row({std::to_string(i + 1), fixed(section.at, 4), fixed(section.chord, 3),
+                   fixed(section.twist * 180.0 / std::numbers::pi, 3),
+                   section.thickness ? general(*section.thickness, 4) : section.airfoil});
+  }
+  return table.text();
+}
+
+std::string air_tables(const model::BladesDefinition& blades) {
+  if (blades.aero_sections.empty()) return {};
+  return "\n" + section_table(blades) + "\n" + airfoil_table(blades);
+}
+
 std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
@@ -389,7 +508,8 @@ void run_check(const Job& job) {
   deliver(
       job,
       (title.empty() ? job.input.path : title) + "\n\n" + mass_table(turbine, masses) + "\n" +
-          facts(job.input, system, masses) + unusual_figures(job.input.turbine),
+          facts(job.input, system, masses) + air_tables(job.input.turbine.blades) +
+          unusual_figures(job.input.turbine),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, masses);

@@ -248,8 +248,13 @@ void declare_beam(Visitor& fields, BeamPlace place, model::BeamDefinition& beam)
                     .or_else("straight along b1"),
                 to_a, beam.reference_line);
   fields.at_least_one({"length", "reference_line"}, "or \"reference_line\"");
-  fields.integer({"elements", "", integers(1, most_elements), "elements of equal length"},
-                 beam.elements);
+  fields.integer({"elements", "", integers(1, most_elements), "number of elements"}, beam.elements);
+  fields.number_list(
+      Field("element_lengths", "", positive,
+            "`[1, 1, 0.5]`, lengths of the elements by each other from the root on. With another "
+            "number of `elements` the ends divide them in the same way: twice as many halve each")
+          .or_else("equal"),
+      "lengths", beam.element_lengths);
   fields.integer({"order", "", integers(1, most_order),
                   "Gauss points an element. Frequencies converge as (element length)^(2 order)"},
                  beam.order);

@@ -40,22 +40,51 @@ TestFunctions test_functions(const math::QuadratureRule& rule) {
   return functions;
 }
 
-/// Ends of elements with even spacing, except that each point mass moves the nearest end to its
-/// place.
-std::vector<double> element_ends(const std::string& name, const BeamDefinition& definition) {
-  std::vector<double> ends;
+/// Ends of elements by the stated lengths, as fractions of the length of the beam.
+std::vector<double> regular_ends(const BeamDefinition& definition) {
   const int n = definition.elements;
-  for (int e = 0; e <= n; ++e) ends.push_back(static_cast<double>(e) / n);
+  std::vector<double> ends;
+  if (definition.element_lengths.empty()) {
+    for (int e = 0; e <= n; ++e) ends.push_back(static_cast<double>(e) / n);
+    return ends;
+  }
+  std::vector<double> stated{0.0};
+  for (const double length : definition.element_lengths) stated.push_back(stated.back() + length);
+  const auto intervals = static_cast<double>(definition.element_lengths.size());
+  for (int e = 0; e <= n; ++e) {
+    const double place = intervals * e / n;
+    const auto i = std::min(static_cast<std::size_t>(place), stated.size() - 2);
+    const double part = place - static_cast<double>(i);
+    ends.push_back((stated[i] + part * (stated[i + 1] - stated[i])) / stated.back());
+  }
+  ends.back() = 1.0;
+  return ends;
+}
+
+/// The regular ends, except that each point mass moves the nearest end to its place.
+std::vector<double> element_ends(const std::string& name, const BeamDefinition& definition) {
+  const int n = definition.elements;
+  const std::vector<double> regular = regular_ends(definition);
+  std::vector<double> ends = regular;
   int last = 0;
   for (const PointMassDefinition& lump : definition.point_masses) {
     if (lump.at == 1.0 || lump.at == ends[static_cast<std::size_t>(last)]) continue;
-    const int nearest = std::min(static_cast<int>(std::lround(lump.at * n)), n - 1);
-    last = std::max(nearest, last + 1);
+    // The later one of two ends at the same distance.
+    const auto next = std::lower_bound(regular.begin() + 1, regular.end(), lump.at);
+    const bool is_next = *next - lump.at <= lump.at - *(next - 1);
+    const auto found = static_cast<int>(next - regular.begin()) - (is_next ? 0 : 1);
+    last = std::max(std::min(found, n - 1), last + 1);
     if (last >= n) break;
     ends[static_cast<std::size_t>(last)] = lump.at;
   }
+  const auto is_short = [&](std::size_t e) {
+    const double before = e > 1 ? regular[e - 1] - regular[e - 2] : regular[e] - regular[e - 1];
+    const double behind = e < ends.size() - 1 ? regular[e + 1] - regular[e] : before;
+    const double least = std::min({before, regular[e] - regular[e - 1], behind});
+    return !(ends[e] - ends[e - 1] >= least_element * least);
+  };
   for (std::size_t e = 1; e < ends.size(); ++e)
-    if (last >= n || !(ends[e] - ends[e - 1] >= least_element / n))
+    if (last >= n || is_short(e))
       throw InputError(name + ": the mesh of " + std::to_string(n) +
                        (n == 1 ? " element" : " elements") +
                        " is too coarse for the places of its point masses and mass dampers; hint: "

@@ -64,6 +64,11 @@ class Validation {
       add(key + ".length", "expected a number > 0", {key + ".reference_line"});
     check_line(key, beam);
     if (beam.sections.empty()) add(key + ".sections", "expected one section or more");
+    for (const double length : beam.element_lengths)
+      if (!(length > 0.0)) {
+        add(key + ".element_lengths", "expected numbers > 0, got " + general(length, 6));
+        break;
+      }
     for (std::size_t i = 0; i < beam.sections.size(); ++i) {
       const std::string place = indexed(key + ".sections", i);
       const SectionDefinition& section = beam.sections[i];

@@ -17,9 +17,8 @@ namespace samara::io {
 model::WindBox read_turbsim_box(const std::string& path);
 
 /// Reads three files of raw 32-bit numbers, u, v, w, in the order of HAWC2: along the wind slowest
-/// and against it, then across from left to right, up fastest. Fluctuations.
-/// @param shape  of the box: times, rows, columns, and all lengths
-/// @param scale  factors of u, v, w
+/// and against it, then across from left to right, up fastest. Fluctuations. `shape`: times, rows,
+/// columns and all lengths of the box; `scale`: factors of u, v, w.
 /// @throws InputError with the path
 model::WindBox read_hawc_box(const std::array<std::string, 3>& paths, const model::WindBox& shape,
                              const std::array<double, 3>& scale);

@@ -72,8 +72,11 @@ using ModalDamping = std::array<std::optional<double>, 3>;
 struct BeamDefinition {
   double length = 0.0;                  ///< arc length [m], > 0
   std::vector<Vector3> reference_line;  ///< points in axes a [m]; empty = straight along b1
-  int elements = 4;  ///< >= 1, of equal arc length; point masses move the nearest ends
-  int order = 1;     ///< Gauss points an element, 1 to 6
+  int elements = 4;                     ///< >= 1; point masses move the nearest ends
+  /// Lengths of elements by each other, from the root on, > 0; empty: equal. With another number of
+  /// elements the ends divide each of these lengths, or several of them, evenly.
+  std::vector<double> element_lengths;
+  int order = 1;                            ///< Gauss points an element, 1 to 6
   std::vector<SectionDefinition> sections;  ///< sorted by `at`; one = uniform
   Vector6 damping = Vector6::Zero();  ///< mu [s] per strain component; fitted if this is zero and
                                       ///< modal_damping is given
