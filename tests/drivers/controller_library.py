@@ -4,6 +4,7 @@ fail in all ways."""
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -253,9 +254,16 @@ class Failures(ProgramTest):
 
 class Process(ProgramTest):
     def helpers(self, parent):
-        found = subprocess.run(["ps", "-o", "pid=,comm=", "--ppid", str(parent)], capture_output=True, text=True,
-                               check=False)
-        return [int(line.split()[0]) for line in found.stdout.splitlines() if "samara-controll" in line]
+        """Its children, by the files of the kernel: number, (name), state, parent."""
+        found = []
+        for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+            try:
+                number, name, _, owner = path.read_text().split()[:4]
+            except (OSError, ValueError):  # it has ended
+                continue
+            if owner == str(parent) and name.startswith("(samara-control"):
+                found.append(int(number))
+        return found
 
     def start(self, duration):
         path = self.write("case.yaml", ROTOR % "")
@@ -291,6 +299,33 @@ class Process(ProgramTest):
         self.assertEqual(run.returncode, 130, err)
         self.assertNotIn("--restart", err)
         self.assertEqual(series(self.folder / "a.h5")[2], "interrupted")
+
+    def test_a_program_without_its_helper_says_so(self):
+        alone = self.folder / "bin/samara"
+        alone.parent.mkdir()
+        shutil.copy2(PROGRAM, alone)
+        path = self.write("case.yaml", ROTOR % "")
+        self.write("law.txt", LAW)
+        run = subprocess.run([alone, "transient", path, "-o", "a.h5", *transient(library("pi", "law.txt"))],
+                             cwd=self.folder, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertIn("bin/samara-controller-host is missing", run.stderr)
+
+    def test_events_act_beside_a_library(self):
+        path = self.write("case.yaml", ROTOR % "")
+        events = ("[{at: 0.503, pitch: {to_deg: -1, rate_deg: 2}}, {when: {channel: GenSpeed, above: 1113}, "
+                  "generator_off: true}]")
+        run = self.succeed("transient", path, "-o", "a.h5",
+                           *transient(library("recorder", "", 0.02), events=events))
+        self.assertIn("transient.events[1] at t = ", run.stdout)
+        values = series(self.folder / "a.h5")[1]
+        self.assertAlmostEqual(values[50, 1], 0, places=9)
+        self.assertAlmostEqual(values[-1, 1], -1, places=9)
+        self.assertLess(abs(values[-1, 2]), 1e-6)
+        # Steps that an event repeats are not called again.
+        times = [float(re.search(r" 2:(\S+)", line)[1])
+                 for line in (self.folder / "a.records").read_text().splitlines()]
+        numpy.testing.assert_allclose(times, 0.02 * numpy.arange(101), atol=1e-6)
 
     def test_restarts_are_refused_with_the_reason(self):
         path = self.write("case.yaml", ROTOR % "")
