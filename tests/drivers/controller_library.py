@@ -267,11 +267,10 @@ class Process(ProgramTest):
 
     def start(self, duration):
         path = self.write("case.yaml", ROTOR % "")
-        self.write("law.txt", LAW)
         command = [PROGRAM, "transient", path, "-o", "a.h5",
-                   *transient(library("pi", "law.txt"), duration=duration, checkpoint=1)]
+                   *transient(library("recorder", "", 1), duration=duration)]
         run = subprocess.Popen(list(map(str, command)), cwd=self.folder, text=True, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE)
+                               stderr=subprocess.PIPE, start_new_session=True)
         end = time.monotonic() + LONGEST_RUN
         while not (self.folder / "a.h5").exists():
             self.assertLess(time.monotonic(), end)
@@ -294,9 +293,10 @@ class Process(ProgramTest):
 
     def test_an_interrupted_run_ends_in_good_order_and_cannot_be_continued(self):
         run, _ = self.start(100000)
-        run.send_signal(signal.SIGINT)
-        out, err = run.communicate(timeout=LONGEST_RUN)
+        os.killpg(run.pid, signal.SIGINT)  # as a terminal does, to the helper, too
+        _, err = run.communicate(timeout=LONGEST_RUN)
         self.assertEqual(run.returncode, 130, err)
+        self.assertIn(" 1:-1 ", (self.folder / "a.records").read_text().splitlines()[-1])
         self.assertNotIn("--restart", err)
         self.assertEqual(series(self.folder / "a.h5")[2], "interrupted")
 
