@@ -29,7 +29,7 @@ target_link_libraries(
   INTERFACE Eigen3::Eigen PkgConfig::SLEPC PkgConfig::PETSC MPI::MPI_CXX)
 
 set(samara_package ${CMAKE_INSTALL_LIBDIR}/cmake/Samara)
-install(TARGETS samara RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS samara samara_controller_host RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS samara_library EXPORT SamaraTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")

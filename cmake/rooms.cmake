@@ -31,4 +31,13 @@ function(samara_add_program)
                                          samara::system samara::model samara::elements samara::math samara::petsc
                                          samara::base)
   endif()
+  # It uses the C library alone, and is found beside the program.
+  add_executable(samara_controller_host
+                 ${PROJECT_SOURCE_DIR}/drivers/controller_host/controller_host.cpp)
+  set_target_properties(samara_controller_host PROPERTIES OUTPUT_NAME samara-controller-host)
+  target_include_directories(samara_controller_host PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_link_libraries(samara_controller_host PRIVATE ${CMAKE_DL_LIBS})
+  if(TARGET samara)
+    add_dependencies(samara samara_controller_host)
+  endif()
 endfunction()

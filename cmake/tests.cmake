@@ -6,6 +6,7 @@
 #   tests/drivers/*.sh, *.py                    -> the program as its users run it
 #   tests/layering/                             -> rules of the source tree
 #   tests/fuzz/<name>_harness.cpp               -> fuzz_<name>, a little of scripts/fuzz
+#   tests/controllers/<name>.c                  -> libraries of controllers for tests/drivers
 #   tests/dump/                                 -> dump_system, for scripts/compare_trees
 set(samara_program ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/samara)
 
@@ -17,6 +18,7 @@ set(samara_test_environment
     SAMARA_PROGRAM=${samara_program}
     SAMARA_MPIEXEC=${MPIEXEC_EXECUTABLE}
     SAMARA_PYTHON=${SAMARA_PYTHON}
+    SAMARA_CONTROLLERS=${PROJECT_BINARY_DIR}/tests/controllers
     OMP_NUM_THREADS=1
     OPENBLAS_NUM_THREADS=1
     OMPI_ALLOW_RUN_AS_ROOT=1
@@ -163,6 +165,15 @@ samara_add_tests(io unit "samara::io;samara_external_files")
 samara_add_tests(decks unit "samara::decks;samara_external_files")
 samara_add_tests(verification verification "samara::io;samara_external_files")
 samara_add_fuzz_tests("samara::decks;samara_external_files")
+file(GLOB controllers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/controllers/*.c)
+foreach(source ${controllers})
+  get_filename_component(name ${source} NAME_WE)
+  add_library(controller_${name} MODULE ${source})
+  target_link_libraries(controller_${name} PRIVATE m)
+  set_target_properties(
+    controller_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY
+                                  ${PROJECT_BINARY_DIR}/tests/controllers)
+endforeach()
 add_executable(dump_system ${PROJECT_SOURCE_DIR}/tests/dump/dump.cpp)
 target_link_libraries(dump_system PRIVATE samara::io samara_external_files)
 samara_add_scripts(layering tree "")

@@ -1,10 +1,14 @@
 // samara transient: simulation in time.
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
+#include <memory>
+#include <optional>
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
+#include "samara/io/controller_library.hpp"
 #include "samara/io/time_series_file.hpp"
 #include "samara/io/transient_start.hpp"
 #include "samara/io/whole_file.hpp"
@@ -54,6 +58,10 @@ std::string summary(const io::Case& input, const simulation::TransientSummary& d
   if (run.cuts > 0) text += ", " + std::to_string(run.cuts) + " cuts of the step";
   text += "\nresolved     motions up to " + general(followed, 3) + " Hz, with " +
           general(simulation::steps_a_cycle, 3) + " steps a cycle";
+  if (const auto& controller = input.transient.controller)
+    text += "\ncontroller   " + controller->library + ", called every " +
+            general(controller->step > 0.0 ? controller->step : input.transient.options.step, 6) +
+            " s";
   for (std::size_t i = 0; i < done.end.events.size(); ++i)
     if (std::isfinite(done.end.events[i]))
       text += "\nevent        transient.events[" + std::to_string(i) +
@@ -85,6 +93,22 @@ void start(const Job& job, simulation::TransientSimulation& simulation, Progress
     at_place(input.path, [&] { simulation.start(progress); });
 }
 
+/// Null where the case has none.
+std::unique_ptr<simulation::SteppedController> start_controller(const Job& job) {
+  const std::optional<simulation::ControllerSetup>& setup = job.input.transient.controller;
+  if (!setup) return nullptr;
+  if (!job.restart_path.empty())
+    throw InputError(
+        "--restart: not with transient.controller: the library's memory was lost with its process; "
+        "hint: a run from the start");
+  io::ControllerFiles files;
+  files.folder = io::folder_of(job.input.path);
+  files.output =
+      std::filesystem::absolute(job.result_path).replace_extension().lexically_normal().string();
+  return at_place(job.input.path,
+                  [&] { return std::make_unique<io::ControllerLibrary>(*setup, files); });
+}
+
 }  // namespace
 
 void run_transient(const Job& job) {
@@ -99,6 +123,7 @@ void run_transient(const Job& job) {
     });
   simulation::TransientSimulation simulation =
       at_place(input.path, [&] { return simulation::TransientSimulation(input); });
+  const std::unique_ptr<simulation::SteppedController> controller = start_controller(job);
   Progress progress(true);
   for (const std::string& note : simulation::transient_notes(job.input)) progress.note(note);
   start(job, simulation, progress);
@@ -122,7 +147,7 @@ void run_transient(const Job& job) {
   const Interruption interruption;
   const Clock::time_point began = Clock::now();
   try {
-    const simulation::TransientSummary done = simulation.run(output);
+    const simulation::TransientSummary done = simulation.run(output, controller.get());
     const bool is_complete = done.run.reason == analysis::TransientEnd::complete;
     const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
     file.note_events(done.end.events);
@@ -133,9 +158,10 @@ void run_transient(const Job& job) {
               << "\n"
               << std::flush;
     if (!is_complete)
-      throw Interrupted("interrupted at t = " + general(done.run.end.time, 6) +
-                        " s; hint: --restart " + job.result_path +
-                        " goes on from its last checkpoint");
+      throw Interrupted("interrupted at t = " + general(done.run.end.time, 6) + " s" +
+                        (controller ? ""
+                                    : "; hint: --restart " + job.result_path +
+                                          " goes on from its last checkpoint"));
     require_fired(transient, done.end.events);
   } catch (const Interrupted&) {
     throw;

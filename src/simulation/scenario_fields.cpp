@@ -350,6 +350,38 @@ void declare_event(Visitor& fields, double duration, turbine::TurbineEvent& even
     fields.refuse("", "does nothing; expected pitch, generator_off or brake");
 }
 
+/// `step`: of the transient.
+void declare_library(Visitor& fields, double step, ControllerSetup& controller) {
+  const auto declare_text = [&fields](const Field& field, const char* expected, std::string& text) {
+    const bool is_given = fields.text(field, expected, text);
+    if (is_given && text.empty()) fields.expected(field.key, expected);
+  };
+  declare_text(Field("library", "shared library with the interface of Bladed, DISCON")
+                   .required("the name of a library, NAME.so"),
+               "the name of a file", controller.library);
+  declare_text(Field("input", "its input file, argument `INFILE`").or_else("none"),
+               "the name of a file", controller.input);
+  declare_text({"procedure", "name of the procedure in the library"}, "the name of a procedure",
+               controller.procedure);
+  declare_step_count(
+      fields,
+      Field("step", "s", positive, "between calls, a multiple of `step` of the transient")
+          .none_at_zero("`step` of the transient"),
+      step, controller.step);
+  fields.number(
+      {"timeout", "s", positive, "longest time of a call by the clock; a slower one ends the run"},
+      controller.timeout);
+  fields.flag({"individual_pitch",
+               "each blade follows its own demand, records 42 to 44; else all follow record 45"},
+              controller.is_individual);
+  fields.number({"pitch_rate_limit_deg", deg_per_s, positive,
+                 "largest rate of the pitch without `blades.pitch_actuator`"},
+                controller.pitch_rate);
+  fields.number({"efficiency", "", fields::beyond_the_root,
+                 "of the generator, for the measured electrical power, record 15"},
+                controller.efficiency);
+}
+
 /// A word, or the name of a result.
 void declare_start(Visitor& fields, TransientSetup& transient) {
   std::string start = transient.start == TransientOrigin::trim         ? "trim"
@@ -453,6 +485,13 @@ void declare_transient(Visitor& fields, const model::TurbineDefinition& turbine,
   fields.list(
       Field("events", "a list, see below"), "events", 1, transient.events,
       [&](turbine::TurbineEvent& event) { declare_event(fields, options.duration, event); });
+  fields.block(Field("controller",
+                     "library of a controller that sets pitch and torque, "
+                     "[below](#controller-libraries)")
+                   .or_else("none"),
+               transient.controller, [&](ControllerSetup& controller) {
+                 declare_library(fields, options.step, controller);
+               });
   fields.block({"output", "channels and rows of the time series"},
                [&] { declare_output(fields, turbine, transient); });
 }

@@ -15,9 +15,10 @@ constexpr double closest_event = 1e-3;
 
 analysis::TransientOptions options_of(const TransientSetup& transient) {
   analysis::TransientOptions options = transient.options;
-  options.checkpoint_steps = transient.checkpoint > 0.0
-                                 ? std::max(1L, std::lround(transient.checkpoint / options.step))
-                                 : 0;
+  // A controller has a memory of its own: a checkpoint would not be a state to continue from.
+  const bool has_checkpoints = transient.checkpoint > 0.0 && !transient.controller;
+  options.checkpoint_steps =
+      has_checkpoints ? std::max(1L, std::lround(transient.checkpoint / options.step)) : 0;
   return options;
 }
 
@@ -34,9 +35,11 @@ model::Turbine turbine_after(const TransientSetup& transient, model::Turbine tur
   return turbine;
 }
 
-ChannelWatch::ChannelWatch(const TransientSetup& transient, TransientOutput& output)
+ChannelWatch::ChannelWatch(const TransientSetup& transient, TransientOutput& output,
+                           ControlLoop* loop)
     : transient_(transient),
       output_(output),
+      loop_(loop),
       steps_(std::lround(transient.options.duration / transient.options.step)) {}
 
 void ChannelWatch::begin_leg(const turbine::TurbineSystem& system,
@@ -53,11 +56,13 @@ void ChannelWatch::begin_leg(const turbine::TurbineSystem& system,
   for (const std::size_t i : watched) names.push_back(transient_.events[i].trigger.channel);
   levels_.resize(names.size());
   if (!names.empty()) watch_.emplace(system, transient_.stations, names);
+  if (loop_ != nullptr) loop_->begin_leg(system, state.point);
 }
 
 bool ChannelWatch::sample(const analysis::TransientSample& sample) {
   if (find_crossing(sample)) return false;
   take_row(sample);
+  if (loop_ != nullptr) loop_->sample(sample);
   output_.progress("transient", sample.step, steps_);
   return output_.goes_on();
 }
@@ -97,13 +102,15 @@ bool ChannelWatch::find_crossing(const analysis::TransientSample& sample) {
 }
 
 TransientLegs::TransientLegs(const TransientSetup& transient, const model::Turbine& turbine,
-                             TransientState state, int generator, TransientOutput& output)
+                             TransientState state, int generator, TransientOutput& output,
+                             ControlLoop* loop)
     : transient_(transient),
       options_(options_of(transient)),
       turbine_(turbine_after(transient, turbine, state.events)),
       state_(std::move(state)),
       generator_(generator),
-      watch_(transient, output) {}
+      loop_(loop),
+      watch_(transient, output, loop) {}
 
 TransientSummary TransientLegs::run() {
   TransientSummary summary;
@@ -124,6 +131,7 @@ TransientSummary TransientLegs::run() {
       fire_at(*stop);
       continue;
     }
+    if (loop_ != nullptr) loop_->end();
     total_.end = leg.end;
     total_.reason = leg.reason;
     summary.run = total_;

@@ -6,6 +6,8 @@
 
 #include "samara/simulation/transient_simulation.hpp"
 
+#include "control_loop.hpp"
+
 namespace samara::simulation {
 
 /// The turbine after the events with the times `fired`, one time for each event of the setup.
@@ -21,8 +23,8 @@ struct Crossing {
 /// Evaluates channels after each step, for the rows of the output and for the levels of events.
 class ChannelWatch final : public analysis::TransientObserver {
  public:
-  /// Both arguments must outlive the object.
-  ChannelWatch(const TransientSetup& transient, TransientOutput& output);
+  /// All arguments must outlive the object. `loop`: null without a controller.
+  ChannelWatch(const TransientSetup& transient, TransientOutput& output, ControlLoop* loop);
 
   /// The following steps use this system; `watched`: events that have not occurred yet. The system
   /// must outlive the leg. `state`: state for checkpoints, except the point.
@@ -44,6 +46,7 @@ class ChannelWatch final : public analysis::TransientObserver {
 
   const TransientSetup& transient_;
   TransientOutput& output_;
+  ControlLoop* loop_;
   TransientState state_;
   std::optional<turbine::TurbineChannels> channels_;
   std::optional<turbine::TurbineChannels> watch_;
@@ -61,10 +64,10 @@ class ChannelWatch final : public analysis::TransientObserver {
 class TransientLegs {
  public:
   /// `turbine`: at the start, before the events that have occurred according to `state`.
-  /// `generator`: unknown of the generator's angle. The setup and the output must outlive the
-  /// object.
+  /// `generator`: unknown of the generator's angle. `loop`: null without a controller. Setup,
+  /// output and loop must outlive the object.
   TransientLegs(const TransientSetup& transient, const model::Turbine& turbine,
-                TransientState state, int generator, TransientOutput& output);
+                TransientState state, int generator, TransientOutput& output, ControlLoop* loop);
 
   /// @throws ConvergenceError as `analysis::run_transient`
   TransientSummary run();
@@ -83,6 +86,7 @@ class TransientLegs {
   model::Turbine turbine_;
   TransientState state_;
   int generator_;
+  ControlLoop* loop_;
   ChannelWatch watch_;
   analysis::TransientRun total_;
 };

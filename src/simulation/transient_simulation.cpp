@@ -10,6 +10,7 @@
 #include "samara/simulation/steady_state.hpp"
 #include "samara/simulation/validation.hpp"
 
+#include "control_loop.hpp"
 #include "transient_legs.hpp"
 
 namespace samara::simulation {
@@ -131,6 +132,10 @@ void TransientSimulation::restart(const Scenario& before, TransientState state) 
         "series");
   const analysis::TransientOptions& options = scenario_.transient.options;
   const analysis::TransientOptions& ran = before.transient.options;
+  if (scenario_.transient.controller)
+    throw InputError(
+        "cannot be continued with transient.controller: the library's memory is lost with its "
+        "process");
   const std::string hint = "; hint: give this result as transient.start for a new time series";
   const analysis::TransientStart& point = state.point;
   const double grid = point.origin + static_cast<double>(point.step) * options.step;
@@ -149,6 +154,10 @@ void TransientSimulation::restart(const Scenario& before, TransientState state) 
 void TransientSimulation::start_after(const Scenario& before, const TransientState& end,
                                       analysis::Observer& observer, bool is_new_law) {
   require_size(end.point.z.size());
+  if (before.transient.controller)
+    throw InputError(
+        "is of a run with transient.controller: the demands at its end are lost with the "
+        "library's process; hint: start on a result of samara trim");
   if (end.events.size() != before.transient.events.size())
     throw InputError("has times of " + std::to_string(end.events.size()) +
                      " events, its case has " + std::to_string(before.transient.events.size()));
@@ -192,12 +201,24 @@ void TransientSimulation::start_on(const Scenario& before, const analysis::Trim&
   begin(std::move(state));
 }
 
-TransientSummary TransientSimulation::run(TransientOutput& output) {
+TransientSummary TransientSimulation::run(TransientOutput& output, SteppedController* controller) {
   if (!is_started_) throw InputError("a simulation must be started before it runs");
+  if (scenario_.transient.controller.has_value() != (controller != nullptr))
+    throw InputError(controller == nullptr ? "transient.controller: the run has no controller"
+                                           : "the scenario has no transient.controller");
   const analysis::TransientStart& point = state_.point;
   if (point.time >= point.origin + scenario_.transient.options.duration * (1.0 - 1e-12))
     throw InputError("the simulation has reached its end, t = " + general(point.time, 6) + " s");
-  TransientLegs legs(scenario_.transient, turbine_, state_, system_->layout().generator(), output);
+  const int generator = system_->layout().generator();
+  model::Turbine turbine = turbine_;
+  TransientState state = state_;
+  std::optional<ControlLoop> loop;
+  if (controller != nullptr) {
+    loop.emplace(scenario_.transient, *controller, output);
+    loop->take_over(turbine, state, generator);
+  }
+  TransientLegs legs(scenario_.transient, turbine, state, generator, output,
+                     loop ? &*loop : nullptr);
   TransientSummary summary = legs.run();
   state_ = summary.end;
   return summary;

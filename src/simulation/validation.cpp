@@ -60,6 +60,7 @@ class Validation {
     if (analysis != Analysis::transient && scenario_.transient.options.duration > 0.0) {
       check_curves();
       for (std::size_t i = 0; i < scenario_.transient.events.size(); ++i) check_event(i);
+      check_library();
     }
     switch (analysis) {
       case Analysis::check:
@@ -259,6 +260,7 @@ class Validation {
     check_curves();
     if (transient.wind) check_wind(*transient.wind);
     for (std::size_t i = 0; i < transient.events.size(); ++i) check_event(i);
+    check_library();
     for (std::size_t i = 0; i < turbine_.loads.size(); ++i) {
       const auto& table = turbine_.loads[i].variation.table;
       if (!table.empty() &&
@@ -308,6 +310,27 @@ class Validation {
       add(place + ".pitch.blade",
           "there is no such blade, there are " + std::to_string(turbine_.blades.count));
     check_pitch_loop(place + ".pitch");
+  }
+
+  /// A controller library has the whole pitch and the whole torque.
+  void check_library() {
+    if (!scenario_.transient.controller || !has_blades("transient.controller")) return;
+    const ControllerSetup& controller = *scenario_.transient.controller;
+    constexpr int most_individual = 3;
+    if (!is_free())
+      add("transient.controller",
+          "sets the torque of the generator, which is locked; hint: shaft.generator.joint: free");
+    if (turbine_.controller)
+      add("controller", "and transient.controller exclude each other; hint: leave one of them out");
+    if (scenario_.transient.pitch)
+      add("transient.pitch_deg", "transient.controller sets the pitch; hint: leave out pitch_deg");
+    if (controller.is_individual && turbine_.blades.count > most_individual)
+      add("transient.controller.individual_pitch",
+          "has demands of three blades at the most, there are " +
+              std::to_string(turbine_.blades.count));
+    const double calls = controller.step / scenario_.transient.options.step;
+    if (controller.step < 0.0 || std::abs(calls - std::round(calls)) > 1e-6)
+      add("transient.controller.step", "expected a multiple of transient.step");
   }
 
   void check_pitch_loop(const std::string& field) {

@@ -48,6 +48,10 @@ class Library(unittest.TestCase):
         text = run(self.built / example)
         return [tuple(map(float, groups)) for groups in re.findall(pattern, text)], text
 
+    def test_the_helper_of_controller_libraries_stands_beside_the_program(self):
+        for name in ("samara", "samara-controller-host"):
+            self.assertTrue(os.access(self.tree / "bin" / name, os.X_OK), name)
+
     def test_a_beam_has_the_frequencies_of_euler_and_bernoulli(self):
         rows, _ = self.found("beam", r"(\S+) Hz +(\S+)\n")
         factors = sorted(factor for _, factor in rows)

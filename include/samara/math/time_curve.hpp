@@ -36,6 +36,11 @@ class TimeCurve {
   /// is `rate` > 0.
   static TimeCurve ramp(double start, double from, double to, double rate);
 
+  /// Any function of time with its rates.
+  static TimeCurve of(std::function<Value(double)> function) {
+    return TimeCurve(std::move(function));
+  }
+
   Value at(double t) const { return function_ ? function_(t) : Value{}; }
 
  private:

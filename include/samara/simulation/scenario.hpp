@@ -10,6 +10,7 @@
 #include "samara/linear/linearization.hpp"
 #include "samara/model/changing_wind.hpp"
 #include "samara/model/definition.hpp"
+#include "samara/simulation/stepped_controller.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_events.hpp"
 
@@ -37,6 +38,7 @@ struct TransientSetup {
   std::optional<math::TimeCurve> teeter;  ///< [rad]
   std::optional<model::WindChange> wind;  ///< instead of the mean wind
   std::vector<turbine::TurbineEvent> events;
+  std::optional<ControllerSetup> controller;  ///< it sets pitch and torque of the generator
 };
 
 struct LinearizeSetup {

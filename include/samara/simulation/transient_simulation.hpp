@@ -90,14 +90,14 @@ class TransientSimulation {
   void start(analysis::Observer& observer);
 
   /// Continues the simulation of `before` from its checkpoint `state`.
-  /// @throws InputError if the scenario has other steps or events
+  /// @throws InputError if the scenario has other steps or events, or a controller
   void restart(const Scenario& before, TransientState state);
 
   /// Starts at the end of the simulation of `before`; this is t = 0 of the new time series. Effects
   /// of events on the drive train remain.
   /// A generator with another law, or one that counts as such (`is_new_law`), gives the torque of
   /// the law only: the torque that held the mean speed before is removed.
-  /// @throws InputError if motions do not continue from there
+  /// @throws InputError if motions do not continue from there, or `before` has a controller
   void start_after(const Scenario& before, const TransientState& end, analysis::Observer& observer,
                    bool is_new_law = false);
 
@@ -105,8 +105,10 @@ class TransientSimulation {
   /// @throws InputError as start_after
   void start_on(const Scenario& before, const analysis::Trim& trim, bool is_new_law = false);
 
-  /// @throws InputError before a start; ConvergenceError as analysis::run_transient
-  TransientSummary run(TransientOutput& output);
+  /// `controller`: called every `TransientSetup::controller` step; null where there is none.
+  /// @throws InputError before a start; ConvergenceError as analysis::run_transient, and of the
+  /// controller
+  TransientSummary run(TransientOutput& output, SteppedController* controller = nullptr);
 
  private:
   void require_size(Eigen::Index unknowns) const;
