@@ -25,6 +25,14 @@ class Commands(ProgramTest):
         text = self.succeed("check", LAND, *WIND).stdout
         self.assertIn("tip-speed ratio", text)
         self.assertIn("hgm", text)
+        # Place, chord, twist and airfoil of a section; points, zero lift and slope of an airfoil.
+        self.assertRegex(text, r"(?m)^ +5  0.1667  4.557 +13.308  DU40_A17$")
+        self.assertRegex(text, r"(?m)^DU21_A17 +- +1 +\d+ +-4.12\d* +7.209 ")
+        self.assertNotIn("unusual", text)
+        text = self.succeed("check", LAND, *WIND, "--set", "blades.aero_sections.4.chord=45",
+                            "--set", "blades.aero_sections.9.twist_deg=65").stdout
+        self.assertIn("unusual: chord of blades.aero_sections[4], 45 m on a blade of 61.5 m", text)
+        self.assertIn("unusual: twist of blades.aero_sections[9] differs by", text)
 
     def test_the_part_of_the_air_in_the_damping(self):
         quick = [*QUICK, "--set", "trim.harmonics=6"]

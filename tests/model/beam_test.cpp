@@ -78,6 +78,34 @@ BOOST_AUTO_TEST_CASE(points_between_two_stations_have_the_section_there) {
   BOOST_TEST((beam.points[p].compliance - compliance_of(section)).norm() == 0.0);
 }
 
+BOOST_AUTO_TEST_CASE(elements_have_the_stated_lengths) {
+  BeamDefinition definition = table(3, 2);
+  definition.element_lengths = {1.0, 2.0, 0.5};
+  const auto require = [&](const std::vector<double>& expected) {
+    const Beam beam = build_beam("beam", definition);
+    BOOST_REQUIRE(beam.ends.size() == expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      BOOST_TEST(std::abs(beam.ends[i] - expected[i]) < 1e-14);
+  };
+  require({0.0, 2.0 / 7.0, 6.0 / 7.0, 1.0});
+  // Twice as many halve each; two divide the path over the three in halves.
+  definition.elements = 6;
+  require({0.0, 1.0 / 7.0, 2.0 / 7.0, 4.0 / 7.0, 6.0 / 7.0, 13.0 / 14.0, 1.0});
+  definition.elements = 2;
+  require({0.0, 4.0 / 7.0, 1.0});
+  definition.elements = 3;
+  for (int power = 0; power < 2; ++power)
+    BOOST_TEST(meshed_moment(build_beam("beam", definition), power) ==
+                   exact_moment(definition.sections, power),
+               boost::test_tools::tolerance(1e-13));
+  // A point mass moves the nearest end.
+  PointMassDefinition lump;
+  lump.at = 0.8;
+  lump.mass = 1.0;
+  definition.point_masses = {lump};
+  require({0.0, 2.0 / 7.0, 0.8, 1.0});
+}
+
 BOOST_AUTO_TEST_CASE(a_jump_leaves_possible_sections) {
   // A mass a hundred times the rest beside one end: the integrals would be negative elsewhere.
   BeamDefinition definition = table(1, 4);

@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+"""Draws the pictures of docs/aeroelastics.md, from runs of the program.
+
+    scripts/aeroelastic_plot.py [-o docs]
+
+operation.svg: operating points of inputs/nrel5mw/land.yaml over the wind speed. damping.svg: frequency
+and damping of its first modes at these points. span.svg: the air along a blade at three of them.
+SAMARA names the program.
+"""
+
+import argparse
+import csv
+import os
+import pathlib
+import subprocess
+import tempfile
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("SAMARA", str(ROOT / "build" / "samara"))
+LAND = str(ROOT / "inputs" / "nrel5mw" / "land.yaml")
+WINDS = list(range(4, 26))
+SHOWN = [8.0, 12.0, 20.0]
+MODES = {"tower fore-aft 1": "#1f5f9e", "tower side-side 1": "#6a3d9a",
+         "blade flap collective 1": "#b04a00", "blade lead-lag progressive 1": "#2e7d32",
+         "blade lead-lag regressive 1": "#8bc34a"}
+
+
+def run(folder, *arguments):
+    subprocess.run([PROGRAM, *arguments], cwd=folder, check=True, stdout=subprocess.DEVNULL,
+                   stderr=subprocess.DEVNULL)
+
+
+def read_points(folder):
+    run(folder, "operate", LAND, "--set", f"operation.wind_speeds={WINDS}", "--csv", "points.csv")
+    with open(folder / "points.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def keys_of(point):
+    return ["--set", f"wind.speed={point['wind_speed']}", "--set",
+            f"shaft.speed={point['rotor_speed']}", "--set", f"blades.pitch_deg={point['pitch']}"]
+
+
+def read_modes(folder, point):
+    run(folder, "floquet", LAND, *keys_of(point), "--csv", "modes.csv", "-o", "modes.h5")
+    with open(folder / "modes.csv", encoding="utf-8", newline="") as file:
+        return {row["label"]: row for row in csv.DictReader(file)}
+
+
+def draw_operation(points, path):
+    figure, axes = plt.subplots(2, 2, figsize=(8, 4.6), sharex=True)
+    winds = [float(point["wind_speed"]) for point in points]
+    for axis, (key, factor, label) in zip(axes.flat, (
+            ("rotor_speed", 9.5493, "speed [rpm]"), ("pitch", 1, "pitch [deg]"),
+            ("power", 1e-6, "power [MW]"), ("thrust", 1e-3, "thrust [kN]"))):
+        axis.plot(winds, [factor * float(point[key]) for point in points], "o-", markersize=3,
+                  color="#1f5f9e")
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.3)
+    for axis in axes[1]:
+        axis.set_xlabel("wind [m/s]")
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+
+
+def draw_damping(points, modes, path):
+    figure, axes = plt.subplots(1, 2, figsize=(8, 3.6))
+    winds = [float(point["wind_speed"]) for point in points]
+    for label, color in MODES.items():
+        for axis, key, factor in ((axes[0], "frequency_hz", 1), (axes[1], "damping_ratio", 100)):
+            rows = [(wind, factor * float(found[label][key]))
+                    for wind, found in zip(winds, modes) if label in found]
+            axis.plot(*zip(*rows), "o-", markersize=3, color=color, label=label)
+    axes[0].set_ylabel("frequency in the rotor's axes [Hz]")
+    axes[1].set_ylabel("damping [%]")
+    axes[1].set_yscale("log")
+    for axis in axes:
+        axis.set_xlabel("wind [m/s]")
+        axis.grid(alpha=0.3)
+    axes[1].legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+
+
+def draw_span(folder, points, path):
+    figure, axes = plt.subplots(1, 3, figsize=(9, 3.2))
+    for wind, color in zip(SHOWN, ("#1f5f9e", "#b04a00", "#2e7d32")):
+        point = next(one for one in points if float(one["wind_speed"]) == wind)
+        run(folder, "trim", LAND, *keys_of(point), "-o", "steady.h5")
+        with h5py.File(folder / "steady.h5") as file:
+            air = file["trim/air"]
+            radius = air["radius"][:]
+            for axis, name, factor in zip(axes, ("angle_of_attack", "axial_induction",
+                                                 "normal_force"), (1, 1, 1e-3)):
+                axis.plot(radius, factor * air[name][0], "o-", markersize=3, color=color,
+                          label=f"{wind:g} m/s")
+                axis.fill_between(radius, factor * air[name + "_least"][0],
+                                  factor * air[name + "_largest"][0], color=color, alpha=0.2)
+    for axis, label in zip(axes, ("angle of attack [deg]", "axial induction", "normal force [kN/m]")):
+        axis.set_xlabel("radius [m]")
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.3)
+    axes[0].set_ylim(-5, 25)
+    axes[0].legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "docs")
+    folder = parser.parse_args().output
+    matplotlib.rcParams["svg.hashsalt"] = "samara"
+    with tempfile.TemporaryDirectory() as name:
+        work = pathlib.Path(name)
+        points = read_points(work)
+        draw_operation(points, folder / "operation.svg")
+        draw_span(work, points, folder / "span.svg")
+        draw_damping(points, [read_modes(work, point) for point in points], folder / "damping.svg")
+
+
+if __name__ == "__main__":
+    main()
