@@ -1,4 +1,4 @@
-"""samara import: decks of OpenFAST and windIO as case files."""
+"""samara import: decks of OpenFAST, windIO and HAWC2 as case files."""
 
 import csv
 import os
@@ -66,7 +66,7 @@ class Imports(ProgramTest):
 
     def test_help(self):
         run = self.succeed("import", "--help")
-        for words in ("openfast|windio", "--tower-only", "--report"):
+        for words in ("openfast|windio|hawc2", "--tower-only", "--report"):
             self.assertIn(words, run.stdout)
 
 
@@ -362,7 +362,7 @@ class Refusals(ProgramTest):
         self.refuse("import", words="missing format")
         self.refuse("import", "openfast", words="missing deck")
         self.refuse("import", "openfst", THREE, words='did you mean "openfast"?')
-        self.refuse("import", "bladed", THREE, words="the formats are openfast, windio")
+        self.refuse("import", "bladed", THREE, words="the formats are openfast, windio, hawc2")
         self.refuse("import", "openfast", THREE, words=["missing -o", "--report"])
         self.refuse("import", "openfast", THREE, "-o", "a.yaml", "--set", "gravity=0",
                     words="--set")
