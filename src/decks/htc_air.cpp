@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "samara/model/airfoil.hpp"
@@ -344,11 +345,13 @@ class AirReader {
         {"wind_ramp_abs", "a change with time; the case has wsp"},
         {"wind_ramp_t0", "a change with time; the case has wsp"},
         {"iec_gust", "a change with time; the case has wsp"}};
+    std::set<std::string> named;
     for (const HtcCommand& command : block.commands) {
       const auto found = known.find(command.name);
       if (command.used || found == known.end()) continue;
       import_.say("wind", command, Fate::ignored, found->second);
-      if (command.name.starts_with("wind_ramp") || command.name == "iec_gust")
+      const bool is_change = command.name.starts_with("wind_ramp") || command.name == "iec_gust";
+      if (is_change && named.insert(command.name).second)
         import_.warn(command.place,
                      command.name + ": note: left out, the wind of the case is steady");
     }

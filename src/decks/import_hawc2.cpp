@@ -39,6 +39,9 @@ constexpr double small_bending = 1e-3;
 /// Products of inertia that are named [of the largest moment].
 constexpr double product_tolerance = 1e-3;
 
+/// A mass nearer to the root of a beam moves here [of the length].
+constexpr double least_place = 0.05;
+
 /// Cosine between the line of a body and the axis of the rotor, above which it is a part of the
 /// shaft.
 constexpr double along_the_shaft = 0.999;
@@ -411,35 +414,64 @@ class Importer {
                      "left out");
   }
 
-  /// Masses need ends of elements at a distance.
+  /// Chooses as many elements as the places of the masses need; masses that are too near to each
+  /// other become one.
   void set_beam_mesh(model::BeamDefinition& beam, const Mesh& mesh) {
     constexpr int most_elements = 40;
-    constexpr double share = 0.3;  // of an element between two masses
     set_mesh(beam, mesh);
-    std::vector<model::PointMassDefinition> kept;
     std::ranges::sort(beam.point_masses, {}, &model::PointMassDefinition::at);
-    for (const model::PointMassDefinition& point : beam.point_masses) {
-      const double before = kept.empty() ? 0.0 : kept.back().at;
-      const double gap = point.at - before;
-      if (!kept.empty() && gap < share / most_elements) {
-        model::PointMassDefinition& other = kept.back();
-        RigidBody sum;
-        sum.add(other.mass, other.center, other.inertia.asDiagonal());
-        sum.add(point.mass, point.center, point.inertia.asDiagonal());
-        other.mass = sum.mass();
-        other.center = sum.center();
-        other.inertia = sum.inertia().diagonal();
-        import_.warn(import_.deck.path(), "note: two masses on a beam at " + rounded(other.at) +
-                                              " and " + rounded(point.at) +
-                                              " of its length are one in the case, at the first");
-        continue;
-      }
-      kept.push_back(point);
-      if (kept.size() > 1 || gap < 0.25)
-        beam.elements = std::max(beam.elements,
-                                 std::min(most_elements, static_cast<int>(std::ceil(share / gap))));
+    for (;;) {
+      for (beam.elements = mesh.elements; beam.elements <= most_elements; ++beam.elements)
+        if (has_room(beam.point_masses, beam.elements)) return;
+      merge_nearest(beam.point_masses);
     }
-    beam.point_masses = kept;
+  }
+
+  /// Whether each mass has an end of an element, with a quarter of an element between two ends.
+  static bool has_room(const std::vector<model::PointMassDefinition>& masses, int elements) {
+    constexpr double least = 0.26;
+    std::vector<double> ends;
+    for (int e = 0; e <= elements; ++e) ends.push_back(static_cast<double>(e) / elements);
+    int last = 0;
+    for (const model::PointMassDefinition& mass : masses) {
+      if (mass.at == 1.0) continue;
+      const int nearest = std::min(static_cast<int>(std::lround(mass.at * elements)), elements - 1);
+      last = std::max(nearest, last + 1);
+      if (last >= elements) return false;
+      ends[static_cast<std::size_t>(last)] = mass.at;
+    }
+    return std::ranges::adjacent_find(
+               ends, [&](double a, double b) { return b - a < least / elements; }) == ends.end();
+  }
+
+  /// Puts the two masses that are nearest to each other at the place of the first of them, or at
+  /// the end of the beam. A single mass moves away from the root.
+  void merge_nearest(std::vector<model::PointMassDefinition>& masses) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i + 1 < masses.size(); ++i)
+      if (masses[i + 1].at - masses[i].at < masses[nearest + 1].at - masses[nearest].at)
+        nearest = i;
+    if (masses.size() < 2) {
+      import_.warn(import_.deck.path(), "note: a mass at " + rounded(masses[0].at) +
+                                            " of the length of a beam is at " +
+                                            rounded(least_place) + " in the case");
+      masses[0].at = least_place;
+      return;
+    }
+    model::PointMassDefinition& first = masses[nearest];
+    const model::PointMassDefinition second = masses[nearest + 1];
+    RigidBody sum;
+    sum.add(first.mass, first.center, first.inertia.asDiagonal());
+    sum.add(second.mass, second.center, second.inertia.asDiagonal());
+    import_.warn(import_.deck.path(), "note: two masses on a beam, at " + rounded(first.at) +
+                                          " and " + rounded(second.at) +
+                                          " of its length, are one in the case, at the " +
+                                          (second.at == 1.0 ? "second" : "first"));
+    if (second.at == 1.0) first.at = 1.0;
+    first.mass = sum.mass();
+    first.center = sum.center();
+    first.inertia = sum.inertia().diagonal();
+    masses.erase(masses.begin() + static_cast<std::ptrdiff_t>(nearest) + 1);
   }
 
   /// Adds the beam of a body, and warns where it bends.

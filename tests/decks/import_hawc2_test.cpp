@@ -208,6 +208,27 @@ BOOST_AUTO_TEST_CASE(a_mass_on_the_tower_is_in_its_axes) {
   BOOST_TEST(t.tower.damping == damping);
 }
 
+BOOST_AUTO_TEST_CASE(the_mesh_has_room_for_the_masses) {
+  const DeckFolder folder("htc");
+  BOOST_TEST(read_folder(folder).tower.elements == 2);  // one in the middle
+  folder.replace(main_file, "node_distribution     c2_def ;\n    damping_posdef   0.0",
+                 "node_distribution     uniform 201 ;\n    damping_posdef   0.0");
+  folder.replace(
+      main_file, "concentrated_mass 3 0.5 0.0 0.0 300.0 0.0 0.0 0.0 ;",
+      "concentrated_mass 61 0.5 0 0 300 0 0 0 ;\n concentrated_mass 91 0 0 0 20 0 0 0 ;\n"
+      "concentrated_mass 92 0 0 0 30 1 1 1 ;\n concentrated_mass 200 0 0 0 40 0 0 0 ;\n"
+      "concentrated_mass 201 0 1 0 50 0 0 0 ;\n");
+  const model::BeamDefinition tower = read_folder(folder).tower;
+  // Those 0.5 % of the length apart are one.
+  BOOST_REQUIRE(tower.point_masses.size() == 3u);
+  BOOST_TEST(is_near(tower.point_masses[0].at, 0.3));
+  BOOST_TEST(is_near(tower.point_masses[1].at, 0.45));
+  BOOST_TEST(tower.point_masses[1].mass == 50.0);
+  BOOST_TEST(tower.point_masses[2].at == 1.0);
+  BOOST_TEST(is_near(tower.point_masses[2].mass, 90.0));
+  BOOST_TEST(is_near(tower.point_masses[2].center(2), 5.0 / 9.0));
+}
+
 BOOST_AUTO_TEST_CASE(an_offset_of_the_tower_is_turned_to_its_axes) {
   // A tower runs against z of its body, so its sections look from above: x of the section is that
   // of the body, to the left, y is upwind. Case: b2 to the right, b3 downwind.
