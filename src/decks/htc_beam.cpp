@@ -214,7 +214,7 @@ class BeamBuilder {
     // shear that of torsion. Otherwise stiffness times mu would feed energy to fast modes, which
     // HAWC2's damping, a sum of positive parts, does not.
     beam_.damping << 0.5 * (k[3] + k[4]), k[5], k[5], k[5], k[3], k[4];
-    import_.note(key, "(Kx + Ky)/2, Kz, Kz, Kz, Kx, Ky");
+    import_.note(key, "extension: mean of bending; shear: Kz; torsion: Kz; bending: Kx and Ky");
     if (k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0)
       import_.warn(
           body_.damping_place,

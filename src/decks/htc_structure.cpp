@@ -182,10 +182,14 @@ class StructureReader {
         return;
       }
       std::ranges::copy(*values, body.damping.begin());
+      const bool is_about_axes = command->name == "damping_aniso";
+      if (!is_about_axes) std::swap(body.damping[3], body.damping[4]);
       body.damping_place = command->place;
       if (speaks)
         import_.say(body.name, *command, Fate::derived,
-                    "Kx, Ky, Kz: the mu of bending about x, about y and of torsion");
+                    is_about_axes
+                        ? "Kx, Ky, Kz: the mu of bending about x, about y and of torsion"
+                        : "Kx, Ky, Kz: the mu of bending along x, along y and of torsion");
       return;
     }
   }

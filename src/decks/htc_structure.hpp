@@ -30,8 +30,9 @@ struct HtcBody {
   std::vector<Vector3> points;  ///< of the line, axes of the body [m]
   std::vector<double> twists;   ///< about z of the body [rad]
   StTable table;
-  std::array<double, 6> damping{};  ///< factors of mass and of stiffness about x, y, z
-  std::string damping_place;        ///< empty: none
+  std::array<double, 6>
+      damping{};              ///< factors of the mass, and of bending about x, about y, torsion
+  std::string damping_place;  ///< empty: none
   std::vector<HtcMass> masses;
   int uniform_nodes = 0;  ///< 0: one node at each point
 

@@ -204,7 +204,8 @@ BOOST_AUTO_TEST_CASE(a_mass_on_the_tower_is_in_its_axes) {
   require_same(integrate(t.tower, 0, 0),
                integrate({0.0, 0.5, 0.5, 1.0}, {1708.3, 1421.5, 907.5, 725.0}, 40.0));
   Vector6 damping;
-  damping << 3.5e-3, 5e-4, 5e-4, 5e-4, 3e-3, 4e-3;
+  // Kx = 3e-3 is that of bending along x, side-side, about b3; Ky = 4e-3 fore-aft.
+  damping << 3.5e-3, 5e-4, 5e-4, 5e-4, 4e-3, 3e-3;
   BOOST_TEST(t.tower.damping == damping);
 }
 
@@ -339,6 +340,15 @@ BOOST_AUTO_TEST_CASE(the_line_and_the_chord_of_a_blade_are_those_of_the_deck) {
   Vector6 damping;
   damping << 1.75e-3, 1e-4, 1e-4, 1e-4, 2e-3, 1.5e-3;
   BOOST_TEST(blade.damping == damping);
+}
+
+BOOST_AUTO_TEST_CASE(factors_of_damping_go_by_axes_or_directions) {
+  // damping_aniso has those of bending about x (flap) and y, damping_posdef those along x and y.
+  const DeckFolder folder("htc");
+  folder.replace(bodies, "damping_aniso", "damping_posdef");
+  Vector6 damping;
+  damping << 1.75e-3, 1e-4, 1e-4, 1e-4, 1.5e-3, 2e-3;
+  BOOST_TEST(read_folder(folder).blades.beam.damping == damping);
 }
 
 BOOST_AUTO_TEST_CASE(a_mass_on_a_blade_is_at_its_node) {
