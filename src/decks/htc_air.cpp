@@ -411,6 +411,10 @@ class AirReader {
       part.used = true;
       read_constants(part, aero);
     }
+    import_.report.push_back(
+        {source_.aero->place, "begin aero", Fate::derived,
+         "thrust, hub_loss as in HAWC2; its dynamic inflow and its model of yaw are replaced by "
+         "inflow: oye and skew: pitt_peters"});
     import_.note("aero.thrust", "the polynomial of HAWC2");
     import_.note("aero.hub_loss", "HAWC2 has none");
     import_.note("aero.skew", "not that of HAWC2, which has a model of its own");
