@@ -131,6 +131,20 @@ foreach(deck teeter/Main three/Main three/Main_BeamDyn three/Main_curved three/M
   file(WRITE ${seeds_of_openfast}/${name} "${joined}")
 endforeach()
 
+set(seeds_of_hawc2 ${PROJECT_BINARY_DIR}/fuzz_seeds/hawc2)
+set(folder ${PROJECT_SOURCE_DIR}/tests/decks/files/htc)
+set(joined "")
+foreach(file htc/turbine.htc parts/bodies.htc parts/orientation.htc data/tower.st data/stiff.st
+        data/blade.st data/layout.ae data/polars.pc)
+  file(READ ${folder}/${file} text)
+  # Files of an input are in one folder.
+  string(REGEX REPLACE "[.]/(parts|data)/" "" text "${text}")
+  string(REPLACE ".\\data\\Tower" "tower" text "${text}")
+  get_filename_component(name ${file} NAME)
+  string(APPEND joined "==== ${name}\n${text}")
+endforeach()
+file(WRITE ${seeds_of_hawc2}/turbine "${joined}")
+
 function(samara_add_fuzz_tests libraries)
   set(directory ${PROJECT_SOURCE_DIR}/tests/fuzz)
   file(GLOB harnesses CONFIGURE_DEPENDS ${directory}/*_harness.cpp)

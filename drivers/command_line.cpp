@@ -122,7 +122,10 @@ class Parser {
 
   decks::ImportOptions& take_import(const std::string& name) {
     if (line_.import_option.empty()) line_.import_option = name;
-    if (name != "--tower-only") line_.windio_option = name;
+    if (name == "--rotor-speed-rpm")
+      line_.speed_option = name;
+    else if (name != "--tower-only")
+      line_.windio_option = name;
     return line_.import;
   }
 
@@ -323,6 +326,9 @@ class Parser {
     if (line_.format != "windio" && !line_.windio_option.empty())
       throw InputError(line_.windio_option + ": the decks of " + line_.format +
                        " contain it; it applies to windio");
+    if (line_.format == "openfast" && !line_.speed_option.empty())
+      throw InputError(line_.speed_option +
+                       ": the decks of openfast contain it; it applies to windio and hawc2");
     if (line_.result_path.empty() && !line_.report)
       throw InputError(
           "missing -o CASE.yaml; hint: --report alone prints the report and writes no case");
@@ -343,7 +349,8 @@ constexpr char import_lines[] =
   --nacelle-mass M  gives a value that a deck lacks, or replaces it (windio), in the units and axes
                     of the case; also --nacelle-center Y1,Y2,Y3 --nacelle-inertia I1,I2,I3
                     --yaw-mass --hub-mass --hub-center --hub-inertia I1,I2,I3
-                    --generator-inertia --rotor-speed-rpm
+                    --generator-inertia
+  --rotor-speed-rpm N  the speed of the rotor (windio, hawc2)
   --help            this text
 )";
 
@@ -411,13 +418,13 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
     return std::string("samara ") + command.name + options + "\n\n" + command.description +
            "\nexample\n  samara " + command.name + " " + command.example + "\n\n" + option_lines;
   }
-  std::string text =
-      "samara " + std::string(version) +
-      ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" + "  samara <command>" +
-      options +
-      "\n  samara import openfast|windio DECK -o CASE.yaml\n  samara export RESULT.h5 -o FILE\n  "
-      "samara loads RESULT.h5 [options]\n  mpirun -n 4 samara <command>" +
-      options + "\n\ncommands\n";
+  std::string text = "samara " + std::string(version) +
+                     ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" +
+                     "  samara <command>" + options +
+                     "\n  samara import openfast|windio|hawc2 DECK -o CASE.yaml\n  samara export "
+                     "RESULT.h5 -o FILE\n  "
+                     "samara loads RESULT.h5 [options]\n  mpirun -n 4 samara <command>" +
+                     options + "\n\ncommands\n";
   for (const Command& command : commands)
     text += "  " + padded(command.name, 10) + command.summary + "\n";
   return text + "\nexample\n  samara floquet inputs/lee2002/baseline.yaml --set shaft.speed=5\n\n" +

@@ -45,6 +45,7 @@ struct CommandLine {
   decks::ImportOptions import;
   std::string import_option;  ///< first given option of the import; empty: none
   std::string windio_option;  ///< last given option that only windIO has; empty: none
+  std::string speed_option;   ///< --rotor-speed-rpm, which windIO and HAWC2 have; empty: not given
   bool report = false;        ///< --report: print the report, even without a case file
   bool all_modes = false;
   bool air_part = false;

@@ -32,9 +32,10 @@ std::string report_table(const decks::Import& import, decks::Fate fate) {
 
 void run_import(const CommandLine& line) {
   if (!line.result_path.empty()) decks::require_case_path(line.result_path);
-  const decks::Import import = line.format == "openfast"
-                                   ? decks::import_openfast(line.case_path, line.import)
-                                   : decks::import_windio(line.case_path, line.import);
+  const decks::Import import =
+      line.format == "openfast" ? decks::import_openfast(line.case_path, line.import)
+      : line.format == "windio" ? decks::import_windio(line.case_path, line.import)
+                                : decks::import_hawc2(line.case_path, line.import);
   if (!line.result_path.empty()) decks::write_case(line.result_path, import);
   for (const std::string& warning : import.warnings) std::cerr << warning << "\n";
   constexpr std::array<std::pair<const char*, decks::Fate>, 3> blocks{

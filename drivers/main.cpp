@@ -113,14 +113,14 @@ constexpr std::array<Command, 12> commands{{
      .analysis = simulation::Analysis::operate,
      .run = run_operate},
     {.name = "import",
-     .summary = "a case file from a turbine of OpenFAST or windIO",
+     .summary = "a case file from a turbine of OpenFAST, windIO or HAWC2",
      .description =
-         "Reads the deck of another program, OpenFAST or windIO, structure and air, writes it\n"
-         "as a case file, and reports for each key whether it was taken, derived or ignored, and\n"
-         "why. See docs/import.md.\n",
+         "Reads the deck of another program, OpenFAST, windIO or HAWC2 (.htc), structure and air,\n"
+         "writes it as a case file, and reports for each key whether it was taken, derived or\n"
+         "ignored, and why. See docs/import.md.\n",
      .example = "openfast Main.fst -o turbine.yaml",
      .writes_result = true,
-     .formats = "openfast|windio",
+     .formats = "openfast|windio|hawc2",
      .convert = run_import},
     {.name = "export",
      .summary = "a time series in one file: .h5, .csv, or .out and .outb of OpenFAST",

@@ -110,8 +110,10 @@ std::vector<std::string> split_lines(const std::string& text) {
   return lines;
 }
 
-/// The path whose names differ from this one by upper and lower case alone; empty where there is
-/// none.
+std::string got(const std::string& word) { return ", got \"" + word + "\""; }
+
+}  // namespace
+
 std::string find_in_other_case(const std::string& path) {
   fs::path found;
   for (const fs::path& part : fs::path(path)) {
@@ -133,10 +135,6 @@ std::string find_in_other_case(const std::string& path) {
   }
   return found.string();
 }
-
-std::string got(const std::string& word) { return ", got \"" + word + "\""; }
-
-}  // namespace
 
 void DeckErrors::add(const std::string& place, const std::string& what) {
   add_message(place + ": " + what);

@@ -59,6 +59,10 @@ struct DeckRow {
   std::vector<double> numbers;
 };
 
+/// The path whose names differ from this one by upper and lower case alone; empty where there is
+/// none.
+std::string find_in_other_case(const std::string& path);
+
 class Deck {
  public:
   /// @throws InputError where the file cannot be read or is no text

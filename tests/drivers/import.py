@@ -1,4 +1,4 @@
-"""samara import: decks of OpenFAST and windIO as case files."""
+"""samara import: decks of OpenFAST, windIO and HAWC2 as case files."""
 
 import csv
 import os
@@ -66,7 +66,7 @@ class Imports(ProgramTest):
 
     def test_help(self):
         run = self.succeed("import", "--help")
-        for words in ("openfast|windio", "--tower-only", "--report"):
+        for words in ("openfast|windio|hawc2", "--tower-only", "--report"):
             self.assertIn(words, run.stdout)
 
 
@@ -85,7 +85,7 @@ class Irregular(ProgramTest):
         self.write(name, text)
 
     def case(self, *options, deck="Main.fst"):
-        kind = "openfast" if deck.endswith(".fst") else "windio"
+        kind = {".fst": "openfast", ".htc": "hawc2"}.get(deck[-4:], "windio")
         run = self.succeed("import", kind, deck, "-o", "case.yaml", *options)
         return (self.folder / "case.yaml").read_text(encoding="utf-8"), run.stderr
 
@@ -330,6 +330,39 @@ class Turbines(ProgramTest):
                     words=["missing key", "components.blade.structure.elastic_properties", "lay-up"])
 
 
+class Hawc2(ProgramTest):
+    """A deck of HAWC2."""
+
+    DECK = "deck/htc/turbine.htc"
+
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(DECKS / "htc", self.folder / "deck")
+
+    def test_a_deck_becomes_a_case_that_runs(self):
+        run = self.succeed("import", "hawc2", self.DECK, "-o", "case.yaml", "--rotor-speed-rpm", "25")
+        for words in ("taken:", "derived:", "ignored:", "concentrated_mass", "relative to the folder"):
+            self.assertIn(words, run.stdout)
+        for words in ("controller", "turb_format", "Tower.st"):
+            self.assertIn(words, run.stderr)
+        self.assertNotIn("--rotor-speed-rpm", run.stderr)
+        self.assertIn("speed_rpm: 25 ", (self.folder / "case.yaml").read_text(encoding="utf-8"))
+        self.assertIn("clamped", self.succeed("check", "case.yaml").stdout)
+        self.succeed("trim", "case.yaml", "-o", "result.h5")
+        run = self.succeed("floquet", "case.yaml", "--set", "aero=none", "-o", "result.h5")
+        self.assertIn("all 14 modes decay", run.stdout)
+
+    def test_options(self):
+        run = self.succeed("import", "hawc2", self.DECK, "--report")
+        self.assertIn("shaft.speed_rpm is 18.1437", run.stderr)
+        self.refuse("import", "hawc2", self.DECK, "-o", "c.yaml", "--hub-mass", "3", words="windio")
+        self.refuse("import", "openfast", THREE, "-o", "c.yaml", "--rotor-speed-rpm", "3",
+                    words="windio and hawc2")
+        self.refuse("import", "hawc2", "deck/parts/bodies.htc", "-o", "c.yaml",
+                    words="not a main file of HAWC2")
+        self.refuse("import", "hawc2", "deck/missing.htc", "-o", "c.yaml", words="missing.htc")
+
+
 class Refusals(ProgramTest):
     """Input errors."""
 
@@ -362,7 +395,7 @@ class Refusals(ProgramTest):
         self.refuse("import", words="missing format")
         self.refuse("import", "openfast", words="missing deck")
         self.refuse("import", "openfst", THREE, words='did you mean "openfast"?')
-        self.refuse("import", "bladed", THREE, words="the formats are openfast, windio")
+        self.refuse("import", "bladed", THREE, words="the formats are openfast, windio, hawc2")
         self.refuse("import", "openfast", THREE, words=["missing -o", "--report"])
         self.refuse("import", "openfast", THREE, "-o", "a.yaml", "--set", "gravity=0",
                     words="--set")

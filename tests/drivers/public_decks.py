@@ -38,7 +38,9 @@ class PublicDecks(ProgramTest):
                 yield row, deck
 
     def run_import(self, deck, *options):
-        kind = "openfast" if deck.suffix == ".fst" else "windio"
+        kind = {".fst": "openfast", ".htc": "hawc2"}.get(deck.suffix, "windio")
+        if kind == "hawc2":  # its speed at the beginning is far from that of operation
+            options = (*options, "--rotor-speed-rpm", "7.5")
         return self.samara("import", kind, deck, "-o", "case.yaml", *options)
 
     def import_row(self, row, deck):
@@ -53,7 +55,7 @@ class PublicDecks(ProgramTest):
     def test_every_deck_of_the_folder_is_in_the_table(self):
         known = {row["deck"] for row in read_table()}
         found = {str(path.relative_to(FOLDER))
-                 for suffix in ("fst", "yaml") for path in pathlib.Path(FOLDER).rglob(f"*.{suffix}")}
+                 for suffix in ("fst", "yaml", "htc") for path in pathlib.Path(FOLDER).rglob(f"*.{suffix}")}
         self.assertEqual(found - known, set())
 
     def test_outcomes(self):
@@ -238,6 +240,41 @@ class PublicDecks(ProgramTest):
             one, other = (self.at_place(rows, at) for rows in (aerodyn, windio))
             for found, known, tolerance in zip(one, other, (0.02, 0.05, 0.01, 0.01)):
                 self.assertLess(abs(found - known), tolerance, at)
+
+    def masses(self, name):
+        """Masses and centres of the parts, by `samara check`."""
+        lines = self.succeed("check", name).stdout.splitlines()
+        return {line[: line.index("  ")]: [float(word.rstrip(",")) for word in line.split()[1:]
+                                           if re.fullmatch(r"[-+.e0-9]+,?", word)]
+                for line in lines if line.startswith(("tower  ", "each blade", "nacelle", "rotor  "))}
+
+    def operating_point(self, wind, speed_rpm, pitch_deg):
+        """Power [kW] and thrust [kN] of the axisymmetric rotor: no weight, tilt or tower."""
+        run = self.succeed("trim", "case.yaml", "-o", "result.h5", "--set", f"wind.speed={wind}", "--set",
+                           f"shaft.speed_rpm={speed_rpm}", "--set", f"blades.pitch_deg={pitch_deg}",
+                           "--set", "gravity=0", "--set", "shaft.tilt_deg=0", "--set",
+                           "wind.tower.potential=none", "--set", "wind.tower.drag_load=false",
+                           "--set", "blades.elements=12", "--set", "blades.order=2")
+        found = re.search(r"power (\S+) kW, thrust (\S+) kN", run.stdout)
+        return map(float, found.groups())
+
+    def test_the_15_mw_turbine_of_hawc2(self):
+        """Masses and frequencies beside those of the case made from windIO, and the operating points
+        that HAWCStab2 wrote for the deck (its .opt file). The hub of windIO has another mass."""
+        known = self.masses(SOURCE / "inputs/iea15mw/land.yaml")
+        self.find("IEA_15MW_RWT_Onshore.htc")
+        found = self.masses("case.yaml")
+        for part, tolerance in (("tower", 1e-3), ("each blade", 1e-4), ("nacelle", 2e-4)):
+            self.assertLess(abs(found[part][0] / known[part][0] - 1.0), tolerance, part)
+        self.assertLess(abs(found["each blade"][1] / known["each blade"][1] - 1.0), 1e-3)
+        frequencies = self.frequencies("case.yaml", "--parked", "--set", "aero=none")
+        self.assert_near(frequencies, {"tower side-side 1": 0.2220, "tower fore-aft 1": 0.2251,
+                                       "blade flap 1": 0.4568, "blade flap 2": 0.4948,
+                                       "blade lead-lag 2": 0.6909}, 1e-2)
+        for point, known in (((8, 5.6819, 0.000535), (6852.108, 1295.040)),
+                             ((15, 7.559987, 9.189114), (15666.72, 1268.984))):
+            for one, other in zip(self.operating_point(*point), known):
+                self.assertLess(abs(one / other - 1.0), 0.02, point)
 
 
 if __name__ == "__main__":

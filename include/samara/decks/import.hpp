@@ -58,6 +58,11 @@ Import import_openfast(const std::string& path, const ImportOptions& options);
 /// @throws InputError as above
 Import import_windio(const std::string& path, const ImportOptions& options);
 
+/// Reads a deck of HAWC2: the main file (.htc), the files in which it continues, and the tables of
+/// sections (.st), aerodynamic layout (.ae) and polars (.pc) that it names.
+/// @throws InputError as above
+Import import_hawc2(const std::string& path, const ImportOptions& options);
+
 /// @throws InputError where a case cannot be written at `path`: no such folder, no permission, or a
 /// file there that is no case file of this program.
 void require_case_path(const std::string& path);
