@@ -15,7 +15,8 @@ from program import SOURCE, ProgramTest  # noqa: E402
 
 LAND = SOURCE / "inputs/nrel5mw/land.yaml"
 WING = SOURCE / "inputs/goland/wing.yaml"
-QUICK = ["--set", "blades.elements=2", "--set", "blades.order=3", "--set", "tower.order=3"]
+QUICK = ["--set", "blades.elements=2", "--set", "blades.element_lengths=[1,1]", "--set",
+         "blades.order=3", "--set", "tower.order=3"]
 WIND = ["--set", "wind.speed=8", "--set", "shaft.speed_rpm=9.155"]
 OPERATION = ["--set", "operation.wind_speeds=[8,16]"]
 

@@ -34,10 +34,13 @@ inline io::Case lee(const std::string& name, const std::vector<std::string>& set
   return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/lee2002/" + name + ".yaml", all);
 }
 
-/// An input without its air, for tests of the structure.
+/// An input without its air and on equal elements, for tests of the structure.
 inline io::Case structure(const std::string& name, std::vector<std::string> settings = {}) {
   settings.emplace_back("aero=none");
-  return io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings);
+  io::Case input =
+      io::read_case(std::string(SAMARA_SOURCE_DIR) + "/inputs/" + name + ".yaml", settings);
+  input.turbine.blades.beam.element_lengths.clear();
+  return input;
 }
 
 /// The same mesh on all beams, where there is a tower.
