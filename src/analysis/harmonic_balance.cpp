@@ -28,6 +28,9 @@ constexpr double least_medium = 0.1;
 /// Least number of instants at which the sizes of terms are taken.
 constexpr int instants_of_sizes = 16;
 
+/// Residual of a state outside the domain of the equations, by the last one inside.
+constexpr double beyond_domain = 10.0;
+
 /// Scaled residual that counts as round-off.
 constexpr double vanished = 1e-13;
 /// Relative change of a vector by scaling and scaling back.
@@ -188,6 +191,7 @@ struct SolverContext {
   Eigen::VectorXd columns;
   Eigen::VectorXd unscaled;
   bool is_factored = false;
+  double size = -1.0;  ///< norm of the last residual; negative: none yet
   std::exception_ptr error;
 
   Eigen::VectorXd spread(Vec x) const {
@@ -219,10 +223,15 @@ PetscErrorCode form_function(SNES snes, Vec x, Vec f, void* pointer) noexcept {
     Eigen::VectorXd residual(context.rows.size());
     context.balance->residual(context.unscale(x), residual.data());
     context.collect(residual.cwiseProduct(context.rows), f);
+    if (const PetscErrorCode code = VecNorm(f, NORM_2, &context.size)) return code;
     context.error = nullptr;  // an error in a line search is no cause of a later failure
   } catch (const DomainError&) {
     context.error = std::current_exception();
-    return SNESSetFunctionDomainError(snes);
+    if (context.size < 0.0) return SNESSetFunctionDomainError(snes);
+    // A larger residual makes the line search shorten the step.
+    PetscInt size = 0;
+    if (const PetscErrorCode code = VecGetSize(f, &size)) return code;
+    return VecSet(f, beyond_domain * context.size / std::sqrt(static_cast<double>(size)));
   } catch (...) {
     context.error = std::current_exception();
     return PETSC_ERR_USER;

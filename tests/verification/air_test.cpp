@@ -359,24 +359,28 @@ BOOST_AUTO_TEST_CASE(a_rotor_on_a_spring_is_damped_by_the_slope_of_its_thrust) {
 
 // ---- a wind that changes -----------------------------------------------------------------------
 
-/// Rows of two channels.
-class Rows final : public simulation::TransientOutput {
- public:
-  void row(double t, std::span<const double> values) override {
-    times.push_back(t);
-    this->values.emplace_back(values.begin(), values.end());
-  }
+/// Rows of a time series.
+struct Series {
   std::vector<double> times;
   std::vector<std::vector<double>> values;
 };
 
-Rows run(const simulation::Scenario& scenario) {
+class Rows final : public simulation::TransientOutput {
+ public:
+  void row(double t, std::span<const double> row_values) override {
+    series.times.push_back(t);
+    series.values.emplace_back(row_values.begin(), row_values.end());
+  }
+  Series series;
+};
+
+Series run(const simulation::Scenario& scenario) {
   simulation::TransientSimulation simulation(scenario);
   analysis::Observer observer;
   simulation.start(observer);
   Rows rows;
   simulation.run(rows);
-  return rows;
+  return rows.series;
 }
 
 /// The wind at a rigid wing turns by half a degree within a hundredth of a half chord: the lift
@@ -402,7 +406,7 @@ BOOST_AUTO_TEST_CASE(lift_after_a_turn_of_the_wind_is_that_of_wagner) {
   change.direction = math::TimeCurve::along(
       {{0.0, 90.0 * degree}, {ramp, (90.0 - angle) * degree}, {1.0, (90.0 - angle) * degree}});
   scenario.transient.wind = change;
-  const Rows rows = run(scenario);
+  const Series rows = run(scenario);
   BOOST_REQUIRE(rows.times.size() > 2000u);
   BOOST_TEST(rows.values.back()[1] == speed * std::cos(angle * degree), tolerance(1e-9));
   const double steady = 2.0 * pi * std::sin(angle * degree);
@@ -426,7 +430,7 @@ BOOST_AUTO_TEST_CASE(a_slow_change_of_the_wind_passes_through_steady_states) {
   model::WindChange change;
   change.speed = math::TimeCurve::ramp(0.0, 8.0, 10.0, 0.004);
   scenario.transient.wind = change;
-  const Rows rows = run(scenario);
+  const Series rows = run(scenario);
   const Steady end(rigid_rotor({"blades.elements=3", "blades.order=2", "wind.speed=10",
                                 "shaft.speed_rpm=9.155", "aero.inflow=oye"}));
   const std::vector<double> expected = end.channels({"RtAeroFxh", "RtAeroPwr"});
