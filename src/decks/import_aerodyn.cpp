@@ -284,6 +284,9 @@ class AerodynImporter {
       if (deck().has(key))
         import_.require(value >= 0 && value <= most, deck(), key, "expected 0, 1 or 2");
     const std::vector<const char*> keys{"TwrPotent", "TwrShadow", "TwrAero"};
+    for (const char* key : keys)
+      if (!deck().has(key))
+        import_.errors.add(deck().path(), std::string("missing key \"") + key + "\"");
     if (potential == 0 && shadow == 0 && !has_drag) {
       for (const char* key : keys) import_.ignore(deck(), key, "off");
       import_.ignore(deck(), "NumTwrNds", "the tower is not in the wind");

@@ -196,10 +196,10 @@ BOOST_AUTO_TEST_CASE(the_tower_in_the_wind_is_read) {
   BOOST_TEST(!flow.drag_load);
   const std::string wind = "wind: {speed: 8, tower: {sections: ";
   check_error(blades + tower + wind + "[[0, 6, 0.5], [0, 4, 0.5]]}}\n",
-              "13:36: wind.tower.sections: the heights do not rise (0, then 0)");
+              "13:26: wind.tower.sections: the heights do not rise (0, then 0)");
   check_error(blades + tower + wind + "[[0, 0, 0.5]]}}\n",
-              "13:36: wind.tower.sections: expected diameters > 0, got 0");
-  check_error(blades + wind + "[[0, 6, 0.5]]}}\n", "9:25: wind.tower: there is no tower");
+              "13:26: wind.tower.sections: expected diameters > 0, got 0");
+  check_error(blades + wind + "[[0, 6, 0.5]]}}\n", "9:18: wind.tower: there is no tower");
 }
 
 BOOST_AUTO_TEST_CASE(sections_by_thickness_are_read) {
@@ -226,12 +226,12 @@ BOOST_AUTO_TEST_CASE(sections_by_thickness_are_read) {
               "13:19: blades.aero_sections[0]: missing key \"airfoil\" (a name of "
               "blades.airfoils, or a thickness)");
   check_error(with("[{at: 0, chord: 1, airfoil: thin}, {at: 1, chord: 1, thickness: 0.4}]"),
-              "13:54: blades.aero_sections[1]: expected a thickness at all sections or at none");
+              "13:53: blades.aero_sections[1]: expected a thickness at all sections or at none");
   check_error(with("[{at: 0, chord: 1, thickness: 0.1}]"),
-              "13:49: blades.aero_sections[0].thickness: expected 0.2 to 0.6, those of "
+              "13:37: blades.aero_sections[0].thickness: expected 0.2 to 0.6, those of "
               "blades.airfoils, got 0.1");
   check_error(with("[{at: 0, chord: 1, airfoil: thin, thickness: 0.4}]"),
-              "13:53: blades.aero_sections[0].thickness: given together with airfoil; leave one of "
+              "13:52: blades.aero_sections[0].thickness: given together with airfoil; leave one of "
               "them out");
 }
 

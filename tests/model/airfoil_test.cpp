@@ -249,7 +249,7 @@ BOOST_AUTO_TEST_CASE(zero_slope_and_separation_of_a_kirchhoff_polar_are_those_it
     if (std::abs(angle) > 29.6 * degree) continue;  // equal distances on both sides
     const double f = (f_at(angle - step) + 4.0 * f_at(angle) + f_at(angle + step)) / 6.0;
     BOOST_TEST(std::abs(curves.separation.at(angle).value - f) < 1e-6);
-    BOOST_TEST(std::abs(curves.separation.at(angle).value - f_at(angle)) < 2e-3);
+    BOOST_TEST(std::abs(curves.separation.at(angle).value - f_at(angle)) < 6e-3);  // at the kink
   }
 }
 

@@ -42,8 +42,9 @@ BOOST_AUTO_TEST_SUITE(tower_flow)
 
 BOOST_AUTO_TEST_CASE(potential_flow_has_its_stagnation_point_and_twice_the_speed_at_the_side) {
   const Wind wind = wind_of(TowerPotential::plain);
-  BOOST_TEST(at(wind, -1.0, 0.0).norm() < 1e-6);
-  BOOST_TEST(std::abs(at(wind, 0.0, 1.0)(1) - 20.0) < 1e-6);
+  constexpr double outside = 1.0 + 1e-7;
+  BOOST_TEST(at(wind, -outside, 0.0).norm() < 1e-5);
+  BOOST_TEST(std::abs(at(wind, 0.0, outside)(1) - 20.0) < 1e-5);
   // The velocity is that of the potential x (1 + 1/r^2).
   for (const auto& [x, y] : {std::pair(-2.0, 0.7), std::pair(-1.5, -1.1), std::pair(3.0, 0.2)}) {
     const auto potential = [](double a, double b) { return a * (1.0 + 1.0 / (a * a + b * b)); };
@@ -111,16 +112,23 @@ BOOST_AUTO_TEST_CASE(slopes_are_continuous) {
   constexpr double h = 1e-6;
   for (const TowerWake wake : {TowerWake::powles, TowerWake::eames}) {
     const Wind wind = wind_of(TowerPotential::bak, wake, 1.0);
+    // The largest change of the slope from point to point falls with their distance.
     const auto along = [&](const Vector3& from, const Vector3& to) {
-      double last = 0.0;
-      for (int i = 0; i <= 4000; ++i) {
-        const Vector3 place = from + (to - from) * i / 4000.0;
-        const Vector3 step = (to - from).normalized() * h;
-        const double slope =
-            (wind.at<double>(place + step, 0.0) - wind.at<double>(place - step, 0.0))(1) /
-            (2.0 * h);
-        if (i > 0) BOOST_TEST(std::abs(slope - last) < 0.2);  // the curvature times the step
-        last = slope;
+      double before = 0.0;
+      for (const int points : {4000, 40000}) {
+        double last = 0.0;
+        double worst = 0.0;
+        for (int i = 0; i <= points; ++i) {
+          const Vector3 place = from + (to - from) * i / points;
+          const Vector3 step = (to - from).normalized() * h;
+          const double slope =
+              (wind.at<double>(place + step, 0.0) - wind.at<double>(place - step, 0.0))(1) /
+              (2.0 * h);
+          if (i > 0) worst = std::max(worst, std::abs(slope - last));
+          last = slope;
+        }
+        if (before > 0.0) BOOST_TEST(worst < 0.2 * before);
+        before = worst;
       }
     };
     along({-20.0, 9.0, 40.0}, {20.0, 9.0, 40.0});

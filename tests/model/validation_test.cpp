@@ -49,7 +49,9 @@ BOOST_AUTO_TEST_CASE(sound_air_has_no_fault) {
 BOOST_AUTO_TEST_CASE(air_needs_wind_sections_and_blades) {
   TurbineDefinition turbine = rotor();
   turbine.wind.reset();
-  check(turbine, {"aero"});
+  check(turbine, {});
+  BOOST_TEST(fields_of(find_notes(turbine)) == std::vector<std::string>{"aero"},
+             boost::test_tools::per_element());
   turbine.aero.reset();
   check(turbine, {});
   turbine = rotor();
