@@ -37,8 +37,8 @@ Eigen::MatrixXcd positions_of(const turbine::TurbineSystem& system, const Eigen:
   return shape(rows, Eigen::all);
 }
 
-/// Both exponents are known up to multiples of the rotor speed, and the air changes frequencies: the
-/// largest likeness of the shapes for multiples near the difference of both frequencies.
+/// Both exponents are known up to multiples of the rotor speed, and the air changes frequencies:
+/// the largest likeness of the shapes for multiples near the difference of both frequencies.
 double likeness_of(const ModeSet& set, const Mode& mode, const Eigen::MatrixXcd& shape,
                    const Mode& other, const Eigen::MatrixXcd& other_shape) {
   constexpr int nearby = 2;
