@@ -10,6 +10,7 @@ SAMARA names the program.
 
 import argparse
 import csv
+import math
 import os
 import pathlib
 import subprocess
@@ -44,7 +45,7 @@ def read_points(folder):
 
 def keys_of(point):
     return ["--set", f"wind.speed={point['wind_speed']}", "--set",
-            f"shaft.speed={point['rotor_speed']}", "--set", f"blades.pitch_deg={point['pitch']}"]
+            f"shaft.speed={point['rotor_speed']}", "--set", f"blades.pitch_deg={math.degrees(float(point['pitch']))}"]
 
 
 def read_modes(folder, point):
@@ -57,7 +58,7 @@ def draw_operation(points, path):
     figure, axes = plt.subplots(2, 2, figsize=(8, 4.6), sharex=True)
     winds = [float(point["wind_speed"]) for point in points]
     for axis, (key, factor, label) in zip(axes.flat, (
-            ("rotor_speed", 9.5493, "speed [rpm]"), ("pitch", 1, "pitch [deg]"),
+            ("rotor_speed", 30 / math.pi, "speed [rpm]"), ("pitch", math.degrees(1), "pitch [deg]"),
             ("power", 1e-6, "power [MW]"), ("thrust", 1e-3, "thrust [kN]"))):
         axis.plot(winds, [factor * float(point[key]) for point in points], "o-", markersize=3,
                   color="#1f5f9e")
@@ -73,9 +74,10 @@ def draw_damping(points, modes, path):
     figure, axes = plt.subplots(1, 2, figsize=(8, 3.6))
     winds = [float(point["wind_speed"]) for point in points]
     for label, color in MODES.items():
+        alone = label.removesuffix(" 1")  # where no second one is resolved
         for axis, key, factor in ((axes[0], "frequency_hz", 1), (axes[1], "damping_ratio", 100)):
-            rows = [(wind, factor * float(found[label][key]))
-                    for wind, found in zip(winds, modes) if label in found]
+            rows = [(wind, factor * float(found.get(label, found.get(alone))[key]))
+                    for wind, found in zip(winds, modes) if label in found or alone in found]
             axis.plot(*zip(*rows), "o-", markersize=3, color=color, label=label)
     axes[0].set_ylabel("frequency in the rotor's axes [Hz]")
     axes[1].set_ylabel("damping [%]")
@@ -83,7 +85,7 @@ def draw_damping(points, modes, path):
     for axis in axes:
         axis.set_xlabel("wind [m/s]")
         axis.grid(alpha=0.3)
-    axes[1].legend(fontsize=7)
+    axes[0].legend(fontsize=7)
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None})
 
@@ -106,7 +108,7 @@ def draw_span(folder, points, path):
         axis.set_xlabel("radius [m]")
         axis.set_ylabel(label)
         axis.grid(alpha=0.3)
-    axes[0].set_ylim(-5, 25)
+    axes[0].set_ylim(-10, 25)
     axes[0].legend(fontsize=8)
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None})
