@@ -196,7 +196,9 @@ std::string unusual_air(const model::BladesDefinition& blades, double length) {
     if (i == 0) continue;
     const model::AeroSectionDefinition& before = blades.aero_sections[i - 1];
     const double ratio = section.chord / before.chord;
-    if (ratio > usual_ratio || ratio < 1.0 / usual_ratio)
+    // A tip may be narrow.
+    const bool is_tip = i + 1 == blades.aero_sections.size();
+    if (ratio > usual_ratio || (ratio < 1.0 / usual_ratio && !is_tip))
       say("chord" + of + " is " + general(ratio, 3) + " times that before it", "chord is in m");
     if (std::abs(section.twist - before.twist) > usual_turn)
       say("twist" + of + " differs by " + degrees(section.twist - before.twist) +

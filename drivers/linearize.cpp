@@ -4,6 +4,7 @@
 #include "samara/io/whole_file.hpp"
 #include "samara/linear/linearization.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/held_air.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_input_output.hpp"
 

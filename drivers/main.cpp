@@ -213,6 +213,9 @@ Job prepare(const CommandLine& line) {
       for (const std::string& note : job.input.notes) std::cerr << note << "\n";
     io::require_valid(job.input, simulation::validate(job.input, line.command->analysis));
   }
+  if (line.air_part && !(job.input.turbine.wind && job.input.turbine.aero))
+    throw InputError("--air: " + line.case_path +
+                     " has no air; hint: wind.speed and blades.aero_sections");
   job.command_line = line.text;
   job.result_path = line.result_path;
   job.csv_path = line.csv_path;

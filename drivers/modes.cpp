@@ -7,6 +7,7 @@
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/simulation/air_part.hpp"
+#include "samara/simulation/held_air.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
 

@@ -813,8 +813,7 @@ StateResidual state_residual(const system::PeriodicSystem& system, const Periodi
     const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
     if (unknown.role == system::UnknownRole::state ||
         unknown.role == system::UnknownRole::auxiliary)
-      least(i) = (unknown.owner.kind == system::PartKind::medium ? least_medium : least_state) *
-                 unknown.scale;
+      least(i) = (unknown.is_of_medium() ? least_medium : least_state) * unknown.scale;
   }
   const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const int samples = 2 * std::max(sample_count(system, solution.harmonics()), 16);
@@ -843,7 +842,7 @@ StateResidual state_residual(const system::PeriodicSystem& system, const Periodi
   StateResidual largest;
   for (const PetscInt row : rows) {
     const auto i = static_cast<std::size_t>(row);
-    const bool is_of_medium = system.unknowns()[i].owner.kind == system::PartKind::medium;
+    const bool is_of_medium = system.unknowns()[i].is_of_medium();
     double& found = is_of_medium ? largest.of_medium : largest.of_others;
     if (residuals[i] > 0.0) found = std::max(found, residuals[i] / sizes[i]);
   }

@@ -24,10 +24,7 @@ bool fills_up(const system::Unknown& unknown) { return unknown.quantity.empty();
 }  // namespace
 
 int sample_count(const system::PeriodicSystem& system, int harmonics) {
-  const bool has_medium = std::any_of(
-      system.unknowns().begin(), system.unknowns().end(),
-      [](const system::Unknown& one) { return one.owner.kind == system::PartKind::medium; });
-  const int least = has_medium ? 6 * harmonics + 4 : 4 * harmonics + 2;
+  const int least = system::has_medium(system.unknowns()) ? 6 * harmonics + 4 : 4 * harmonics + 2;
   const int sectors = system.symmetry().sectors;
   return (least + sectors - 1) / sectors * sectors;
 }

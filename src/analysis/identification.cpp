@@ -277,8 +277,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   set.instances = count_instances(system.motions());
   set.medium_states = static_cast<int>(std::count_if(
       system.unknowns().begin(), system.unknowns().end(), [](const system::Unknown& unknown) {
-        return unknown.role == system::UnknownRole::state &&
-               unknown.owner.kind == system::PartKind::medium;
+        return unknown.role == system::UnknownRole::state && unknown.is_of_medium();
       }));
   if (set.shapes.empty()) return;  // another rank has them
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);

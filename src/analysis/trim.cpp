@@ -68,12 +68,6 @@ bool is_balanced(const system::PeriodicSystem& system) {
   return size == 0.0;
 }
 
-bool has_medium(const system::PeriodicSystem& system) {
-  return std::ranges::any_of(system.unknowns(), [](const system::Unknown& unknown) {
-    return unknown.owner.kind == system::PartKind::medium;
-  });
-}
-
 Eigen::VectorXd undeformed_state(const system::PeriodicSystem& system) {
   const petsc::Handle<Vec> z = system.make_state();
   system.reference_state(0.0, z.get());
@@ -97,7 +91,7 @@ Trim solve_at_rest(const system::PeriodicSystem& system, double tolerance, MPI_C
     try {
       return solve(start);
     } catch (const ConvergenceError&) {
-      if (!has_medium(system)) throw;
+      if (!system::has_medium(system.unknowns())) throw;
       const std::optional<PeriodicSolution> settled = find_settled_start(
           system, start == nullptr ? undeformed_state(system)
                                    : Eigen::VectorXd(start->coefficients().col(0)));

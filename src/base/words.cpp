@@ -34,6 +34,23 @@ std::size_t compute_edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string to_lower(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) c = to_lower(c);
+  return lower;
+}
+
+std::vector<std::string_view> split_lines(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+    text.remove_prefix(text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1);
+  }
+  return lines;
+}
+
 std::string find_similar(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t longest_word = 100;
   if (word.size() > longest_word) return {};

@@ -272,7 +272,7 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   report.pressure = flow.speed * flow.speed * T(0.5 * rotor.density);
   report.wind = dot(Vec3<T>(rotor.wind.undisturbed_at<T>(place, t) - hub.velocity), hub.axis);
   report.hub_speed = hub.speed;
-  report.hub_wind = rotor.wind.undisturbed_at<T>(hub.place, t);
+  report.hub_place = hub.place;
   const auto share_of = [&](const T& induced, const T& whole) {
     return -(induced * whole) / (whole * whole + T(rotor.least_speed * rotor.least_speed));
   };

@@ -8,8 +8,10 @@
 #include <set>
 #include <utility>
 
+#include "samara/base/words.hpp"
 #include "samara/model/airfoil.hpp"
 
+#include "htc_tables.hpp"
 #include "import_air.hpp"
 
 namespace samara::decks {
@@ -285,7 +287,7 @@ class AirReader {
       for (const HtcBlock& part : block.blocks) {
         const HtcCommand* body = part.find("mbdy_name", "body_name");
         const std::string name =
-            body == nullptr ? std::string() : fold_word(import_.word(*body, 0, "a body"));
+            body == nullptr ? std::string() : to_lower(import_.word(*body, 0, "a body"));
         if (name != source_.tower || part.name != "aerodrag_element") {
           others.emplace(name.empty() ? part.name : name, part.place);
           import_.say(part, "aerodrag " + (name.empty() ? part.name : name), Fate::ignored,
@@ -629,7 +631,7 @@ HtcRotor read_htc_rotor(HtcImport& import) {
   for (const HtcCommand& command : block.commands) {
     if (command.name != "link") continue;
     const auto number = import.integer(command, 0, 1, *blades);
-    const std::string name = fold_word(import.word(command, 2, "the name of a body"));
+    const std::string name = to_lower(import.word(command, 2, "the name of a body"));
     if (!number || name.empty()) continue;
     std::string& known = rotor.blades[static_cast<std::size_t>(*number) - 1];
     if (!known.empty())
@@ -644,7 +646,7 @@ HtcRotor read_htc_rotor(HtcImport& import) {
       import.errors.add(block.place,
                         "begin aero: there is no link of blade " + std::to_string(i + 1));
   if (const HtcCommand* hub = import.require(block, "hub_vec")) {
-    rotor.hub_body = fold_word(import.word(*hub, 0, "the name of a body"));
+    rotor.hub_body = to_lower(import.word(*hub, 0, "the name of a body"));
     const auto axis = import.integer(*hub, 1, -3, 3);
     if (axis && *axis == 0) import.errors.add(hub->place, "hub_vec: expected -3 to 3, not 0");
     rotor.hub_axis = axis.value_or(0);

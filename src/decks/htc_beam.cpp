@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "samara/base/error.hpp"
+#include "samara/math/rotation.hpp"
 #include "samara/model/reference_line.hpp"
 
 namespace samara::decks {
@@ -31,6 +32,9 @@ constexpr double product_tolerance = 1e-6;
 
 /// Twists that differ by less are the same [rad].
 constexpr double round_off_angle = 1e-12;
+
+/// A mass nearer to the root of a beam moves here [of the length].
+constexpr double least_place = 0.05;
 
 /// Columns of a table of 19 columns.
 constexpr std::size_t young_column = 8;
@@ -272,6 +276,52 @@ class BeamBuilder {
   long half_turns_ = 0;
 };
 
+/// Whether each mass has an end of an element, with a quarter of an element between two ends.
+bool has_room(const std::vector<model::PointMassDefinition>& masses, int elements) {
+  constexpr double least = 0.26;
+  std::vector<double> ends;
+  for (int e = 0; e <= elements; ++e) ends.push_back(static_cast<double>(e) / elements);
+  int last = 0;
+  for (const model::PointMassDefinition& mass : masses) {
+    if (mass.at == 1.0) continue;
+    const int nearest = std::min(static_cast<int>(std::lround(mass.at * elements)), elements - 1);
+    last = std::max(nearest, last + 1);
+    if (last >= elements) return false;
+    ends[static_cast<std::size_t>(last)] = mass.at;
+  }
+  return std::ranges::adjacent_find(
+             ends, [&](double a, double b) { return b - a < least / elements; }) == ends.end();
+}
+
+/// Puts the two masses that are nearest to each other at the place of the first of them, or at
+/// the end of the beam. A single mass moves away from the root.
+void merge_nearest(HtcImport& import, std::vector<model::PointMassDefinition>& masses) {
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i + 1 < masses.size(); ++i)
+    if (masses[i + 1].at - masses[i].at < masses[nearest + 1].at - masses[nearest].at) nearest = i;
+  if (masses.size() < 2) {
+    import.warn(import.deck.path(), "note: a mass at " + rounded(masses[0].at) +
+                                        " of the length of a beam is at " + rounded(least_place) +
+                                        " in the case");
+    masses[0].at = least_place;
+    return;
+  }
+  model::PointMassDefinition& first = masses[nearest];
+  const model::PointMassDefinition second = masses[nearest + 1];
+  RigidBody sum;
+  sum.add(first.mass, first.center, first.inertia.asDiagonal());
+  sum.add(second.mass, second.center, second.inertia.asDiagonal());
+  import.warn(import.deck.path(), "note: two masses on a beam, at " + rounded(first.at) + " and " +
+                                      rounded(second.at) +
+                                      " of its length, are one in the case, at the " +
+                                      (second.at == 1.0 ? "second" : "first"));
+  if (second.at == 1.0) first.at = 1.0;
+  first.mass = sum.mass();
+  first.center = sum.center();
+  first.inertia = sum.inertia().diagonal();
+  masses.erase(masses.begin() + static_cast<std::ptrdiff_t>(nearest) + 1);
+}
+
 }  // namespace
 
 Matrix3 to_ground_axes(const Matrix3& columns) { return ground_matrix() * columns; }
@@ -288,6 +338,17 @@ Matrix3 section_axes(const Vector3& tangent, double twist) {
 Curve build_beam(HtcImport& import, const HtcBody& body, const Matrix3& to_root,
                  const std::string& key, model::BeamDefinition& beam) {
   return BeamBuilder(import, body, to_root, key, beam).build();
+}
+
+void set_htc_mesh(HtcImport& import, model::BeamDefinition& beam, const Mesh& mesh) {
+  constexpr int most_elements = 40;
+  set_mesh(beam, mesh);
+  std::ranges::sort(beam.point_masses, {}, &model::PointMassDefinition::at);
+  for (;;) {
+    for (beam.elements = mesh.elements; beam.elements <= most_elements; ++beam.elements)
+      if (has_room(beam.point_masses, beam.elements)) return;
+    merge_nearest(import, beam.point_masses);
+  }
 }
 
 RigidBeam integrate_body(const HtcBody& body) {
@@ -321,8 +382,7 @@ RigidBeam integrate_body(const HtcBody& body) {
                                    ? Vector3(0.0, -section.mass(5, 0) / m, section.mass(4, 0) / m)
                                    : Vector3::Zero().eval();
         const Vector3 point = body.points[i - 1] + part * (body.points[i] - body.points[i - 1]);
-        Matrix3 arm;
-        arm << 0.0, -center(2), center(1), center(2), 0.0, -center(0), -center(1), center(0), 0.0;
+        const Matrix3 arm = math::skew<double>(center);
         const Matrix3 inertia = section.mass.bottomRightCorner<3, 3>() + m * arm * arm;
         sum.body.add(w * m, to_ground_axes(body.global(point)) + turn * center,
                      w * turn * inertia * turn.transpose());

@@ -19,6 +19,10 @@ Matrix3 to_ground_axes(const Matrix3& columns);
 Curve build_beam(HtcImport& import, const HtcBody& body, const Matrix3& to_root,
                  const std::string& key, model::BeamDefinition& beam);
 
+/// Chooses as many elements as the places of the masses need; masses that are too near to each
+/// other become one.
+void set_htc_mesh(HtcImport& import, model::BeamDefinition& beam, const Mesh& mesh);
+
 /// Directions of a section of a body: along the line, along its x (the chord, to the leading edge),
 /// and their normal, as columns in axes of the body. `twist` is the angle of x about z of the body,
 /// seen along z.

@@ -1,28 +1,20 @@
-// Common data of the readers of HAWC2's decks: the case under construction, the report, the errors.
+// Common parts of the readers of HAWC2's decks.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "samara/decks/import.hpp"
-#include "samara/io/case_text.hpp"
-
+#include "deck_import.hpp"
 #include "htc_deck.hpp"
 
 namespace samara::decks {
 
-struct HtcImport {
+struct HtcImport : DeckImport {
   HtcImport(const std::string& path, const ImportOptions& given)
-      : options(given), deck(path, errors) {}
+      : DeckImport(given), deck(path, errors) {}
 
-  ImportOptions options;
-  DeckErrors errors;
   HtcDeck deck;
-  model::TurbineDefinition turbine;
-  io::CaseComments comments;
-  std::vector<ImportLine> report;
-  std::vector<std::string> warnings;
 
   /// Adds a line to the report; the command counts as read. `owner` stands before its name.
   void say(const std::string& owner, const HtcCommand& command, Fate fate,
@@ -39,12 +31,6 @@ struct HtcImport {
   }
   /// Counts all commands of a block as read.
   static void use_all(const HtcBlock& block);
-  /// The comment behind a key of the case.
-  void note(const std::string& key, const std::string& words) { comments.keys[key] = words; }
-  /// A fact that the user would not expect.
-  void warn(const std::string& place, const std::string& words) {
-    warnings.push_back(place + ": " + words);
-  }
 
   /// A number of a command; none, with an error, where it is missing or no number.
   std::optional<double> number(const HtcCommand& command, std::size_t index);

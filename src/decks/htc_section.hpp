@@ -3,7 +3,7 @@
 
 #include "samara/math/types.hpp"
 
-#include "htc_deck.hpp"
+#include "htc_tables.hpp"
 
 namespace samara::decks {
 

@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "samara/base/words.hpp"
 #include "samara/math/rotation.hpp"
 
 #include "import_common.hpp"
@@ -58,7 +59,7 @@ class StructureReader {
     block.used = true;
     const HtcCommand* name = import_.require(block, "name");
     if (name == nullptr) return;
-    const std::string word = fold_word(import_.word(*name, 0, "the name"));
+    const std::string word = to_lower(import_.word(*name, 0, "the name"));
     if (word.empty()) return;
     if (!blocks_.try_emplace(word, &block).second)
       import_.errors.add(name->place, "name: there are two bodies \"" + word + "\"");
@@ -70,12 +71,12 @@ class StructureReader {
     if (name == nullptr || name->words.empty()) return;
     HtcBody body;
     body.label = name->words[0];
-    body.name = fold_word(body.label);
+    body.name = to_lower(body.label);
     body.place = block.place;
     body.source = body.name;
     const HtcBlock* source = &block;
     if (const HtcCommand* copy = block.find("copy_main_body")) {
-      const std::string other = fold_word(import_.word(*copy, 0, "the name of a body"));
+      const std::string other = to_lower(import_.word(*copy, 0, "the name of a body"));
       const auto known = blocks_.find(other);
       if (known == blocks_.end() || known->second->find("copy_main_body") != nullptr) {
         import_.errors.add(copy->place, "copy_main_body: there is no body \"" + other +
@@ -103,7 +104,7 @@ class StructureReader {
 
   void read_type(const HtcBlock& block, const HtcBody& body, bool speaks) {
     if (const HtcCommand* type = import_.require(block, "type"); type != nullptr && speaks) {
-      const std::string word = fold_word(import_.word(*type, 0, "the type"));
+      const std::string word = to_lower(import_.word(*type, 0, "the type"));
       if (!word.starts_with("timo") && !word.empty())
         import_.errors.add(type->place, "type: timoschenko can be read, got \"" + word + "\"");
       import_.say(body.name, *type, Fate::derived, "a beam");
@@ -158,7 +159,7 @@ class StructureReader {
   void read_nodes(const HtcBlock& block, HtcBody& body, bool speaks) {
     const HtcCommand* command = block.find("node_distribution");
     if (command == nullptr) return;
-    const std::string kind = fold_word(import_.word(*command, 0, "a distribution"));
+    const std::string kind = to_lower(import_.word(*command, 0, "a distribution"));
     if (kind == "uniform") {
       const auto count = import_.integer(*command, 1, 2, most_nodes);
       if (count) body.uniform_nodes = *count;
@@ -285,7 +286,7 @@ class StructureReader {
   // ---- orientation
 
   HtcBody* body_of(const HtcCommand& command) {
-    const std::string name = fold_word(import_.word(command, 0, "the name of a body"));
+    const std::string name = to_lower(import_.word(command, 0, "the name of a body"));
     if (name.empty()) return nullptr;
     const auto found = std::ranges::find(structure_.bodies, name, &HtcBody::name);
     HtcBody* body = found == structure_.bodies.end() ? nullptr : &*found;
@@ -382,7 +383,7 @@ class StructureReader {
 
   /// A node of a body: a number, 0 for its origin, or `last`, -1.
   std::optional<int> node_of(const HtcCommand& command) {
-    if (command.words.size() > 1 && fold_word(command.words[1]) == "last") return -1;
+    if (command.words.size() > 1 && to_lower(command.words[1]) == "last") return -1;
     return import_.integer(command, 1, -1, most_nodes);
   }
 
@@ -488,11 +489,11 @@ class StructureReader {
       if (const HtcCommand* name = part.find("name"); name != nullptr && !name->words.empty())
         constraint.name = name->words[0];
       if (single != nullptr && second == nullptr) {
-        if (!single->words.empty()) constraint.second = fold_word(single->words[0]);
+        if (!single->words.empty()) constraint.second = to_lower(single->words[0]);
       } else if (first != nullptr && second != nullptr && !first->words.empty() &&
                  !second->words.empty()) {
-        constraint.first = fold_word(first->words[0]);
-        constraint.second = fold_word(second->words[0]);
+        constraint.first = to_lower(first->words[0]);
+        constraint.second = to_lower(second->words[0]);
       }
       for (const std::string& name : {constraint.first, constraint.second})
         if (!name.empty() && !blocks_.contains(name))

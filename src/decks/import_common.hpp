@@ -11,7 +11,7 @@
 #include "samara/math/types.hpp"
 #include "samara/model/definition.hpp"
 
-#include "openfast_deck.hpp"
+#include "deck_text.hpp"
 
 namespace samara::decks {
 

@@ -9,10 +9,12 @@
 #include <Eigen/Geometry>
 
 #include "samara/base/error.hpp"
+#include "samara/base/words.hpp"
 #include "samara/fields/field.hpp"
 
 #include "htc_air.hpp"
 #include "htc_beam.hpp"
+#include "htc_report.hpp"
 #include "htc_structure.hpp"
 #include "import_common.hpp"
 
@@ -38,9 +40,6 @@ constexpr double small_bending = 1e-3;
 
 /// Products of inertia that are named [of the largest moment].
 constexpr double product_tolerance = 1e-3;
-
-/// A mass nearer to the root of a beam moves here [of the length].
-constexpr double least_place = 0.05;
 
 /// Cosine between the line of a body and the axis of the rotor, above which it is a part of the
 /// shaft.
@@ -89,8 +88,8 @@ class Importer {
     read_air();
     import_.errors.throw_if_any();
     report_constraints();
-    report_files();
-    report_rest();
+    report_files(import_);
+    report_rest(import_);
     return finish();
   }
 
@@ -186,8 +185,8 @@ class Importer {
       for (const HtcBlock& block : wind->blocks)
         if (const HtcCommand* link = block.find("tower_mbdy_link");
             link != nullptr && !link->words.empty() &&
-            std::ranges::find(chain, fold_word(link->words[0])) != chain.end())
-          return fold_word(link->words[0]);
+            std::ranges::find(chain, to_lower(link->words[0])) != chain.end())
+          return to_lower(link->words[0]);
     return *std::ranges::max_element(chain, {},
                                      [&](const std::string& name) { return body(name).length(); });
   }
@@ -401,7 +400,7 @@ class Importer {
     Matrix3 to_root = root.transpose() * to_ground_axes(body(tower_).axes);
     for (double& component : to_root.reshaped()) component = clean(component);
     build_beam(import_, body(tower_), to_root, "tower", turbine().tower);
-    set_beam_mesh(turbine().tower, tower_mesh);
+    set_htc_mesh(import_, turbine().tower, tower_mesh);
     import_.note("tower.length", "c2_def");
     import_.note("tower.reference_line", "c2_def");
     import_.note("tower.elements", "chosen by the importer");
@@ -412,66 +411,6 @@ class Importer {
         import_.warn(mass.place,
                      "note: the mass at the foot of the tower, which is clamped, is "
                      "left out");
-  }
-
-  /// Chooses as many elements as the places of the masses need; masses that are too near to each
-  /// other become one.
-  void set_beam_mesh(model::BeamDefinition& beam, const Mesh& mesh) {
-    constexpr int most_elements = 40;
-    set_mesh(beam, mesh);
-    std::ranges::sort(beam.point_masses, {}, &model::PointMassDefinition::at);
-    for (;;) {
-      for (beam.elements = mesh.elements; beam.elements <= most_elements; ++beam.elements)
-        if (has_room(beam.point_masses, beam.elements)) return;
-      merge_nearest(beam.point_masses);
-    }
-  }
-
-  /// Whether each mass has an end of an element, with a quarter of an element between two ends.
-  static bool has_room(const std::vector<model::PointMassDefinition>& masses, int elements) {
-    constexpr double least = 0.26;
-    std::vector<double> ends;
-    for (int e = 0; e <= elements; ++e) ends.push_back(static_cast<double>(e) / elements);
-    int last = 0;
-    for (const model::PointMassDefinition& mass : masses) {
-      if (mass.at == 1.0) continue;
-      const int nearest = std::min(static_cast<int>(std::lround(mass.at * elements)), elements - 1);
-      last = std::max(nearest, last + 1);
-      if (last >= elements) return false;
-      ends[static_cast<std::size_t>(last)] = mass.at;
-    }
-    return std::ranges::adjacent_find(
-               ends, [&](double a, double b) { return b - a < least / elements; }) == ends.end();
-  }
-
-  /// Puts the two masses that are nearest to each other at the place of the first of them, or at
-  /// the end of the beam. A single mass moves away from the root.
-  void merge_nearest(std::vector<model::PointMassDefinition>& masses) {
-    std::size_t nearest = 0;
-    for (std::size_t i = 0; i + 1 < masses.size(); ++i)
-      if (masses[i + 1].at - masses[i].at < masses[nearest + 1].at - masses[nearest].at)
-        nearest = i;
-    if (masses.size() < 2) {
-      import_.warn(import_.deck.path(), "note: a mass at " + rounded(masses[0].at) +
-                                            " of the length of a beam is at " +
-                                            rounded(least_place) + " in the case");
-      masses[0].at = least_place;
-      return;
-    }
-    model::PointMassDefinition& first = masses[nearest];
-    const model::PointMassDefinition second = masses[nearest + 1];
-    RigidBody sum;
-    sum.add(first.mass, first.center, first.inertia.asDiagonal());
-    sum.add(second.mass, second.center, second.inertia.asDiagonal());
-    import_.warn(import_.deck.path(), "note: two masses on a beam, at " + rounded(first.at) +
-                                          " and " + rounded(second.at) +
-                                          " of its length, are one in the case, at the " +
-                                          (second.at == 1.0 ? "second" : "first"));
-    if (second.at == 1.0) first.at = 1.0;
-    first.mass = sum.mass();
-    first.center = sum.center();
-    first.inertia = sum.inertia().diagonal();
-    masses.erase(masses.begin() + static_cast<std::ptrdiff_t>(nearest) + 1);
   }
 
   /// Adds the beam of a body, and warns where it bends.
@@ -756,7 +695,7 @@ class Importer {
     Matrix3 to_root;
     to_root << Vector3::UnitY(), Vector3::UnitZ(), Vector3::UnitX();
     twist_ = build_beam(import_, first, to_root, "blades", turbine().blades.beam);
-    set_beam_mesh(turbine().blades.beam, blade_mesh);
+    set_htc_mesh(import_, turbine().blades.beam, blade_mesh);
     const double pitch = blades_.front().pitch;
     turbine().blades.pitch = pitch;
     for (std::size_t i = 1; i < blades_.size(); ++i)
@@ -795,130 +734,25 @@ class Importer {
       const auto part = parts_.find(constraint.second);
       const Part where = part == parts_.end() ? Part::left_out : part->second;
       std::string words = constraint.kind + (constraint.name.empty() ? "" : " " + constraint.name);
-      std::string fate = "the parts are connected";
+      std::string meaning = "the parts are connected";
+      Fate fate = Fate::derived;
       const bool is_bearing = constraint.kind.starts_with("bearing");
       if (is_bearing && constraint.second == first_of_rotor_) {
-        fate = "the shaft turns; the generator is locked to its speed";
+        meaning = "the shaft turns; the generator is locked to its speed";
       } else if (is_bearing && where == Part::blade) {
-        fate = "blades.pitch_deg, constant";
+        meaning = "blades.pitch_deg, constant";
       } else if (is_bearing && where == Part::nacelle) {
-        fate = "nacelle.yaw";
+        meaning = "nacelle.yaw";
       } else if (is_bearing) {
-        fate = "locked";
+        meaning = "locked";
         import_.warn(constraint.place, "note: the bearing " + words + " on " + constraint.second +
                                            " is locked in the case");
       } else if (!constraint.kind.starts_with("fix")) {
-        fate = "left out";
+        meaning = "left out";
+        fate = Fate::ignored;
         import_.warn(constraint.place, "begin " + constraint.kind + ": note: left out");
       }
-      import_.report.push_back({constraint.place, words,
-                                fate == "left out" ? Fate::ignored : Fate::derived,
-                                constraint.second + ": " + fate});
-    }
-  }
-
-  void report_files() {
-    for (const HtcDeck::FoundFile& file : import_.deck.found_files()) {
-      import_.report.push_back(
-          {file.place, file.name, Fate::derived,
-           "read from " + std::filesystem::path(file.path).filename().string() + ", relative to " +
-               (file.is_above ? "the folder above that of the deck" : "the folder of the deck")});
-      if (file.is_in_other_case)
-        import_.warn(file.place, file.name + ": note: read from " + file.path +
-                                     ", whose name differs by upper and lower case");
-    }
-    for (const std::string& path : import_.deck.without_exit())
-      import_.warn(path, "note: the file ends without exit; it may have been cut off");
-  }
-
-  static std::string reason(const std::string& block) {
-    static const std::map<std::string, std::string> reasons{
-        {"simulation", "a setting of the simulation"},
-        {"output", "output of the simulation"},
-        {"output_at_time", "output of the simulation"},
-        {"dll", "a controller or a load of a library is no part of a case"},
-        {"hydro", "water is no part of a case"},
-        {"soil", "a foundation in the soil is no part of a case; tower.support states one"},
-        {"force", "loads of a library are no part of a case"},
-        {"hawcstab2", "settings of HAWCStab2"},
-        {"moorings", "moorings are no part of a case"},
-        {"mooring", "moorings are no part of a case"}};
-    const auto found = reasons.find(block);
-    return found == reasons.end() ? std::string() : found->second;
-  }
-
-  void report_rest() {
-    std::string left_out;
-    const auto add = [&](const std::string& words) {
-      left_out += (left_out.empty() ? "" : ", ") + words;
-    };
-    for (const HtcBlock& block : import_.deck.root().blocks) {
-      if (block.used) {
-        report_unused(block, block.name);
-        continue;
-      }
-      const std::string why = reason(block.name);
-      const std::string place = block.place;
-      import_.say(block, block.name, Fate::ignored, why.empty() ? "unknown to the importer" : why);
-      if (block.name == "dll") {
-        for (const HtcBlock& part : block.blocks) {
-          const HtcCommand* name = part.find("name");
-          const std::string label =
-              name == nullptr || name->words.empty() ? part.name : clean_text(name->words[0]);
-          import_.say(part, "dll." + label, Fate::ignored, why);
-          add("the library " + label);
-        }
-        continue;
-      }
-      if (block.name == "hawcstab2") report_operation(block);
-      if (why.empty() || block.name == "hydro" || block.name == "soil" || block.name == "force" ||
-          block.name.starts_with("mooring"))
-        add("begin " + clean_text(block.name));
-    }
-    for (const HtcCommand& command : import_.deck.root().commands)
-      if (!command.used) {
-        import_.say("", command, Fate::ignored, "unknown to the importer");
-        add(clean_text(command.name));
-      }
-    if (!left_out.empty()) import_.warn(import_.deck.path(), "note: left out: " + left_out);
-  }
-
-  void report_operation(const HtcBlock& block) {
-    const HtcCommand* command = block.find("operational_data_filename");
-    if (command == nullptr || command->words.empty()) return;
-    import_.say("hawcstab2", *command, Fate::ignored,
-                "hint: operation: {table: FILE} of the case reads it");
-  }
-
-  /// Commands of a block that was read that nothing has read.
-  void report_unused(const HtcBlock& block, const std::string& name) {
-    static const std::set<std::string> quiet{"body_output_file_name",
-                                             "body_eigenanalysis_file_name",
-                                             "beam_output_file_name",
-                                             "struct_inertia_output_file_name",
-                                             "structure_eigenanalysis_file_name",
-                                             "constraint_output_file_name",
-                                             "animation",
-                                             "output_profile_coef_filename",
-                                             "output_profile_coef_filename"};
-    for (const HtcCommand& command : block.commands) {
-      if (command.used) continue;
-      const bool is_output = quiet.contains(command.name);
-      import_.say(name, command, Fate::ignored,
-                  is_output ? "output of the simulation" : "unknown to the importer");
-      if (!is_output)
-        import_.warn(command.place,
-                     clean_text(command.name) + ": note: left out, unknown to the importer");
-    }
-    for (const HtcBlock& part : block.blocks) {
-      const std::string below = name + "." + clean_text(part.name);
-      if (part.used) {
-        if (name != "new_htc_structure.constraint") report_unused(part, below);
-        continue;
-      }
-      import_.say(part, below, Fate::ignored, "unknown to the importer");
-      import_.warn(part.place,
-                   "begin " + clean_text(part.name) + ": note: left out, unknown to the importer");
+      import_.report.push_back({constraint.place, words, fate, constraint.second + ": " + meaning});
     }
   }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "samara/base/error.hpp"
+#include "samara/base/number.hpp"
 #include "samara/io/whole_file.hpp"
 #include "samara/io/yaml_tree.hpp"
 #include "samara/model/airfoil.hpp"

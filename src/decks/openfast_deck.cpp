@@ -9,25 +9,18 @@
 #include <utility>
 
 #include "samara/base/error.hpp"
-#include "samara/io/whole_file.hpp"
+#include "samara/base/words.hpp"
 
 namespace samara::decks {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_megabytes = 64;
-
-/// Largest number of errors of a deck that are shown.
-constexpr std::size_t most_shown = 100;
-
-char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
-
 /// The name of a key as it is compared: lower case, without parentheses.
 std::string fold(const std::string& key) {
   std::string folded;
   for (const char c : key)
-    if (c != '(' && c != ')') folded += lower(c);
+    if (c != '(' && c != ')') folded += to_lower(c);
   return folded;
 }
 
@@ -50,7 +43,7 @@ std::optional<bool> parse_flag(const std::string& word) {
 std::optional<bool> parse_fortran_flag(const std::string& word) {
   const std::size_t first = word.starts_with('.') ? 1 : 0;
   if (word.size() == first) return {};
-  const char c = lower(word[first]);
+  const char c = to_lower(word[first]);
   if (c != 't' && c != 'f') return {};
   return c == 't';
 }
@@ -61,7 +54,7 @@ bool is_heading(const std::string& word) {
          word.starts_with("#") || word.starts_with("%");
 }
 
-std::vector<DeckWord> split(const std::string& line) {
+std::vector<DeckWord> split(std::string_view line) {
   std::vector<DeckWord> words;
   std::size_t i = 0;
   while (i < line.size()) {
@@ -73,91 +66,27 @@ std::vector<DeckWord> split(const std::string& line) {
       ++i;
     } else if (c == '"' || c == '\'') {
       const std::size_t end = line.find(c, i + 1);
-      const std::size_t stop = end == std::string::npos ? line.size() : end;
-      words.push_back({line.substr(i + 1, stop - i - 1), true, false});
+      const std::size_t stop = end == std::string_view::npos ? line.size() : end;
+      words.push_back({std::string(line.substr(i + 1, stop - i - 1)), true, false});
       i = stop + 1;
     } else {
       const std::size_t end = line.find_first_of(" \t\f\v,\"", i);
-      const std::size_t stop = end == std::string::npos ? line.size() : end;
-      words.push_back({line.substr(i, stop - i), false, false});
+      const std::size_t stop = end == std::string_view::npos ? line.size() : end;
+      words.push_back({std::string(line.substr(i, stop - i)), false, false});
       i = stop;
     }
   }
   return words;
 }
 
-std::string read_text(const std::string& path) {
-  std::string text = io::read_whole_file(path, max_megabytes, "deck");
-  if (text.find('\0') != std::string::npos)
-    throw InputError(path + ": not a plain text file; hint: UTF-16 must be saved as UTF-8");
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
-  return text;
-}
-
-/// Lines end with LF, CR LF or CR.
-std::vector<std::string> split_lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::string line;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\r' || text[i] == '\n') {
-      if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') ++i;
-      lines.push_back(std::exchange(line, {}));
-    } else {
-      line += text[i];
-    }
-  }
-  if (!line.empty()) lines.push_back(line);
-  return lines;
-}
-
 std::string got(const std::string& word) { return ", got \"" + word + "\""; }
 
 }  // namespace
 
-std::string find_in_other_case(const std::string& path) {
-  fs::path found;
-  for (const fs::path& part : fs::path(path)) {
-    std::error_code error;
-    if (fs::exists(found / part, error)) {
-      found /= part;
-      continue;
-    }
-    std::string match;
-    for (fs::directory_iterator entry(found.empty() ? fs::path(".") : found, error), end;
-         !error && entry != end; entry.increment(error)) {
-      const std::string name = entry->path().filename().string();
-      const auto same = [](char a, char b) { return lower(a) == lower(b); };
-      if (std::equal(name.begin(), name.end(), part.native().begin(), part.native().end(), same))
-        match = name;
-    }
-    if (match.empty()) return "";
-    found /= match;
-  }
-  return found.string();
-}
-
-void DeckErrors::add(const std::string& place, const std::string& what) {
-  add_message(place + ": " + what);
-}
-
-void DeckErrors::add_message(const std::string& message) {
-  if (known_.insert(message).second) messages_.push_back(message);
-}
-
-void DeckErrors::throw_if_any() const {
-  if (messages_.empty()) return;
-  std::string text;
-  const std::size_t shown = std::min(messages_.size(), most_shown);
-  for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "" : "\n") + messages_[i];
-  if (messages_.size() > shown)
-    text += "\nand " + std::to_string(messages_.size() - shown) + " more errors";
-  throw InputError(text);
-}
-
 Deck::Deck(std::string path, DeckErrors& errors) : path_(std::move(path)), errors_(errors) {
-  const std::string text = read_text(path_);
-  ends_with_line_ = text.empty() || text.back() == '\n' || text.back() == '\r';
-  const std::vector<std::string> lines = split_lines(text);
+  const std::string text = read_deck_text(path_);
+  ends_with_line_ = decks::ends_with_line(text);
+  const std::vector<std::string_view> lines = split_lines(text);
   bool in_output_list = false;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     lines_.push_back(split(lines[i]));

@@ -7,29 +7,14 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "samara/base/number.hpp"
 #include "samara/math/types.hpp"
 
+#include "deck_text.hpp"
+
 namespace samara::decks {
-
-/// Faults of a deck of several files, in the order found.
-class DeckErrors {
- public:
-  void add(const std::string& place, const std::string& what);
-  /// Adds a complete message.
-  void add_message(const std::string& message);
-  bool empty() const { return messages_.empty(); }
-  std::size_t size() const { return messages_.size(); }
-  /// @throws InputError with one error a line, if there are any.
-  void throw_if_any() const;
-
- private:
-  std::vector<std::string> messages_;
-  std::unordered_set<std::string> known_;  ///< the same messages
-};
 
 struct DeckWord {
   std::string text;
@@ -58,10 +43,6 @@ struct DeckRow {
   int line = 0;
   std::vector<double> numbers;
 };
-
-/// The path whose names differ from this one by upper and lower case alone; empty where there is
-/// none.
-std::string find_in_other_case(const std::string& path);
 
 class Deck {
  public:

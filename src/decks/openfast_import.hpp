@@ -1,27 +1,16 @@
-// Common data of the readers of OpenFAST's files: the case under construction, the report, the
-// errors.
+// Common parts of the readers of OpenFAST's files.
 #pragma once
 
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "samara/decks/import.hpp"
-#include "samara/io/case_text.hpp"
-
+#include "deck_import.hpp"
 #include "openfast_deck.hpp"
 
 namespace samara::decks {
 
-struct OpenfastImport {
-  explicit OpenfastImport(const ImportOptions& given) : options(given) {}
-
-  ImportOptions options;
-  DeckErrors errors;
-  model::TurbineDefinition turbine;
-  io::CaseComments comments;
-  std::vector<ImportLine> report;
-  std::vector<std::string> warnings;
+struct OpenfastImport : DeckImport {
+  using DeckImport::DeckImport;
 
   /// Adds a line to the report; the key counts as read.
   void say(Deck& deck, const std::string& key, Fate fate, const std::string& words);
@@ -29,12 +18,6 @@ struct OpenfastImport {
   void say_line(const Deck& deck, int line, const std::string& key, Fate fate,
                 const std::string& words) {
     report.push_back({deck.place(line), key, fate, words});
-  }
-  /// The comment behind a key of the case.
-  void note(const std::string& key, const std::string& words) { comments.keys[key] = words; }
-  /// Adds a warning on standard error about a fact that the user would not expect.
-  void warn(const std::string& place, const std::string& words) {
-    warnings.push_back(place + ": " + words);
   }
 
   /// A number that stands in the case as it is.

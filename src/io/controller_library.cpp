@@ -44,7 +44,9 @@ std::string find_file(const std::string& key, const std::string& name, const fs:
   std::error_code error;
   const fs::path path = fs::absolute(folder / name, error);
   const std::string place = "transient.controller." + key + ": " + path.string();
-  if (!fs::exists(path, error)) throw InputError(place + ": no such file");
+  if (!fs::exists(path, error))
+    throw InputError(place +
+                     ": no such file; hint: a relative path counts from the folder of the case");
   if (fs::is_directory(path, error)) throw InputError(place + ": is a folder");
   if (::access(path.c_str(), R_OK) != 0) throw InputError(place + ": cannot be read");
   if (path.string().size() >= controller_text) throw InputError(place + ": the name is too long");

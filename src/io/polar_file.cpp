@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "samara/base/error.hpp"
+#include "samara/base/number.hpp"
 #include "samara/base/words.hpp"
 #include "samara/fields/field.hpp"
 #include "samara/io/whole_file.hpp"
@@ -53,34 +54,21 @@ std::vector<std::string_view> split(std::string_view line) {
   return words;
 }
 
-/// Lines end with LF, CR LF or CR.
-std::vector<Line> split_lines(std::string_view text) {
+/// Lines with words.
+std::vector<Line> lines_of(std::string_view text) {
   std::vector<Line> lines;
   int number = 0;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    Line line{++number, split(text.substr(0, end))};
-    if (!line.words.empty()) lines.push_back(std::move(line));
-    text.remove_prefix(end);
-    text.remove_prefix(text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1);
-  }
+  for (const std::string_view line : split_lines(text))
+    if (Line next{++number, split(line)}; !next.words.empty()) lines.push_back(std::move(next));
   return lines;
 }
 
-/// Reads "1.5", "-2.D+03", ".5e1"; no value where the word is no finite number of usual size. A
-/// number that is next to nothing is 0.
-std::optional<double> parse_number(std::string_view word) {
-  std::string text(word);
-  if (text.starts_with('+')) text.erase(0, 1);
-  if (text.starts_with('+') || (text.starts_with('-') && word.starts_with('+'))) return {};
-  std::ranges::replace_if(
-      text, [](char c) { return c == 'd' || c == 'D'; }, 'e');
-  double value = 0.0;
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  if (error != std::errc() || end != last || !std::isfinite(value)) return {};
-  if (std::abs(value) > fields::largest_number) return {};
-  return std::abs(value) < fields::least_number ? 0.0 : value;
+/// No value where the word is no finite number of usual size. A number that is next to nothing is
+/// 0.
+std::optional<double> parse_usual_number(std::string_view word) {
+  const std::optional<double> value = parse_number(std::string(word));
+  if (!value || std::abs(*value) > fields::largest_number) return {};
+  return std::abs(*value) < fields::least_number ? 0.0 : *value;
 }
 
 /// A word in quotes, shortened, without characters that no terminal shows.
@@ -91,19 +79,15 @@ std::string quote(std::string_view word) {
   return shown + (word.size() > most_shown ? "...\"" : "\"");
 }
 
-std::string fold(std::string_view word) {
-  std::string folded;
-  for (const char c : word) folded += to_lower(c);
-  return folded;
-}
-
 /// The key of a line `value key`; empty: it has none.
-std::string key_of(const Line& line) { return line.words.size() < 2 ? "" : fold(line.words[1]); }
+std::string key_of(const Line& line) {
+  return line.words.size() < 2 ? "" : to_lower(line.words[1]);
+}
 
 class PolarReader {
  public:
   PolarReader(std::string path, std::string_view text)
-      : path_(std::move(path)), lines_(split_lines(text)) {}
+      : path_(std::move(path)), lines_(lines_of(text)) {}
 
   std::vector<PolarDefinition> read() {
     const bool is_aerodyn =
@@ -124,7 +108,7 @@ class PolarReader {
   std::vector<double> numbers_of(const Line& line) const {
     std::vector<double> numbers;
     for (const std::string_view word : line.words) {
-      const std::optional<double> number = parse_number(word);
+      const std::optional<double> number = parse_usual_number(word);
       if (!number) break;
       numbers.push_back(*number);
     }
@@ -182,8 +166,8 @@ class PolarReader {
 
   /// Reynolds number of a line `value Re`, in millions there; 0: not known.
   double reynolds_of(const Line& line) const {
-    if (fold(line.words[0]).find("default") != std::string::npos) return 0.0;
-    const std::optional<double> value = parse_number(line.words[0]);
+    if (to_lower(line.words[0]).find("default") != std::string::npos) return 0.0;
+    const std::optional<double> value = parse_usual_number(line.words[0]);
     if (!value || *value < 0.0)
       fail(line.number, "Re: expected a number >= 0, in millions, got " + quote(line.words[0]));
     return million * *value;

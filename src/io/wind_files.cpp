@@ -5,13 +5,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <numbers>
 #include <sstream>
+#include <system_error>
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
 #include "samara/base/number.hpp"
+#include "samara/base/words.hpp"
 #include "samara/io/whole_file.hpp"
 
 namespace samara::io {
@@ -164,15 +165,14 @@ model::WindBox read_hawc_box(const std::array<std::string, 3>& paths, const mode
 
 std::vector<UniformWindRow> read_uniform_wind(const std::string& path) {
   constexpr std::size_t least_columns = 8;
-  std::istringstream text(read_whole_file(path, max_table_megabytes, "wind file"));
+  const std::string text = read_whole_file(path, max_table_megabytes, "wind file");
   std::vector<UniformWindRow> rows;
   int number = 0;
-  for (std::string line; std::getline(text, line);) {
-    ++number;
-    std::ranges::replace_if(
-        line, [](char c) { return c == ',' || c == '\t' || c == '\r'; }, ' ');
-    const std::string place = path + ":" + std::to_string(number);
-    std::istringstream words(line.substr(0, std::min(line.find('!'), line.size())));
+  for (const std::string_view whole : split_lines(text)) {
+    std::string line(whole.substr(0, whole.find('!')));
+    std::ranges::replace(line, ',', ' ');
+    const std::string place = path + ":" + std::to_string(++number);
+    std::istringstream words(line);
     std::vector<double> values;
     for (std::string word; words >> word;) {
       const std::optional<double> value = parse_number(word);
@@ -201,7 +201,14 @@ std::vector<UniformWindRow> read_uniform_wind(const std::string& path) {
 void read_wind_files(model::WindChange& change, const std::filesystem::path& folder,
                      const model::WindDefinition& mean) {
   constexpr double degree = std::numbers::pi / 180.0;
-  const auto path_of = [&](const std::string& name) { return (folder / name).string(); };
+  const auto path_of = [&](const std::string& name) {
+    const std::filesystem::path path = folder / name;
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+      throw InputError(path.string() +
+                       ": no such file; hint: a relative path counts from the folder of the case");
+    return path.string();
+  };
   if (!change.table_path.empty()) {
     const std::vector<UniformWindRow> rows = read_uniform_wind(path_of(change.table_path));
     const auto take = [&rows](std::optional<math::TimeCurve>& curve, auto value) {

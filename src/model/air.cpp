@@ -134,8 +134,10 @@ double radius_of(const BladeRoot& root, const Vector3& x) {
   return std::hypot(place(0), place(2));
 }
 
-/// Wind at the apex of the undeformed rotor, along its axis and whole.
+/// Height of the apex of the undeformed rotor, and the wind there, along the rotor's axis and
+/// whole.
 struct HubWind {
+  double height = 0.0;
   double axial = 0.0;
   double speed = 0.0;
 };
@@ -149,7 +151,7 @@ HubWind find_hub_wind(const elements::MeanWind& wind, const Turbine& turbine) {
   if (turbine.has_tower)
     apex += Vector3(turbine.tower.tip(1), turbine.tower.tip(2), turbine.tower.tip(0));
   const Vector3 v = wind.at<double>(apex);
-  return {v.dot(bearing.col(1)), v.norm()};
+  return {apex(2), v.dot(bearing.col(1)), v.norm()};
 }
 
 /// Mean axial induction of the undeformed rotor in axial wind over the area of its stations.
@@ -244,6 +246,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
         std::max(rotor.tip_radius, radius_of(turbine.roots[k], turbine.blades[k].tip));
   place_stations(definition, turbine, air);
   const HubWind wind = find_hub_wind(rotor.wind.mean, turbine);
+  air.hub_height = wind.height;
   air.hub_wind = wind.speed;
   air.hub_wind_axial = wind.axial;
   constexpr double share = 0.01;

@@ -163,14 +163,6 @@ double AirPart::whole_work(std::size_t mode) const {
   return sum;
 }
 
-std::unique_ptr<turbine::TurbineSystem> hold_air(const turbine::TurbineSystem& system) {
-  if (!system.turbine().air) return nullptr;
-  model::Turbine held = system.turbine();
-  held.air->rotor.load_is_held = true;
-  held.air->rotor.wake_is_held = held.air->rotor.models.inflow == elements::Inflow::frozen;
-  return std::make_unique<turbine::TurbineSystem>(held, system.comm());
-}
-
 AirPart find_air_part(const turbine::TurbineSystem& system,
                       const analysis::PeriodicSolution& steady, const ModeSet& modes,
                       const ModeSet& held) {

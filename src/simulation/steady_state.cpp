@@ -61,10 +61,12 @@ std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& op
     const turbine::TurbineSystem system(model::build_turbine(free), PETSC_COMM_SELF);
     analysis::Observer silent;
     const analysis::Trim trim = analysis::find_trim(system, options, silent);
+    std::vector<std::string> names;
+    for (int k = 1; k <= turbine.blades.count; ++k) names.push_back("BldPitch" + std::to_string(k));
+    const std::vector<double> pitches = mean_channels(system, trim, names);
     for (int k = 1; k <= turbine.blades.count; ++k) {
       const PitchRange range = pitch_range(turbine, k);
-      const double pitch =
-          mean_channels(system, trim, {"BldPitch" + std::to_string(k)})[0] * degree;
+      const double pitch = pitches[static_cast<std::size_t>(k - 1)] * degree;
       const bool is_high = pitch > range.highest;
       if (!is_high && !(pitch < range.lowest)) continue;
       return "the controller needs a pitch of " + general(pitch / degree, 4) + " deg, but " +
@@ -127,14 +129,6 @@ std::vector<double> mean_channels(const turbine::TurbineSystem& system, const an
     for (std::size_t j = 0; j < means.size(); ++j) means[j] += values[j] / instants;
   }
   return means;
-}
-
-std::unique_ptr<turbine::TurbineSystem> hold_wake(const turbine::TurbineSystem& system) {
-  const std::optional<model::Air>& air = system.turbine().air;
-  if (!air || air->rotor.models.inflow != elements::Inflow::frozen) return nullptr;
-  model::Turbine held = system.turbine();
-  held.air->rotor.wake_is_held = true;
-  return std::make_unique<turbine::TurbineSystem>(held, system.comm());
 }
 
 std::string roughness(const analysis::Trim& trim) {

@@ -115,8 +115,9 @@ class Validation {
     if (wind.standard && !(turbine_.wind->speed > 0.0))
       add("transient.wind.gust", "needs a mean wind; hint: wind.speed");
     if (wind.standard && !(wind.standard->start < duration))
-      add("transient.wind.gust.start",
-          "never comes: transient.duration is " + general(duration, 6) + " s");
+      add("transient.wind.gust.start", "never comes: transient.duration is " +
+                                           general(duration, 6) +
+                                           " s; hint: an earlier start or a longer duration");
     const bool is_hawc = wind.box_path.size() == 3;
     if (is_hawc && !(turbine_.wind->speed > 0.0))
       add("transient.wind.box", "needs the speed with which it moves; hint: wind.speed");

@@ -1,5 +1,7 @@
 #include "samara/system/metadata.hpp"
 
+#include <algorithm>
+
 namespace samara::system {
 namespace {
 
@@ -15,6 +17,10 @@ std::string joined(std::initializer_list<std::string_view> words) {
 }
 
 }  // namespace
+
+bool has_medium(const std::vector<Unknown>& unknowns) {
+  return std::ranges::any_of(unknowns, &Unknown::is_of_medium);
+}
 
 const char* word_of(UnknownRole role) {
   switch (role) {

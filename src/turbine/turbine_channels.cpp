@@ -239,7 +239,7 @@ class Quantities {
 
   using AirReport = std::vector<std::vector<components::AirPointReport<T>>>;
 
-  void add_rotor_air(const AirReport& air) {
+  void add_rotor_air(double t, const AirReport& air) {
     Vec6<T> load = Vec6<T>::Zero();
     T wind(0.0);
     T area(0.0);
@@ -266,10 +266,7 @@ class Quantities {
     put(torque_coefficient, load(4) / (pressure * rotor.tip_radius));
     put(thrust_coefficient, load(1) / pressure);
     put(tip_speed_ratio, speed * wind * rotor.tip_radius / square);
-    const Vec3<T>& hub_wind_velocity = air.front().front().hub_wind;
-    put(hub_wind, hub_wind_velocity(1));
-    put(hub_wind + 1, T(-hub_wind_velocity(0)));
-    put(hub_wind + 2, hub_wind_velocity(2));
+    put(hub_wind, of_body<T>(rotor.wind.undisturbed_at<T>(air.front().front().hub_place, t)));
   }
 
   /// `air`, `stations`: of the blade at its points.
@@ -378,7 +375,7 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
   }
   if (has_air_) {
     const auto air = system_.equations().air_report<T>(t, z, z_dot, inputs);
-    quantities.add_rotor_air(air);
+    quantities.add_rotor_air(t, air);
     for (const Section& section : sections_) {
       const auto k = static_cast<std::size_t>(section.beam);
       if (k < air.size())

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
-#include <unistd.h>
 
 #include "samara/base/error.hpp"
 #include "samara/decks/import.hpp"
 #include "samara/io/case.hpp"
+
+#include "../io/folder.hpp"
 
 namespace samara::test {
 
@@ -27,21 +28,11 @@ inline std::string read_file(const fs::path& path) {
 
 /// A copy of a folder of decks, which goes with the test.
 struct DeckFolder {
+  Folder around;
   fs::path path;
-  explicit DeckFolder(const std::string& name) {
-    static int number = 0;
-    path = fs::temp_directory_path() /
-           ("samara_import_" + std::to_string(::getpid()) + "_" + std::to_string(number++));
-    fs::create_directories(path);
-    fs::copy(deck_files / name, path / name, fs::copy_options::recursive);
-    path /= name;
+  explicit DeckFolder(const std::string& name) : path(around.path / name) {
+    fs::copy(deck_files / name, path, fs::copy_options::recursive);
   }
-  ~DeckFolder() {
-    std::error_code ignored;
-    fs::remove_all(path.parent_path(), ignored);
-  }
-  DeckFolder(const DeckFolder&) = delete;
-  DeckFolder& operator=(const DeckFolder&) = delete;
 
   std::string text(const std::string& file) const { return read_file(path / file); }
   void write(const std::string& file, const std::string& content) const {

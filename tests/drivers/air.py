@@ -54,6 +54,7 @@ class Commands(ProgramTest):
                 self.assertLess(held[i], 0.5 * group["damping_ratio"][i], mode)
                 self.assertLess(whole[i], 0, mode)  # the air takes energy out
         self.refuse("trim", LAND, "--air", words="--air: samara trim lists no modes")
+        self.refuse("floquet", LAND, *QUICK, "--set", "aero=none", "--air", words="has no air; hint: wind.speed")
 
     def test_spanwise_air_of_a_steady_state(self):
         text = self.succeed("trim", LAND, *QUICK, *WIND, "-o", "steady.h5").stdout

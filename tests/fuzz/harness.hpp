@@ -46,4 +46,8 @@ class Folder {
   std::string path_;
 };
 
+/// Writes a deck, several files in one input, each behind a line `==== its name`; returns the name
+/// of the first, which is the main file.
+std::string write_deck(const Folder& folder, std::string_view text);
+
 }  // namespace samara::fuzz

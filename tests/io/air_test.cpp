@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
-#include <unistd.h>
 
 #include "samara/base/error.hpp"
 #include "samara/io/case.hpp"
@@ -15,28 +14,17 @@
 #include "samara/io/result_reader.hpp"
 #include "samara/io/same_model.hpp"
 
+#include "folder.hpp"
+
 namespace samara::io {
 namespace {
 
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
+using test::Folder;
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double round_off = 1e-14;
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("samara_air_test_" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path / "polars"); }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  std::string write(const std::string& name, const std::string& text) const {
-    const std::string file = path / name;
-    std::ofstream(file, std::ios::binary) << text;
-    return file;
-  }
-};
 
 /// Eight lines; tests append keys of `blades` from line 9.
 const std::string blades = R"(samara: 1

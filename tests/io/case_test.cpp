@@ -10,10 +10,11 @@
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
-#include <unistd.h>
 
 #include "samara/base/error.hpp"
 #include "samara/model/turbine.hpp"
+
+#include "folder.hpp"
 
 namespace {
 
@@ -25,26 +26,12 @@ using samara::model::JointKind;
 
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
+using samara::test::Folder;
 
 const std::string lee2002 = std::string(SAMARA_SOURCE_DIR) + "/inputs/lee2002/";
 
 constexpr double round_off = 1e-14;
 constexpr double degree = std::numbers::pi / 180.0;
-
-/// A folder of this process that goes with the test.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("samara_case_test_" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  std::string write(const std::string& text) const {
-    const std::string file = path / "case.yaml";
-    std::ofstream(file, std::ios::binary) << text;
-    return file;
-  }
-};
 
 /// Eight lines; tests append from line 9.
 const std::string minimal = R"(samara: 1
@@ -73,13 +60,13 @@ std::string replace(std::string text, const std::string& from, const std::string
 
 Case read_text(const std::string& text, const Strings& settings = {}) {
   const Folder folder;
-  return read_case(folder.write(text), settings);
+  return read_case(folder.write("case.yaml", text), settings);
 }
 
 /// The lines of the error, without the folder of the file.
 Strings read_errors(const std::string& text, const Strings& settings = {}) {
   const Folder folder;
-  const std::string file = folder.write(text);
+  const std::string file = folder.write("case.yaml", text);
   Strings lines;
   try {
     read_case(file, settings);
@@ -653,7 +640,7 @@ BOOST_AUTO_TEST_CASE(a_path_that_holds_no_case_is_named) {
   BOOST_TEST(read_path_error(missing) == missing + ": no such file");
   BOOST_TEST(read_path_error(folder.path) ==
              folder.path.string() + ": a directory, expected a case file");
-  const std::string file = folder.write(minimal);
+  const std::string file = folder.write("case.yaml", minimal);
   const std::string stem = file.substr(0, file.size() - 5);
   BOOST_TEST(read_path_error(stem) == stem + ": no such file; did you mean \"" + file + "\"?");
 }

@@ -8,28 +8,21 @@
 
 #include <boost/test/unit_test.hpp>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "samara/base/error.hpp"
+
+#include "folder.hpp"
 
 namespace samara::io {
 namespace {
 
 namespace fs = std::filesystem;
+using test::Folder;
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double round_off = 1e-15;
 
 using Polars = std::vector<model::PolarDefinition>;
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("samara_polar_test_" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
 
 /// A table of an airfoil file; the values of unsteady aerodynamics could be taken for others.
 std::string table(const std::string& reynolds, const std::string& rows, const std::string& count) {
@@ -194,7 +187,7 @@ BOOST_AUTO_TEST_CASE(bytes_that_are_no_text_are_refused) {
 
 BOOST_AUTO_TEST_CASE(only_plain_files_are_read) {
   const Folder folder;
-  const std::string file = folder.path / "a.dat";
+  const std::string file = folder.file("a.dat");
   const auto error_of = [](const std::string& path) {
     try {
       read_polar_file(path);

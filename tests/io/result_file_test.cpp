@@ -11,15 +11,17 @@
 
 #include <boost/test/unit_test.hpp>
 #include <hdf5.h>
-#include <unistd.h>
 
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
+
+#include "folder.hpp"
 
 namespace {
 
 using namespace samara;
 using namespace samara::io;
+using samara::test::Folder;
 
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
@@ -33,20 +35,10 @@ struct Started {
 };
 BOOST_TEST_GLOBAL_FIXTURE(Started);
 
-/// A folder of this process that goes with the test.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("samara_result_test_" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  std::string file(const std::string& name) const { return (path / name).string(); }
-  std::size_t count() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(path), fs::directory_iterator()));
-  }
-};
+std::size_t count_files(const Folder& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()));
+}
 
 void write_text(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
@@ -414,7 +406,7 @@ BOOST_AUTO_TEST_CASE(a_file_that_is_not_published_leaves_nothing) {
     ResultFile file(folder.file("x.h5"), baseline(), record);
     file.write_floquet(small_floquet());
   }
-  BOOST_TEST(folder.count() == 0u);
+  BOOST_TEST(count_files(folder) == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(a_result_is_replaced_only_when_the_next_is_complete) {
@@ -434,7 +426,7 @@ BOOST_AUTO_TEST_CASE(a_result_is_replaced_only_when_the_next_is_complete) {
   }
   BOOST_TEST((read_text(path) != before));
   BOOST_TEST(Reader(path).has("/modes/exponents"));
-  BOOST_TEST(folder.count() == 1u);
+  BOOST_TEST(count_files(folder) == 1u);
 }
 
 BOOST_AUTO_TEST_CASE(a_folder_that_goes_away_is_an_error_of_the_environment) {
@@ -508,7 +500,7 @@ BOOST_AUTO_TEST_CASE(a_table_of_modes_has_a_line_a_mode) {
              "multiplier_re,multiplier_im,harmonic,resolved,residual,error,error_growth");
   BOOST_TEST(found[1] == "1,yaw,0,0,-1,nan,0.20000000000000001,0,1.5,0,0,0,0,0,0");
   BOOST_TEST(found[2].starts_with("2,blade flap 1,1.5,0.4774648292756"));
-  BOOST_TEST(folder.count() == 1u);
+  BOOST_TEST(count_files(folder) == 1u);
 }
 
 BOOST_AUTO_TEST_CASE(a_table_of_the_steady_state_has_a_line_an_unknown) {

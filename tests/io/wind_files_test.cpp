@@ -3,9 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 
@@ -13,26 +10,12 @@
 
 #include "samara/base/error.hpp"
 
+#include "folder.hpp"
+
 namespace {
 
 using namespace samara;
-
-/// A folder that is removed at the end.
-struct Folder {
-  std::filesystem::path path;
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "samara_wind_XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name, std::ios::binary) << text;
-    return (path / name).string();
-  }
-};
+using test::Folder;
 
 template <class Number>
 void add(std::string& bytes, Number value) {
@@ -117,7 +100,7 @@ BOOST_AUTO_TEST_CASE(faults_of_a_file_of_turbsim_are_said) {
   std::string huge = whole;
   for (std::size_t i = 2; i < 18; ++i) huge[i] = '\x7f';
   BOOST_TEST(has(fault(huge), "columns"));
-  BOOST_TEST(has(fault_of([&] { io::read_turbsim_box((folder.path / "none").string()); }), "none"));
+  BOOST_TEST(has(fault_of([&] { io::read_turbsim_box(folder.file("none")); }), "none"));
   // Any byte may be wrong.
   for (std::size_t i = 0; i < 70; ++i)
     for (const char c : {'\x00', '\x7f', '\xff'}) {
@@ -183,6 +166,18 @@ BOOST_AUTO_TEST_CASE(a_table_sets_the_curves_that_are_not_given) {
   folder.write("a.wnd", "0 8 0 0 0 0.1 0 0\n0 9 0 0 0 0.1 0 0\n");
   BOOST_TEST(has(fault_of([&] { io::read_wind_files(change, folder.path, mean); }),
                  "a.wnd:2: the times do not rise"));
+}
+
+BOOST_AUTO_TEST_CASE(lines_of_a_table_end_with_lf_cr_lf_or_cr) {
+  const Folder folder;
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::string text = "! t V dir Vz hshr vshr vlin gust" + end + "0 8 0 0 0 0 0 0" + end +
+                             "9\t7 0 0 0 0 0 0" + end;
+    const auto rows = io::read_uniform_wind(folder.write("a.wnd", text));
+    BOOST_REQUIRE(rows.size() == 2u);
+    BOOST_TEST(rows[1].time == 9.0);
+    BOOST_TEST(rows[1].speed == 7.0);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

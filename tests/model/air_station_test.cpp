@@ -267,6 +267,26 @@ BOOST_AUTO_TEST_CASE(typical_section_with_finite_states_agrees_with_an_independe
   for (const Complex& value : found) BOOST_TEST(distance_to(moving, value) < 1e-9);
 }
 
+/// Lift per unit of a normal velocity that oscillates with the angular frequency `omega`, of n
+/// states. Derivatives of lift and rows: by the velocity, the states and their rates.
+template <int n>
+std::complex<double> lift_response(const math::Dual<2 * n + 1>& lift,
+                                   const Eigen::Matrix<math::Dual<2 * n + 1>, n, 1>& rows,
+                                   double omega) {
+  const std::complex<double> rate(0.0, omega);
+  Eigen::Matrix<std::complex<double>, n, n> matrix;
+  Eigen::Matrix<std::complex<double>, n, 1> right;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j)
+      matrix(i, j) = rows(i).derivatives()(1 + j) + rate * rows(i).derivatives()(1 + n + j);
+    right(i) = -rows(i).derivatives()(0);
+  }
+  const Eigen::Matrix<std::complex<double>, n, 1> states = matrix.partialPivLu().solve(right);
+  std::complex<double> sum = lift.derivatives()(0);
+  for (int j = 0; j < n; ++j) sum += lift.derivatives()(1 + j) * states(j);
+  return sum;
+}
+
 /// The lift of an oscillating normal velocity with six finite states, by an independent program.
 BOOST_AUTO_TEST_CASE(finite_states_approach_theodorsens_function) {
   using T = math::Dual<13>;  // w_n, mu1 to mu6, their rates
@@ -299,18 +319,8 @@ BOOST_AUTO_TEST_CASE(finite_states_approach_theodorsens_function) {
        {0.5, {0.602508, -0.155132}},
        {1.0, {0.539310, -0.100891}}}};
   for (const auto& [k, C] : expected) {
-    const std::complex<double> rate(0.0, k * U);
-    Eigen::Matrix<std::complex<double>, 6, 6> matrix;
-    Eigen::Matrix<std::complex<double>, 6, 1> right;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j)
-        matrix(i, j) = rows(i).derivatives()(1 + j) + rate * rows(i).derivatives()(7 + j);
-      right(i) = -rows(i).derivatives()(0);
-    }
-    const Eigen::Matrix<std::complex<double>, 6, 1> states = matrix.partialPivLu().solve(right);
-    std::complex<double> found = lift.derivatives()(0);
-    for (int j = 0; j < 6; ++j) found += lift.derivatives()(1 + j) * states(j);
-    BOOST_TEST_CONTEXT("k = " << k) BOOST_TEST(std::abs(found / (2.0 * pi / U) - C) < 1e-6);
+    const std::complex<double> found = lift_response<6>(lift, rows, k * U) * U / (2.0 * pi);
+    BOOST_TEST_CONTEXT("k = " << k) BOOST_TEST(std::abs(found - C) < 1e-6);
   }
 }
 
@@ -345,18 +355,7 @@ BOOST_AUTO_TEST_CASE(wake_states_give_theodorsens_function_in_jones_form) {
   Eigen::Matrix<T, 4, 1> rows;
   const T lift = dynamic_coefficients<T>(rotor.models, station, flow, x, x_dot, rows).lift;
   for (const double k : {0.05, 0.1, 0.2, 0.3, 0.5, 1.0}) {
-    const std::complex<double> rate(0.0, k * U);
-    Eigen::Matrix4cd matrix;
-    Eigen::Vector4cd right;
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j)
-        matrix(i, j) = rows(i).derivatives()(1 + j) + rate * rows(i).derivatives()(5 + j);
-      right(i) = -rows(i).derivatives()(0);
-    }
-    const Eigen::Vector4cd states = matrix.partialPivLu().solve(right);
-    std::complex<double> found = lift.derivatives()(0);
-    for (int j = 0; j < 4; ++j) found += lift.derivatives()(1 + j) * states(j);
-    found /= 2.0 * pi / U;
+    const std::complex<double> found = lift_response<4>(lift, rows, k * U) * U / (2.0 * pi);
     const std::complex<double> ik(0.0, k);
     const std::complex<double> jones = 1.0 - 0.165 * ik / (ik + 0.0455) - 0.335 * ik / (ik + 0.3);
     BOOST_TEST(std::abs(found - jones) < 1e-6);

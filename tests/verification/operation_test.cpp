@@ -2,17 +2,17 @@
 #include "samara/simulation/operation.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
-#include <unistd.h>
 
 #include "samara/io/case.hpp"
 #include "samara/io/operation_table.hpp"
+
+#include "../io/folder.hpp"
 
 using namespace samara;
 using boost::test_tools::tolerance;
@@ -121,10 +121,8 @@ BOOST_AUTO_TEST_CASE(opt_files_come_back) {
   const std::vector<OperatingPoint> points{
       {.wind = 8.0, .speed = 0.95, .pitch = 0.01, .power = 1.9e6, .thrust = 3.8e5},
       {.wind = 12.0, .speed = 1.27, .pitch = 0.07, .power = 5.3e6, .thrust = 5.9e5}};
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("samara_opt_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  const std::string path = folder / "points.opt";
+  const test::Folder folder;
+  const std::string path = folder.file("points.opt");
   io::write_opt_file(path, points);
   const std::vector<simulation::ScheduledPoint> rows = io::read_opt_file(path);
   BOOST_REQUIRE(rows.size() == 2u);
@@ -143,5 +141,4 @@ BOOST_AUTO_TEST_CASE(opt_files_come_back) {
   refuses("2 wind pitch\n 8 0 9\n 8 0 9\n", "points.opt:3: the wind speed must be higher");
   refuses("1 wind pitch\n 8 0\n", "points.opt:2: expected wind speed");
   refuses("1 wind pitch\n 8 0 -9\n", "points.opt:2: the rotor speed must be > 0");
-  fs::remove_all(folder);
 }

@@ -1,4 +1,4 @@
-// Words that users type.
+// Words and lines that users write.
 #pragma once
 
 #include <string>
@@ -9,6 +9,12 @@ namespace samara {
 
 /// Lower case of an ASCII letter, whatever the locale.
 inline char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// The same of all letters of a word.
+std::string to_lower(std::string_view word);
+
+/// Lines end with LF, CR LF or CR.
+std::vector<std::string_view> split_lines(std::string_view text);
 
 /// Returns the word that `word` is probably meant to be, or an empty string.
 std::string find_similar(std::string_view word, const std::vector<std::string>& candidates);

@@ -33,7 +33,7 @@ struct AirPointReport {
   Vec3<T> couple;          ///< moment about the reference line, the same [N]
   Mat3<T> section_axes;    ///< B as columns, components n1 n2 n3
   Mat3<T> hub_axes;        ///< h1 h2 h3 as columns
-  Vec3<T> hub_wind;        ///< undisturbed wind at the apex in n1 n2 n3 [m/s]
+  Vec3<T> hub_place;       ///< apex, components n1 n2 n3 [m]
 };
 
 class BladeAir final : public Stated<BladeAir> {

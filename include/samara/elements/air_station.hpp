@@ -286,17 +286,16 @@ template <class T>
 AirCoefficients<T> steady_coefficients(const AirModels& models, const AirStation& station,
                                        const SectionFlow<T>& flow) {
   const AirfoilCurves& airfoil = *station.airfoil;
-  T angle = air::angle_of(flow, flow.n);
-  AirCoefficients<T> c;
+  const T angle = air::angle_of(flow, flow.n);
   if (models.dynamics == AirfoilDynamics::static_polar || !airfoil.has_dynamics)
     return {airfoil.lift_at(angle), airfoil.drag_at(angle), airfoil.moment_at(angle)};
   const T g = air::dynamics_share(models, flow, angle);
-  const T normal = g * air::three_quarter_velocity(station, flow) + (T(1.0) - g) * flow.n;
-  const T at_three_quarters = air::angle_of(flow, normal);
   if (models.dynamics == AirfoilDynamics::peters)
     return attached_coefficients(station, flow, g, angle, T(0.0));
-  c = {airfoil.lift_at(at_three_quarters), airfoil.drag_at(at_three_quarters),
-       airfoil.moment_at(at_three_quarters)};
+  const T normal = g * air::three_quarter_velocity(station, flow) + (T(1.0) - g) * flow.n;
+  const T at_three_quarters = air::angle_of(flow, normal);
+  AirCoefficients<T> c{airfoil.lift_at(at_three_quarters), airfoil.drag_at(at_three_quarters),
+                       airfoil.moment_at(at_three_quarters)};
   if (models.dynamics == AirfoilDynamics::oye) return c;
   const T turning = flow.half_chord_time * flow.omega * g;
   c.drag += (math::wrapped(T(angle - at_three_quarters)) * g + turning) * c.lift;
@@ -665,7 +664,7 @@ Eigen::Vector2d steady_induction(const AirRotor& rotor, const AirStation& statio
                                  const StationMotion<double>& motion);
 
 /// The unknowns of a station in steady air: the solution of its rows without rates. With `closure:
-/// actual` the induced velocity is that of the steady coefficients.
+/// load` the induced velocity is that of the steady coefficients.
 Eigen::Matrix<double, air::unknowns, 1> steady_air(const AirRotor& rotor, const AirStation& station,
                                                    const StationMotion<double>& motion);
 

@@ -61,7 +61,8 @@ struct MassDamper {
 /// The air around the rotor.
 struct Air {
   elements::AirRotor rotor;
-  double hub_wind = 0.0;        ///< speed of the wind at the apex of the undeformed rotor [m/s]
+  double hub_height = 0.0;      ///< of the apex of the undeformed rotor above the foot [m]
+  double hub_wind = 0.0;        ///< speed of the wind there [m/s]
   double hub_wind_axial = 0.0;  ///< its component along the shaft, downwind [m/s]
   std::vector<std::vector<elements::AirStation>> stations;  ///< of each blade, at its points
   bool tower_has_drag = false;                              ///< the wind loads the tower

@@ -1,7 +1,6 @@
 // The part of the air in the damping of modes, and its work on them.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,10 +10,6 @@
 #include "samara/turbine/turbine_system.hpp"
 
 namespace samara::simulation {
-
-/// The same turbine whose air loads no small motion changes: they are those of the steady state.
-/// Null without air.
-std::unique_ptr<turbine::TurbineSystem> hold_air(const turbine::TurbineSystem& system);
 
 /// The air in the modes of a set.
 struct AirPart {
@@ -33,10 +28,10 @@ struct AirPart {
   double whole_work(std::size_t mode) const;
 };
 
-/// `held`: modes of hold_air(system) at the same steady state. The work is the mean over a
-/// revolution of the change of the loads times the rate of the change of the place, in axes that
-/// turn with the steady rotor, over one cycle of the mode's frequency. Where the mode does not
-/// oscillate the work is zero.
+/// `held`: modes of hold_air(system), of held_air.hpp, at the same steady state. The work is the
+/// mean over a revolution of the change of the loads times the rate of the change of the place, in
+/// axes that turn with the steady rotor, over one cycle of the mode's frequency. Where the mode
+/// does not oscillate the work is zero.
 AirPart find_air_part(const turbine::TurbineSystem& system,
                       const analysis::PeriodicSolution& steady, const analysis::ModeSet& modes,
                       const analysis::ModeSet& held);

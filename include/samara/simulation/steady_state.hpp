@@ -1,7 +1,6 @@
 // The periodic steady state of a scenario, and its accuracy.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,10 +21,6 @@ analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem
 /// The same with the scenario's options. Adds a note if the result is rough.
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                          analysis::Observer& observer, MPI_Comm comm = MPI_COMM_SELF);
-
-/// The same turbine for small motions about a steady state: with `aero.inflow: frozen` it holds the
-/// induced velocity. Null with any other inflow, for which it is `system` itself.
-std::unique_ptr<turbine::TurbineSystem> hold_wake(const turbine::TurbineSystem& system);
 
 /// Number of equally spaced instants whose mean integrates products of two harmonics of a steady
 /// state exactly over a revolution: 6 H + 1 with H harmonics.

@@ -78,6 +78,8 @@ struct Unknown {
   /// divided by its scale.
   bool is_coordinate() const { return role == UnknownRole::position || role == UnknownRole::state; }
 
+  bool is_of_medium() const { return owner.kind == PartKind::medium; }
+
   /// Unit of the load that is work-conjugate to a position.
   std::string load_unit() const { return unit == "rad" ? "N m" : "N"; }
 
@@ -86,6 +88,9 @@ struct Unknown {
   /// Name without the number of the owner: equal for the same unknown of every blade.
   std::string family() const;
 };
+
+/// Whether a medium, such as the air, has unknowns.
+bool has_medium(const std::vector<Unknown>& unknowns);
 
 /// A group of unknowns with its share e = z^T weight z / 2 of an energy. Kinetic: inertial
 /// velocities, components in the part's own frame. Strain: internal loads.
