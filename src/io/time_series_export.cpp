@@ -313,7 +313,7 @@ std::vector<char> joined_result(const std::string& source, const TimeSeriesReade
 
 TimeSeriesFormat find_series_format(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
-  std::ranges::transform(ending, ending.begin(), to_lower);
+  ending = to_lower(ending);
   if (ending == ".h5") return TimeSeriesFormat::result;
   if (ending == ".csv") return TimeSeriesFormat::table;
   if (ending == ".out") return TimeSeriesFormat::openfast_text;
