@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "samara/elements/rotor_wake.hpp"
 #include "samara/model/airfoil.hpp"
 #include "samara/model/beam_modes.hpp"
 #include "samara/petsc/session.hpp"
@@ -324,7 +325,12 @@ std::vector<std::pair<std::string, std::string>> air_lines(
     words += " (" + std::to_string(still) + " without: their polars have no attached lift)";
   if (models.induction == elements::Induction::none)
     words += "; no induction";
-  else
+  else if (models.has_rotor_wake()) {
+    int states = 0;
+    for (const elements::WakeShape& shape : elements::make_wake_shapes(models.wake_shapes))
+      states += shape.parts();
+    words += "; finite-state wake of Peters and He with " + count(states, "state");
+  } else
     words += std::string("; thrust ") + thrust[static_cast<std::size_t>(models.thrust)] +
              (models.inflow == elements::Inflow::oye
                   ? ", dynamic inflow with tau1 " + general(air.rotor.tau1, 4) + " s"

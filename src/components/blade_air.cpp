@@ -77,6 +77,7 @@ Use use_of(const AirModels& models, const AirStation& station, int i) {
   if (has_dynamics && is_of_wake(models, i)) return Use::state;
   if (models.induction == Induction::none) return Use::none;
   if (models.induction == Induction::axial && i % 2 == 1) return Use::none;
+  if (models.has_rotor_wake() && i == air::quasi_steady) return Use::none;
   if (i >= air::quasi_steady) return Use::auxiliary;
   if (models.inflow == Inflow::oye) return Use::state;
   return i >= air::reduced ? Use::none : Use::auxiliary;

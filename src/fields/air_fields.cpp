@@ -1,5 +1,7 @@
 #include "air_fields.hpp"
 
+#include <cmath>
+
 namespace samara::fields {
 namespace {
 
@@ -12,6 +14,7 @@ constexpr Unit deg_per_m{"deg/m", deg.factor, deg.divisor};
 constexpr Range shear_exponent{"a number from -1 to 1", -1.0, 1.0};
 /// Below it the transition to static loads would begin at a negative angle.
 constexpr Range cut_out_angle{"an angle from 5 to 180 degrees", 5.0, 180.0};
+constexpr Range wake_shape_count{"whole numbers from 0 to 10", 0.0, 10.0};
 
 // ---- wind --------------------------------------------------------------------------------------
 
@@ -122,6 +125,21 @@ void declare_tau1(Visitor& fields, std::optional<double>& tau1) {
   if (fields.reads()) tau1 = is_auto ? std::optional<double>() : value;
 }
 
+void declare_wake_shapes(Visitor& fields, std::vector<int>& shapes) {
+  std::vector<double> counts(shapes.begin(), shapes.end());
+  fields.number_list(
+      {"wake_shapes", "", wake_shape_count,
+       "`[N0, N1, ...]` of `inflow: peters_he`: number of shapes over the radius of "
+       "the mean, of the first harmonic over the azimuth and so on; N0 is 1 or more"},
+      "numbers", counts);
+  if (!fields.reads()) return;
+  for (const double count : counts)
+    if (count != std::round(count))
+      return fields.expected("wake_shapes", "whole numbers, such as [3, 2, 2, 1, 1]");
+  shapes.clear();
+  for (const double count : counts) shapes.push_back(static_cast<int>(count));
+}
+
 void declare_inflow(Visitor& fields, AeroDefinition& aero) {
   using model::Induction;
   using model::Inflow;
@@ -137,9 +155,15 @@ void declare_inflow(Visitor& fields, AeroDefinition& aero) {
       {"inflow",
        "`oye`: the induced velocity follows its quasi-steady value with two lags in "
        "series (Oye 1990); `equilibrium`: it is that value; `frozen`: it is that value in "
-       "the steady state, and motions about it do not change it (not in time series)"},
+       "the steady state, and motions about it do not change it (not in time series); "
+       "`peters_he`: along the shaft it is that of finite states of the whole rotor (Peters, He "
+       "1991), without `thrust`, `tip_loss`, `hub_loss`, `skew` and `tau1`"},
       aero.inflow,
-      {{"oye", Inflow::oye}, {"equilibrium", Inflow::equilibrium}, {"frozen", Inflow::frozen}});
+      {{"oye", Inflow::oye},
+       {"equilibrium", Inflow::equilibrium},
+       {"frozen", Inflow::frozen},
+       {"peters_he", Inflow::peters_he}});
+  declare_wake_shapes(fields, aero.wake_shapes);
   declare_tau1(fields, aero.tau1);
   fields.choice({"closure",
                  "load in the balance of momentum: `equilibrium`, of the polars at the "

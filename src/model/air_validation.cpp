@@ -7,6 +7,7 @@
 
 #include "samara/base/format.hpp"
 #include "samara/base/words.hpp"
+#include "samara/elements/rotor_wake.hpp"
 #include "samara/model/airfoil.hpp"
 
 namespace samara::model {
@@ -101,8 +102,24 @@ class AirValidation {
       add("aero.airfoil_dynamics",
           "peters has no dynamic inflow beside it; hint: inflow: equilibrium, or induction: none",
           {"aero.inflow"});
+    check_wake_shapes(aero.wake_shapes);
     if (!(aero.wake[2] > 0.0 && aero.wake[3] > 0.0))
       add("aero.wake_constants", "expected decay rates b1, b2 > 0");
+  }
+
+  void check_wake_shapes(const std::vector<int>& counts) {
+    const std::string place = "aero.wake_shapes";
+    if (counts.empty() || counts[0] < 1)
+      return add(place, "expected 1 or more shapes of the mean, the first number");
+    for (std::size_t m = 0; m < counts.size(); ++m) {
+      if (counts[m] < 0) return add(place, "expected whole numbers from 0");
+      const int order = static_cast<int>(m) + 2 * counts[m] - 1;
+      if (counts[m] > 0 && order > elements::largest_wake_order)
+        return add(place, "harmonic " + std::to_string(m) + " with " + std::to_string(counts[m]) +
+                              " shapes has the order " + std::to_string(order) +
+                              "; the harmonic plus twice its shapes less one is at most " +
+                              std::to_string(elements::largest_wake_order));
+    }
   }
 
   void check_airfoil(const std::string& name, const AirfoilDefinition& airfoil) {

@@ -24,4 +24,11 @@ Handle<Vec> make_vector(MPI_Comm comm, PetscInt local_size, PetscInt size) {
   return vector;
 }
 
+std::vector<double> values_of(Vec vector) {
+  PetscInt size = 0;
+  check(VecGetLocalSize(vector, &size));
+  const ReadView view(vector);
+  return {view.data(), view.data() + size};
+}
+
 }  // namespace samara::petsc

@@ -71,8 +71,8 @@ class Changes {
     const petsc::Handle<Vec> z = system.make_state();
     const petsc::Handle<Vec> z_dot = system.make_state();
     steady.evaluate(t, z.get(), z_dot.get());
-    z_ = values_of(z.get());
-    z_dot_ = values_of(z_dot.get());
+    z_ = petsc::values_of(z.get());
+    z_dot_ = petsc::values_of(z_dot.get());
     const auto reports = system.equations().air_report<double>(t, z_, z_dot_, {});
     axes_ = reports.front().front().hub_axes.transpose();
   }
@@ -112,11 +112,6 @@ class Changes {
       sum += math::cross(plain, derivative(e));
     }
     return 0.5 * sum;
-  }
-
-  std::vector<double> values_of(Vec vector) const {
-    const petsc::ReadView view(vector);
-    return {view.data(), view.data() + system_.size()};
   }
 
   std::vector<std::vector<Report>> reports_of(const Eigen::VectorXd& direction) const {

@@ -43,11 +43,6 @@ constexpr std::array quantities{
              [](const Report& r) { return r.driving; }},
 };
 
-std::vector<double> values_of(Vec vector, std::size_t size) {
-  const petsc::ReadView view(vector);
-  return {view.data(), view.data() + size};
-}
-
 }  // namespace
 
 SpanwiseAir find_spanwise_air(const turbine::TurbineSystem& system, const analysis::Trim& trim) {
@@ -68,13 +63,12 @@ SpanwiseAir find_spanwise_air(const turbine::TurbineSystem& system, const analys
                               std::vector<double>(size, -infinity)});
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
-  const auto unknowns = static_cast<std::size_t>(system.size());
   const int instants = instants_of_means(trim);
   for (int i = 0; i < instants; ++i) {
     const double t = system.period() * i / instants;
     trim.solution.evaluate(t, z.get(), z_dot.get());
     const Reports reports = system.equations().air_report<double>(
-        t, values_of(z.get(), unknowns), values_of(z_dot.get(), unknowns), {});
+        t, petsc::values_of(z.get()), petsc::values_of(z_dot.get()), {});
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       SpanwiseQuantity& own = air.quantities[q];
       std::size_t at = 0;

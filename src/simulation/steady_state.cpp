@@ -83,6 +83,30 @@ std::string find_limit(const Scenario& scenario, const analysis::TrimOptions& op
   return "";
 }
 
+/// @throws ConvergenceError where the equations of the finite-state wake do not hold: a rotor that
+/// nearly stops the wind, in the vortex ring or as a brake
+void require_wake_range(const turbine::TurbineSystem& system, const analysis::Trim& trim) {
+  if (!system.turbine().air || !system.turbine().air->rotor.models.has_rotor_wake()) return;
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const int instants = instants_of_means(trim);
+  for (int i = 0; i < instants; ++i) {
+    const double t = system.period() * i / instants;
+    trim.solution.evaluate(t, z.get(), z_dot.get());
+    const auto flow =
+        system.equations().disk_flow(t, petsc::values_of(z.get()), petsc::values_of(z_dot.get()));
+    if (!flow) return;
+    if (flow->share >= elements::least_carrying_share ||
+        std::abs(flow->mean) <= system.turbine().air->rotor.least_speed)
+      continue;
+    throw ConvergenceError(
+        "trim: aero.inflow: peters_he: the mean induced velocity is " + general(flow->mean, 3) +
+        " m/s in a wind of " + general(flow->through + flow->mean, 3) +
+        " m/s along the shaft; the finite-state wake holds up to 0.41 of an axial wind; hint: "
+        "aero.inflow: oye or equilibrium, or a smaller thrust");
+  }
+}
+
 }  // namespace
 
 analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
@@ -93,7 +117,9 @@ analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem
     if (!words.empty()) throw ConvergenceError("trim: " + words);
   };
   try {
-    return analysis::find_trim(system, options, observer, comm, near);
+    analysis::Trim trim = analysis::find_trim(system, options, observer, comm, near);
+    require_wake_range(system, trim);
+    return trim;
   } catch (const ConvergenceError&) {
     name_limit();
     throw;

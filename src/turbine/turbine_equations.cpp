@@ -114,6 +114,10 @@ void TurbineEquations::make_components() {
     airs_.push_back(std::make_unique<components::BladeAir>(turbine_, k, *beams_[k]));
     components_.push_back(airs_.back().get());
   }
+  if (turbine_.air && turbine_.air->rotor.models.has_rotor_wake()) {
+    wake_ = std::make_unique<components::RotorWake>(turbine_, bodies.blades, last_rank);
+    components_.push_back(wake_.get());
+  }
   if (turbine_.has_tower && turbine_.air && turbine_.air->tower_has_drag) {
     tower_air_ = std::make_unique<components::TowerAir>(turbine_, *beams_.back());
     components_.push_back(tower_air_.get());
@@ -179,6 +183,13 @@ void TurbineEquations::describe(components::Registry& registry) {
     airs_[k]->tie(bodies_->pose_port(), bodies_->roots()[k].pose_port());
     airs_[k]->describe(registry);
   }
+  if (wake_) {
+    std::vector<int> root_ports;
+    for (const components::BladeRoot& root : bodies_->roots())
+      root_ports.push_back(root.pose_port());
+    wake_->tie(bodies_->pose_port(), root_ports);
+    wake_->describe(registry);
+  }
   if (tower_air_) tower_air_->describe(registry);
   for (const auto& damper : mass_dampers_) {
     damper->set_yaw(layout_.yaw());
@@ -223,17 +234,34 @@ void TurbineEquations::evaluate(double t, const std::vector<double>& z,
   for (const components::Component* component : components_) component->add_to(tangents);
 }
 
+/// Fills the ports of the poses of the hub and of the blades' roots.
+template <class T>
+void TurbineEquations::provide_poses(Residual<T>& residual) const {
+  if (controller_) controller_->add_to(residual);
+  for (const auto& actuator : actuators_) actuator->add_to(residual);
+  bodies_->add_to(residual);
+}
+
+std::optional<elements::DiskFlow<double>> TurbineEquations::disk_flow(
+    double t, const std::vector<double>& z, const std::vector<double>& z_dot) const {
+  if (!wake_) return std::nullopt;
+  std::vector<double> unused(z.size(), 0.0);  // only the ports count
+  const TurbineInputs<double> inputs;
+  Residual<double> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
+  provide_poses(residual);
+  return wake_->flow(residual);
+}
+
 void TurbineEquations::settle_air(double t, std::vector<double>& z) const {
   if (airs_.empty()) return;
   const std::vector<double> rates(z.size(), 0.0);
   std::vector<double> unused(z.size(), 0.0);  // only the ports count
   const TurbineInputs<double> inputs;
   Residual<double> residual(t, z, rates, inputs, declarations_.port_sizes, unused);
-  if (controller_) controller_->add_to(residual);
-  for (const auto& actuator : actuators_) actuator->add_to(residual);
-  bodies_->add_to(residual);
+  provide_poses(residual);
   std::vector<double> settled = z;
   for (const auto& air : airs_) air->settle(residual, settled);
+  if (wake_) wake_->settle(residual, settled);
   z = settled;
 }
 
@@ -256,9 +284,7 @@ std::vector<std::vector<components::AirPointReport<T>>> TurbineEquations::air_re
   if (airs_.empty()) return reports;
   std::vector<T> unused(z.size());  // only the ports count
   Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
-  if (controller_) controller_->add_to(residual);
-  for (const auto& actuator : actuators_) actuator->add_to(residual);
-  bodies_->add_to(residual);
+  provide_poses(residual);
   for (const auto& air : airs_) reports.push_back(air->report(residual));
   return reports;
 }

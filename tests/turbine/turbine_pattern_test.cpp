@@ -1,8 +1,10 @@
 // The declared places of the tangents, against the tangents of turbines in which any quantity may
 // be absent.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <set>
 
@@ -116,6 +118,71 @@ void add_controls(model::TurbineDefinition& d, Draw& draw) {
   d.controller = controller;
 }
 
+/// An airfoil that stalls.
+model::AirfoilDefinition airfoil() {
+  model::PolarDefinition polar;
+  constexpr int last = 90;
+  for (int i = -last; i <= last; ++i) {
+    const double angle =
+        std::abs(i) == last ? std::copysign(std::numbers::pi, i) : i * std::numbers::pi / last;
+    const double bump = std::exp(-std::pow(angle / 0.3, 2));
+    polar.angles.push_back(angle);
+    polar.lift.push_back(4.0 * (angle + 0.05) * bump + std::sin(2.0 * angle));
+    polar.drag.push_back(0.01 + 1.2 * std::pow(std::sin(angle), 2));
+    polar.moment.push_back(-0.2 * std::sin(angle) - 0.05 * bump);
+  }
+  polar.lift.back() = polar.lift.front();
+  polar.moment.back() = polar.moment.front();
+  model::AirfoilDefinition airfoil;
+  airfoil.polars = {polar};
+  return airfoil;
+}
+
+template <class Choice, std::size_t count>
+Choice one_of(Draw& draw, const std::array<Choice, count>& choices) {
+  std::size_t i = 0;
+  while (i + 1 < count && !draw.one_in(static_cast<int>(count - i))) ++i;
+  return choices[i];
+}
+
+void add_air(model::TurbineDefinition& d, Draw& draw) {
+  using namespace elements;
+  model::WindDefinition wind;
+  wind.speed = draw.one_in(4) ? 0.0 : 6.0;
+  wind.height = 4.0;
+  wind.profile =
+      one_of(draw, std::array{WindProfile::uniform, WindProfile::power, WindProfile::logarithmic});
+  wind.exponent = 0.2;
+  wind.roughness = 0.05;
+  wind.shear_left = draw.some(0.1);
+  wind.shear_length = 5.0;
+  wind.direction = draw.one_in(3) ? 0.5 * std::numbers::pi : draw.some(0.5);  // also edgewise
+  wind.veer = draw.some(0.02);
+  wind.upflow = draw.some(0.2);
+  if (d.has_tower && draw.one_in(3))
+    wind.tower = model::TowerFlowDefinition{{0.0, 3.0}, {0.2, 0.1}, {0.6, 0.7}};
+  d.wind = wind;
+  model::AeroDefinition aero;
+  aero.induction = one_of(draw, std::array{Induction::full, Induction::axial, Induction::none});
+  aero.inflow =
+      one_of(draw, std::array{Inflow::oye, Inflow::peters_he, Inflow::equilibrium, Inflow::frozen});
+  if (draw.one_in(2)) aero.wake_shapes = {2, 1, 0, 1};
+  aero.closure = one_of(draw, std::array{MomentumLoad::equilibrium, MomentumLoad::actual});
+  aero.thrust = one_of(draw, std::array{ThrustLaw::glauert_skew, ThrustLaw::buhl, ThrustLaw::buhl_f,
+                                        ThrustLaw::madsen});
+  aero.dynamics =
+      one_of(draw, std::array{AirfoilDynamics::hgm, AirfoilDynamics::oye, AirfoilDynamics::peters,
+                              AirfoilDynamics::quasi_steady, AirfoilDynamics::static_polar});
+  if (aero.dynamics == AirfoilDynamics::peters && aero.inflow == Inflow::oye)
+    aero.inflow = Inflow::equilibrium;
+  if (d.hub.radius == 0.0) aero.induction = Induction::none;
+  aero.tau1 = 2.0;
+  aero.added_mass = draw.one_in(3);
+  d.aero = aero;
+  d.blades.airfoils["A"] = airfoil();
+  d.blades.aero_sections = {{0.0, 0.3, 0.2, "A", {0.02, 0.0}}, {1.0, 0.1, 0.0, "A", {}}};
+}
+
 model::TurbineDefinition random_turbine(unsigned seed) {
   Draw draw(seed);
   const std::vector<sample::Choice> choices = sample::choices();
@@ -182,6 +249,7 @@ model::TurbineDefinition random_turbine(unsigned seed) {
     load.variation.per_rev = 1;
     d.loads = {load};
   }
+  if (draw.one_in(2)) add_air(d, draw);
   return d;
 }
 

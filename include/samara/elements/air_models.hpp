@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 namespace samara::elements {
 
@@ -22,8 +23,8 @@ enum class TowerWake : std::uint8_t { none, powles, eames };
 enum class Induction : std::uint8_t { none, axial, full };
 /// Relation of the induced velocity W to its quasi-steady value Q. equilibrium: W = Q; oye: two
 /// lags in series (Oye 1990); frozen: W = Q in the steady state, without change in a motion about
-/// it.
-enum class Inflow : std::uint8_t { equilibrium, oye, frozen };
+/// it. peters_he: finite states of the whole rotor give W along the axis (Peters & He 1991).
+enum class Inflow : std::uint8_t { equilibrium, oye, frozen, peters_he };
 /// Load in the balance of momentum. equilibrium: of the polars at the quasi-steady induced
 /// velocity; actual: of the airfoil dynamics.
 enum class MomentumLoad : std::uint8_t { equilibrium, actual };
@@ -51,6 +52,9 @@ inline constexpr double pitt_peters_skew = 15.0 * std::numbers::pi / 32.0;
 struct AirModels {
   Induction induction = Induction::full;
   Inflow inflow = Inflow::oye;
+  /// Shapes over the radius of the harmonics 0, 1, 2, ... of `Inflow::peters_he`. With the default
+  /// no shape has a power of the radius above the fourth.
+  std::vector<int> wake_shapes{3, 2, 2, 1, 1};
   MomentumLoad closure = MomentumLoad::equilibrium;
   ThrustLaw thrust = ThrustLaw::glauert_skew;
   bool tip_loss = true;
@@ -65,6 +69,9 @@ struct AirModels {
   double cut_out = std::numbers::pi / 4.0;  ///< angle beyond which loads are static [rad]
   bool added_mass = false;
 
+  bool has_rotor_wake() const {
+    return induction != Induction::none && inflow == Inflow::peters_he;
+  }
   bool operator==(const AirModels&) const = default;
 };
 

@@ -6,7 +6,8 @@
 // of the dynamic inflow; Q_n, Q_t, quasi-steady induced velocity; x1, x2, shed wake; x3, lagged
 // lift coefficient; x4, separation point; f(3), m(3), force and moment per length about the
 // reference line, components in a. With finite states of the shed wake, x1 to x4, R_n and R_t are
-// these six; the dynamic inflow then has no intermediate velocity.
+// these six; the dynamic inflow then has no intermediate velocity. With a finite-state wake of the
+// rotor (rotor_wake.hpp) W_n is that of the wake, and there are no R_n, R_t and Q_n.
 #pragma once
 
 #include <algorithm>
@@ -227,7 +228,7 @@ SectionFlow<T> section_flow(const AirStation& station, const StationMotion<T>& m
 template <class T>
 T skew_factor(const AirRotor& rotor, const StationMotion<T>& motion, const T& induced) {
   using std::sqrt;
-  if (rotor.models.skew == 0.0) return T(1.0);
+  if (rotor.models.skew == 0.0 || rotor.models.has_rotor_wake()) return T(1.0);
   const double square = rotor.least_speed * rotor.least_speed;
   const T axial_square = motion.wind_axial * motion.wind_axial + T(square);
   const T whole = sqrt(T(axial_square + motion.wind_across_square));
@@ -406,7 +407,7 @@ T loss_factor(const AirRotor& rotor, const AirStation& station, const StationMot
   const AirModels& models = rotor.models;
   const double floor = models.thrust == ThrustLaw::buhl_f ? 1e-4 : 0.02;
   const bool has_hub = models.hub_loss && rotor.hub_radius > 0.0;
-  if (!models.tip_loss && !has_hub) return T(1.0);
+  if ((!models.tip_loss && !has_hub) || models.has_rotor_wake()) return T(1.0);
   const T axial = motion.wind_axial + Q_n;
   const T turning = motion.hub_speed * motion.radius - Q_t;
   const T whole = axial * axial + turning * turning + T(rotor.least_speed * rotor.least_speed);
@@ -622,7 +623,7 @@ Eigen::Matrix<T, air::unknowns, 1> air_station_rows(const AirRotor& rotor,
     rows.template segment<3>(air::moment) -= motion.R * Vec3<T>(load.template tail<3>());
   }
   if (!is_induced) return rows;
-  const T& Q_n = z(air::quasi_steady);
+  const T& Q_n = z(models.has_rotor_wake() ? air::induced : air::quasi_steady);
   const T& Q_t = z(air::quasi_steady + 1);
   rows.template segment<2>(air::quasi_steady) =
       models.closure == MomentumLoad::equilibrium
@@ -630,6 +631,10 @@ Eigen::Matrix<T, air::unknowns, 1> air_station_rows(const AirRotor& rotor,
           : momentum_rows<T>(rotor, station, motion, Q_n, Q_t,
                              air_force(rotor, station, flow, c.lift, T(0.0)),
                              air_force(rotor, station, flow, T(0.0), c.drag));
+  if (models.has_rotor_wake()) {  // the wake adds its velocity to the first row
+    rows(air::induced + 1) = z(air::induced + 1) - Q_t;
+    return rows;
+  }
   const double outward = station.radius / rotor.tip_radius;
   const double tau2 = (0.39 - 0.26 * outward * outward) * rotor.tau1;
   for (int i = 0; i < 2; ++i) {

@@ -4,6 +4,7 @@
 
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <petscksp.h>
 #include <petscmat.h>
@@ -77,6 +78,9 @@ class ReadView {
   Vec vector_;
   const PetscScalar* values_ = nullptr;
 };
+
+/// Copy of a vector's local values.
+std::vector<double> values_of(Vec vector);
 
 /// Write access to a vector's local values for the length of a scope.
 class WriteView {

@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "samara/base/error.hpp"
@@ -14,6 +15,7 @@
 #include "samara/components/mass_damper.hpp"
 #include "samara/components/pitch_actuator.hpp"
 #include "samara/components/rigid_bodies.hpp"
+#include "samara/components/rotor_wake.hpp"
 #include "samara/components/tower_air.hpp"
 #include "samara/model/turbine.hpp"
 #include "samara/turbine/turbine_layout.hpp"
@@ -60,6 +62,10 @@ class TurbineEquations {
   /// Sets the unknowns of the air to those of steady air around the blades in their motion at t.
   void settle_air(double t, std::vector<double>& z) const;
 
+  /// The flow through the disk of a rotor with a finite-state wake; none without it.
+  std::optional<elements::DiskFlow<double>> disk_flow(double t, const std::vector<double>& z,
+                                                      const std::vector<double>& z_dot) const;
+
   /// Places of the entries of K and M.
   std::shared_ptr<const components::TangentPlan> plan() const { return plan_; }
   /// The places of the terms of a portion.
@@ -81,6 +87,8 @@ class TurbineEquations {
       const TurbineInputs<T>& inputs) const;
 
  private:
+  template <class T>
+  void provide_poses(components::Residual<T>& residual) const;
   void make_components();
   components::Registry place();
   void tie_controls();
@@ -95,6 +103,7 @@ class TurbineEquations {
   std::vector<std::unique_ptr<components::PitchActuator>> actuators_;  ///< one per blade, if any
   std::unique_ptr<components::RigidBodies> bodies_;
   std::vector<std::unique_ptr<components::BladeAir>> airs_;  ///< one per blade, or none
+  std::unique_ptr<components::RotorWake> wake_;              ///< null: none
   std::unique_ptr<components::TowerAir> tower_air_;          ///< null: none
   std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
   std::vector<components::Component*> components_;  ///< in the order of their equations

@@ -1,0 +1,306 @@
+#include "samara/components/rotor_wake.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "samara/base/index.hpp"
+#include "samara/components/blade_root.hpp"
+#include "samara/elements/air_station.hpp"
+
+namespace samara::components {
+namespace {
+
+namespace air = elements::air;
+using elements::WakeShape;
+
+constexpr int parts_of_block = 9;
+/// A rotor whose axis is nearer to the vertical than this counts its azimuth from -n2.
+constexpr double steep = 0.7;
+
+/// Axes of the disk, components n1 n2 n3.
+template <class T>
+struct Disk {
+  Vec3<T> e1, e2, n;
+};
+
+template <class T>
+Disk<T> disk_of(const Vector3& upward, const Vec3<T>& axis) {
+  using math::dot;
+  using std::sqrt;
+  const Vec3<T> up = upward.cast<T>();
+  const Vec3<T> inside = up - axis * dot(up, axis);
+  const Vec3<T> e1 = inside / T(sqrt(dot(inside, inside)));
+  return {e1, math::cross(axis, e1), axis};
+}
+
+}  // namespace
+
+RotorWake::RotorWake(const model::Turbine& turbine, std::vector<const Beam*> blades, int rank)
+    : turbine_(turbine),
+      blades_(std::move(blades)),
+      rank_(rank),
+      upward_(std::abs(std::sin(turbine.chain.tilt)) < steep ? Vector3::UnitZ().eval()
+                                                             : (-Vector3::UnitY()).eval()),
+      shapes_(elements::make_wake_shapes(turbine.air->rotor.models.wake_shapes)) {
+  int count = 0;
+  for (const WakeShape& shape : shapes_) {
+    first_of_shape_.push_back(count);
+    count += shape.parts();
+  }
+  first_of_shape_.push_back(count);
+}
+
+void RotorWake::tie(int hub_port, const std::vector<int>& root_ports) {
+  static_assert(hub_values == hub_pose_values);
+  hub_port_ = hub_port;
+  root_ports_ = root_ports;
+}
+
+void RotorWake::place(Registry& registry) {
+  blocks_.clear();
+  for (int left = first_of_shape_.back(); left > 0; left -= parts_of_block)
+    blocks_.push_back(registry.add_shared(rank_, 2 * std::min(left, parts_of_block)));
+  flow_port_ = registry.add_port(flow_values);
+}
+
+int RotorWake::part(std::size_t shape, int sine) const {
+  const int number = first_of_shape_[shape] + sine;
+  return blocks_[at(number / parts_of_block)] + 2 * (number % parts_of_block);
+}
+
+Argument RotorWake::part_or_zero(std::size_t shape, int sine, bool is_auxiliary,
+                                 bool is_rate) const {
+  if (sine >= shapes_[shape].parts()) return zeros(1);
+  const int unknown = part(shape, sine) + (is_auxiliary ? 1 : 0);
+  return is_rate ? rates(unknown, 1) : unknowns(unknown, 1);
+}
+
+void RotorWake::describe_part(Registry& registry, std::size_t shape, int sine) {
+  using system::Frame;
+  using system::RowRole;
+  using system::UnknownRole;
+  const system::Owner owner(system::PartKind::medium, "inflow");
+  const std::string place = "harmonic " + std::to_string(shapes_[shape].harmonic);
+  const std::string order = std::to_string(shapes_[shape].order);
+  const double scale =
+      std::max({turbine_.speed * rotor().tip_radius, rotor().wind.mean.speed, 1.0}) / 10.0;
+  const int first = part(shape, sine);
+  registry.describe(first,
+                    {owner, place, (sine == 0 ? "alpha" : "beta") + order, "m/s",
+                     UnknownRole::state, Frame::fixed, false, scale},
+                    RowRole::evolution);
+  registry.describe(first + 1,
+                    {owner, place, (sine == 0 ? "t_c" : "t_s") + order, "m/s",
+                     UnknownRole::auxiliary, Frame::fixed, false, scale},
+                    RowRole::definition);
+  linear_.push_back({first + 1, first, 1, 1.0});
+}
+
+void RotorWake::describe(Registry& registry) {
+  flow_.arguments = {port_values(hub_port_, hub_values), part_or_zero(0, 0, true)};
+  flow_.provisions = {{flow_port_, 0}};
+  for (std::size_t row = 0; row < shapes_.size(); ++row) {
+    Connections evolution;
+    evolution.arguments = {port_values(flow_port_, flow_values), part_or_zero(row, 0, true),
+                           part_or_zero(row, 1, true), part_or_zero(row, 0, false, true),
+                           part_or_zero(row, 1, false, true)};
+    for (int sine = 0; sine < shapes_[row].parts(); ++sine) {
+      describe_part(registry, row, sine);
+      evolution.shares.push_back({part(row, sine), 1, sine});
+    }
+    evolutions_.push_back(evolution);
+    for (std::size_t column = 0; column < shapes_.size(); ++column) {
+      if (elements::wake_coupling(shapes_[row], shapes_[column]) == 0.0) continue;
+      Coupling coupling{row, column, {}};
+      coupling.connections.arguments = {port_values(flow_port_, flow_values),
+                                        part_or_zero(column, 0, true),
+                                        part_or_zero(column, 1, true)};
+      for (int sine = 0; sine < shapes_[row].parts(); ++sine)
+        coupling.connections.shares.push_back({part(row, sine) + 1, 1, sine, -1.0});
+      couplings_.push_back(coupling);
+    }
+  }
+  connect_points();
+}
+
+void RotorWake::connect_points() {
+  for (std::size_t k = 0; k < blades_.size(); ++k) {
+    const PlacedBeam& placed = blades_[k]->placed();
+    for (int p = 0; p < placed.beam->point_count(); ++p)
+      for (std::size_t first = 0; first < shapes_.size(); first += batch) {
+        PointBatch point{k, p, first, {}};
+        Connections& connections = point.connections;
+        connections.arguments = {
+            unknowns(placed.points[at(p)], 3), unknowns(placed.air[at(p)] + air::force, 3),
+            port_values(root_ports_[k], root_values), port_values(hub_port_, hub_values)};
+        for (std::size_t i = 0; i < static_cast<std::size_t>(batch); ++i) {
+          const std::size_t shape = first + i;
+          if (shape >= shapes_.size()) {
+            connections.arguments.push_back(zeros(2));
+            continue;
+          }
+          for (int sine = 0; sine < 2; ++sine) {
+            connections.arguments.push_back(part_or_zero(shape, sine, false));
+            if (sine < shapes_[shape].parts())
+              connections.shares.push_back(
+                  {part(shape, sine), 1, 2 * static_cast<int>(i) + sine, -1.0});
+          }
+        }
+        connections.shares.push_back({placed.air[at(p)] + air::induced, 1, 2 * batch});
+        points_.push_back(point);
+      }
+  }
+}
+
+template <class T>
+elements::DiskFlow<T> RotorWake::flow_at(const Eigen::Matrix<T, flow_arguments, 1>& x,
+                                         double t) const {
+  using math::dot;
+  const Vec3<T> place = x.template head<3>();
+  const Vec3<T> axis = x.template segment<3>(6);
+  const Vec3<T> wind = rotor().wind.undisturbed_at<T>(place, t) - Vec3<T>(x.template segment<3>(9));
+  const Disk<T> disk = disk_of<T>(upward_, axis);
+  const Vec3<T> components(dot(wind, disk.e1), dot(wind, disk.e2), dot(wind, disk.n));
+  return elements::disk_flow<T>(components, x(hub_values), rotor().least_speed);
+}
+
+/// The load of a point on the shapes and their velocity there.
+template <class T>
+auto RotorWake::point_terms(const PointBatch& point,
+                            const Eigen::Matrix<T, point_arguments, 1>& x) const
+    -> Eigen::Matrix<T, point_values, 1> {
+  using math::cross;
+  using math::dot;
+  Mat3<T> root;
+  root.col(0) = x.template segment<3>(at_root + 3);
+  root.col(1) = x.template segment<3>(at_root + 6);
+  root.col(2) = cross(Vec3<T>(root.col(0)), Vec3<T>(root.col(1)));
+  const Vec3<T> local =
+      blades_[point.blade]->placed().beam->points[at(point.point)].x.template cast<T>() +
+      Vec3<T>(x.template head<3>());
+  const Vec3<T> place = Vec3<T>(x.template segment<3>(at_root)) + root * local;
+  const Vec3<T> arm = place - Vec3<T>(x.template segment<3>(at_hub));
+  const Disk<T> disk = disk_of<T>(upward_, x.template segment<3>(at_hub + 6));
+  const double radius = rotor().tip_radius;
+  const T x1 = dot(arm, disk.e1) / T(radius);
+  const T x2 = dot(arm, disk.e2) / T(radius);
+  const T thrust = dot(Vec3<T>(root * Vec3<T>(x.template segment<3>(at_force))), disk.n);
+  const double length = blades_[point.blade]->placed().beam->point_length(point.point);
+  // Half of tau; the load of a rotor at rest gives no wake.
+  const double factor =
+      0.5 * rotor().loading * length / (std::numbers::pi * rotor().density * radius * radius);
+  Eigen::Matrix<T, point_values, 1> y = Eigen::Matrix<T, point_values, 1>::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(batch); ++i) {
+    const std::size_t number = point.first_shape + i;
+    if (number >= shapes_.size()) break;
+    const WakeShape& shape = shapes_[number];
+    const auto at_point = elements::wake_shape_at<T>(shape, x1, x2);
+    const double share = shape.harmonic == 0 ? 0.5 * factor : factor;
+    for (int sine = 0; sine < shape.parts(); ++sine) {
+      const int place_of_part = 2 * static_cast<int>(i) + sine;
+      y(place_of_part) = at_point[at(sine)] * thrust * T(share);
+      y(2 * batch) += at_point[at(sine)] * x(at_states + place_of_part);
+    }
+  }
+  return y;
+}
+
+template <class System>
+void RotorWake::state(System& system) const {
+  system.add(linear_);
+  const double t = system.time();
+  const Memory memory = rotor().wind.changing ? Memory::none : Memory::of_arguments;
+  const auto flow_of = [&]<class T>(const Eigen::Matrix<T, flow_arguments, 1>& x) {
+    const elements::DiskFlow<T> flow = flow_at<T>(x, t);
+    return Eigen::Matrix<T, flow_values, 1>(flow.z1, flow.z2, flow.speed, flow.carrying);
+  };
+  system.template add<flow_arguments, flow_values>(flow_, flow_of, memory);
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const bool is_mean = i == 0;  // the uniform load
+    const double mass = rotor().tip_radius * shapes_[i].mass();
+    const auto rows_of = [&]<class T>(const Eigen::Matrix<T, evolution_arguments, 1>& x) {
+      const T& speed = x(is_mean ? 2 : 3);
+      return Eigen::Matrix<T, 2, 1>(x(flow_values + 2) * T(mass) + speed * x(flow_values),
+                                    x(flow_values + 3) * T(mass) + speed * x(flow_values + 1));
+    };
+    system.template add<evolution_arguments, 2>(evolutions_[i], rows_of, Memory::of_arguments);
+  }
+  for (const Coupling& coupling : couplings_) {
+    const auto terms_of = [&]<class T>(const Eigen::Matrix<T, coupling_arguments, 1>& x) {
+      const auto terms =
+          elements::wake_coupling_terms<T>(shapes_[coupling.row], shapes_[coupling.column], x(0),
+                                           x(1), x(flow_values), x(flow_values + 1));
+      return Eigen::Matrix<T, 2, 1>(terms[0], terms[1]);
+    };
+    system.template add<coupling_arguments, 2>(coupling.connections, terms_of,
+                                               Memory::of_arguments);
+  }
+  for (const PointBatch& point : points_) {
+    const auto terms_of = [&]<class T>(const Eigen::Matrix<T, point_arguments, 1>& x) {
+      return point_terms<T>(point, x);
+    };
+    system.template add<point_arguments, point_values>(point.connections, terms_of,
+                                                       Memory::of_arguments);
+  }
+}
+
+elements::DiskFlow<double> RotorWake::flow(const Residual<double>& residual) const {
+  return flow_at<double>(residual.gather<flow_arguments>(flow_), residual.time());
+}
+
+void RotorWake::settle(const Residual<double>& residual, std::vector<double>& values) const {
+  constexpr int passes = 50;
+  // The loads in `values` are those of the settled points; the poses are those of the residual.
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shapes_.size()));
+  const auto arguments_of = [&](const PointBatch& point) {
+    auto x = residual.gather<point_arguments>(point.connections);
+    const int force = blades_[point.blade]->placed().air[at(point.point)] + air::force;
+    for (int i = 0; i < 3; ++i) x(at_force + i) = values[at(force + i)];
+    return x;
+  };
+  for (const PointBatch& point : points_) {
+    const auto y = point_terms<double>(point, arguments_of(point));
+    for (int i = 0; i < batch; ++i) {
+      const std::size_t shape = point.first_shape + at(i);
+      if (shape < shapes_.size() && shapes_[shape].harmonic == 0)
+        load(static_cast<Eigen::Index>(shape)) += y(2 * i);
+    }
+  }
+  auto x = residual.gather<flow_arguments>(flow_);
+  Eigen::VectorXd t = Eigen::VectorXd::Zero(load.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    x(hub_values) = t(0);
+    const elements::DiskFlow<double> flow = flow_at<double>(x, residual.time());
+    for (Eigen::Index i = 0; i < t.size(); ++i)
+      t(i) += 0.5 * (load(i) / (i == 0 ? flow.speed : flow.carrying) - t(i));
+  }
+  for (std::size_t row = 0; row < shapes_.size(); ++row) {
+    for (int sine = 0; sine < shapes_[row].parts(); ++sine)
+      values[at(part(row, sine))] = values[at(part(row, sine) + 1)] = 0.0;
+    if (shapes_[row].harmonic > 0) continue;
+    values[at(part(row, 0) + 1)] = t(static_cast<Eigen::Index>(row));
+    for (std::size_t column = 0; column < shapes_.size(); ++column)
+      if (shapes_[column].harmonic == 0)
+        values[at(part(row, 0))] += elements::wake_coupling(shapes_[row], shapes_[column]) *
+                                    t(static_cast<Eigen::Index>(column));
+  }
+  std::vector<double> induced(values.size(), 0.0);
+  for (const PointBatch& point : points_) {
+    auto arguments = arguments_of(point);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(batch); ++i) {
+      const std::size_t shape = point.first_shape + i;
+      for (int sine = 0; sine < 2; ++sine)
+        arguments(at_states + 2 * static_cast<int>(i) + sine) =
+            shape < shapes_.size() && sine < shapes_[shape].parts() ? values[at(part(shape, sine))]
+                                                                    : 0.0;
+    }
+    const int row = blades_[point.blade]->placed().air[at(point.point)] + air::induced;
+    induced[at(row)] -= point_terms<double>(point, arguments)(2 * batch);
+    values[at(row)] = induced[at(row)];
+  }
+}
+
+template class Stated<RotorWake>;
+
+}  // namespace samara::components

@@ -1,0 +1,131 @@
+// The finite-state wake of a whole rotor: momentum theory, decay rates in closed form, and the
+// agreement of analyses with each other.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+
+#include "samara/base/error.hpp"
+
+#include "air_case.hpp"
+#include "record.hpp"
+
+using namespace samara;
+using namespace samara::test;
+using boost::test_tools::tolerance;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// The rigid rotor of the NREL 5 MW turbine at its operating point in 20 m/s.
+io::Case rotor_at_20(std::vector<std::string> settings) {
+  settings.insert(settings.begin(), {"wind.speed=20", "shaft.speed_rpm=12.1",
+                                     "blades.pitch_deg=17.47", "aero.inflow=peters_he"});
+  return rigid_rotor(settings);
+}
+
+struct Means {
+  double thrust = 0.0;   ///< of the loads on the blades [N]
+  double balance = 0.0;  ///< 2 rho A V_T w_m [N]
+};
+
+Means find_means(const Steady& rotor) {
+  const elements::AirRotor& air = rotor.system.turbine().air->rotor;
+  const double area = pi * air.tip_radius * air.tip_radius;
+  const petsc::Handle<Vec> z = rotor.system.make_state();
+  const petsc::Handle<Vec> z_dot = rotor.system.make_state();
+  const int instants = simulation::instants_of_means(rotor.trim);
+  Means means;
+  for (int i = 0; i < instants; ++i) {
+    const double t = rotor.system.period() * i / instants;
+    rotor.trim.solution.evaluate(t, z.get(), z_dot.get());
+    const std::vector<double> state = petsc::values_of(z.get());
+    const std::vector<double> rate = petsc::values_of(z_dot.get());
+    const auto flow = rotor.system.equations().disk_flow(t, state, rate);
+    BOOST_REQUIRE(flow.has_value());
+    means.balance += 2.0 * air.density * area * flow->speed * flow->mean / instants;
+    const auto reports = rotor.system.equations().air_report<double>(t, state, rate, {});
+    for (std::size_t k = 0; k < reports.size(); ++k)
+      for (std::size_t p = 0; p < reports[k].size(); ++p)
+        means.thrust += reports[k][p].thrust *
+                        rotor.system.turbine().blades[k].point_length(static_cast<int>(p)) /
+                        instants;
+  }
+  return means;
+}
+
+/// The mean load is in balance with the momentum of the flow through the disk, also in yaw.
+BOOST_AUTO_TEST_CASE(thrust_is_the_momentum_of_the_flow_through_the_disk) {
+  for (const std::string yaw : {"0", "30"}) {
+    const Steady rotor(
+        rotor_at_20({"wind.direction_deg=" + yaw, "trim.harmonics=6", "blades.order=1"}));
+    const Means means = find_means(rotor);
+    BOOST_TEST(means.thrust > 1e5);
+    Figures{"A10", "momentum theory", ""}.check_relative("thrust [N], wind at " + yaw + " deg",
+                                                         means.thrust, means.balance, 1e-6);
+  }
+}
+
+/// Away from stall and tip the balance of momentum in each annulus and that of the states agree.
+BOOST_AUTO_TEST_CASE(light_loads_have_the_power_of_the_momentum_theory_of_annuli) {
+  const std::vector<std::string> names{"RotPwr", "RotThrust"};
+  const Steady states(rotor_at_20({"aero.wake_shapes=[8]"}));
+  const Steady annuli(rotor_at_20({"aero.inflow=equilibrium", "aero.thrust=buhl",
+                                   "aero.tip_loss=false", "aero.hub_loss=false"}));
+  const std::vector<double> found = states.channels(names);
+  const std::vector<double> expected = annuli.channels(names);
+  BOOST_TEST(found[0] == expected[0], tolerance(0.02));
+  BOOST_TEST(found[1] == expected[1], tolerance(0.02));
+}
+
+/// Decay rates of a wake without load on the blades, in V/R (independent program).
+BOOST_AUTO_TEST_CASE(wake_without_load_decays_with_the_rates_in_closed_form) {
+  io::Case input = rotor_at_20({"aero.wake_shapes=[3, 3, 3]", "blades.order=1"});
+  for (model::AeroSectionDefinition& section : input.turbine.blades.aero_sections)
+    section.chord *= 1e-6;
+  Steady rotor(input);
+  const analysis::ModeSet set = rotor.floquet({72, analysis::FloquetPeriod::automatic, 6});
+  const double unit = 20.0 / rotor.system.turbine().air->rotor.tip_radius;
+  std::vector<double> rates;
+  for (const analysis::Mode& mode : set.modes)
+    if (mode.label.find("inflow") != std::string::npos)
+      rates.push_back(-mode.exponent.real() / unit);
+  std::sort(rates.begin(), rates.end());
+  // Cosines and sines of a harmonic decay alike; a pair of a multiple of the rotor speed is one
+  // mode, or two real ones.
+  for (const double expected :
+       {2.0061, 5.1544, 11.4442, 3.4534, 6.7227, 14.5549, 4.7687, 8.2356, 17.6898}) {
+    double best = 1e300;
+    for (const double rate : rates) best = std::min(best, std::abs(rate - expected));
+    BOOST_TEST(best < 1e-4 * expected, "decay rate " << expected << " V/R");
+  }
+}
+
+BOOST_AUTO_TEST_CASE(blade_passage_and_revolution_agree_with_states_of_the_wake) {
+  Steady turbine(io::read_case(
+      input_path("nrel5mw/land"),
+      {"wind.speed=14", "blades.pitch_deg=8.7", "shaft.speed_rpm=12.1", "wind.height=90",
+       "wind.shear.power=0.2", "wind.direction_deg=20", "blades.order=1", "tower.order=3",
+       "trim.harmonics=8", "aero.inflow=peters_he"}));
+  require_same_exponents(turbine.floquet({72, analysis::FloquetPeriod::automatic, 6}),
+                         turbine.floquet({72, analysis::FloquetPeriod::full, 6}), 1e-8);
+}
+
+BOOST_AUTO_TEST_CASE(a_rotor_that_stops_the_wind_is_refused) {
+  io::Case input = rotor_at_20({"wind.speed=8", "blades.pitch_deg=-2", "aero.wake_shapes=[3]"});
+  const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  analysis::Observer silent;
+  try {
+    simulation::solve_trim(input, system, input.trim, silent);
+    BOOST_ERROR("accepted");
+  } catch (const ConvergenceError& error) {
+    BOOST_TEST(std::string(error.what()).find("the finite-state wake holds up to") !=
+               std::string::npos);
+  }
+}
+
+}  // namespace
