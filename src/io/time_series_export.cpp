@@ -312,8 +312,7 @@ std::vector<char> joined_result(const std::string& source, const TimeSeriesReade
 }  // namespace
 
 TimeSeriesFormat find_series_format(const std::string& path) {
-  std::string ending = fs::path(path).extension().string();
-  ending = to_lower(ending);
+  const std::string ending = to_lower(fs::path(path).extension().string());
   if (ending == ".h5") return TimeSeriesFormat::result;
   if (ending == ".csv") return TimeSeriesFormat::table;
   if (ending == ".out") return TimeSeriesFormat::openfast_text;
