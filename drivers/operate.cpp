@@ -51,7 +51,7 @@ std::string point_table(const std::vector<OperatingPoint>& points) {
 }  // namespace
 
 void run_operate(const Job& job) {
-  const simulation::OperationSetup& setup = job.input.operation;
+  const model::OperatingPointsDefinition& setup = job.input.operation;
   if (!setup.opt_path.empty()) {
     io::require_opt_path(setup.opt_path);
     for (const std::string& path : {job.result_path, job.csv_path, setup.table_path})

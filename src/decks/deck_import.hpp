@@ -17,6 +17,7 @@ struct DeckImport {
   ImportOptions options;
   DeckErrors errors;
   model::TurbineDefinition turbine;
+  model::OperatingPointsDefinition operation;
   io::CaseComments comments;
   std::vector<ImportLine> report;
   std::vector<std::string> warnings;

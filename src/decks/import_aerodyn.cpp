@@ -75,6 +75,7 @@ class AerodynImporter {
     read_skew();
     read_dynamics();
     read_tower();
+    read_nacelle();
     read_airfoils();
     read_blades();
     if (import_.errors.empty()) {
@@ -331,6 +332,27 @@ class AerodynImporter {
     models_.tower = flow;
   }
 
+  /// The drag of the nacelle. AeroDyn's y points to the left of one who looks downwind.
+  void read_nacelle() {
+    if (!deck().has("NacelleDrag")) return;
+    if (!deck().flag("NacelleDrag")) {
+      import_.ignore(deck(), "NacelleDrag", "False");
+      return;
+    }
+    import_.say(deck(), "NacelleDrag", Fate::taken, "wind.nacelle");
+    const Vector3 areas = deck().three_numbers("NacArea");
+    const Vector3 drags = deck().three_numbers("NacCd");
+    const Vector3 center = deck().three_numbers("NacDragAC");
+    import_.require(areas.minCoeff() >= 0.0, deck(), "NacArea", "expected numbers >= 0");
+    import_.require(drags.minCoeff() >= 0.0, deck(), "NacCd", "expected numbers >= 0");
+    import_.say(deck(), "NacArea", Fate::derived, "wind.nacelle.areas");
+    import_.say(deck(), "NacCd", Fate::derived, "wind.nacelle.drag");
+    import_.say(deck(), "NacDragAC", Fate::derived, "wind.nacelle.center");
+    models_.nacelle = model::NacelleDragDefinition{{areas(1), areas(0), areas(2)},
+                                                   {drags(1), drags(0), drags(2)},
+                                                   {-center(1), center(0), center(2)}};
+  }
+
   void say_left_out() {
     std::string names;
     const auto leave = [&](const char* key, bool is_on, const char* words) {
@@ -340,7 +362,6 @@ class AerodynImporter {
     };
     const auto is_set = [&](const char* key) { return number_or_flag(key) != 0.0; };
     leave("TFinAero", is_set("TFinAero"), "the air at the tail fin");
-    leave("NacelleDrag", is_set("NacelleDrag"), "the drag of the nacelle");
     leave("Buoyancy", is_set("Buoyancy"), "buoyancy");
     leave("FrozenWake", is_set("FrozenWake"), "the frozen wake of a linearization");
     leave("SectAvg", is_set("SectAvg"), "averaging of the wind over sectors");

@@ -19,6 +19,7 @@ struct AerodynModels {
   model::AeroDefinition aero;
   double density = 0.0;                             ///< [kg/m^3]
   std::optional<model::TowerFlowDefinition> tower;  ///< its heights count from the ground
+  std::optional<model::NacelleDragDefinition> nacelle;
 };
 
 /// Fills airfoils and aerodynamic sections of the blades, whose beam is known, and returns the

@@ -15,6 +15,7 @@
 #include "import_elastodyn.hpp"
 #include "import_furling.hpp"
 #include "import_inflow.hpp"
+#include "import_servodyn.hpp"
 #include "openfast_import.hpp"
 
 namespace samara::decks {
@@ -59,12 +60,14 @@ class Importer {
       import_.errors.throw_if_any();
       throw InputError(path_ + ": no ElastoDyn file to read");
     }
+    open_servo();
     read_freedoms();
     read_geometry();
     read_masses();
     read_tower();
     read_blades();
     read_teeter();
+    if (servo_) read_generator_law(import_, *servo_, import_.turbine.shaft.speed);
     if (import_.errors.empty()) read_air();
     import_.errors.throw_if_any();
     warn_of_platform();
@@ -79,7 +82,7 @@ class Importer {
              clean_text(std::filesystem::path(path_).filename().string()) + ".",
          "Every key is explained in docs/case_file.md, the import in docs/import.md."
          " SI units."});
-    result.text = io::write_case_text(import_.turbine, import_.comments);
+    result.text = io::write_case_text(import_.turbine, import_.comments, import_.operation);
     result.report = std::move(import_.report);
     result.warnings = std::move(import_.warnings);
     check_import(result);
@@ -176,13 +179,22 @@ class Importer {
       lock("DrTrDOF", "shaft torsion", "");
       import_.note("shaft.torsion", "DrTrDOF");
     }
-    lock("GenDOF", "the rotor speed",
-         "the generator torque (ServoDyn) is not read; the rotor turns at RotSpeed");
+    lock("GenDOF", "the rotor speed", "the generator is locked; the rotor turns at RotSpeed");
     read_yaw();
     lock("PitchDOF", "blade pitch", "the pitch drive (ServoDyn) is not read");
     for (const char* key :
          {"PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF", "PtfmPDOF", "PtfmYDOF"})
       lock(key, "the platform", "a case has no platform; the tower is clamped at TowerBsHt");
+  }
+
+  /// The file of ServoDyn, where it is on and the file exists.
+  void open_servo() {
+    if (main_.number("CompServo") == 0.0) return;
+    const std::string path = main_.find_file("ServoFile");
+    if (path.empty()) return;
+    import_.say(main_, "ServoFile", Fate::taken,
+                "the law of the generator's torque; YawSpr and YawDamp of a free yaw");
+    servo_ = import_.open(path);
   }
 
   /// A free yaw has the spring and the damper of ServoDyn.
@@ -205,26 +217,23 @@ class Importer {
                   "nacelle.yaw: free, without spring and damper, for ServoDyn is off");
       return;
     }
-    const std::string path = main_.find_file("ServoFile");
-    if (path.empty()) {
+    if (!servo_) {
+      if (!import_.errors.empty()) return;  // those of the file
       import_.say(deck, "YawDOF", Fate::derived, "True, but the file of ServoDyn cannot be read");
       import_.warn(main_.place_of("ServoFile"),
                    "ServoFile: warning: there is no such file, so that spring and damper of the "
                    "yaw are unknown: yaw is locked; hint: nacelle.yaw of the case");
       return;
     }
-    import_.say(main_, "ServoFile", Fate::taken, "YawSpr and YawDamp");
-    const std::unique_ptr<Deck> servo = import_.open(path);
-    if (!servo) return;
     yaw.kind = model::JointKind::free;
-    yaw.stiffness = servo->number("YawSpr");
-    yaw.damping = servo->number("YawDamp");
-    import_.require(yaw.stiffness >= 0.0, *servo, "YawSpr", "expected a number >= 0");
-    import_.require(yaw.damping >= 0.0, *servo, "YawDamp", "expected a number >= 0");
+    yaw.stiffness = servo_->number("YawSpr");
+    yaw.damping = servo_->number("YawDamp");
+    import_.require(yaw.stiffness >= 0.0, *servo_, "YawSpr", "expected a number >= 0");
+    import_.require(yaw.damping >= 0.0, *servo_, "YawDamp", "expected a number >= 0");
     import_.say(deck, "YawDOF", Fate::taken, "nacelle.yaw: free");
-    import_.say(*servo, "YawSpr", Fate::taken, "nacelle.yaw.stiffness");
-    import_.say(*servo, "YawDamp", Fate::taken, "nacelle.yaw.damping");
-    import_.ignore(*servo, "YawNeut", "the spring of a case is relaxed at 0");
+    import_.say(*servo_, "YawSpr", Fate::taken, "nacelle.yaw.stiffness");
+    import_.say(*servo_, "YawDamp", Fate::taken, "nacelle.yaw.damping");
+    import_.ignore(*servo_, "YawNeut", "the spring of a case is relaxed at 0");
     import_.note("nacelle.yaw", "YawDOF; YawSpr, YawDamp of ServoDyn");
   }
 
@@ -347,7 +356,7 @@ class Importer {
     import_.require(
         import_.turbine.shaft.gear_ratio != 0.0 || import_.errors.size() > errors_before, deck,
         "GBRatio", "expected a number other than 0");
-    import_.note("shaft.generator", "GenIner; GenDOF: the torque of ServoDyn is not read");
+    import_.note("shaft.generator", "GenIner; GenDOF: the generator is locked");
 
     import_.turbine.tower.tip_mass = import_.take(deck, "YawBrMass", "tower.tip_mass");
     read_hub();
@@ -501,6 +510,8 @@ class Importer {
     if (wind) {
       import_.turbine.wind = wind;
       if (models.tower) place_tower_flow(*models.tower);
+      import_.turbine.wind->nacelle = models.nacelle;
+      if (models.nacelle) import_.note("wind.nacelle", "NacArea, NacCd, NacDragAC");
       return;
     }
     import_.comments.head.push_back(
@@ -508,6 +519,8 @@ class Importer {
         rounded(models.density) + "}`.");
     if (models.tower)
       import_.warn(path, "note: left out: the flow around the tower, which needs a steady wind");
+    if (models.nacelle)
+      import_.warn(path, "note: left out: the drag of the nacelle, which needs a steady wind");
   }
 
   /// Heights of a case count from the foot of the tower.
@@ -704,6 +717,7 @@ class Importer {
   OpenfastImport import_;
   Deck main_;
   std::unique_ptr<Deck> elastodyn_;
+  std::unique_ptr<Deck> servo_;  ///< of ServoDyn; null: none
   bool uses_beamdyn_ = false;
   int blades_ = 3;
   double tip_radius_ = 0.0;

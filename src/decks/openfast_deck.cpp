@@ -304,15 +304,20 @@ Vector3 Deck::point(const std::string& key, const std::string& ending) {
   const std::string whole = key + "_" + ending;
   if (!has(whole))
     return {number(key + "x" + ending), number(key + "y" + ending), number(key + "z" + ending)};
-  const DeckEntry* entry = find(whole, true);
+  return three_numbers(whole);
+}
+
+Vector3 Deck::three_numbers(const std::string& key) {
+  const DeckEntry* entry = find(key, true);
   Vector3 point = Vector3::Zero();
+  if (entry == nullptr) return point;
   bool is_whole = entry->values.size() == 3;
   for (std::size_t i = 0; i < 3 && is_whole; ++i) {
     const std::optional<double> value = parse_number(entry->values[i].text);
     is_whole = value.has_value();
     point(static_cast<Eigen::Index>(i)) = value.value_or(0.0);
   }
-  if (!is_whole) errors_.add(place(entry->line), whole + ": expected three numbers");
+  if (!is_whole) errors_.add(place(entry->line), key + ": expected three numbers");
   return point;
 }
 

@@ -88,6 +88,7 @@ class Deck {
   std::string file_named(const std::string& name, int line, const std::string& key);
   /// Three numbers, of one key, or of three with x, y and z before the `ending` of their names.
   Vector3 point(const std::string& key, const std::string& ending);
+  Vector3 three_numbers(const std::string& key);
 
   /// The table whose heading has most of `names`; it has `count` rows, as the key `count_key`
   /// states.

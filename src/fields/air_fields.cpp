@@ -74,6 +74,18 @@ void declare_tower_flow(Visitor& fields, model::TowerFlowDefinition& tower) {
               tower.drag_load);
 }
 
+void declare_nacelle_drag(Visitor& fields, model::NacelleDragDefinition& nacelle) {
+  fields.numbers(
+      Field("areas", "m^2", non_negative, "projected areas along y1, y2 and y3 of the nacelle")
+          .required(),
+      nacelle.areas, false);
+  fields.numbers(
+      Field("drag", "", non_negative, "drag coefficients along the same axes").required(),
+      nacelle.drags, true);
+  fields.numbers({"center", "m", "place of the load, from the tower top in y1 y2 y3"},
+                 nacelle.center, false);
+}
+
 void declare_wind_keys(Visitor& fields, WindDefinition& wind) {
   fields.number(Field("speed", "m/s", non_negative, "at `height`").required(), wind.speed);
   fields.number(Field("height", "m", positive,
@@ -99,6 +111,10 @@ void declare_wind_keys(Visitor& fields, WindDefinition& wind) {
   fields.number({"density", "kg/m^3", positive, "of the air"}, wind.density);
   fields.block(Field("tower", "flow around the tower, [below](#wind)").or_else("none"), wind.tower,
                [&](model::TowerFlowDefinition& tower) { declare_tower_flow(fields, tower); });
+  fields.block(Field("nacelle", "drag of the wind on the nacelle, [below](#wind)").or_else("none"),
+               wind.nacelle, [&](model::NacelleDragDefinition& nacelle) {
+                 declare_nacelle_drag(fields, nacelle);
+               });
 }
 
 // ---- models ------------------------------------------------------------------------------------

@@ -119,13 +119,17 @@ class CaseWriter : public fields::Description {
 
   bool describes() const override { return defaults_.has_value(); }
 
-  std::vector<Entry> write(model::TurbineDefinition& turbine) {
+  std::vector<Entry> write(model::TurbineDefinition& turbine,
+                           model::OperatingPointsDefinition& operation) {
     model::TurbineDefinition nothing;
+    model::OperatingPointsDefinition no_points;
     defaults_.emplace();
     declare(*this, nothing);
+    fields::declare_operating_points(*this, no_points);
     known_ = *std::exchange(defaults_, std::nullopt);
     entries_.clear();
     declare(*this, turbine);
+    fields::declare_operating_points(*this, operation);
     return std::move(entries_);
   }
 
@@ -350,7 +354,8 @@ std::string exact_in(const fields::Unit& unit, double value) {
   return exact(converted);
 }
 
-std::string write_case_text(const model::TurbineDefinition& turbine, const CaseComments& comments) {
+std::string write_case_text(const model::TurbineDefinition& turbine, const CaseComments& comments,
+                            const model::OperatingPointsDefinition& operation) {
   std::string text;
   for (const std::string& line : comments.head) text += line.empty() ? "#\n" : "# " + line + "\n";
   if (!text.empty()) text += "\n";
@@ -360,7 +365,8 @@ std::string write_case_text(const model::TurbineDefinition& turbine, const CaseC
   version.comment = "version of the case file";
   print(version, 0, "", text);
   model::TurbineDefinition shown = turbine;
-  for (const Entry& entry : CaseWriter(comments).write(shown)) {
+  model::OperatingPointsDefinition points = operation;
+  for (const Entry& entry : CaseWriter(comments).write(shown, points)) {
     if (!entry.entries.empty()) text += "\n";
     print(entry, 0, "", text);
   }

@@ -238,6 +238,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
     rotor.wind.tower = tower_flow_of(*definition.wind->tower, turbine);
     air.tower_has_drag = definition.wind->tower->drag_load;
   }
+  air.nacelle = definition.wind->nacelle;
   rotor.density = definition.wind->density;
   rotor.blades = static_cast<int>(turbine.blades.size());
   rotor.hub_radius = definition.hub.radius;

@@ -51,6 +51,7 @@ class AirValidation {
     using Profile = WindDefinition::Profile;
     if (turbine_.blades.count == 0) return add("wind", "there are no blades");
     if (wind.tower) check_tower(*wind.tower);
+    if (wind.nacelle) check_nacelle(*wind.nacelle);
     const bool needs_height =
         wind.profile != Profile::uniform || wind.shear_up != 0.0 || wind.veer != 0.0;
     if (needs_height && !(wind.height > 0.0))
@@ -88,6 +89,16 @@ class AirValidation {
     }
     if (!(tower.turbulence > 0.0)) add("wind.tower.turbulence", "expected a number > 0");
     if (!turbine_.has_tower) add("wind.tower", "there is no tower", {"tower"});
+  }
+
+  void check_nacelle(const NacelleDragDefinition& nacelle) {
+    for (const auto& [key, values] :
+         {std::pair{"wind.nacelle.areas", nacelle.areas}, {"wind.nacelle.drag", nacelle.drags}})
+      if (std::ranges::any_of(values, [](double value) { return !(value >= 0.0); }))
+        add(key, "expected numbers >= 0");
+    if (!turbine_.has_tower)
+      add("wind.nacelle",
+          "the nacelle stands on the ground, where its drag has no effect; hint: tower", {"tower"});
   }
 
   void check_aero(const AeroDefinition& aero) {

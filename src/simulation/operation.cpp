@@ -349,7 +349,7 @@ class OperationFinder {
   }
 
   Scenario scenario_;
-  const OperationSetup& setup_;
+  const model::OperatingPointsDefinition& setup_;
   const std::vector<ScheduledPoint>& table_;
   analysis::Observer& observer_;
   std::optional<analysis::Trim> last_;

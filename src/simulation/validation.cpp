@@ -133,7 +133,7 @@ class Validation {
   }
 
   void check_operation() {
-    const OperationSetup& operation = scenario_.operation;
+    const model::OperatingPointsDefinition& operation = scenario_.operation;
     if (!turbine_.wind || !turbine_.aero) {
       add("wind",
           "operating points need wind and blades with blades.aero_sections; hint: --set "

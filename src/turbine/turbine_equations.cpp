@@ -122,6 +122,10 @@ void TurbineEquations::make_components() {
     tower_air_ = std::make_unique<components::TowerAir>(turbine_, *beams_.back());
     components_.push_back(tower_air_.get());
   }
+  if (turbine_.has_tower && turbine_.air && turbine_.air->nacelle) {
+    nacelle_air_ = std::make_unique<components::NacelleAir>(turbine_, *beams_.back());
+    components_.push_back(nacelle_air_.get());
+  }
   for (const model::MassDamper& damper : turbine_.mass_dampers) {
     const bool is_on_blade = damper.blade >= 0;
     components::MassDamperSetting setting;
@@ -191,6 +195,10 @@ void TurbineEquations::describe(components::Registry& registry) {
     wake_->describe(registry);
   }
   if (tower_air_) tower_air_->describe(registry);
+  if (nacelle_air_) {
+    nacelle_air_->set_yaw(layout_.yaw());
+    nacelle_air_->describe(registry);
+  }
   for (const auto& damper : mass_dampers_) {
     damper->set_yaw(layout_.yaw());
     damper->describe(registry);

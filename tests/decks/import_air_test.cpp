@@ -511,4 +511,17 @@ BOOST_AUTO_TEST_CASE(faults_of_windio_airfoils_have_their_place) {
             "airfoils.thin.polars.cl.grid: expected rising angles from -180 to 180 degrees"));
 }
 
+BOOST_AUTO_TEST_CASE(drag_of_the_nacelle_in_its_axes) {
+  const DeckFolder folder("three");
+  folder.replace("AeroDyn.dat", "False         NacelleDrag ", "True          NacelleDrag ");
+  const std::string keys =
+      "3, 4, 5   NacArea - areas\n0.7, 0.8, 0.9   NacCd - drag\n1, 2, 3   NacDragAC - centre\n";
+  folder.replace("AeroDyn.dat", "======  Unsteady", keys + "======  Unsteady");
+  const std::optional<model::WindDefinition> wind = parse(import_main(folder)).turbine.wind;
+  BOOST_REQUIRE((wind && wind->nacelle));
+  BOOST_TEST((wind->nacelle->areas == std::array{4.0, 3.0, 5.0}));
+  BOOST_TEST((wind->nacelle->drags == std::array{0.8, 0.7, 0.9}));
+  BOOST_TEST((wind->nacelle->center == std::array{-2.0, 1.0, 3.0}));
+}
+
 BOOST_AUTO_TEST_SUITE_END()

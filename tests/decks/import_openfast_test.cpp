@@ -237,6 +237,54 @@ BOOST_AUTO_TEST_CASE(a_free_yaw_has_the_spring_and_damper_of_servodyn) {
   BOOST_TEST(driven.damping == 3e4);
 }
 
+/// A deck with this file of ServoDyn. Its rotor turns at 18.5 rpm and the generator 22 times as
+/// fast.
+Import import_with_servo(const std::string& keys) {
+  const DeckFolder folder("three");
+  folder.replace("Main.fst", "0             CompServo", "1             CompServo");
+  folder.replace("Main.fst", "\"unused\"      ServoFile", "\"Servo.dat\"   ServoFile");
+  folder.write("Servo.dat", "---- SERVODYN ----\nText\n" + keys);
+  return import_main(folder);
+}
+
+BOOST_AUTO_TEST_CASE(simple_generators_are_laws_of_the_operating_points) {
+  constexpr double rpm = std::numbers::pi / 30.0;
+  const auto variable = [](const std::string& speed) {
+    return import_with_servo("1 VSContrl - mode\n1 GenModel - model\n" + speed +
+                             " VS_RtGnSp - rpm\n500 VS_RtTq - N-m\n0.003 VS_Rgn2K - N-m/rpm^2\n"
+                             "10 VS_SlPc - slip\n");
+  };
+  const auto operation = parse(variable("440")).operation;
+  BOOST_TEST(operation.rated_speed == 20.0 * rpm, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(operation.rated_power == 440.0 * rpm * 500.0, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(operation.torque_gain == 0.003 / (rpm * rpm), boost::test_tools::tolerance(1e-12));
+  // A speed of the rotor in its place.
+  const Import far = variable("20");
+  BOOST_TEST(parse(far).operation.torque_gain == 0.0);
+  BOOST_TEST(std::ranges::any_of(far.warnings, [](const std::string& words) {
+    return holds(words, "VS_RtGnSp: warning: a speed of the generator that is far from RotSpeed");
+  }));
+  const auto induction =
+      parse(import_with_servo("0 VSContrl - mode\n1 GenModel - model\n2 SIG_SlPc - %\n"
+                              "400 SIG_SySp - rpm\n300 SIG_RtTq - N-m\n1.5 SIG_PORt - ratio\n"))
+          .operation;
+  BOOST_REQUIRE(induction.torque_table.size() == 2u);
+  BOOST_TEST(induction.torque_table[0].first == 400.0 * rpm, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(induction.torque_table[0].second == 0.0);
+  BOOST_TEST(induction.torque_table[1].first == 412.0 * rpm, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(induction.torque_table[1].second == 450.0, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(induction.rated_speed == 412.0 / 22.0 * rpm, boost::test_tools::tolerance(1e-12));
+  const auto library =
+      parse(import_with_servo("5 VSContrl - mode\n1 GenModel - model\n")).operation;
+  BOOST_TEST(library.rated_speed == 0.0);
+  BOOST_TEST(holds(message_of([] {
+                     import_with_servo(
+                         "1 VSContrl - mode\n440 VS_RtGnSp - rpm\n"
+                         "-5 VS_RtTq - N-m\n0.003 VS_Rgn2K - gain\n");
+                   }),
+                   "VS_RtTq: expected a number > 0"));
+}
+
 BOOST_AUTO_TEST_CASE(shaft_torsion_is_taken_with_its_spring_or_locked) {
   const DeckFolder folder("three");
   for (const bool free : {true, false}) {

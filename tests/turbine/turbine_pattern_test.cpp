@@ -161,6 +161,8 @@ void add_air(model::TurbineDefinition& d, Draw& draw) {
   wind.upflow = draw.some(0.2);
   if (d.has_tower && draw.one_in(3))
     wind.tower = model::TowerFlowDefinition{{0.0, 3.0}, {0.2, 0.1}, {0.6, 0.7}};
+  if (d.has_tower && draw.one_in(3))
+    wind.nacelle = model::NacelleDragDefinition{{0.4, 0.2, 0.3}, {1.0, 0.8, 0.0}, {0.1, -0.2, 0.3}};
   d.wind = wind;
   model::AeroDefinition aero;
   aero.induction = one_of(draw, std::array{Induction::full, Induction::axial, Induction::none});

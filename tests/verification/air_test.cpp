@@ -391,8 +391,8 @@ BOOST_AUTO_TEST_CASE(linear_shear_is_a_part_of_the_speed) {
 
 /// A tower alone in a wind that the blades do not feel: the force at its foot is the integral of
 /// rho/2 C_d D v^2.
-BOOST_AUTO_TEST_CASE(the_drag_of_the_tower_is_at_its_foot) {
-  const std::string text = R"(samara: 1
+/// A rigid tower with a blade that the wind does not load.
+const std::string bare_tower = R"(samara: 1
 gravity: 0
 tower:
   length: 30
@@ -416,14 +416,43 @@ blades:
     none: {polars: [{table: [[-180, 0, 0, 0], [180, 0, 0, 0]]}]}
   aero_sections: [{at: 0, chord: 0.5, airfoil: none}]
 )";
+
+BOOST_AUTO_TEST_CASE(the_drag_of_the_tower_is_at_its_foot) {
   const auto foot_force = [&](const std::vector<std::string>& settings) {
-    const Steady tower(io::parse_case("tower", text, settings));
+    const Steady tower(io::parse_case("tower", bare_tower, settings));
     return tower.trim.solution.coefficients()(tower.system.layout().tower_root() + 2, 0);
   };
   // v^2 = 400 z/30, except below 1 m: the integral is 400 x 15 = 6000 to 1e-3.
   const double expected = 0.5 * 1.225 * 0.5 * 4.0 * 6000.0;
   BOOST_TEST(std::abs(foot_force({}) / expected - 1.0) < 2e-3);
   BOOST_TEST(std::abs(foot_force({"wind.tower.drag_load=false"})) < 1e-6 * expected);
+}
+
+/// The wind blows 30 degrees from the axis of the nacelle, at 33 m: v^2 = 440.
+BOOST_AUTO_TEST_CASE(the_drag_of_the_nacelle_is_at_the_foot_and_turns_the_yaw) {
+  const auto loaded = [&](const std::string& yaw) {
+    return Steady(
+        io::parse_case("tower", bare_tower,
+                       {"wind.tower.drag_load=false", "wind.direction_deg=30",
+                        "wind.nacelle={areas: [8, 12, 5], drag: [1, 0.5, 2], center: [0, 2, 3]}",
+                        "nacelle={yaw: " + yaw + "}"}));
+  };
+  const double pressure = 0.5 * 1.225 * 440.0;
+  const double along = 12.0 * 0.5 * pressure * 0.75;  // cos^2
+  const double across = -8.0 * pressure * 0.25;       // counter-clockwise is toward -n1
+  const Steady locked = loaded("{joint: locked}");
+  const Eigen::VectorXd foot =
+      locked.trim.solution.coefficients().col(0).segment(locked.system.layout().tower_root(), 6);
+  BOOST_TEST(foot(2) == along, tolerance(1e-6));
+  BOOST_TEST(foot(1) == across, tolerance(1e-6));
+  BOOST_TEST(std::abs(foot(0)) < 1e-3);
+  BOOST_TEST(foot(3) == -2.0 * across, tolerance(1e-6));  // about n3
+  BOOST_TEST(foot(4) == -33.0 * along, tolerance(1e-6));  // about n1
+  BOOST_TEST(foot(5) == 33.0 * across, tolerance(1e-6));  // about n2
+  constexpr double stiffness = 1e9;
+  const Steady free = loaded("{joint: free, stiffness: 1e9}");
+  const double angle = free.trim.solution.coefficients()(free.system.layout().yaw(), 0);
+  BOOST_TEST(angle == -2.0 * across / stiffness, tolerance(1e-4));
 }
 
 // ---- the part of the air in the damping -------------------------------------------------------

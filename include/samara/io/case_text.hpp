@@ -7,6 +7,7 @@
 
 #include "samara/fields/field.hpp"
 #include "samara/model/definition.hpp"
+#include "samara/model/operating_points.hpp"
 
 namespace samara::io {
 
@@ -17,7 +18,8 @@ struct CaseComments {
 
 /// Writes the keys that have a comment, are compulsory or differ from their default. Numbers read
 /// back as the same doubles.
-std::string write_case_text(const model::TurbineDefinition& turbine, const CaseComments& comments);
+std::string write_case_text(const model::TurbineDefinition& turbine, const CaseComments& comments,
+                            const model::OperatingPointsDefinition& operation = {});
 
 /// The shortest decimal that reads back as the same double.
 std::string exact(double value);

@@ -27,6 +27,15 @@ struct TowerFlowDefinition {
   bool operator==(const TowerFlowDefinition&) const = default;
 };
 
+/// The nacelle in the wind: a box.
+struct NacelleDragDefinition {
+  std::array<double, 3> areas{};   ///< projected along y1, y2, y3 of the nacelle [m^2], >= 0
+  std::array<double, 3> drags{};   ///< drag coefficient along each axis, >= 0
+  std::array<double, 3> center{};  ///< place of the load, from the tower top in y1 y2 y3 [m]
+
+  bool operator==(const NacelleDragDefinition&) const = default;
+};
+
 /// Mean wind: steady, a function of the place.
 struct WindDefinition {
   using Profile = elements::WindProfile;
@@ -47,6 +56,7 @@ struct WindDefinition {
   double upflow = 0.0;     ///< > 0: the wind rises [rad]
   double density = 1.225;  ///< of the air [kg/m^3], > 0
   std::optional<TowerFlowDefinition> tower;
+  std::optional<NacelleDragDefinition> nacelle;
 
   bool operator==(const WindDefinition&) const = default;
 };

@@ -66,6 +66,7 @@ struct Air {
   double hub_wind_axial = 0.0;  ///< its component along the shaft, downwind [m/s]
   std::vector<std::vector<elements::AirStation>> stations;  ///< of each blade, at its points
   bool tower_has_drag = false;                              ///< the wind loads the tower
+  std::optional<NacelleDragDefinition> nacelle;             ///< the wind loads it
 };
 
 struct Turbine {

@@ -10,6 +10,7 @@
 #include "samara/linear/linearization.hpp"
 #include "samara/model/changing_wind.hpp"
 #include "samara/model/definition.hpp"
+#include "samara/model/operating_points.hpp"
 #include "samara/simulation/stepped_controller.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 #include "samara/turbine/turbine_events.hpp"
@@ -49,20 +50,6 @@ struct LinearizeSetup {
   std::string mat_path;  ///< path of a MAT-file with the same matrices; empty: none
 };
 
-/// Operating points over the wind speed. Speeds are those of the rotor.
-struct OperationSetup {
-  std::vector<double> wind_speeds;  ///< [m/s], ascending; empty: those of `table`, or wind.speed
-  double least_speed = 0.0;         ///< [rad/s]
-  double rated_speed = 0.0;         ///< [rad/s]; 0: not given
-  double rated_power = 0.0;         ///< torque of the generator times its speed [W]; 0: not given
-  /// Torque of the generator between both speeds: gain times the square of its speed
-  /// [N m s^2/rad^2], or a table over its speed [rad/s], [N m].
-  double torque_gain = 0.0;
-  std::vector<std::pair<double, double>> torque_table;
-  std::string table_path;  ///< table of wind speed, pitch and speed, HAWC2's .opt; empty: none
-  std::string opt_path;    ///< file to write in that form; empty: none
-};
-
 /// The input of all analyses. Messages name fields by the keys of a case file (docs/case_file.md).
 struct Scenario {
   model::TurbineDefinition turbine;
@@ -71,7 +58,7 @@ struct Scenario {
   analysis::StaticOptions statics;
   TransientSetup transient;
   LinearizeSetup linearize;
-  OperationSetup operation;
+  model::OperatingPointsDefinition operation;
 };
 
 /// The highest harmonic of the rotor speed among loads and prescribed motions. A trim with fewer

@@ -13,6 +13,7 @@
 #include "samara/components/controller.hpp"
 #include "samara/components/inputs.hpp"
 #include "samara/components/mass_damper.hpp"
+#include "samara/components/nacelle_air.hpp"
 #include "samara/components/pitch_actuator.hpp"
 #include "samara/components/rigid_bodies.hpp"
 #include "samara/components/rotor_wake.hpp"
@@ -105,6 +106,7 @@ class TurbineEquations {
   std::vector<std::unique_ptr<components::BladeAir>> airs_;  ///< one per blade, or none
   std::unique_ptr<components::RotorWake> wake_;              ///< null: none
   std::unique_ptr<components::TowerAir> tower_air_;          ///< null: none
+  std::unique_ptr<components::NacelleAir> nacelle_air_;      ///< null: none
   std::vector<std::unique_ptr<components::MassDamper>> mass_dampers_;
   std::vector<components::Component*> components_;  ///< in the order of their equations
   components::Declarations declarations_;
