@@ -204,9 +204,10 @@ elements::RootPose<T> BladeAir::root_of(const Eigen::Matrix<T, arguments, 1>& x)
 
 template <class T>
 elements::StationMotion<T> BladeAir::motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x,
-                                               double t) const {
+                                               double t,
+                                               const elements::WindInputs<T>* change) const {
   return elements::station_motion<T>(air().rotor, station(p), x.template head<12>(), root_of<T>(x),
-                                     hub_of<T>(x), t);
+                                     hub_of<T>(x), t, change);
 }
 
 template <class System>
@@ -216,9 +217,9 @@ void BladeAir::state(System& system) const {
   const Memory memory = air().rotor.wind.changing ? Memory::none : Memory::of_arguments;
   for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {
     const auto rows_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
-      return elements::air_station_rows<T>(air().rotor, station(p), motion_at<T>(p, x, t),
-                                           x.template segment<air::unknowns>(at_air),
-                                           x.template segment<rate_count>(at_rates));
+      return elements::air_station_rows<T>(
+          air().rotor, station(p), motion_at<T>(p, x, t, wind_inputs<T>(system)),
+          x.template segment<air::unknowns>(at_air), x.template segment<rate_count>(at_rates));
     };
     system.template add<arguments, air::unknowns>(points_[at(p)], rows_of, memory);
     if (inertias_.empty()) continue;
@@ -237,8 +238,8 @@ void BladeAir::state(System& system) const {
 }
 
 template <class T>
-AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1>& x,
-                                      double t) const {
+AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t,
+                                      const elements::WindInputs<T>& change) const {
   using math::cross;
   using math::dot;
   using std::sqrt;
@@ -246,7 +247,7 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   const AirStation& station = this->station(p);
   const elements::HubPose<T> hub = hub_of<T>(x);
   const elements::RootPose<T> root = root_of<T>(x);
-  const elements::StationMotion<T> motion = motion_at<T>(p, x, t);
+  const elements::StationMotion<T> motion = motion_at<T>(p, x, t, &change);
   const elements::StationAir<T> present =
       elements::station_air<T>(rotor, station, motion, x.template segment<air::unknowns>(at_air),
                                x.template segment<rate_count>(at_rates));
@@ -271,7 +272,8 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   report.inflow_angle = math::arctangent(T(dot(relative, hub.axis)), T(-dot(relative, e_t)));
   report.speed = flow.speed;
   report.pressure = flow.speed * flow.speed * T(0.5 * rotor.density);
-  report.wind = dot(Vec3<T>(rotor.wind.undisturbed_at<T>(place, t) - hub.velocity), hub.axis);
+  report.wind =
+      dot(Vec3<T>(rotor.wind.undisturbed_at<T>(place, t, &change) - hub.velocity), hub.axis);
   report.hub_speed = hub.speed;
   report.hub_place = hub.place;
   const auto share_of = [&](const T& induced, const T& whole) {
@@ -306,8 +308,9 @@ template <class T>
 std::vector<AirPointReport<T>> BladeAir::report(const Residual<T>& residual) const {
   std::vector<AirPointReport<T>> reports;
   for (std::size_t p = 0; p < points_.size(); ++p)
-    reports.push_back(report_at<T>(
-        static_cast<int>(p), residual.template gather<arguments>(points_[p]), residual.time()));
+    reports.push_back(report_at<T>(static_cast<int>(p),
+                                   residual.template gather<arguments>(points_[p]), residual.time(),
+                                   residual.inputs().wind));
   return reports;
 }
 

@@ -16,7 +16,8 @@ void NacelleAir::describe(Registry&) {
 
 template <class T>
 auto NacelleAir::load_of(const Eigen::Matrix<T, arguments, 1>& x, const elements::JointMotion& yaw,
-                         double t) const -> Eigen::Matrix<T, values, 1> {
+                         double t, const elements::WindInputs<T>* change) const
+    -> Eigen::Matrix<T, values, 1> {
   using std::sqrt;
   constexpr double least = 1e-6;  // square of a speed [m^2/s^2]
   const model::Air& air = *turbine_.air;
@@ -33,7 +34,7 @@ auto NacelleAir::load_of(const Eigen::Matrix<T, arguments, 1>& x, const elements
   const Vec3<T> along = to_beam_order<T>(Vec3<T>(turn.transpose() * arm));
   const Vec3<T> place = tower_.placed().beam->tip.template cast<T>() + x.template head<3>() +
                         C_top.transpose() * along;
-  const Vec3<T> wind = air.rotor.wind.undisturbed_at<T>(from_beam_order<T>(place), t);
+  const Vec3<T> wind = air.rotor.wind.undisturbed_at<T>(from_beam_order<T>(place), t, change);
   Vec3<T> omega = turn * from_beam_order<T>(Vec3<T>(x.template segment<3>(9)));
   omega(2) = is_free ? x(at_yaw + 1) : omega(2) + T(yaw.rate);
   const Vec3<T> relative = in_nacelle(to_beam_order<T>(wind)) -
@@ -63,7 +64,7 @@ void NacelleAir::state(System& system) const {
   const Memory memory =
       is_still && !turbine_.air->rotor.wind.changing ? Memory::of_arguments : Memory::none;
   const auto load = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
-    return load_of<T>(x, yaw, t);
+    return load_of<T>(x, yaw, t, wind_inputs<T>(system));
   };
   system.template add<arguments, values>(connections_, load, memory);
 }

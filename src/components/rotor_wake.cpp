@@ -154,12 +154,13 @@ void RotorWake::connect_points() {
 }
 
 template <class T>
-elements::DiskFlow<T> RotorWake::flow_at(const Eigen::Matrix<T, flow_arguments, 1>& x,
-                                         double t) const {
+elements::DiskFlow<T> RotorWake::flow_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double t,
+                                         const elements::WindInputs<T>* change) const {
   using math::dot;
   const Vec3<T> place = x.template head<3>();
   const Vec3<T> axis = x.template segment<3>(6);
-  const Vec3<T> wind = rotor().wind.undisturbed_at<T>(place, t) - Vec3<T>(x.template segment<3>(9));
+  const Vec3<T> wind =
+      rotor().wind.undisturbed_at<T>(place, t, change) - Vec3<T>(x.template segment<3>(9));
   const Disk<T> disk = disk_of<T>(upward_, axis);
   const Vec3<T> components(dot(wind, disk.e1), dot(wind, disk.e2), dot(wind, disk.n));
   return elements::disk_flow<T>(components, x(hub_values), rotor().least_speed);
@@ -212,7 +213,7 @@ void RotorWake::state(System& system) const {
   const double t = system.time();
   const Memory memory = rotor().wind.changing ? Memory::none : Memory::of_arguments;
   const auto flow_of = [&]<class T>(const Eigen::Matrix<T, flow_arguments, 1>& x) {
-    const elements::DiskFlow<T> flow = flow_at<T>(x, t);
+    const elements::DiskFlow<T> flow = flow_at<T>(x, t, wind_inputs<T>(system));
     return Eigen::Matrix<T, flow_values, 1>(flow.z1, flow.z2, flow.speed, flow.carrying);
   };
   system.template add<flow_arguments, flow_values>(flow_, flow_of, memory);

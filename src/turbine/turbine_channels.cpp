@@ -266,7 +266,8 @@ class Quantities {
     put(torque_coefficient, load(4) / (pressure * rotor.tip_radius));
     put(thrust_coefficient, load(1) / pressure);
     put(tip_speed_ratio, speed * wind * rotor.tip_radius / square);
-    put(hub_wind, of_body<T>(rotor.wind.undisturbed_at<T>(air.front().front().hub_place, t)));
+    put(hub_wind,
+        of_body<T>(rotor.wind.undisturbed_at<T>(air.front().front().hub_place, t, &inputs_.wind)));
   }
 
   /// `air`, `stations`: of the blade at its points.

@@ -1,6 +1,7 @@
 #include "samara/turbine/turbine_input_output.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "samara/base/error.hpp"
 #include "samara/base/words.hpp"
@@ -18,6 +19,26 @@ constexpr char pitch_name[] = "pitch";
 constexpr char force_stem[] = "top_force_n";
 constexpr char base_stem[] = "base_n";
 constexpr char turn_stem[] = "base_rot_n";
+
+struct WindInput {
+  const char* name;
+  const char* unit;
+  const char* description;
+};
+
+/// Changes of the mean wind, in the order of `changes_of`.
+constexpr std::array<WindInput, 5> wind_inputs{{
+    {"wind_speed", "m/s", "speed of the wind at its reference height, with its profile"},
+    {"wind_direction", "rad", "direction of the wind, counter-clockwise seen from above"},
+    {"wind_upflow", "rad", "angle of the rising wind"},
+    {"wind_shear_up", "1/s", "change of the speed of the wind with the height, 0 at the hub"},
+    {"wind_shear_left", "1/s", "the same to the left of one who looks downwind"},
+}};
+
+template <class T>
+std::array<T*, wind_inputs.size()> changes_of(elements::WindInputs<T>& wind) {
+  return {&wind.speed, &wind.direction, &wind.upflow, &wind.shear_up, &wind.shear_left};
+}
 
 const std::vector<std::string>& ground_ways() {
   static const std::vector<std::string> ways{"side-side", "downwind", "up"};
@@ -86,6 +107,9 @@ std::vector<system::Signal> TurbineInputOutput::available_inputs(const TurbineSy
                          "rotation of the tower's foot, about the axis that points " +
                              ground_ways()[static_cast<std::size_t>(i)],
                          "", 0, true});
+  if (turbine.air)
+    for (const WindInput& input : wind_inputs)
+      signals.push_back({input.name, input.unit, "ground", input.description, "", 0, false});
   return signals;
 }
 
@@ -123,6 +147,7 @@ TurbineInputs<T> TurbineInputOutput::collect(
   TurbineInputs<T> all;
   all.pitch.assign(system_.turbine().blades.size(), T(0));
   all.pitch_rate = all.pitch;
+  if (system_.turbine().air) all.wind.height = system_.turbine().air->hub_height;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const system::Signal& input = inputs_[i];
     const T& value = values(static_cast<Eigen::Index>(i));
@@ -136,6 +161,8 @@ TurbineInputs<T> TurbineInputOutput::collect(
     }
     if (input.name == "generator_torque") all.generator_torque += value;
     if (input.name == "yaw_torque") all.yaw_torque += value;
+    for (std::size_t k = 0; k < wind_inputs.size(); ++k)
+      if (input.name == wind_inputs[k].name) *changes_of(all.wind)[k] += value;
     if (const int n = number_of(input.name, force_stem)) all.top_force(n - 1) += value;
     if (const int n = number_of(input.name, base_stem)) all.base_velocity(n - 1) += rate;
     if (const int n = number_of(input.name, turn_stem)) {

@@ -82,10 +82,11 @@ class BladeAir final : public Stated<BladeAir> {
   template <class T>
   static elements::RootPose<T> root_of(const Eigen::Matrix<T, arguments, 1>& x);
   template <class T>
-  elements::StationMotion<T> motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x,
-                                       double t) const;
+  elements::StationMotion<T> motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t,
+                                       const elements::WindInputs<T>* change = nullptr) const;
   template <class T>
-  AirPointReport<T> report_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t) const;
+  AirPointReport<T> report_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t,
+                              const elements::WindInputs<T>& change) const;
 
   const model::Turbine& turbine_;
   std::size_t k_;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "samara/elements/wind.hpp"
 #include "samara/math/rotation.hpp"
 #include "samara/math/types.hpp"
 
@@ -19,6 +20,7 @@ struct TurbineInputs {
   Vec3<T> base_velocity = Vec3<T>::Zero();  ///< velocity of the tower's foot along n1 n2 n3 [m/s]
   Vec3<T> base_turn = Vec3<T>::Zero();  ///< small rotation of the tower's foot about n1 n2 n3 [rad]
   Vec3<T> base_rate = Vec3<T>::Zero();  ///< rates of these angles [rad/s]
+  elements::WindInputs<T> wind;         ///< changes of the mean wind
 
   /// Components in the axes of the tower's foot, in their order (n3, n1, n2), of a vector;
   /// `ground`: its components in these axes when the foot is not turned.
@@ -35,5 +37,14 @@ struct TurbineInputs {
   }
   Vec3<T> up() const { return at_foot(Vec3<T>::UnitX()); }
 };
+
+/// Changes of the mean wind of a system with inputs; null for others.
+template <class T, class System>
+const elements::WindInputs<T>* wind_inputs(const System& system) {
+  if constexpr (System::has_inputs)
+    return &system.inputs().wind;
+  else
+    return nullptr;
+}
 
 }  // namespace samara::components

@@ -34,7 +34,8 @@ class NacelleAir final : public Stated<NacelleAir> {
   /// `yaw`: prescribed motion of a yaw that is not free.
   template <class T>
   Eigen::Matrix<T, values, 1> load_of(const Eigen::Matrix<T, arguments, 1>& x,
-                                      const elements::JointMotion& yaw, double t) const;
+                                      const elements::JointMotion& yaw, double t,
+                                      const elements::WindInputs<T>* change) const;
 
   const model::Turbine& turbine_;
   const Beam& tower_;

@@ -28,7 +28,8 @@ class TowerAir final : public Stated<TowerAir> {
 
   /// Force per length, components in a.
   template <class T>
-  Vec3<T> load_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t) const;
+  Vec3<T> load_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t,
+                  const elements::WindInputs<T>* change) const;
 
   const model::Turbine& turbine_;
   const Beam& tower_;

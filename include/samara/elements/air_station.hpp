@@ -162,11 +162,13 @@ T dynamics_share(const AirModels& models, const SectionFlow<T>& flow, const T& a
 
 }  // namespace air
 
-/// Motion of a station with u, theta; V, Omega, and the wind there at the time t.
+/// Motion of a station with u, theta; V, Omega, and the wind there at the time t. `change`: of the
+/// mean wind; null for none.
 template <class T>
 StationMotion<T> station_motion(const AirRotor& rotor, const AirStation& station,
                                 const Eigen::Matrix<T, 12, 1>& z, const RootPose<T>& root,
-                                const HubPose<T>& hub, double t = 0.0) {
+                                const HubPose<T>& hub, double t = 0.0,
+                                const WindInputs<T>* change = nullptr) {
   using math::cross;
   using math::dot;
   using std::sqrt;
@@ -177,7 +179,7 @@ StationMotion<T> station_motion(const AirRotor& rotor, const AirStation& station
   const Vec3<T> local = station.x.cast<T>() + z.template head<3>();
   const Vec3<T> place = root.place + root.axes * local;
   const Mat3<T> axes = root.axes * motion.R;  // of the section, as columns in N
-  const Vec3<T> wind = rotor.wind.at<T>(place, t);
+  const Vec3<T> wind = rotor.wind.at<T>(place, t, change);
   motion.velocity = z.template segment<6>(6);
   motion.relative = axes.transpose() * wind - z.template segment<3>(6) -
                     cross(omega, Vec3<T>(station.center.cast<T>()));

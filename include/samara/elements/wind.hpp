@@ -12,6 +12,17 @@
 
 namespace samara::elements {
 
+/// Small changes of a mean wind, the inputs of linear models.
+template <class T>
+struct WindInputs {
+  T speed = T(0);       ///< at the reference height, elsewhere in proportion to the profile [m/s]
+  T direction = T(0);   ///< counter-clockwise seen from above [rad]
+  T upflow = T(0);      ///< [rad]
+  T shear_up = T(0);    ///< change of the speed with the height above `height` [1/s]
+  T shear_left = T(0);  ///< and to the left of one who looks downwind [1/s]
+  double height = 0.0;  ///< [m]
+};
+
 /// Steady wind. Places and velocities have components n1 n2 n3; the height counts along n3.
 struct MeanWind {
   double speed = 0.0;   ///< at the reference height [m/s]
@@ -26,9 +37,9 @@ struct MeanWind {
   double upflow = 0.0;      ///< > 0: the wind rises [rad]
   double gust = 0.0;        ///< added to the speed at all places [m/s]
 
-  /// Velocity at a place [m/s].
+  /// Velocity at a place [m/s]. `change`: null for none.
   template <class T>
-  Vec3<T> at(const Vec3<T>& place) const;
+  Vec3<T> at(const Vec3<T>& place, const WindInputs<T>* change = nullptr) const;
 
  private:
   template <class T>
@@ -46,22 +57,32 @@ T MeanWind::profile_factor(const T& z) const {
 }
 
 template <class T>
-Vec3<T> MeanWind::at(const Vec3<T>& place) const {
+Vec3<T> MeanWind::at(const Vec3<T>& place, const WindInputs<T>* change) const {
   using std::cos;
   using std::sin;
-  T factor = profile_factor<T>(place(2)) * T(speed);
+  T factor = profile_factor<T>(place(2));
+  factor *= change == nullptr ? T(speed) : T(change->speed + T(speed));
   T sine(std::sin(direction));
   T cosine(std::cos(direction));
-  if (veer != 0.0) {
-    const T turned = (place(2) - T(height)) * T(veer) + T(direction);
+  if (veer != 0.0 || change != nullptr) {
+    T turned(direction);
+    if (veer != 0.0) turned += (place(2) - T(height)) * T(veer);
+    if (change != nullptr) turned += change->direction;
     sine = sin(turned);
     cosine = cos(turned);
   }
   if (shear_left != 0.0) factor -= (cosine * place(0) + sine * place(1)) * T(shear_left);
   if (shear_up != 0.0) factor += (place(2) - T(height)) * T(shear_up);
   if (gust != 0.0) factor += T(gust);
-  const T level = factor * T(std::cos(upflow));
-  return Vec3<T>(-(level * sine), level * cosine, factor * T(std::sin(upflow)));
+  if (change == nullptr) {
+    const T level = factor * T(std::cos(upflow));
+    return Vec3<T>(-(level * sine), level * cosine, factor * T(std::sin(upflow)));
+  }
+  factor += (place(2) - T(change->height)) * change->shear_up -
+            (cosine * place(0) + sine * place(1)) * change->shear_left;
+  const T rising = change->upflow + T(upflow);
+  const T level = factor * cos(rising);
+  return Vec3<T>(-(level * sine), level * cosine, factor * sin(rising));
 }
 
 /// A wind that changes with time.
@@ -88,10 +109,12 @@ struct Wind {
   std::shared_ptr<const ChangingWind> changing;  ///< instead of the mean wind; null: none
   TowerFlow tower;
 
-  /// Velocity at a place and a time without the tower [m/s].
+  /// Velocity at a place and a time without the tower [m/s]. `change`: of the mean wind; null for
+  /// none.
   template <class T>
-  Vec3<T> undisturbed_at(const Vec3<T>& place, double t) const {
-    if (!changing) return mean.at<T>(place);
+  Vec3<T> undisturbed_at(const Vec3<T>& place, double t,
+                         const WindInputs<T>* change = nullptr) const {
+    if (!changing) return mean.at<T>(place, change);
     Vector3 plain;
     for (int i = 0; i < 3; ++i) plain(i) = math::plain_value(place(i));
     ChangingWind::Sample sample;
@@ -109,8 +132,8 @@ struct Wind {
   }
   /// The same with the influence of the tower on the blades.
   template <class T>
-  Vec3<T> at(const Vec3<T>& place, double t) const {
-    const Vec3<T> wind = undisturbed_at<T>(place, t);
+  Vec3<T> at(const Vec3<T>& place, double t, const WindInputs<T>* change = nullptr) const {
+    const Vec3<T> wind = undisturbed_at<T>(place, t, change);
     return tower.disturbs() ? tower.disturb(wind, place) : wind;
   }
 };
