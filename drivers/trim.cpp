@@ -172,8 +172,9 @@ std::string air_words(const turbine::TurbineSystem& system, const Trim& trim) {
   const model::Air& air = *system.turbine().air;
   const std::vector<double> means =
       simulation::mean_channels(system, trim, {"RtAeroPwr", "RtAeroFxh"});
-  std::string text = "air          power " + general(1e-3 * means[0], 5) + " kW, thrust " +
-                     general(1e-3 * means[1], 5) + " kN";
+  std::string text = "air          ";
+  if (system.turbine().speed > 0.0) text += "power " + general(1e-3 * means[0], 5) + " kW, ";
+  text += "thrust " + general(1e-3 * means[1], 5) + " kN";
   const double wind = air.hub_wind;
   if (wind > 0.0 && system.turbine().speed > 0.0) {
     const double radius = air.rotor.tip_radius;
