@@ -41,6 +41,7 @@ void run_modes(const Job& job) {
   if (turbine.speed == 0.0) options.harmonics = 0;
   const analysis::Trim trim =
       simulation::solve_trim(job.input, system, options, progress, PETSC_COMM_WORLD);
+  simulation::require_wake_range(system, trim);
   if (!trim.solution.is_constant())
     throw InputError(
         job.input.path +

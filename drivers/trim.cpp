@@ -253,6 +253,7 @@ void run_trim(const Job& job) {
   Progress progress(is_first);
   const Trim trim = simulation::solve_trim(job.input, system, simulation::trim_options(job.input),
                                            progress, PETSC_COMM_WORLD);
+  simulation::require_wake_range(system, trim);
   progress.finish();
   if (!is_first) return;
   deliver(

@@ -5,7 +5,8 @@
 
 operation.svg: operating points of inputs/nrel5mw/land.yaml over the wind speed. damping.svg: frequency
 and damping of its first modes at these points. span.svg: the air along a blade at three of them.
-SAMARA names the program.
+mesh.svg: change of the damping ratios of the first ten modes with the mesh of the blades, also of
+inputs/iea15mw/land.yaml. --only draws one of them. SAMARA names the program.
 """
 
 import argparse
@@ -30,6 +31,12 @@ SHOWN = [8.0, 12.0, 20.0]
 MODES = {"tower fore-aft 1": "#1f5f9e", "tower side-side 1": "#6a3d9a",
          "blade flap collective 1": "#b04a00", "blade lead-lag progressive 1": "#2e7d32",
          "blade lead-lag regressive 1": "#8bc34a"}
+
+
+INPUTS = {"nrel5mw": "#1f5f9e", "iea15mw": "#b04a00"}
+MESHES = {"nrel5mw": (3, 4, 6, 8, 12, 16), "iea15mw": (4, 6, 8, 10, 12, 16)}  # elements of order 2
+FINEST = 28
+FIRST = 10
 
 
 def run(folder, *arguments):
@@ -114,17 +121,59 @@ def draw_span(folder, points, path):
     figure.savefig(path, metadata={"Date": None})
 
 
+def read_damping(folder, name, elements):
+    case = str(ROOT / "inputs" / name / "land.yaml")
+    run(folder, "floquet", case, "--set", f"blades.elements={elements}", "--set", "blades.order=2",
+        "--csv", "modes.csv", "-o", "modes.h5")
+    with open(folder / "modes.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {row["label"]: float(row["damping_ratio"]) for row in rows[:FIRST]}
+
+
+def draw_mesh(folder, path):
+    """Largest relative difference to the finest mesh; modes are compared by their names."""
+    figure, axis = plt.subplots(figsize=(5.5, 3.4))
+    for name, color in INPUTS.items():
+        finest = read_damping(folder, name, FINEST)
+        points, largest = [], []
+        for elements in MESHES[name]:
+            found = read_damping(folder, name, elements)
+            changes = {label: abs(found[label] / ratio - 1) for label, ratio in finest.items() if label in found}
+            worst = max(changes, key=changes.get)
+            print(f"{name}: {2 * elements} points a blade: {100 * changes[worst]:.2f} % in {worst}"
+                  f" of {len(changes)} modes")
+            points.append(2 * elements)
+            largest.append(100 * changes[worst])
+        axis.loglog(points, largest, "o-", markersize=4, color=color, label=name)
+    axis.set_xlabel("points a blade")
+    axis.set_ylabel("largest change of a damping ratio [%]")
+    axis.set_xticks([6, 8, 12, 16, 24, 32], ["6", "8", "12", "16", "24", "32"])
+    axis.minorticks_off()
+    axis.grid(alpha=0.3)
+    axis.legend()
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "docs")
-    folder = parser.parse_args().output
+    parser.add_argument("--only", choices=["operation", "span", "damping", "mesh"])
+    arguments = parser.parse_args()
+    folder = arguments.output
+    chosen = [arguments.only] if arguments.only else ["operation", "span", "damping", "mesh"]
     matplotlib.rcParams["svg.hashsalt"] = "samara"
     with tempfile.TemporaryDirectory() as name:
         work = pathlib.Path(name)
-        points = read_points(work)
-        draw_operation(points, folder / "operation.svg")
-        draw_span(work, points, folder / "span.svg")
-        draw_damping(points, [read_modes(work, point) for point in points], folder / "damping.svg")
+        points = read_points(work) if chosen != ["mesh"] else []
+        if "operation" in chosen:
+            draw_operation(points, folder / "operation.svg")
+        if "span" in chosen:
+            draw_span(work, points, folder / "span.svg")
+        if "damping" in chosen:
+            draw_damping(points, [read_modes(work, point) for point in points], folder / "damping.svg")
+        if "mesh" in chosen:
+            draw_mesh(work, folder / "mesh.svg")
 
 
 if __name__ == "__main__":

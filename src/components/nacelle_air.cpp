@@ -1,6 +1,7 @@
 #include "samara/components/nacelle_air.hpp"
 
 #include "samara/base/index.hpp"
+#include "samara/components/inputs.hpp"
 #include "samara/components/tower_axes.hpp"
 #include "samara/math/rotation.hpp"
 
@@ -14,10 +15,9 @@ void NacelleAir::describe(Registry&) {
   if (turbine_.chain.yaw.free) connections_.shares.push_back({yaw_ + 1, 1, 6});
 }
 
-template <class T>
-auto NacelleAir::load_of(const Eigen::Matrix<T, arguments, 1>& x, const elements::JointMotion& yaw,
-                         double t, const elements::WindInputs<T>* change) const
-    -> Eigen::Matrix<T, values, 1> {
+template <class T, class System>
+auto NacelleAir::load_of(const System& system, const Eigen::Matrix<T, arguments, 1>& x,
+                         const elements::JointMotion& yaw) const -> Eigen::Matrix<T, values, 1> {
   using std::sqrt;
   constexpr double least = 1e-6;  // square of a speed [m^2/s^2]
   const model::Air& air = *turbine_.air;
@@ -34,10 +34,11 @@ auto NacelleAir::load_of(const Eigen::Matrix<T, arguments, 1>& x, const elements
   const Vec3<T> along = to_beam_order<T>(Vec3<T>(turn.transpose() * arm));
   const Vec3<T> place = tower_.placed().beam->tip.template cast<T>() + x.template head<3>() +
                         C_top.transpose() * along;
-  const Vec3<T> wind = air.rotor.wind.undisturbed_at<T>(from_beam_order<T>(place), t, change);
+  const Vec3<T> wind = air.rotor.wind.undisturbed_at<T>(in_ground<T>(system, place), system.time(),
+                                                        wind_inputs<T>(system));
   Vec3<T> omega = turn * from_beam_order<T>(Vec3<T>(x.template segment<3>(9)));
   omega(2) = is_free ? x(at_yaw + 1) : omega(2) + T(yaw.rate);
-  const Vec3<T> relative = in_nacelle(to_beam_order<T>(wind)) -
+  const Vec3<T> relative = in_nacelle(at_foot<T>(system, wind)) -
                            turn * from_beam_order<T>(Vec3<T>(x.template segment<3>(6))) -
                            math::cross(omega, arm);
   Vec3<T> force;
@@ -51,20 +52,20 @@ auto NacelleAir::load_of(const Eigen::Matrix<T, arguments, 1>& x, const elements
   if (is_free) moment(2) = T(0.0);  // the joint does not transmit it
   y.template head<3>() = to_beam_order<T>(Vec3<T>(turn.transpose() * force));
   y.template segment<3>(3) = to_beam_order<T>(Vec3<T>(turn.transpose() * moment));
+  if (air.rotor.load_is_held) y = elements::held<T>(y);
   return y;
 }
 
 template <class System>
 void NacelleAir::state(System& system) const {
-  const double t = system.time();
-  elements::JointMotion yaw = turbine_.yaw_at(t);
+  elements::JointMotion yaw = turbine_.yaw_at(system.time());
   const bool is_still = !turbine_.operation.yaw && turbine_.yaw_motion.is_constant();
   if (!is_still)
     yaw = {system.varying(yaw.angle), system.varying(yaw.rate), system.varying(yaw.acceleration)};
   const Memory memory =
       is_still && !turbine_.air->rotor.wind.changing ? Memory::of_arguments : Memory::none;
   const auto load = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
-    return load_of<T>(x, yaw, t, wind_inputs<T>(system));
+    return load_of<T>(system, x, yaw);
   };
   system.template add<arguments, values>(connections_, load, memory);
 }

@@ -195,15 +195,9 @@ void RigidBodies::state_poses(System& system) const {
     if (setting_.tower != nullptr) {
       const Vec3<T> top = x.template head<3>() + setting_.tower->placed().beam->tip.cast<T>();
       const Mat3<T> C = math::direction_cosines<T>(x.template segment<3>(3));
-      const auto in_ground = [&](const Vec3<T>& foot) {
-        if constexpr (System::has_inputs)
-          return from_beam_order<T>(system.inputs().in_ground(foot));
-        else
-          return from_beam_order<T>(foot);
-      };
-      base.place = in_ground(top);
+      base.place = in_ground<T>(system, top);
       for (int i = 0; i < 3; ++i)  // t1 t2 t3 are the second, third and first axis of the beam
-        base.axes.col(i) = in_ground(Vec3<T>(C.row((i + 1) % 3).transpose()));
+        base.axes.col(i) = in_ground<T>(system, Vec3<T>(C.row((i + 1) % 3).transpose()));
     }
     const elements::Pose<T> hub = tree_.pose_of<T>(elements::teeter_node, base, states);
     const Vec3<T> velocity = hub.axes * Vec3<T>(x.template segment<3>(14));

@@ -153,17 +153,16 @@ void RotorWake::connect_points() {
   }
 }
 
+/// Wind against the apex, along e1, e2 and n.
 template <class T>
-elements::DiskFlow<T> RotorWake::flow_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double t,
-                                         const elements::WindInputs<T>* change) const {
+Vec3<T> RotorWake::wind_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double t,
+                           const elements::WindInputs<T>* change) const {
   using math::dot;
   const Vec3<T> place = x.template head<3>();
-  const Vec3<T> axis = x.template segment<3>(6);
   const Vec3<T> wind =
       rotor().wind.undisturbed_at<T>(place, t, change) - Vec3<T>(x.template segment<3>(9));
-  const Disk<T> disk = disk_of<T>(upward_, axis);
-  const Vec3<T> components(dot(wind, disk.e1), dot(wind, disk.e2), dot(wind, disk.n));
-  return elements::disk_flow<T>(components, x(hub_values), rotor().least_speed);
+  const Disk<T> disk = disk_of<T>(upward_, x.template segment<3>(6));
+  return Vec3<T>(dot(wind, disk.e1), dot(wind, disk.e2), dot(wind, disk.n));
 }
 
 /// The load of a point on the shapes and their velocity there.
@@ -213,7 +212,8 @@ void RotorWake::state(System& system) const {
   const double t = system.time();
   const Memory memory = rotor().wind.changing ? Memory::none : Memory::of_arguments;
   const auto flow_of = [&]<class T>(const Eigen::Matrix<T, flow_arguments, 1>& x) {
-    const elements::DiskFlow<T> flow = flow_at<T>(x, t, wind_inputs<T>(system));
+    const elements::DiskFlow<T> flow = elements::disk_flow<T>(
+        wind_at<T>(x, t, wind_inputs<T>(system)), x(hub_values), rotor().least_speed);
     return Eigen::Matrix<T, flow_values, 1>(flow.z1, flow.z2, flow.speed, flow.carrying);
   };
   system.template add<flow_arguments, flow_values>(flow_, flow_of, memory);
@@ -247,11 +247,12 @@ void RotorWake::state(System& system) const {
 }
 
 elements::DiskFlow<double> RotorWake::flow(const Residual<double>& residual) const {
-  return flow_at<double>(residual.gather<flow_arguments>(flow_), residual.time());
+  const auto x = residual.gather<flow_arguments>(flow_);
+  return elements::disk_flow<double>(wind_at<double>(x, residual.time(), nullptr), x(hub_values),
+                                     rotor().least_speed);
 }
 
 void RotorWake::settle(const Residual<double>& residual, std::vector<double>& values) const {
-  constexpr int passes = 50;
   // The loads in `values` are those of the settled points; the poses are those of the residual.
   Eigen::VectorXd load = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shapes_.size()));
   const auto arguments_of = [&](const PointBatch& point) {
@@ -268,14 +269,12 @@ void RotorWake::settle(const Residual<double>& residual, std::vector<double>& va
         load(static_cast<Eigen::Index>(shape)) += y(2 * i);
     }
   }
-  auto x = residual.gather<flow_arguments>(flow_);
+  const auto x = residual.gather<flow_arguments>(flow_);
+  const Vector3 wind = wind_at<double>(x, residual.time(), nullptr);
   Eigen::VectorXd t = Eigen::VectorXd::Zero(load.size());
-  for (int pass = 0; pass < passes; ++pass) {
-    x(hub_values) = t(0);
-    const elements::DiskFlow<double> flow = flow_at<double>(x, residual.time());
-    for (Eigen::Index i = 0; i < t.size(); ++i)
-      t(i) += 0.5 * (load(i) / (i == 0 ? flow.speed : flow.carrying) - t(i));
-  }
+  t(0) = elements::find_steady_wake(wind, load(0), rotor().least_speed).t;
+  const double carrying = elements::disk_flow<double>(wind, t(0), rotor().least_speed).carrying;
+  for (Eigen::Index i = 1; i < t.size(); ++i) t(i) = load(i) / carrying;
   for (std::size_t row = 0; row < shapes_.size(); ++row) {
     for (int sine = 0; sine < shapes_[row].parts(); ++sine)
       values[at(part(row, sine))] = values[at(part(row, sine) + 1)] = 0.0;

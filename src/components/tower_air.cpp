@@ -1,6 +1,7 @@
 #include "samara/components/tower_air.hpp"
 
 #include "samara/base/index.hpp"
+#include "samara/components/inputs.hpp"
 #include "samara/math/rotation.hpp"
 
 namespace samara::components {
@@ -18,9 +19,9 @@ void TowerAir::describe(Registry&) {
 }
 
 /// The tower's axes a1 a2 a3 are n3 n1 n2.
-template <class T>
-Vec3<T> TowerAir::load_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t,
-                          const elements::WindInputs<T>* change) const {
+template <class T, class System>
+Vec3<T> TowerAir::load_at(const System& system, int p,
+                          const Eigen::Matrix<T, arguments, 1>& x) const {
   using std::sqrt;
   constexpr double least = 1e-6;  // square of a speed [m^2/s^2]
   const model::Air& air = *turbine_.air;
@@ -29,24 +30,23 @@ Vec3<T> TowerAir::load_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double
   const Mat3<T> R = math::direction_cosines<T>(x.template segment<3>(3)).transpose() *
                     Matrix3(point.reference * point.C_ab).template cast<T>();
   const Vec3<T> place = point.x.template cast<T>() + x.template head<3>();
-  const Vec3<T> wind =
-      air.rotor.wind.undisturbed_at<T>(Vec3<T>(place(1), place(2), place(0)), t, change);
-  const Vec3<T> relative =
-      R.transpose() * Vec3<T>(wind(2), wind(0), wind(1)) - x.template segment<3>(6);
+  const Vec3<T> wind = air.rotor.wind.undisturbed_at<T>(in_ground<T>(system, place), system.time(),
+                                                        wind_inputs<T>(system));
+  const Vec3<T> relative = R.transpose() * at_foot<T>(system, wind) - x.template segment<3>(6);
   const T speed = sqrt(T(relative(1) * relative(1) + relative(2) * relative(2) + T(least)));
   const T factor = elements::TowerFlow::over_height(flow.diameter, place(0)) *
                    elements::TowerFlow::over_height(flow.drag, place(0)) * speed *
                    T(0.5 * air.rotor.density * air.rotor.acting);
-  return R * Vec3<T>(T(0.0), T(factor * relative(1)), T(factor * relative(2)));
+  const Vec3<T> load = R * Vec3<T>(T(0.0), T(factor * relative(1)), T(factor * relative(2)));
+  return air.rotor.load_is_held ? elements::held<T>(load) : load;
 }
 
 template <class System>
 void TowerAir::state(System& system) const {
-  const double t = system.time();
   const Memory memory = turbine_.air->rotor.wind.changing ? Memory::none : Memory::of_arguments;
   for (int p = 0; p < tower_.placed().beam->point_count(); ++p) {
     const auto load_of = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
-      return load_at<T>(p, x, t, wind_inputs<T>(system));
+      return load_at<T>(system, p, x);
     };
     system.template add<arguments, 3>(points_[at(p)], load_of, memory);
   }

@@ -16,6 +16,7 @@ class DeckErrors {
   void add_message(const std::string& message);
   bool empty() const { return messages_.empty(); }
   std::size_t size() const { return messages_.size(); }
+  const std::string& first() const { return messages_.front(); }
   /// @throws InputError with one error a line, if there are any.
   void throw_if_any() const;
 

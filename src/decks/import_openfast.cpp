@@ -67,7 +67,7 @@ class Importer {
     read_tower();
     read_blades();
     read_teeter();
-    if (servo_) read_generator_law(import_, *servo_, import_.turbine.shaft.speed);
+    if (servo_) read_law_of_generator();
     if (import_.errors.empty()) read_air();
     import_.errors.throw_if_any();
     warn_of_platform();
@@ -187,14 +187,32 @@ class Importer {
       lock(key, "the platform", "a case has no platform; the tower is clamped at TowerBsHt");
   }
 
-  /// The file of ServoDyn, where it is on and the file exists.
+  /// The file of ServoDyn, where it is on and the file exists. Only a free yaw needs it.
   void open_servo() {
-    if (main_.number("CompServo") == 0.0) return;
+    if (main_.number_or("CompServo", 0.0) == 0.0 || !main_.has("ServoFile")) return;
     const std::string path = main_.find_file("ServoFile");
     if (path.empty()) return;
     import_.say(main_, "ServoFile", Fate::taken,
                 "the law of the generator's torque; YawSpr and YawDamp of a free yaw");
-    servo_ = import_.open(path);
+    if (elastodyn_->flag_or("YawDOF", false))
+      servo_ = import_.open(path);
+    else
+      without_law([&] { servo_ = import_.open(path); });
+  }
+
+  void read_law_of_generator() {
+    without_law([&] { read_generator_law(import_, *servo_, import_.turbine.shaft.speed); });
+  }
+
+  /// A structure needs no law of the torque: faults in it are a warning.
+  template <class Read>
+  void without_law(const Read& read) {
+    DeckErrors others = std::exchange(import_.errors, {});
+    read();
+    const DeckErrors faults = std::exchange(import_.errors, std::move(others));
+    if (faults.empty()) return;
+    import_.operation = {};
+    import_.warn(faults.first(), "warning: the law of the generator's torque is left out");
   }
 
   /// A free yaw has the spring and the damper of ServoDyn.

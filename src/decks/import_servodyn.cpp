@@ -17,7 +17,11 @@ constexpr double fastest = 4.0;
 bool set_rated_speed(OpenfastImport& import, Deck& servo, const char* key, double generator_speed,
                      double rotor_speed) {
   const double rated = generator_speed / std::abs(import.turbine.shaft.gear_ratio);
-  if (rotor_speed > 0.0 && !(rated > slowest * rotor_speed && rated < fastest * rotor_speed)) {
+  constexpr double placeholder = 9999.9;  // rpm, of values that are not used
+  const bool is_far = rotor_speed > 0.0
+                          ? !(rated > slowest * rotor_speed && rated < fastest * rotor_speed)
+                          : servo.number(key) == placeholder;
+  if (is_far) {
     import.warn(servo.place_of(key),
                 std::string(key) +
                     ": warning: a speed of the generator that is far from RotSpeed times GBRatio, "
@@ -34,8 +38,8 @@ void read_variable_speed(OpenfastImport& import, Deck& servo, double rotor_speed
   const double torque = servo.number("VS_RtTq");
   const double gain = servo.number("VS_Rgn2K");
   import.require(speed > 0.0, servo, "VS_RtGnSp", "expected a number > 0");
-  import.require(torque > 0.0, servo, "VS_RtTq", "expected a number > 0");
-  import.require(gain > 0.0, servo, "VS_Rgn2K", "expected a number > 0");
+  import.require(torque >= 0.0, servo, "VS_RtTq", "expected a number >= 0");
+  import.require(gain >= 0.0, servo, "VS_Rgn2K", "expected a number >= 0");
   if (!(speed > 0.0 && torque > 0.0 && gain > 0.0)) return;
   if (!set_rated_speed(import, servo, "VS_RtGnSp", speed, rotor_speed)) return;
   const double per_rpm = fields::rpm.to_si(1.0);
@@ -76,18 +80,24 @@ void read_induction_generator(OpenfastImport& import, Deck& servo, double rotor_
   import.note("operation.rated_power", "of the pull-out torque");
 }
 
+void say_law(OpenfastImport& import, Deck& servo, const char* key) {
+  const bool has_law = import.operation.rated_speed > 0.0;
+  import.say(servo, key, has_law ? Fate::taken : Fate::ignored,
+             has_law ? "1: the law of operation" : "1: without a law of operation");
+}
+
 }  // namespace
 
 void read_generator_law(OpenfastImport& import, Deck& servo, double rotor_speed) {
   if (!servo.has("VSContrl") || import.turbine.shaft.gear_ratio == 0.0) return;
   const double control = servo.number("VSContrl");
   if (control == 1.0) {
-    import.say(servo, "VSContrl", Fate::taken, "1: the law of operation");
-    return read_variable_speed(import, servo, rotor_speed);
+    read_variable_speed(import, servo, rotor_speed);
+    return say_law(import, servo, "VSContrl");
   }
   if (control == 0.0 && servo.has("GenModel") && servo.number("GenModel") == 1.0) {
-    import.say(servo, "GenModel", Fate::taken, "1: the law of operation");
-    return read_induction_generator(import, servo, rotor_speed);
+    read_induction_generator(import, servo, rotor_speed);
+    return say_law(import, servo, "GenModel");
   }
   import.say(servo, "VSContrl", Fate::ignored,
              control == 0.0 ? "0: the generator of GenModel has no law of a case"

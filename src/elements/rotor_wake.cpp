@@ -51,4 +51,43 @@ double wake_coupling(const WakeShape& row, const WakeShape& column) {
   return 0.5 * std::numbers::pi * (r > m ? 1.0 : -1.0) / (norms * roots);
 }
 
+bool is_in_range(const DiskFlow<double>& flow, double least) {
+  if (std::abs(flow.mean) <= least) return true;
+  const double wind = flow.through + flow.mean;  // along the axis
+  const bool is_reversed =
+      flow.through * wind < 0.0 && flow.mean * wind > 0.0 && flow.across < flow.mean * flow.mean;
+  return flow.share >= least_carrying_share && !is_reversed;
+}
+
+SteadyWake find_steady_wake(const Vector3& wind, double load, double least) {
+  constexpr int parts = 1000;
+  constexpr int halvings = 50;
+  const auto excess = [&](double t, bool& is_valid) {
+    const DiskFlow<double> flow = disk_flow<double>(wind, t, least);
+    is_valid = is_in_range(flow, least);
+    return flow.speed * std::abs(t) - std::abs(load);
+  };
+  // In hover V_T = w_m; a wind along the axis delays the balance by its speed at most.
+  const double end = std::sqrt(std::abs(load)) + std::abs(wind(2)) + least;
+  const double step = std::copysign(end / parts, load);
+  SteadyWake wake;
+  bool is_valid = true;
+  for (int i = 1; i <= parts; ++i) {
+    const double t = i * step;
+    const double value = excess(t, is_valid);
+    if (!is_valid) return {wake.t, false};
+    if (value >= 0.0) {
+      double low = wake.t;
+      double high = t;
+      for (int k = 0; k < halvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (excess(middle, is_valid) < 0.0 ? low : high) = middle;
+      }
+      return {high, true};
+    }
+    wake.t = t;
+  }
+  return {wake.t, false};
+}
+
 }  // namespace samara::elements

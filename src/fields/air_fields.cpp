@@ -173,7 +173,9 @@ void declare_inflow(Visitor& fields, AeroDefinition& aero) {
        "series (Oye 1990); `equilibrium`: it is that value; `frozen`: it is that value in "
        "the steady state, and motions about it do not change it (not in time series); "
        "`peters_he`: along the shaft it is that of finite states of the whole rotor (Peters, He "
-       "1991), without `thrust`, `tip_loss`, `hub_loss`, `skew` and `tau1`"},
+       "1991); `thrust`, `tip_loss`, `hub_loss`, `axial_drag`, `skew` and `tau1` have no effect "
+       "then, "
+       "and `closure` acts on the velocity around the shaft"},
       aero.inflow,
       {{"oye", Inflow::oye},
        {"equilibrium", Inflow::equilibrium},

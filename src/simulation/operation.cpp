@@ -170,6 +170,7 @@ class OperationFinder {
     if (is_rough) options.tolerance = std::max(options.tolerance, rough_tolerance);
     last_ =
         solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, last_ ? &*last_ : nullptr);
+    if (!is_rough) require_wake_range(system, *last_);
     OperatingPoint point;
     point.wind = wind;
     point.speed = speed;

@@ -87,62 +87,32 @@ bool has_rotor_wake(const turbine::TurbineSystem& system) {
   return system.turbine().air && system.turbine().air->rotor.models.has_rotor_wake();
 }
 
-/// Message on a rotor that nearly stops the wind, in the vortex ring or as a brake, where the
-/// equations of the finite-state wake do not hold; empty where they do.
-std::string find_wake_fault(const elements::AirRotor& rotor,
-                            const elements::DiskFlow<double>& flow) {
-  if (flow.share >= elements::least_carrying_share || std::abs(flow.mean) <= rotor.least_speed)
-    return "";
-  return "aero.inflow: peters_he: the mean induced velocity is " + general(flow.mean, 3) +
-         " m/s in a wind of " + general(flow.through + flow.mean, 3) +
-         " m/s along the shaft; the finite-state wake holds up to 0.41 of an axial wind; hint: "
-         "aero.inflow: oye or equilibrium, or a smaller thrust";
-}
-
-void require_wake_range(const turbine::TurbineSystem& system, const analysis::Trim& trim) {
-  if (!has_rotor_wake(system)) return;
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const int instants = instants_of_means(trim);
-  for (int i = 0; i < instants; ++i) {
-    const double t = system.period() * i / instants;
-    trim.solution.evaluate(t, z.get(), z_dot.get());
-    const auto flow =
-        system.equations().disk_flow(t, petsc::values_of(z.get()), petsc::values_of(z_dot.get()));
-    const std::string fault = find_wake_fault(system.turbine().air->rotor, flow.value());
-    if (!fault.empty()) throw ConvergenceError("trim: " + fault);
-  }
-}
+constexpr char wake_hint[] =
+    "; the finite-state wake holds up to 0.41 of an axial wind, a thrust coefficient of 0.97; "
+    "hint: "
+    "aero.inflow: oye or equilibrium, or a smaller thrust";
 
 /// Message where the finite-state wake has no steady state because the thrust is too large. The
 /// thrust is that of the balance of momentum. Empty: another reason, or that trim fails as well.
 std::string find_thrust_limit(const Scenario& scenario, const analysis::TrimOptions& options) {
-  constexpr int passes = 60;
   model::TurbineDefinition other = scenario.turbine;
   other.aero->inflow = model::Inflow::equilibrium;
   try {
     const turbine::TurbineSystem system(model::build_turbine(other), PETSC_COMM_SELF);
     analysis::Observer silent;
     const analysis::Trim trim = analysis::find_trim(system, options, silent);
-    const std::vector<double> means = mean_channels(system, trim, {"RtAeroFxh"});
+    const double thrust = mean_channels(system, trim, {"RtAeroFxh"}).front();
     const model::Air& air = *system.turbine().air;
     const elements::AirRotor& rotor = air.rotor;
     const double axial = air.hub_wind_axial;
-    const double across = std::sqrt(std::max(air.hub_wind * air.hub_wind - axial * axial, 0.0));
-    const double load =
-        means[0] / (2.0 * rotor.density * std::numbers::pi * rotor.tip_radius * rotor.tip_radius);
-    double t = 0.0;  // of the uniform load: V_T w_m = load
-    elements::DiskFlow<double> flow;
-    for (int pass = 0; pass < passes; ++pass) {
-      flow = elements::disk_flow<double>(Vector3(across, 0.0, axial), t, rotor.least_speed);
-      t += 0.5 * (0.5 * std::numbers::sqrt3 * load / flow.speed - t);
-    }
-    if (find_wake_fault(rotor, flow).empty()) return "";
+    const Vector3 wind(std::sqrt(std::max(air.hub_wind * air.hub_wind - axial * axial, 0.0)), 0.0,
+                       axial);
+    const double disk = std::numbers::pi * rotor.tip_radius * rotor.tip_radius;
+    const double load = std::numbers::sqrt3 * thrust / (4.0 * rotor.density * disk);
+    if (elements::find_steady_wake(wind, load, rotor.least_speed).is_in_range) return "";
     return "aero.inflow: peters_he: the rotor has a thrust coefficient of " +
-           general(4.0 * load / (air.hub_wind * air.hub_wind), 3) +
-           " by the balance of momentum; the finite-state wake holds up to 0.97 in axial wind, "
-           "where the induced velocity is 0.41 of it; hint: aero.inflow: oye or equilibrium, or a "
-           "smaller thrust";
+           general(thrust / (0.5 * rotor.density * disk * air.hub_wind * air.hub_wind), 3) +
+           " by the balance of momentum" + wake_hint;
   } catch (const ConvergenceError&) {
     return "";
   } catch (const DomainError&) {
@@ -161,9 +131,7 @@ analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem
     if (!words.empty()) throw ConvergenceError("trim: " + words);
   };
   try {
-    analysis::Trim trim = analysis::find_trim(system, options, observer, comm, near);
-    require_wake_range(system, trim);
-    return trim;
+    return analysis::find_trim(system, options, observer, comm, near);
   } catch (const ConvergenceError&) {
     name_limit();
     throw;
@@ -176,8 +144,30 @@ analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                          analysis::Observer& observer, MPI_Comm comm) {
   analysis::Trim trim = solve_trim(scenario, system, trim_options(scenario), observer, comm);
+  require_wake_range(system, trim);
   note_roughness(trim, observer);
   return trim;
+}
+
+void require_wake_range(const turbine::TurbineSystem& system, const analysis::Trim& trim) {
+  if (!has_rotor_wake(system)) return;
+  const double least = system.turbine().air->rotor.least_speed;
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const int instants = instants_of_means(trim);
+  for (int i = 0; i < instants; ++i) {
+    const double t = system.period() * i / instants;
+    trim.solution.evaluate(t, z.get(), z_dot.get());
+    const elements::DiskFlow<double> flow =
+        system.equations()
+            .disk_flow(t, petsc::values_of(z.get()), petsc::values_of(z_dot.get()))
+            .value();
+    if (elements::is_in_range(flow, least)) continue;
+    throw ConvergenceError("trim: aero.inflow: peters_he: the mean induced velocity is " +
+                           general(flow.mean, 3) + " m/s in a wind of " +
+                           general(flow.through + flow.mean, 3) + " m/s along the shaft" +
+                           wake_hint);
+  }
 }
 
 int instants_of_means(const analysis::Trim& trim) {

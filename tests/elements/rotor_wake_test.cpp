@@ -168,6 +168,26 @@ BOOST_AUTO_TEST_CASE(flow_of_axial_and_of_edgewise_wind) {
   BOOST_TEST(std::abs(skewed.carrying - 10.0) < 1e-13);
 }
 
+/// V_T w_m = T/(2 rho A): closed forms of axial wind, hover and climb.
+BOOST_AUTO_TEST_CASE(steady_flow_balances_the_load_within_the_range) {
+  constexpr double to_t = 0.5 * std::numbers::sqrt3;
+  const auto steady = [&](double wind, double w, double speed) {
+    return elements::find_steady_wake(Vector3(0.0, 0.0, wind), speed * to_t * w, 1e-6);
+  };
+  BOOST_TEST(std::abs(steady(10.0, 2.0, 8.0).t - 2.0 * to_t) < 1e-9);
+  BOOST_TEST(std::abs(steady(0.0, 3.0, 3.0).t - 3.0 * to_t) < 1e-6);
+  BOOST_TEST(std::abs(steady(-4.0, 1.0, 5.0).t - to_t) < 1e-9);          // climb against the thrust
+  BOOST_TEST(std::abs(steady(10.0, -2.0, 12.0).t + 2.0 * to_t) < 1e-9);  // a propeller
+  BOOST_TEST(steady(10.0, 4.0, 6.0).is_in_range);
+  const elements::SteadyWake beyond = steady(10.0, 5.0, 5.0);
+  BOOST_TEST(!beyond.is_in_range);
+  BOOST_TEST(std::abs(beyond.t / to_t - 10.0 * 0.7 / 1.7) < 0.02);  // (1 - 2 a)/(1 - a) = 0.3
+  // The flow through the disk is reversed: V_T w_m = T/(2 rho A) again, but no wind turbine.
+  const auto reversed = elements::disk_flow<double>(Vector3(0.0, 0.0, 10.0), to_t * 11.0, 0.0);
+  BOOST_TEST(reversed.share > 1.0);
+  BOOST_TEST(!elements::is_in_range(reversed, 0.1));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace

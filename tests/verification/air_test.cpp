@@ -389,8 +389,6 @@ BOOST_AUTO_TEST_CASE(linear_shear_is_a_part_of_the_speed) {
 
 // ---- the tower in the wind ---------------------------------------------------------------------
 
-/// A tower alone in a wind that the blades do not feel: the force at its foot is the integral of
-/// rho/2 C_d D v^2.
 /// A rigid tower with a blade that the wind does not load.
 const std::string bare_tower = R"(samara: 1
 gravity: 0
@@ -417,6 +415,8 @@ blades:
   aero_sections: [{at: 0, chord: 0.5, airfoil: none}]
 )";
 
+/// A tower alone in a wind that the blades do not feel: the force at its foot is the integral of
+/// rho/2 C_d D v^2.
 BOOST_AUTO_TEST_CASE(the_drag_of_the_tower_is_at_its_foot) {
   const auto foot_force = [&](const std::vector<std::string>& settings) {
     const Steady tower(io::parse_case("tower", bare_tower, settings));
@@ -453,6 +453,32 @@ BOOST_AUTO_TEST_CASE(the_drag_of_the_nacelle_is_at_the_foot_and_turns_the_yaw) {
   const Steady free = loaded("{joint: free, stiffness: 1e9}");
   const double angle = free.trim.solution.coefficients()(free.system.layout().yaw(), 0);
   BOOST_TEST(angle == -2.0 * across / stiffness, tolerance(1e-4));
+  // Turned by 40 degrees toward the wind: it comes from 10 degrees on the other side.
+  const Steady turned = loaded("{joint: prescribed, angle_deg: 40}");
+  const Eigen::VectorXd there =
+      turned.trim.solution.coefficients().col(0).segment(turned.system.layout().tower_root(), 6);
+  constexpr double degree = pi / 180.0;
+  const double own_along = 6.0 * pressure * std::pow(std::cos(10.0 * degree), 2);
+  const double own_across = 8.0 * pressure * std::pow(std::sin(10.0 * degree), 2);
+  const double c40 = std::cos(40.0 * degree);
+  const double s40 = std::sin(40.0 * degree);
+  BOOST_TEST(there(1) == c40 * own_across - s40 * own_along, tolerance(1e-5));
+  BOOST_TEST(there(2) == s40 * own_across + c40 * own_along, tolerance(1e-5));
+}
+
+/// On a spring along the wind the drag of the nacelle is a damper, c = rho C_d A v.
+BOOST_AUTO_TEST_CASE(the_drag_of_the_nacelle_damps_its_motion) {
+  constexpr double stiffness = 1e6;
+  const Steady mast(
+      io::parse_case("tower", bare_tower,
+                     {"wind.tower.drag_load=false", "tower.elements=1",
+                      "tower.support={stiffness: {u3: 1e6}, mass: 1000}",
+                      "wind.nacelle={areas: [8, 12, 5], drag: [1, 0.5, 2], center: [0, 2, 3]}"}));
+  double found = 0.0;
+  for (const analysis::Mode& mode : mast.constant_modes().modes)
+    if (!is_of_medium(mode) && mode.exponent.imag() > 0.1)
+      found = -2.0 * stiffness / std::norm(mode.exponent) * mode.exponent.real();
+  BOOST_TEST(found == 1.225 * 0.5 * 12.0 * std::sqrt(440.0), tolerance(1e-3));
 }
 
 // ---- the part of the air in the damping -------------------------------------------------------

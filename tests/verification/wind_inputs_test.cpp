@@ -88,6 +88,23 @@ BOOST_AUTO_TEST_CASE(parked_turbines_answer_to_every_change_of_the_wind) {
   }
 }
 
+/// A foot that turns about the vertical feels a wind that turns the other way.
+BOOST_AUTO_TEST_CASE(a_turned_foot_is_a_wind_turned_back) {
+  const std::vector<std::string> channels{"TwrBsFxt", "TwrBsFyt", "TwrBsMxt", "TwrBsMyt",
+                                          "TwrBsMzt", "RootMyc2", "YawBrMxp", "YawBrFyp"};
+  const Steady steady(io::read_case(
+      input_path("nrel5mw/land"),
+      {"gravity=0", "shaft.speed=0", "blades.pitch_deg=80", "blades.elements=3", "blades.order=2",
+       "tower.order=3", "aero.induction=none", "wind.speed=20", "wind.direction_deg=15",
+       "wind.upflow_deg=3", "wind.tower={sections: [[0, 6, 0.6], [87.6, 3.9, 0.6]]}",
+       "wind.nacelle={areas: [40, 30, 50], drag: 0.8, center: [0, 2, 2]}"}));
+  const Eigen::MatrixXd found =
+      slow_answers(steady, {"wind_direction", "base_rot_n3"}, channels);  // second: its value
+  for (Eigen::Index c = 0; c < found.rows(); ++c)
+    BOOST_TEST(std::abs(found(c, 0) + found(c, 1)) < 1e-6 * found.col(0).cwiseAbs().maxCoeff(),
+               channels[static_cast<std::size_t>(c)] << ": " << found(c, 0) << ", " << found(c, 1));
+}
+
 /// A turning rotor in axial wind, with every lag of the air.
 BOOST_AUTO_TEST_CASE(thrust_and_torque_answer_to_the_speed_of_the_wind) {
   const std::vector<std::string> channels{"RotThrust", "RotTorq", "RtAeroFxh"};

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "samara/components/tower_axes.hpp"
 #include "samara/elements/wind.hpp"
 #include "samara/math/rotation.hpp"
 #include "samara/math/types.hpp"
@@ -37,6 +38,24 @@ struct TurbineInputs {
   }
   Vec3<T> up() const { return at_foot(Vec3<T>::UnitX()); }
 };
+
+/// Components n1 n2 n3 of a vector in the axes of the tower's foot (n3, n1, n2), which turns with
+/// the inputs of a system that has them.
+template <class T, class System>
+Vec3<T> in_ground(const System& system, const Vec3<T>& foot) {
+  if constexpr (System::has_inputs)
+    return from_beam_order<T>(system.inputs().in_ground(foot));
+  else
+    return from_beam_order<T>(foot);
+}
+/// The reverse of in_ground.
+template <class T, class System>
+Vec3<T> at_foot(const System& system, const Vec3<T>& ground) {
+  if constexpr (System::has_inputs)
+    return system.inputs().at_foot(to_beam_order<T>(ground));
+  else
+    return to_beam_order<T>(ground);
+}
 
 /// Changes of the mean wind of a system with inputs; null for others.
 template <class T, class System>

@@ -32,10 +32,9 @@ class NacelleAir final : public Stated<NacelleAir> {
   static constexpr int values = 7;
 
   /// `yaw`: prescribed motion of a yaw that is not free.
-  template <class T>
-  Eigen::Matrix<T, values, 1> load_of(const Eigen::Matrix<T, arguments, 1>& x,
-                                      const elements::JointMotion& yaw, double t,
-                                      const elements::WindInputs<T>* change) const;
+  template <class T, class System>
+  Eigen::Matrix<T, values, 1> load_of(const System& system, const Eigen::Matrix<T, arguments, 1>& x,
+                                      const elements::JointMotion& yaw) const;
 
   const model::Turbine& turbine_;
   const Beam& tower_;

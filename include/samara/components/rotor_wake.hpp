@@ -79,8 +79,8 @@ class RotorWake final : public Stated<RotorWake> {
   void describe_part(Registry& registry, std::size_t shape, int sine);
   void connect_points();
   template <class T>
-  elements::DiskFlow<T> flow_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double t,
-                                const elements::WindInputs<T>* change = nullptr) const;
+  Vec3<T> wind_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double t,
+                  const elements::WindInputs<T>* change) const;
   template <class T>
   Eigen::Matrix<T, point_values, 1> point_terms(
       const PointBatch& batch, const Eigen::Matrix<T, point_arguments, 1>& x) const;

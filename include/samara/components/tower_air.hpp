@@ -27,9 +27,8 @@ class TowerAir final : public Stated<TowerAir> {
   static constexpr int arguments = 12;  ///< u, theta, V, Omega
 
   /// Force per length, components in a.
-  template <class T>
-  Vec3<T> load_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t,
-                  const elements::WindInputs<T>* change) const;
+  template <class T, class System>
+  Vec3<T> load_at(const System& system, int p, const Eigen::Matrix<T, arguments, 1>& x) const;
 
   const model::Turbine& turbine_;
   const Beam& tower_;

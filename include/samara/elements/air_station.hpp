@@ -106,6 +106,14 @@ struct HubPose {
   T speed = T(0);                   ///< angular velocity about n [rad/s]
 };
 
+/// The present values of a load, which no motion changes.
+template <class T, class Load>
+Load held(const Load& load) {
+  Load values = load;
+  for (Eigen::Index i = 0; i < values.size(); ++i) values(i) = T(math::plain_value(load(i)));
+  return values;
+}
+
 /// Motion of a station and the wind there.
 template <class T>
 struct StationMotion {

@@ -67,6 +67,7 @@ struct DiskFlow {
   T through;   ///< lambda, along the axis [m/s]
   T mean;      ///< w_m, mean induced velocity against the thrust [m/s]
   T share;     ///< of the carrying speed in V_T without the floor
+  T across;    ///< u_p^2, square of the wind in the plane of the disk [m^2/s^2]
 };
 
 /// From this share of the carrying speed on the floor has no effect.
@@ -80,17 +81,29 @@ DiskFlow<T> disk_flow(const Vec3<T>& wind, const T& mean_load, double least) {
   DiskFlow<T> flow;
   flow.mean = mean_load * T(2.0 / std::numbers::sqrt3);
   flow.through = wind(2) - flow.mean;
-  const T across = wind(0) * wind(0) + wind(1) * wind(1);
-  flow.speed = sqrt(T(across + flow.through * flow.through + T(least * least)));
+  flow.across = wind(0) * wind(0) + wind(1) * wind(1);
+  flow.speed = sqrt(T(flow.across + flow.through * flow.through + T(least * least)));
   const T along = flow.speed + math::smooth_abs(flow.through);
   flow.z1 = wind(0) / along;
   flow.z2 = wind(1) / along;
   // A floor keeps the states stable where the equations of small disturbances end.
   constexpr double floor = 0.2;
-  flow.share = (across + flow.through * (flow.through - flow.mean)) / (flow.speed * flow.speed);
+  flow.share =
+      (flow.across + flow.through * (flow.through - flow.mean)) / (flow.speed * flow.speed);
   flow.carrying = flow.speed * math::smooth_max(flow.share, T(floor), least_carrying_share - floor);
   return flow;
 }
+
+/// Whether the equations of small disturbances hold: the load changes the flow less than by a
+/// share, and does not reverse it. Climb, hover and edgewise flow are in the range.
+bool is_in_range(const DiskFlow<double>& flow, double least);
+
+/// The mean state t of a steady flow whose momentum balances a load: V_T t = `load` [m^2/s^2].
+struct SteadyWake {
+  double t = 0.0;  ///< [m/s]; at the end of the range where the load is beyond it
+  bool is_in_range = true;
+};
+SteadyWake find_steady_wake(const Vector3& wind, double load, double least);
 
 /// Terms of a row of alpha = L t: L_jn^rm (t_c, t_s), as (cosine, sine) of harmonic r. In complex
 /// form a = alpha_c - i alpha_s, t = t_c - i t_s, z = z1 + i z2:

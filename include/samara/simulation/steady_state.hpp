@@ -18,7 +18,12 @@ analysis::Trim solve_trim(const Scenario& scenario, const turbine::TurbineSystem
                           const analysis::TrimOptions& options, analysis::Observer& observer,
                           MPI_Comm comm = MPI_COMM_SELF, const analysis::Trim* near = nullptr);
 
-/// The same with the scenario's options. Adds a note if the result is rough.
+/// @throws ConvergenceError where a steady state is outside the range of the finite-state wake:
+/// a rotor that nearly stops the wind, or reverses it
+void require_wake_range(const turbine::TurbineSystem& system, const analysis::Trim& trim);
+
+/// solve_trim with the scenario's options, within the range of the models. Adds a note if the
+/// result is rough.
 analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem& system,
                          analysis::Observer& observer, MPI_Comm comm = MPI_COMM_SELF);
 
