@@ -159,8 +159,10 @@ void add_air(model::TurbineDefinition& d, Draw& draw) {
   wind.direction = draw.one_in(3) ? 0.5 * std::numbers::pi : draw.some(0.5);  // also edgewise
   wind.veer = draw.some(0.02);
   wind.upflow = draw.some(0.2);
-  if (d.has_tower && draw.one_in(3))
+  if (d.has_tower && draw.one_in(3)) {  // random blades are inside the tower now and then
     wind.tower = model::TowerFlowDefinition{{0.0, 3.0}, {0.2, 0.1}, {0.6, 0.7}};
+    wind.tower->potential = TowerPotential::none;
+  }
   if (d.has_tower && draw.one_in(3))
     wind.nacelle = model::NacelleDragDefinition{{0.4, 0.2, 0.3}, {1.0, 0.8, 0.0}, {0.1, -0.2, 0.3}};
   d.wind = wind;
