@@ -10,6 +10,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "samara/math/rotation.hpp"
+
 #include "air_case.hpp"
 #include "record.hpp"
 
@@ -70,7 +72,7 @@ Load load_of(const Report& report) {
   const Vector3 axis = report.hub_axes.col(1);
   const Vector3 arm = report.place - report.hub_place;
   const Vector3 e_r = (arm - axis * axis.dot(arm)).normalized();
-  const Vector3 e_t = axis.cross(e_r);
+  const Vector3 e_t = math::cross<double>(axis, e_r);
   // The blade leans upwind by the cone.
   const Vector3 normal = axis * std::cos(cone) + e_r * std::sin(cone);
   return {report.force.dot(normal), report.force.dot(e_t)};
