@@ -63,17 +63,17 @@ BOOST_AUTO_TEST_CASE(blades_of_a_runaway_rotor_flutter) {
   const auto runaway = [](double rpm) {
     io::Case input = io::read_case(
         input_path("iea15mw/land"),
-        {"gravity=0", "shaft.tilt_deg=0", "wind.speed=4", "aero.inflow=equilibrium",
+        {"gravity=0", "shaft.tilt_deg=0", "wind.speed=10", "aero.inflow=equilibrium",
          "blades.elements=3", "blades.order=3", "shaft.speed_rpm=" + std::to_string(rpm)});
     input.turbine.has_tower = false;
     return Steady(input);
   };
-  const double edge = edge_of(runaway, 9.0, 24.0, 0.1);
+  const double edge = edge_of(runaway, 12.0, 16.0, 0.1);
   BOOST_TEST_MESSAGE("edge at " << edge << " rpm");
   const Steady beyond = runaway(edge + 0.5);
   const FoundMode found = fastest_growth(beyond);
   BOOST_TEST_MESSAGE(found.mode.label << " " << found.mode.exponent);
-  require_exponent(beyond.system, beyond.trim, found, {beyond.system.period(), 1200, 5}, 1e-2);
+  require_exponent(beyond.system, beyond.trim, found, {beyond.system.period(), 600, 4}, 1e-2);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(thrust_is_the_momentum_of_the_flow_through_the_disk) {
     const Steady rotor(
         rotor_at_20({"wind.direction_deg=" + yaw, "trim.harmonics=6", "blades.order=1"}));
     const Means means = find_means(rotor);
-    BOOST_TEST(means.thrust > 1e5);
+    BOOST_TEST(means.thrust > 5e4);
     Figures{"A7", "momentum theory", ""}.check_relative("thrust [N], wind at " + yaw + " deg",
                                                         means.thrust, means.balance, 1e-6);
   }
@@ -99,6 +99,7 @@ BOOST_AUTO_TEST_CASE(wake_without_load_decays_with_the_rates_of_its_shapes) {
   for (const double rate : {3.4534, 6.7227, 14.5549, 4.7687, 8.2356, 17.6898})
     expected.insert(expected.end(), 2, rate);
   std::ranges::sort(rates);
+  for (const double rate : rates) BOOST_TEST_MESSAGE("rate " << rate);
   std::ranges::sort(expected);
   BOOST_REQUIRE(rates.size() == expected.size());
   for (std::size_t i = 0; i < rates.size(); ++i)
@@ -175,7 +176,7 @@ BOOST_AUTO_TEST_CASE(blade_passage_and_revolution_agree_with_states_of_the_wake)
       input_path("nrel5mw/land"),
       {"wind.speed=14", "blades.pitch_deg=8.7", "shaft.speed_rpm=12.1", "wind.height=90",
        "wind.shear.power=0.2", "wind.direction_deg=20", "blades.order=1", "tower.order=3",
-       "trim.harmonics=8", "aero.inflow=peters_he"}));
+       "trim.harmonics=12", "trim.tolerance=1e-12", "aero.inflow=peters_he"}));
   require_same_exponents(turbine.floquet({72, analysis::FloquetPeriod::automatic, 6}),
                          turbine.floquet({72, analysis::FloquetPeriod::full, 6}), 1e-8);
 }
