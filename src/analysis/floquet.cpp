@@ -290,11 +290,14 @@ class Analysis {
       if (pairs.values[i].imag() < 0.0) continue;  // its conjugate is kept
       const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
       const Complex exponent = principal_exponent(pairs.values[i]);
-      if (pairs.values[i].imag() > 0.0 && is_zero(exponent)) {
-        // Round-off has split a double zero into a complex pair. It is kept as two real modes, like
-        // a double zero that round-off splits into two real exponents.
-        keep(pairs.values[i].real(), real_part(vector), i);
-        keep(pairs.values[i].real(), real_part(vector), i);
+      const bool is_nearly_real =
+          is_zero(exponent) || std::abs(exponent.imag()) < least_imaginary * std::abs(exponent);
+      if (pairs.values[i].imag() > 0.0 && is_nearly_real) {
+        // Round-off has split a double real exponent into a complex pair. It is kept as two real
+        // modes, like a double one that round-off splits into two real exponents.
+        const auto [one, other] = real_parts(vector);
+        keep(pairs.values[i].real(), one, i);
+        keep(pairs.values[i].real(), other, i);
       } else {
         keep(pairs.values[i], vector, i);
       }
@@ -316,6 +319,17 @@ class Analysis {
       if (leading_states_[i] >= 0)
         set_.modes[i].state = parts.owners[static_cast<std::size_t>(leading_states_[i])];
     }
+  }
+
+  /// Two real vectors in the plane of a complex one; the same one where there is no plane.
+  static std::pair<Eigen::VectorXd, Eigen::VectorXd> real_parts(const Eigen::VectorXcd& vector) {
+    constexpr double least = 1e-6;
+    Index largest = 0;
+    const double size = vector.cwiseAbs().maxCoeff(&largest);
+    const Eigen::VectorXcd turned = vector * (std::conj(vector(largest)) / size);
+    const Eigen::VectorXd one = turned.real();
+    const Eigen::VectorXd other = turned.imag();
+    return {one, other.norm() > least * one.norm() ? other : one};
   }
 
   // ---- identification --------------------------------------------------------------------------
