@@ -15,13 +15,16 @@ using namespace samara::test;
 
 namespace {
 
-/// The mode of a structure that grows most.
+/// The mode of a structure that grows most. Axial modes are undamped, and much faster.
 FoundMode fastest_growth(const Steady& steady) {
+  constexpr double fastest = 60.0;  // [rad/s]
   const analysis::ModeSet set = steady.constant_modes();
   FoundMode found;
   for (std::size_t i = 0; i < set.modes.size(); ++i) {
     const analysis::Mode& mode = set.modes[i];
-    if (!mode.resolved || is_of_medium(mode) || mode.exponent.imag() < 1.0) continue;
+    if (!mode.resolved || is_of_medium(mode) || mode.exponent.imag() < 1.0 ||
+        mode.exponent.imag() > fastest)
+      continue;
     if (found.shape.size() > 0 && mode.exponent.real() < found.mode.exponent.real()) continue;
     found = {mode, set.shapes[i].col(0)};
   }
@@ -68,7 +71,7 @@ BOOST_AUTO_TEST_CASE(blades_of_a_runaway_rotor_flutter) {
     input.turbine.has_tower = false;
     return Steady(input);
   };
-  const double edge = edge_of(runaway, 12.0, 16.0, 0.1);
+  const double edge = edge_of(runaway, 13.0, 15.0, 0.1);
   BOOST_TEST_MESSAGE("edge at " << edge << " rpm");
   const Steady beyond = runaway(edge + 0.5);
   const FoundMode found = fastest_growth(beyond);
