@@ -290,11 +290,15 @@ class Analysis {
       if (pairs.values[i].imag() < 0.0) continue;  // its conjugate is kept
       const Eigen::VectorXcd vector = pairs.vectors.col(static_cast<Eigen::Index>(i));
       const Complex exponent = principal_exponent(pairs.values[i]);
-      const bool is_nearly_real =
-          is_zero(exponent) || std::abs(exponent.imag()) < least_imaginary * std::abs(exponent);
-      if (pairs.values[i].imag() > 0.0 && is_nearly_real) {
-        // Round-off has split a double real exponent into a complex pair. It is kept as two real
-        // modes, like a double one that round-off splits into two real exponents.
+      const bool is_split = pairs.values[i].imag() > 0.0;
+      if (is_split && is_zero(exponent)) {
+        // Round-off has split a double zero into a complex pair. It is kept as two real modes, like
+        // a double zero that round-off splits into two real exponents.
+        keep(pairs.values[i].real(), real_part(vector), i);
+        keep(pairs.values[i].real(), real_part(vector), i);
+      } else if (is_split &&
+                 std::abs(exponent.imag()) < least_imaginary * std::abs(exponent.real())) {
+        // The same of a double decay, such as those of equal states of the air.
         const auto [one, other] = real_parts(vector);
         keep(pairs.values[i].real(), one, i);
         keep(pairs.values[i].real(), other, i);
