@@ -70,8 +70,13 @@ class Validation {
         break;
       case Analysis::modes:
       case Analysis::trim:
+        check_steady();
+        break;
       case Analysis::linearize:
         check_steady();
+        if (scenario_.linearize.options.multiblade && turbine_.blades.count < 3)
+          add("linearize.forms",
+              "multiblade coordinates are for three and more blades; hint: lyapunov_floquet, hill");
         break;
       case Analysis::floquet:
         check_period();
