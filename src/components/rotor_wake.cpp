@@ -28,8 +28,9 @@ template <class T>
 Disk<T> disk_of(const Vector3& upward, const Vec3<T>& axis) {
   using math::dot;
   using std::sqrt;
-  const Vec3<T> up = upward.cast<T>();
-  const Vec3<T> inside = up - axis * dot(up, axis);
+  T along(0.0);  // the axis
+  for (int i = 0; i < 3; ++i) along += axis(i) * T(upward(i));
+  const Vec3<T> inside = upward.cast<T>() - axis * along;
   const Vec3<T> e1 = inside / T(sqrt(dot(inside, inside)));
   return {e1, math::cross(axis, e1), axis};
 }
