@@ -24,7 +24,9 @@ struct ScanCase {
 const std::vector<ScanCase>& scan_cases() {
   const std::string inputs = std::string(SAMARA_SOURCE_DIR) + "/inputs/";
   static const std::vector<ScanCase> cases{
-      {"NREL 5 MW", inputs + "nrel5mw/land.yaml", {"blades.order=3", "tower.order=4"}},
+      {"NREL 5 MW",
+       inputs + "nrel5mw/land.yaml",
+       {"blades.elements=3", "blades.order=3", "tower.order=4"}},
       {"AWT-27",
        std::string(SAMARA_SOURCE_DIR) + "/tests/verification/files/awt27.yaml",
        {"blades.elements=4", "tower.elements=3", "tower.order=3"}},
