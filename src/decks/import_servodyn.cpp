@@ -13,19 +13,23 @@ constexpr double percent = 0.01;
 constexpr double slowest = 0.5;
 constexpr double fastest = 4.0;
 
+/// OpenFAST's decks have this where a key is not used.
+constexpr double unused_rpm = 9999.9;
+
 /// The rated speed of the rotor, where it may be that of this deck.
 bool set_rated_speed(OpenfastImport& import, Deck& servo, const char* key, double generator_speed,
                      double rotor_speed) {
   const double rated = generator_speed / std::abs(import.turbine.shaft.gear_ratio);
-  constexpr double placeholder = 9999.9;  // rpm, of values that are not used
-  const bool is_far = rotor_speed > 0.0
-                          ? !(rated > slowest * rotor_speed && rated < fastest * rotor_speed)
-                          : servo.number(key) == placeholder;
-  if (is_far) {
+  const bool is_far =
+      rotor_speed > 0.0 && !(rated > slowest * rotor_speed && rated < fastest * rotor_speed);
+  const bool is_unused = servo.number(key) == unused_rpm;
+  if (is_far || is_unused) {
+    const std::string why = is_unused ? "the value of keys that are not used"
+                                      : "a speed of the generator that is far from RotSpeed times "
+                                        "GBRatio";
     import.warn(servo.place_of(key),
-                std::string(key) +
-                    ": warning: a speed of the generator that is far from RotSpeed times GBRatio, "
-                    "so that the law of the torque is left out; hint: operation of the case");
+                std::string(key) + ": warning: " + why +
+                    ", so that the law of the torque is left out; hint: operation of the case");
     return false;
   }
   import.operation.rated_speed = rated;

@@ -61,14 +61,9 @@ SpanwiseAir find_spanwise_air(const turbine::TurbineSystem& system, const analys
     air.quantities.push_back({quantity.name, quantity.unit, quantity.description,
                               std::vector<double>(size, 0.0), std::vector<double>(size, infinity),
                               std::vector<double>(size, -infinity)});
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const int instants = instants_of_means(trim);
-  for (int i = 0; i < instants; ++i) {
-    const double t = system.period() * i / instants;
-    trim.solution.evaluate(t, z.get(), z_dot.get());
-    const Reports reports = system.equations().air_report<double>(
-        t, petsc::values_of(z.get()), petsc::values_of(z_dot.get()), {});
+  visit_instants(system, trim, [&](double t, Vec z, Vec z_dot) {
+    const Reports reports =
+        system.equations().air_report<double>(t, petsc::values_of(z), petsc::values_of(z_dot), {});
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       SpanwiseQuantity& own = air.quantities[q];
       std::size_t at = 0;
@@ -81,9 +76,9 @@ SpanwiseAir find_spanwise_air(const turbine::TurbineSystem& system, const analys
           ++at;
         }
     }
-  }
+  });
   for (SpanwiseQuantity& quantity : air.quantities)
-    for (double& mean : quantity.mean) mean /= instants;
+    for (double& mean : quantity.mean) mean /= instants_of_means(trim);
   return air;
 }
 

@@ -89,8 +89,7 @@ bool has_rotor_wake(const turbine::TurbineSystem& system) {
 
 constexpr char wake_hint[] =
     "; the finite-state wake holds up to 0.41 of an axial wind, a thrust coefficient of 0.97; "
-    "hint: "
-    "aero.inflow: oye or equilibrium, or a smaller thrust";
+    "hint: aero.inflow: oye or equilibrium, or a smaller thrust";
 
 /// Message where the finite-state wake has no steady state because the thrust is too large. The
 /// thrust is that of the balance of momentum. Empty: another reason, or that trim fails as well.
@@ -152,42 +151,43 @@ analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem&
 void require_wake_range(const turbine::TurbineSystem& system, const analysis::Trim& trim) {
   if (!has_rotor_wake(system)) return;
   const double least = system.turbine().air->rotor.least_speed;
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const int instants = instants_of_means(trim);
-  for (int i = 0; i < instants; ++i) {
-    const double t = system.period() * i / instants;
-    trim.solution.evaluate(t, z.get(), z_dot.get());
+  visit_instants(system, trim, [&](double t, Vec z, Vec z_dot) {
     const elements::DiskFlow<double> flow =
-        system.equations()
-            .disk_flow(t, petsc::values_of(z.get()), petsc::values_of(z_dot.get()))
-            .value();
-    if (elements::is_in_range(flow, least)) continue;
+        system.equations().disk_flow(t, petsc::values_of(z), petsc::values_of(z_dot)).value();
+    if (elements::is_in_range(flow, least)) return;
     throw ConvergenceError("trim: aero.inflow: peters_he: the mean induced velocity is " +
                            general(flow.mean, 3) + " m/s in a wind of " +
                            general(flow.through + flow.mean, 3) + " m/s along the shaft" +
                            wake_hint);
-  }
+  });
 }
 
 int instants_of_means(const analysis::Trim& trim) {
   return trim.solution.is_constant() ? 1 : 6 * trim.solution.harmonics() + 1;
 }
 
-std::vector<double> mean_channels(const turbine::TurbineSystem& system, const analysis::Trim& trim,
-                                  const std::vector<std::string>& names) {
-  const turbine::TurbineChannels channels(system, {}, names);
+void visit_instants(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                    const std::function<void(double t, Vec z, Vec z_dot)>& visit) {
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const int instants = instants_of_means(trim);
-  std::vector<double> means(names.size(), 0.0);
-  std::vector<double> values(names.size());
   for (int i = 0; i < instants; ++i) {
     const double t = system.period() * i / instants;
     trim.solution.evaluate(t, z.get(), z_dot.get());
-    channels.evaluate(t, z.get(), z_dot.get(), values);
-    for (std::size_t j = 0; j < means.size(); ++j) means[j] += values[j] / instants;
+    visit(t, z.get(), z_dot.get());
   }
+}
+
+std::vector<double> mean_channels(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                                  const std::vector<std::string>& names) {
+  const turbine::TurbineChannels channels(system, {}, names);
+  const int instants = instants_of_means(trim);
+  std::vector<double> means(names.size(), 0.0);
+  std::vector<double> values(names.size());
+  visit_instants(system, trim, [&](double t, Vec z, Vec z_dot) {
+    channels.evaluate(t, z, z_dot, values);
+    for (std::size_t j = 0; j < means.size(); ++j) means[j] += values[j] / instants;
+  });
   return means;
 }
 

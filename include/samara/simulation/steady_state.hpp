@@ -1,6 +1,7 @@
 // The periodic steady state of a scenario, and its accuracy.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem&
 /// Number of equally spaced instants whose mean integrates products of two harmonics of a steady
 /// state exactly over a revolution: 6 H + 1 with H harmonics.
 int instants_of_means(const analysis::Trim& trim);
+
+/// Visits the steady state at these instants.
+void visit_instants(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                    const std::function<void(double t, Vec z, Vec z_dot)>& visit);
 
 /// Means of channels over a revolution, each in the unit of its channel.
 std::vector<double> mean_channels(const turbine::TurbineSystem& system, const analysis::Trim& trim,
