@@ -197,10 +197,11 @@ std::string searched_words(const ModeSet& set) {
          (region.low > 0.0 ? "from " + hertz(region.low) + " to " : std::string("up to ")) +
          hertz(region.high) + ", growth and decay up to " + general(region.decay, 3) + " 1/s" +
          (region.is_counted ? "; none is missing there" : "") + "; other modes are not known" +
+         (set.medium_states > 0 ? "; exponents of the air are left out" : "") +
          (static_cast<std::size_t>(region.slowest_decays) > set.modes.size()
               ? "\n" + std::to_string(region.slowest_decays) +
                     " modes were asked for; the others decay too fast, or are too fast for the "
-                    "steps of the search"
+                    "search"
               : "");
 }
 

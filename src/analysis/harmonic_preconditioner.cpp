@@ -130,20 +130,10 @@ const HarmonicPreconditioner::Chains& HarmonicPreconditioner::chains_of(int harm
 
 /// Rows and columns: coefficients of exp(i k Omega t), k = -H ... H.
 Eigen::MatrixXcd HarmonicPreconditioner::scaled_block(const Place& place) const {
-  const HarmonicTangents::Coefficients tangents = tangents_.coefficients(place);
   const int harmonics = tangents_.harmonics();
-  Eigen::MatrixXcd block(width_, width_);
-  for (int k = -harmonics; k <= harmonics; ++k) {
-    const Complex rate = shift_ + Complex(0.0, k * tangents_.rate());
-    block.col(k + harmonics) = tangents.stiffness.segment(harmonics - k, width_) +
-                               rate * tangents.mass.segment(harmonics - k, width_);
-  }
-  block *=
-      (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_ + width_ - 1);
-  for (int k = -harmonics; k <= harmonics; ++k) {
-    if (!tangents_.has(place.row, k)) block.row(k + harmonics).setZero();
-    if (!tangents_.has(place.column, k)) block.col(k + harmonics).setZero();
-  }
+  Eigen::MatrixXcd block =
+      (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_ + width_ - 1) *
+      tangents_.coupling(place, shift_);
   if (tangents_.is_held(place.column)) {
     block.col(harmonics).setZero();
     if (tangents_.holds(place.row, place.column))

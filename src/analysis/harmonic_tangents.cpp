@@ -381,6 +381,21 @@ HarmonicTangents::Coefficients HarmonicTangents::coefficients(const Place& place
   return {to_coefficients_ * sampled.head(samples), to_coefficients_ * sampled.tail(samples)};
 }
 
+Eigen::MatrixXcd HarmonicTangents::coupling(const Place& place, std::complex<double> shift) const {
+  const Coefficients tangents = coefficients(place);
+  Eigen::MatrixXcd block(width_, width_);
+  for (int k = -harmonics_; k <= harmonics_; ++k) {
+    const std::complex<double> rate = shift + std::complex<double>(0.0, k * this->rate());
+    block.col(k + harmonics_) = tangents.stiffness.segment(harmonics_ - k, width_) +
+                                rate * tangents.mass.segment(harmonics_ - k, width_);
+  }
+  for (int k = -harmonics_; k <= harmonics_; ++k) {
+    if (!has(place.row, k)) block.row(k + harmonics_).setZero();
+    if (!has(place.column, k)) block.col(k + harmonics_).setZero();
+  }
+  return block;
+}
+
 Eigen::MatrixXd HarmonicTangents::means() const {
   const Eigen::Index samples = values_of_.rows();
   Eigen::MatrixXd means(2, sampled_.cols());

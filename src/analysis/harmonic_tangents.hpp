@@ -45,6 +45,9 @@ class HarmonicTangents {
 
   Eigen::Index size() const { return size_; }  ///< unknowns of the map
   int sectors() const { return sectors_; }     ///< Q; 1: all blades are in the map
+  const system::Unknown& unknown(Eigen::Index number) const {
+    return system_.unknowns()[static_cast<std::size_t>(kept_[static_cast<std::size_t>(number)])];
+  }
   /// Whether an unknown has a harmonic k.
   bool has(Eigen::Index unknown, int harmonic) const {
     const int remainder = remainder_[static_cast<std::size_t>(unknown)];
@@ -87,6 +90,9 @@ class HarmonicTangents {
     Eigen::VectorXcd mass;
   };
   Coefficients coefficients(const Place& place) const;
+  /// Couplings of the coefficients of exp(i k Omega t), k = -H ... H, at a place: those of
+  /// K + M d/dt + `shift` M. Zero for harmonics that the row or the column does not have.
+  Eigen::MatrixXcd coupling(const Place& place, std::complex<double> shift) const;
   /// Means of K and M over the period, 2 x places.
   Eigen::MatrixXd means() const;
   /// The base frequency [rad/s]; without a period 2 pi.

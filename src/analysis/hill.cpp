@@ -38,8 +38,33 @@ constexpr int least_harmonics = 4;
 constexpr double most_increase = 4.0;
 constexpr int most_harmonics = 60;
 /// Residual of a mode in the time domain that is wanted, and the largest one of a resolved mode.
-constexpr double wanted_residual = 1e-8;
-constexpr double largest_residual = 1e-6;
+struct Accuracy {
+  double wanted;
+  double largest;
+};
+constexpr Accuracy of_residual{1e-8, 1e-6};
+/// The same for the change of an exponent from one number of harmonics to twice as many, with a
+/// medium.
+constexpr Accuracy of_change{3e-4, 1e-2};
+constexpr double increase_with_medium = 2.0;
+/// Wanted change of a growth, relative to itself or to this part of the exponent.
+constexpr double wanted_change = 1e-3;
+constexpr double least_growth = 0.01;
+/// The first shift, relative to the rotor speed: a medium has decays at 0 and 1, where its answer
+/// varies fast.
+constexpr double between_copies = 1.5;
+/// The region of a search without the states of a medium ends between the decays of its pairs, at
+/// this factor of the largest one at most.
+constexpr double beyond_decays = 1.5;
+/// Where a region cannot be counted: the parts of its decay between which the next one ends, and
+/// the number of regions.
+constexpr double narrowest = 0.2;
+constexpr double narrower = 0.5;
+constexpr int most_counts = 5;
+/// The slowest decays are known where they have frequencies in this part of the range, or where
+/// this many times as many modes were found.
+constexpr double part_of_slowest = 0.6;
+constexpr double most_of_slowest = 3.0;
 /// Relative residual of eigenpairs in their truncated series: with the first number of harmonics,
 /// which may not be the last, and the one that is wanted.
 constexpr double first_tolerance = 1e-7;
@@ -61,6 +86,8 @@ constexpr int most_pairs = 100;
 constexpr double edge_slack = 1.0;
 constexpr double same_copy = 0.25;
 constexpr double same_exponent = 1e-6;
+/// Relative to an exponent: distance of copies of a mode with a medium.
+constexpr double same_with_medium = 1e-2;
 /// Relative to the rotor speed: distance of two exponents between which the edge of a region may
 /// be.
 constexpr double least_gap = 0.01;
@@ -106,7 +133,7 @@ class Analysis {
       std::optional<HillPencil> pencil;
       ranks_.attempt([&] { search(pencil); });
       if (!pencil) return std::nullopt;
-      if (options_.least_damped == 0) count_missing(*pencil);
+      if (options_.least_damped == 0 || has_medium_) count_missing(*pencil);
     }
     {
       const petsc::Stage stage("Hill: refinement");
@@ -128,10 +155,12 @@ class Analysis {
       pencil.reset();
       return;
     }
+    has_medium_ = pencil->has_medium();
+    search_harmonics_ = harmonics;
     samples_ = std::max(shape_samples, 4 * harmonics + 2);
     sectors_ = pencil->sectors();
     nearest_ = sectors_ / 2;
-    if (options_.least_damped > 0) {
+    if (options_.least_damped > 0 && !has_medium_) {
       search_decays();
       return;
     }
@@ -141,6 +170,7 @@ class Analysis {
     else
       search_upwards(search);
     if (!options_.near_hz) lower_edge();
+    if (has_medium_) lower_decay(*pencil);
     // Slow modes have no larger decay: those of strong damping are left out.
     region_.decay = std::min(region_.decay, region_.high);
     std::erase_if(found_, [this](const Candidate& candidate) {
@@ -154,9 +184,15 @@ class Analysis {
   void count_missing(HillPencil& pencil) {
     for (double* value : {&region_.low, &region_.high, &region_.decay}) ranks_.share(0, *value);
     ranks_.share(0, all_found_);
-    const HillSearch::Missing missing =
-        HillSearch(pencil).count_missing(region_, all_found_, ranks_);
-    region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
+    for (int attempt = 1;; ++attempt) {
+      const HillSearch::Missing missing =
+          HillSearch(pencil).count_missing(region_, all_found_, ranks_);
+      region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
+      if (region_is_counted_ || !has_medium_ || attempt == most_counts) return;
+      // Modes with strong damping may not be told from those of the medium.
+      region_.decay = middle_of_gap(pencil, narrowest * region_.decay, narrower * region_.decay);
+      ranks_.share(0, region_.decay);
+    }
   }
 
   /// Finds the motions of slowest decay by integration, with as many steps as these need.
@@ -218,13 +254,15 @@ class Analysis {
   /// the exponents of the steps have errors. The range becomes theirs.
   void leave_slowest_decays() {
     // Neighbours of those that the search has found.
-    std::erase_if(modes_, [this](const Candidate& mode) {
-      const Complex exponent = principal(mode.pair.exponent);
-      return std::none_of(sought_.begin(), sought_.end(), [&](Complex other) {
-        return std::abs(exponent - principal(other)) < same_motion * speed_;
+    if (!has_medium_)
+      std::erase_if(modes_, [this](const Candidate& mode) {
+        const Complex exponent = principal(mode.pair.exponent);
+        return std::none_of(sought_.begin(), sought_.end(), [&](Complex other) {
+          return std::abs(exponent - principal(other)) < same_motion * speed_;
+        });
       });
-    });
-    region_is_counted_ = static_cast<int>(modes_.size()) >= expected_;
+    region_is_counted_ =
+        (region_is_counted_ || !has_medium_) && static_cast<int>(modes_.size()) >= expected_;
     std::vector<double> decays;
     double growth = 0.0;
     for (const Candidate& mode : modes_) {
@@ -262,9 +300,10 @@ class Analysis {
 
   void search_upwards(HillSearch& search) {
     region_.decay = std::numeric_limits<double>::infinity();
-    double frequency = speed_;
-    int count = std::max(least_pairs, std::min(options_.modes + margin_pairs, most_pairs));
-    while (centred() < options_.modes) {
+    double frequency = has_medium_ ? between_copies * speed_ : speed_;
+    const int wanted = std::max(options_.modes, options_.least_damped);
+    int count = std::max(least_pairs, std::min(wanted + margin_pairs, most_pairs));
+    while (!is_enough(region_.high)) {
       const HillRegion region = search.find(frequency, count);
       if (region.low > region_.high || region.decay <= 0.0) {
         if (region.low > region_.high) frequency = 0.5 * (frequency + region_.high);
@@ -314,8 +353,13 @@ class Analysis {
   Complex exponent_of(const Candidate& candidate) const {
     return candidate.pair.exponent + Complex(0.0, candidate.mode.harmonic * speed_);
   }
+  const Accuracy& accuracy() const { return has_medium_ ? of_change : of_residual; }
   double modulus_of(const Candidate& candidate) const { return std::abs(exponent_of(candidate)); }
 
+  /// With an even number of blades, a mode in which they move in opposite directions has two pairs.
+  double weight_of(const Candidate& candidate) const {
+    return 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
+  }
   /// Approximate number of modes that the search has found, with moduli of exponents from the lower
   /// edge to `high`, less the margin.
   int centred(double high) const {
@@ -324,7 +368,7 @@ class Analysis {
       const double modulus = modulus_of(candidate);
       if (is_centred(candidate) && modulus < high - margin() &&
           (region_.low == 0.0 || modulus > region_.low + margin()))
-        count += 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
+        count += weight_of(candidate);
     }
     return static_cast<int>(count);
   }
@@ -339,11 +383,79 @@ class Analysis {
     for (std::size_t i = 1; i < frequencies.size(); ++i) {
       const double edge = 0.5 * (frequencies[i - 1] + frequencies[i]);
       if (frequencies[i] - frequencies[i - 1] < least_gap * speed_ || edge > region_.high ||
-          centred(edge) < options_.modes)
+          !is_enough(edge))
         continue;
       region_.high = edge;
       return;
     }
+  }
+
+  /// Whether the search has found what is wanted below an edge.
+  bool is_enough(double high) const {
+    if (options_.least_damped == 0) return centred(high) >= options_.modes;
+    const std::optional<SlowestDecays> slowest = slowest_decays(high);
+    return slowest && (slowest->highest < part_of_slowest * (high - margin()) ||
+                       slowest->found >= most_of_slowest * options_.least_damped);
+  }
+
+  /// The wanted modes of slowest decay among those that the search has found below an edge.
+  struct SlowestDecays {
+    double decay = 0.0;    ///< of the last one [1/s]
+    double highest = 0.0;  ///< modulus of an exponent [rad/s]
+    double found = 0.0;    ///< number of all modes
+  };
+  std::optional<SlowestDecays> slowest_decays(double high) const {
+    std::vector<const Candidate*> below;
+    for (const Candidate& candidate : found_)
+      if (is_centred(candidate) && modulus_of(candidate) < high - margin())
+        below.push_back(&candidate);
+    std::ranges::stable_sort(below, {},
+                             [](const Candidate* one) { return -one->pair.exponent.real(); });
+    SlowestDecays slowest;
+    for (const Candidate* candidate : below) {
+      if (slowest.found < options_.least_damped) {
+        slowest.decay = -candidate->pair.exponent.real();
+        slowest.highest = std::max(slowest.highest, modulus_of(*candidate));
+      }
+      slowest.found += weight_of(*candidate);
+    }
+    if (slowest.found < options_.least_damped) return std::nullopt;
+    return slowest;
+  }
+
+  /// Lowers the decay of the region to what the modes need, to the middle of the widest gap. (Next
+  /// to an exponent of the medium alone, the determinant varies fast.)
+  void lower_decay(const HillPencil& pencil) {
+    double needed = least_gap * speed_;
+    const std::optional<SlowestDecays> slowest =
+        options_.least_damped > 0 ? slowest_decays(region_.high) : std::nullopt;
+    for (const Candidate& candidate : found_) {
+      const double decay = std::abs(candidate.pair.exponent.real());
+      if (is_centred(candidate) && modulus_of(candidate) < region_.high &&
+          (!slowest || decay <= slowest->decay || candidate.pair.exponent.real() > 0.0))
+        needed = std::max(needed, decay);
+    }
+    region_.decay = middle_of_gap(pencil, needed, std::min(beyond_decays * needed, region_.decay));
+  }
+
+  /// Between the decays of exponents that the search has found, and of those of the medium.
+  double middle_of_gap(const HillPencil& pencil, double least, double largest) const {
+    std::vector<double> decays{least, largest};
+    const auto add = [&](Complex exponent) {
+      const double decay = std::abs(exponent.real());
+      if (decay > least && decay < largest) decays.push_back(decay);
+    };
+    for (const Complex exponent : all_found_) add(exponent);
+    for (const Complex exponent : pencil.exponents_of_medium()) add(exponent);
+    std::ranges::sort(decays);
+    double widest = 0.0;
+    double middle = largest;
+    for (std::size_t i = 1; i < decays.size(); ++i)
+      if (const double gap = decays[i] - decays[i - 1]; gap > widest) {
+        widest = gap;
+        middle = 0.5 * (decays[i] + decays[i - 1]);
+      }
+    return middle;
   }
 
   /// Whether a pair is that of its copies that is identified next to its own harmonic. (With an
@@ -378,14 +490,19 @@ class Analysis {
     for (const Candidate& candidate : found_)
       if (is_chosen(candidate)) pairs.push_back(candidate.pair);
     found_.clear();
-    refine(groups_of(std::move(pairs), speed_));
+    std::vector<HillGroup> groups = groups_of(std::move(pairs), speed_);
+    if (has_medium_)  // the search has eigenpairs with its number of harmonics
+      for (HillGroup& group : groups)
+        for (const HillPair& pair : group.pairs) group.before_exponents.push_back(pair.exponent);
+    refine(std::move(groups));
   }
 
   /// Adds harmonics until the residuals are small, or do not become smaller.
   void refine(std::vector<HillGroup> groups) {
     share_groups(ranks_, groups);
     std::vector<Candidate> doubtful;
-    harmonics_ = std::max(least_harmonics, solution_.harmonics());
+    harmonics_ = has_medium_ ? std::max(least_harmonics, 2 * search_harmonics_)
+                             : std::max(least_harmonics, solution_.harmonics());
     int added = 0;  // harmonics, since the attempt before
     double tolerance = first_tolerance;
     while (!groups.empty()) {
@@ -409,10 +526,14 @@ class Analysis {
         const double residual = groups[g].residual();
         if (is_done[g] != 0) {
           for (Candidate& member : members[g])
-            (member.residual <= largest_residual ? modes_ : doubtful).push_back(std::move(member));
+            (member.residual <= accuracy().largest ? modes_ : doubtful)
+                .push_back(std::move(member));
         } else {
           largest = std::max(largest, residual);
           groups[g].before = residual;
+          groups[g].before_exponents.clear();
+          for (const Candidate& member : members[g])
+            groups[g].before_exponents.push_back(member.pair.exponent);
           for (Candidate& member : members[g]) groups[g].pairs.push_back(std::move(member.pair));
           left.push_back(std::move(groups[g]));
         }
@@ -420,7 +541,9 @@ class Analysis {
       groups = std::move(left);
       // The residual falls by the same factor with each harmonic.
       if (!groups.empty()) {
-        const double factor = std::log(0.3 * wanted_residual) / std::log(std::min(largest, 0.9));
+        const double factor =
+            has_medium_ ? increase_with_medium
+                        : std::log(0.3 * accuracy().wanted) / std::log(std::min(largest, 0.9));
         int next = std::min(
             most_harmonics,
             static_cast<int>(
@@ -437,7 +560,7 @@ class Analysis {
 
   /// Identifies the eigenpairs of a group, and takes them from it.
   std::vector<Candidate> take_members(HillGroup& group) {
-    const bool is_found = group.truncated_residual <= largest_residual;
+    const bool is_found = group.truncated_residual <= of_residual.largest;
     std::vector<Candidate> members;
     for (std::size_t i = 0; i < group.pairs.size(); ++i) {
       members.push_back({std::move(group.pairs[i]), {}, {}, group.residuals[i], is_found});
@@ -450,14 +573,20 @@ class Analysis {
   /// Whether more harmonics are not needed, or of no use. `added`: since the attempt before.
   bool is_last(const HillGroup& group, const std::vector<Candidate>& members, int added) const {
     const double residual = group.residual();
-    if (residual <= wanted_residual || harmonics_ == most_harmonics) return true;
+    const bool has_growth = std::ranges::all_of(members, [this](const Candidate& one) {
+      const Complex exponent = one.pair.exponent;
+      const double growth = std::max(std::abs(exponent.real()), least_growth * std::abs(exponent));
+      return !has_medium_ ||
+             one.residual * std::max(std::abs(exponent), speed_) <= wanted_change * growth;
+    });
+    if ((residual <= accuracy().wanted && has_growth) || harmonics_ == most_harmonics) return true;
     const bool is_own = std::any_of(members.begin(), members.end(), [this](const Candidate& one) {
       return is_centred(one);  // next to its own harmonic
     });
     // A neighbour is known by its harmonic as soon as it is resolved.
-    const bool is_known = !group.is_neighbour || residual <= largest_residual;
+    const bool is_known = !group.is_neighbour || residual <= accuracy().largest;
     return (!is_own && is_known) || !members.front().is_found ||
-           (residual <= largest_residual &&
+           (residual <= accuracy().largest &&
             residual > std::pow(slowest_decay, added) * group.before);
   }
 
@@ -536,6 +665,8 @@ class Analysis {
       const bool is_state = unknown.role == system::UnknownRole::state;
       const std::size_t number = state;
       if (is_state) ++state;
+      // The search leaves out the modes of a medium: its states only answer the other parts.
+      if (unknown.is_of_medium()) continue;
       if (!is_state && unknown.role != system::UnknownRole::position) continue;
       const double size = shape.row(i).cwiseAbs().maxCoeff() / unknown.scale;
       if (size <= largest) continue;
@@ -578,7 +709,7 @@ class Analysis {
       std::vector<std::vector<std::size_t>> places;
       for (std::size_t j = i; j < modes_.size(); ++j) {
         const Complex exponent = modes_[j].pair.exponent;
-        if (taken[j] || !is_same(principal(exponent), principal(modes_[i].pair.exponent))) continue;
+        if (taken[j] || !is_copy_of(modes_[j], modes_[i])) continue;
         taken[j] = 1;
         auto place = std::find_if(places.begin(), places.end(), [&](const auto& other) {
           return is_same(modes_[other.front()].pair.exponent, exponent);
@@ -600,6 +731,33 @@ class Analysis {
     }
     modes_ = std::move(chosen);
     if (options_.least_damped > 0) leave_slowest_decays();
+  }
+
+  /// Whether two pairs have exponents that are equal up to multiples of i Q Omega and up to their
+  /// conjugates, or with a medium, where these have larger errors, also series with this property.
+  bool is_copy_of(const Candidate& a, const Candidate& b) const {
+    const Complex first = a.pair.exponent;
+    const Complex second = b.pair.exponent;
+    if (is_same(principal(first), principal(second))) return true;
+    if (!has_medium_) return false;
+    const double error = same_with_medium * std::max(std::abs(first), speed_);
+    const auto are_copies = [&](const HillPair& one, const HillPair& other) {
+      const double between = (other.exponent.imag() - one.exponent.imag()) / speed_;
+      const auto shift = static_cast<Index>(std::lround(between / sectors_)) * sectors_;
+      if (shift == 0 || std::abs(other.exponent - one.exponent -
+                                 Complex(0.0, static_cast<double>(shift) * speed_)) > error)
+        return false;
+      // one exp(lambda t) = other exp((lambda + i shift Omega) t): harmonic k of one is k - shift
+      // of the other.
+      Complex product = 0.0;
+      const Index middle = (one.series.rows() - 1) / 2;
+      const Index middle_of_other = (other.series.rows() - 1) / 2;
+      for (Index k = -middle; k <= middle; ++k)
+        if (std::abs(k - shift) <= middle_of_other)
+          product += one.series.row(k + middle).dot(other.series.row(k - shift + middle_of_other));
+      return std::abs(product) > same_shape * one.series.norm() * other.series.norm();
+    };
+    return are_copies(a.pair, b.pair) || are_copies(a.pair, conjugate_of(b.pair));
   }
 
   bool is_same(Complex a, Complex b) const { return std::abs(a - b) < same_exponent * speed_; }
@@ -638,7 +796,7 @@ class Analysis {
       Candidate& found = modes_[m];
       Mode mode = found.mode;
       mode.residual = found.residual;
-      mode.resolved = found.residual <= largest_residual;
+      mode.resolved = found.residual <= accuracy().largest;
       mode.multiplier = std::exp(found.pair.exponent * system_.period());
       set_.shapes.push_back(shape_of(found.pair.series));
       found.pair.series.resize(0, 0);  // of a large mesh as large as the shape
@@ -693,6 +851,8 @@ class Analysis {
   const FloquetOptions& options_;
   Ranks ranks_;
   double speed_;
+  bool has_medium_ = false;
+  int search_harmonics_ = 0;
   HarmonicEnergy energy_;
   StateParts parts_;
   Index samples_ = 0;             ///< of a shape

@@ -8,6 +8,7 @@
 #include "samara/base/error.hpp"
 
 #include "hill_residual.hpp"
+#include "hill_without_medium.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -21,6 +22,7 @@ constexpr double of_missing_harmonics = 10.0;
 /// the distance, relative to the rotor speed, in which other eigenpairs are searched where it is
 /// less; their number.
 constexpr double least_overlap = 0.95;
+constexpr double least_overlap_with_medium = 0.8;
 constexpr double neighbourhood = 1.0;
 constexpr int most_neighbours = 12;
 /// Least correlation of an eigenvector with one that is a mixture of several.
@@ -29,9 +31,6 @@ constexpr double part_of_mixture = 0.1;
 constexpr double same_vector = 0.9;
 /// Relative to the rotor speed: distance of exponents that are refined together.
 constexpr double same_group = 0.03;
-
-/// Whether other eigenpairs may have been found.
-bool is_other(const HillRefinement::Result& result) { return !(result.overlap >= least_overlap); }
 
 void share_pair(const Ranks& ranks, int owner, HillPair& pair) {
   ranks.share(owner, pair.exponent);
@@ -79,11 +78,17 @@ void share_groups(const Ranks& ranks, std::vector<HillGroup>& groups) {
     ranks.share(0, group.before);
     ranks.share(0, group.is_neighbour);
     ranks.share(0, group.residuals);
+    ranks.share(0, group.before_exponents);
     std::size_t pairs = group.pairs.size();
     ranks.share(0, pairs);
     group.pairs.resize(pairs);
     for (HillPair& pair : group.pairs) share_pair(ranks, 0, pair);
   }
+}
+
+/// Whether other eigenpairs may have been found.
+bool HillGroups::is_other(const HillRefinement::Result& result) const {
+  return !(result.overlap >= (pencil_.has_medium() ? least_overlap_with_medium : least_overlap));
 }
 
 /// Refines each group on one rank. Groups next to each other stay on one rank: they may use the
@@ -125,7 +130,10 @@ void HillGroups::refine(std::vector<HillGroup>& groups, double tolerance) {
     ranks_.attempt([&] {
       if (ranks_.rank > 0) return;
       for (std::size_t g = 0; g < groups.size(); ++g)
-        if (!changed[g].empty()) replace(kept, changed[g], std::move(groups[g]), tolerance);
+        if (!changed[g].empty() && pencil_.has_medium())
+          follow(kept, changed[g], tolerance);
+        else if (!changed[g].empty())
+          replace(kept, changed[g], std::move(groups[g]), tolerance);
     });
     share_groups(ranks_, kept);
   }
@@ -153,6 +161,23 @@ void HillGroups::replace(std::vector<HillGroup>& kept, const std::vector<HillPai
                          [&](const HillPair& pair) { return has(other, pair); });
     });
     kept.push_back(std::move(near));
+  }
+}
+
+/// Adds the eigenpairs that the pairs of a group become to those that are kept; none where they
+/// cannot be followed.
+void HillGroups::follow(std::vector<HillGroup>& kept, const std::vector<HillPair>& before,
+                        double tolerance) {
+  for (const HillPair& pair : before) {
+    const std::optional<HillPair> followed = HillWithoutMedium(pencil_).follow(pair);
+    if (!followed ||
+        std::ranges::any_of(kept, [&](const HillGroup& other) { return has(other, *followed); }))
+      continue;
+    HillGroup group;
+    group.pairs = {*followed};
+    group.before_exponents = {pair.exponent};
+    group.truncated_residual = refinement_.refine(group.pairs, tolerance).residual;
+    kept.push_back(std::move(group));
   }
 }
 
@@ -216,8 +241,22 @@ void HillGroups::refine_further(std::vector<HillGroup>& groups, double tolerance
   find_residuals(chosen);
 }
 
-/// In the time domain.
+void HillGroups::find_changes(HillGroup& group) const {
+  group.residuals.clear();
+  for (const HillPair& pair : group.pairs) {
+    double change = std::numeric_limits<double>::infinity();
+    for (const std::complex<double> before : group.before_exponents)
+      change = std::min(change, std::abs(pair.exponent - before));
+    group.residuals.push_back(
+        std::max(group.truncated_residual, change / std::max(std::abs(pair.exponent), speed_)));
+  }
+}
+
 void HillGroups::find_residuals(const std::vector<HillGroup*>& groups) const {
+  if (pencil_.has_medium()) {
+    for (HillGroup* group : groups) find_changes(*group);
+    return;
+  }
   std::vector<const HillPair*> pairs;
   for (const HillGroup* group : groups)
     for (const HillPair& pair : group->pairs) pairs.push_back(&pair);

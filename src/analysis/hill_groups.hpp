@@ -16,7 +16,11 @@ namespace samara::analysis {
 struct HillGroup {
   std::vector<HillPair> pairs;
   double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
-  std::vector<double> residuals;                            ///< of each pair in the time domain
+  /// Of each pair: the residual in the time domain, or in a medium, whose answer to a
+  /// passage of the tower has a long series, the change of the exponent since fewer harmonics,
+  /// relative to the larger of the exponent and the rotor speed.
+  std::vector<double> residuals;
+  std::vector<std::complex<double>> before_exponents;       ///< with fewer harmonics
   double before = std::numeric_limits<double>::infinity();  ///< residual with fewer harmonics
   bool is_neighbour = false;  ///< found with the present harmonics: may be a copy of another
 
@@ -45,7 +49,8 @@ class HillGroups {
         speed_(pencil.speed()) {}
 
   /// Refines all groups. Where the eigenvectors change much, another eigenpair next to it may have
-  /// taken the place of the one that was meant: all that are near take the place of the group.
+  /// taken the place of the one that was meant: all that are near take the place of the group, or,
+  /// with a medium, those that the shift leads to when it follows their exponents.
   void refine(std::vector<HillGroup>& groups, double tolerance);
   /// Refines the groups with enough harmonics to a smaller tolerance.
   void refine_further(std::vector<HillGroup>& groups, double tolerance);
@@ -54,9 +59,12 @@ class HillGroups {
   std::vector<std::vector<HillPair>> deal(const std::vector<HillGroup*>& groups, double tolerance);
   void replace(std::vector<HillGroup>& kept, const std::vector<HillPair>& before, HillGroup after,
                double tolerance);
+  void follow(std::vector<HillGroup>& kept, const std::vector<HillPair>& before, double tolerance);
+  bool is_other(const HillRefinement::Result& result) const;
   std::vector<HillGroup> neighbours_of(const std::vector<HillPair>& pairs);
   bool has(const HillGroup& group, const HillPair& pair) const;
   void find_residuals(const std::vector<HillGroup*>& groups) const;
+  void find_changes(HillGroup& group) const;
 
   const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;

@@ -8,7 +8,9 @@ using Index = Eigen::Index;
 
 HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                        int harmonics)
-    : tangents_(system, harmonics, true), preconditioner_(tangents_) {
+    : tangents_(system, harmonics, true),
+      preconditioner_(tangents_),
+      medium_(tangents_, rows_, columns_) {
   tangents_.sample(solution);
   tangents_.scale(0.0, rows_, columns_);
 }
@@ -78,6 +80,36 @@ void HillPencil::multiply_mass(Input w, Output y) {
   to_coefficients(w, false, rates_);
   tangents_.multiply_mass(rates_, products_);
   to_series(products_, y);
+}
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::multiply_mass_of_others(Input w, Output y) {
+  multiply_mass(w, y);
+  for (const Index state : medium_.states()) y.middleRows(state * width(), width()).setZero();
+}
+
+void HillPencil::multiply_eliminated(const Vector& x, Vector& y) {
+  Vector product(size());
+  const auto multiply_shifted = [&](const Vector& from) {
+    multiply(from, *shift_ * from, product);
+  };
+  multiply_shifted(x);
+  medium_.solve(product);
+  Vector whole = -product;  // of the medium
+  medium_.drop(product);
+  whole += product;
+  whole += x;
+  multiply_shifted(whole);
+  medium_.drop(product);
+  y.resize(size());
+  precondition(product, y);
+  medium_.drop(y);
+}
+
+HillPencil::Complex HillPencil::log_determinant() const {
+  Complex sum = preconditioner_.log_determinant();
+  if (has_medium()) sum -= medium_.log_determinant_of_means(*shift_);
+  return sum;
 }
 
 HillPencil::Complex HillPencil::exponent_of(const Vector& x) {

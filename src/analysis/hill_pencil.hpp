@@ -13,6 +13,7 @@
 
 #include "harmonic_preconditioner.hpp"
 #include "harmonic_tangents.hpp"
+#include "hill_medium.hpp"
 
 namespace samara::analysis {
 
@@ -44,6 +45,18 @@ class HillPencil {
   void multiply(Input x, Input w, Output y);
   /// y = B w.
   void multiply_mass(Input w, Output y);
+  /// Whether there is a medium, and y = B w without the evolution rows of its states. With it in
+  /// the place of B, and A + s B in that of A, the medium answers motions of all exponents as
+  /// those of the exponent s, and has no exponents of its own.
+  bool has_medium() const { return !medium_.is_empty(); }
+  void multiply_mass_of_others(Input w, Output y);
+  /// The map of the unknowns that are not the medium's, whose unknowns follow from their own rows,
+  /// times the inverse of that of the preconditioner: both at the shift. x has zeros for the
+  /// medium. @returns false where the medium's rows are singular
+  bool prepare_elimination() { return shift_ && medium_.factor(*shift_); }
+  void multiply_eliminated(const Vector& x, Vector& y);
+  std::vector<Complex> exponents_of_medium() const { return medium_.exponents(); }
+  void drop_medium(Output x) const { medium_.drop(x); }
   /// The exponent that fits a vector best: (A + lambda B) x is least in the 2-norm.
   Complex exponent_of(const Vector& x);
 
@@ -53,8 +66,10 @@ class HillPencil {
   /// The shift of precondition(), if there is one.
   std::optional<Complex> shift() const { return shift_; }
   void precondition(Input right, Output x);
-  /// Of the approximation at a complex shift, up to a constant and multiples of 2 pi i.
-  Complex log_determinant() const { return preconditioner_.log_determinant(); }
+  /// Of the approximation at a complex shift, up to a constant and multiples of 2 pi i; with a
+  /// medium, divided by the determinant of the medium's rows and columns. (Each exponent
+  /// of the medium with the other parts at rest then is a pole.)
+  Complex log_determinant() const;
 
   /// Harmonics between two copies of an eigenpair, exponents lambda and lambda + i Q Omega.
   int sectors() const { return tangents_.sectors(); }
@@ -75,6 +90,7 @@ class HillPencil {
   HarmonicPreconditioner preconditioner_;
   std::optional<Complex> shift_;
   Eigen::VectorXd rows_, columns_;
+  HillMedium medium_;
   Eigen::MatrixXd values_, rates_, products_;  ///< real parts, then imaginary parts
 };
 

@@ -1,7 +1,6 @@
 #include "hill_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,6 +13,7 @@
 #include "samara/petsc/options.hpp"
 
 #include "complex_solver.hpp"
+#include "hill_without_medium.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -40,19 +40,18 @@ struct ShiftInvert {
   std::exception_ptr error = {};
 };
 
-/// Factor of a region beyond all finite exponents.
-constexpr double beyond_all = 25.0;
-/// Step of the difference quotient of the determinant's logarithm, relative to the rotor speed.
-constexpr double difference_step = 1e-3;
+/// The lower end of an edge, relative to the rotor speed; length of the parts of the edge at first,
+/// relative to half the width of the region, taken between once and four times the rotor speed; the
+/// change of a phase [rad] in a part, and the difference of its halves, at most.
+constexpr double beside_real_axis = 1e-6;
+constexpr double longest_part = 1.0;
+constexpr double widest = 4.0;
+constexpr double most_change = 1.5;
+constexpr double most_difference = 0.3;
 /// Difference of numbers of eigenvalues that are the same.
 constexpr double same_number = 0.1;
-constexpr int most_points = 600;
+constexpr int most_points = 1000;
 constexpr int contraction_steps = 8;
-/// Gauss rule on [-1, 1].
-constexpr std::array<double, 4> gauss_points{-0.8611363115940526, -0.3399810435848563,
-                                             0.3399810435848563, 0.8611363115940526};
-constexpr std::array<double, 4> gauss_weights{0.3478548451374538, 0.6521451548625461,
-                                              0.6521451548625461, 0.3478548451374538};
 
 /// Real vectors of the eigensolver: mean, then sqrt(2) times real and negative imaginary part of
 /// z_k, k > 0, for each unknown, which keeps the norm of the series.
@@ -114,9 +113,20 @@ double half_width(double omega, double rho, double y) {
   return c > 0.0 ? 0.0 : std::sqrt(std::max(0.0, -b + std::sqrt(b * b - c)));
 }
 
+/// A point on the edge of a region, and the phase of a determinant there.
+struct EdgePoint {
+  Complex s;
+  double phase;
+};
+
 }  // namespace
 
 HillRegion HillSearch::find(double frequency, int count) {
+  return pencil_.has_medium() ? HillWithoutMedium(pencil_).find(frequency, count)
+                              : find_all(frequency, count);
+}
+
+HillRegion HillSearch::find_all(double frequency, int count) {
   const Index size = pencil_.size();
   const auto n = static_cast<PetscInt>(size);
   const double beside = real_part_of_shift * pencil_.speed();
@@ -188,7 +198,7 @@ HillRegion HillSearch::find(double frequency, int count) {
   }
   // All eigenvalues with larger moduli have converged.
   double rho = frequency / least * (1.0 - 1e-6);
-  if (region.is_whole) rho = beyond_all * (rho + std::norm(10.0 * pencil_.speed()));
+  if (region.is_whole) rho = HillRegion::beyond_all * (rho + std::norm(10.0 * pencil_.speed()));
   const double omega2 = frequency * frequency;
   // A part of the range on the axis, so that the rectangle has a width.
   for (double part = 0.85; part > 0.1; part -= 0.15) {
@@ -202,34 +212,40 @@ HillRegion HillSearch::find(double frequency, int count) {
   return region;
 }
 
-/// d/ds log det of the preconditioner, by central differences; not a number where it is singular.
-Complex HillSearch::log_derivative(Complex s) {
-  const double step = difference_step * pencil_.speed();
-  Complex difference = 0.0;
-  for (const double sign : {1.0, -1.0}) {
-    if (!pencil_.set_shift(s + Complex(0.0, sign * step)))
-      return std::numeric_limits<double>::quiet_NaN();
-    difference += sign * pencil_.log_determinant();
+/// Phase of the determinant of the preconditioner, the zeros `found` divided out; not a number
+/// where it is singular.
+double HillSearch::phase_at(Complex s, const std::vector<Complex>& found) {
+  if (!pencil_.set_shift(s)) return std::numeric_limits<double>::quiet_NaN();
+  double phase = pencil_.log_determinant().imag();
+  for (const Complex exponent : found) {
+    phase -= std::arg(s - exponent);
+    if (exponent.imag() > 0.0) phase -= std::arg(s - std::conj(exponent));
   }
-  difference.imag(std::remainder(difference.imag(), 2.0 * std::numbers::pi));
-  return difference / Complex(0.0, 2.0 * step);
+  return phase;
 }
 
 /// By Arnoldi's method from a vector of all harmonics, with the factors at s.
 double HillSearch::contraction_at(Complex s) {
-  if (!pencil_.set_shift(s)) return std::numeric_limits<double>::infinity();
+  const bool eliminates = pencil_.has_medium();
+  if (!pencil_.set_shift(s) || (eliminates && !pencil_.prepare_elimination()))
+    return std::numeric_limits<double>::infinity();
   Eigen::MatrixXcd basis(pencil_.size(), contraction_steps + 1);
   Eigen::MatrixXcd small = Eigen::MatrixXcd::Zero(contraction_steps, contraction_steps);
   Vector x = Vector::Constant(pencil_.size(), Complex(1.0, 0.5));
   for (Index i = 0; i < x.size(); ++i) x(i) *= 1.0 + 0.5 * std::sin(static_cast<double>(i));
   pencil_.drop_absent(x);
+  if (eliminates) pencil_.drop_medium(x);
   Vector product(x.size());
   Vector y(x.size());
   // The first vector has the components that the preconditioner changes.
   for (int step = -1; step < contraction_steps; ++step) {
     if (step >= 0) x = basis.col(step);
-    pencil_.multiply(x, s * x, product);
-    pencil_.precondition(product, y);
+    if (eliminates) {
+      pencil_.multiply_eliminated(x, y);
+    } else {
+      pencil_.multiply(x, s * x, product);
+      pencil_.precondition(product, y);
+    }
     y = x - y;
     if (step < 0) {
       if (!(y.norm() > 0.0)) return 0.0;
@@ -256,47 +272,63 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
                                               const Ranks& ranks) {
   Missing result;
   const double a = region.decay;
-  std::vector<Complex> corners{
-      {a, region.low}, {a, region.high}, {-a, region.high}, {-a, region.low}};
+  // Factors for a real shift are those of half of the harmonics.
+  const double low = std::max(region.low, beside_real_axis * pencil_.speed());
+  std::vector<Complex> corners{{a, low}, {a, region.high}, {-a, region.high}, {-a, low}};
   const bool is_closed = region.low > 0.0;
   if (is_closed) corners.push_back(corners.front());
-  const auto integrand = [&](Complex s) {
-    Complex sum = log_derivative(s);
-    for (const Complex exponent : found) {
-      sum -= 1.0 / (s - exponent);
-      if (exponent.imag() > 0.0) sum -= 1.0 / (s - std::conj(exponent));
-    }
-    return sum;
-  };
-  std::optional<double> last;
-  for (int panels = 1; result.points <= most_points; panels *= 2) {
-    double integral = 0.0;  // its imaginary part
+  const auto add_phases = [&](std::vector<EdgePoint>& points) {
+    std::vector<double> phases(points.size(), 0.0);
     ranks.attempt([&] {
-      for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
-        const Complex begin = corners[side];
-        const Complex length = corners[side + 1] - begin;
-        // The integrand is smooth on the scale of the region's width.
-        const auto parts = static_cast<int>(std::ceil(
-            panels * std::max(1.0, std::abs(length) / (2.0 * std::max(a, pencil_.speed())))));
-        for (int part = 0; part < parts; ++part)
-          for (std::size_t i = 0; i < gauss_points.size(); ++i) {
-            if (result.points++ % ranks.size != ranks.rank) continue;
-            const Complex s = begin + length * ((part + 0.5 + 0.5 * gauss_points[i]) / parts);
-            integral += (0.5 * gauss_weights[i] / parts * length * integrand(s)).imag();
-          }
-      }
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (static_cast<int>(i) % ranks.size == ranks.rank)
+          phases[i] = phase_at(points[i].s, found);
     });
-    ranks.sum(&integral, 1);
-    // The part below the real axis has the conjugate integral, in the opposite direction.
-    const double number =
-        is_closed ? integral / (2.0 * std::numbers::pi) : integral / std::numbers::pi;
-    if (last && std::abs(number - *last) < same_number &&
-        std::abs(number - std::round(number)) < same_number) {
-      result.eigenvalues = static_cast<int>(std::lround(number));
-      break;
-    }
-    last = number;
+    ranks.sum(phases.data(), static_cast<Index>(phases.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].phase = phases[i];
+    result.points += static_cast<int>(points.size());
+  };
+  std::vector<EdgePoint> edge;
+  for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
+    const Complex length = corners[side + 1] - corners[side];
+    const double longest =
+        longest_part * pencil_.speed() * std::clamp(a / pencil_.speed(), 1.0, widest);
+    const auto parts = static_cast<int>(std::ceil(std::abs(length) / longest));
+    for (int part = 0; part < parts; ++part)
+      edge.push_back({corners[side] + length * (static_cast<double>(part) / parts), 0.0});
   }
+  edge.push_back({corners.back(), 0.0});
+  add_phases(edge);
+  std::vector<std::pair<EdgePoint, EdgePoint>> parts;
+  for (std::size_t i = 1; i < edge.size(); ++i) parts.emplace_back(edge[i - 1], edge[i]);
+  const auto change = [](const EdgePoint& from, const EdgePoint& to) {
+    return std::remainder(to.phase - from.phase, 2.0 * std::numbers::pi);
+  };
+  // Parts are halved until the phase changes little, and as much in one half as in the other.
+  double sum = 0.0;
+  while (!parts.empty() && result.points <= most_points) {
+    std::vector<EdgePoint> middles;
+    for (const auto& [begin, end] : parts) middles.push_back({0.5 * (begin.s + end.s), 0.0});
+    add_phases(middles);
+    std::vector<std::pair<EdgePoint, EdgePoint>> left;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const auto& [begin, end] = parts[i];
+      const double first = change(begin, middles[i]);
+      const double second = change(middles[i], end);
+      if (std::abs(first) + std::abs(second) < most_change &&
+          std::abs(first - second) < most_difference) {
+        sum += first + second;
+        continue;
+      }
+      left.emplace_back(begin, middles[i]);
+      left.emplace_back(middles[i], end);
+    }
+    parts = std::move(left);
+  }
+  // The part below the real axis has the same change of the phase.
+  const double number = sum / (is_closed ? 2.0 * std::numbers::pi : std::numbers::pi);
+  if (parts.empty() && std::abs(number - std::round(number)) < same_number)
+    result.eigenvalues = static_cast<int>(std::lround(number));
   ranks.attempt([&] {
     int point = 0;
     for (std::size_t side = 0; side + 1 < corners.size(); ++side)

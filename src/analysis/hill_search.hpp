@@ -23,6 +23,9 @@ struct HillPair {
 
 /// The eigenpairs in a rectangle of the upper half plane, |Re| <= `decay`, low <= Im <= high.
 struct HillRegion {
+  /// Factor of a region beyond all finite exponents.
+  static constexpr double beyond_all = 25.0;
+
   double low = 0.0;    ///< [rad/s]; 0 includes the real exponents
   double high = 0.0;   ///< [rad/s]
   double decay = 0.0;  ///< [1/s]; not above zero where too few pairs were found for a width
@@ -36,7 +39,7 @@ struct HillRegion {
 /// (SLEPc, options prefix `hill_`). Real vectors serve a complex shift sigma: the imaginary part of
 /// (A + sigma B)^-1 B is a real map with the eigenvalues -Im(sigma) / ((sigma - lambda)
 /// (conj(sigma)
-/// - lambda)).
+/// - lambda)). In a medium, HillWithoutMedium takes its place.
 class HillSearch {
  public:
   explicit HillSearch(HillPencil& pencil) : pencil_(pencil) {}
@@ -55,13 +58,14 @@ class HillSearch {
   struct Missing {
     std::optional<int> eigenvalues;
     double contraction = 0.0;  ///< largest estimated |1 - eigenvalue| of the preconditioned pencil
-    int points = 0;            ///< of the edge, with three factorizations each
+    int points = 0;            ///< of the edge, with one factorization each
   };
   Missing count_missing(const HillRegion& region, const std::vector<std::complex<double>>& found,
                         const Ranks& ranks);
 
  private:
-  std::complex<double> log_derivative(std::complex<double> s);
+  HillRegion find_all(double frequency, int count);
+  double phase_at(std::complex<double> s, const std::vector<std::complex<double>>& found);
   double contraction_at(std::complex<double> s);
 
   HillPencil& pencil_;

@@ -5,7 +5,6 @@
 #include <complex>
 
 #include "samara/base/index.hpp"
-#include "samara/components/blade_root.hpp"
 
 namespace samara::components {
 namespace {
@@ -85,6 +84,11 @@ Use use_of(const AirModels& models, const AirStation& station, int i) {
 
 }  // namespace
 
+double usual_induced_velocity(const model::Turbine& turbine) {
+  const elements::AirRotor& rotor = turbine.air->rotor;
+  return std::max({turbine.speed * rotor.tip_radius, rotor.wind.mean.speed, 1.0}) / 10.0;
+}
+
 BladeAir::BladeAir(const model::Turbine& turbine, std::size_t k, const Beam& blade)
     : turbine_(turbine), k_(k), blade_(blade), stations_(turbine.air->stations[k]) {
   // The references of the points may be those of a deformed blade.
@@ -96,7 +100,6 @@ BladeAir::BladeAir(const model::Turbine& turbine, std::size_t k, const Beam& bla
 }
 
 void BladeAir::tie(int hub_port, int root_port) {
-  static_assert(hub_values == hub_pose_values);
   hub_port_ = hub_port;
   root_port_ = root_port;
 }
@@ -111,8 +114,7 @@ void BladeAir::describe(Registry& registry) {
 
 void BladeAir::describe_point(Registry& registry, int p) const {
   const elements::AirRotor& rotor = air().rotor;
-  const double velocity =
-      std::max({turbine_.speed * rotor.tip_radius, rotor.wind.mean.speed, 1.0}) / 10.0;
+  const double velocity = usual_induced_velocity(turbine_);
   const double load = 50.0 * rotor.density * velocity * velocity * station(p).chord;
   const int first = blade_.placed().air[at(p)];
   for (int i = 0; i < air::unknowns; ++i) {
@@ -157,8 +159,8 @@ void BladeAir::connect_point(int p) {
   }
   connections.arguments.insert(connections.arguments.end(), rates_of_states.begin(),
                                rates_of_states.end());
-  connections.arguments.push_back(port_values(hub_port_, hub_values));
-  connections.arguments.push_back(port_values(root_port_, 9));
+  connections.arguments.push_back(port_values(hub_port_, hub_pose_values));
+  connections.arguments.push_back(port_values(root_port_, root_pose_values));
   points_.push_back(connections);
   for (int node = 0; node <= placed.beam->order; ++node) {
     const double weight = -placed.node_weights(node, p)[1];
@@ -183,31 +185,13 @@ void BladeAir::connect_added_mass(int p) {
 }
 
 template <class T>
-elements::HubPose<T> BladeAir::hub_of(const Eigen::Matrix<T, arguments, 1>& x) {
-  elements::HubPose<T> hub;
-  hub.place = x.template segment<3>(at_hub);
-  hub.axis = x.template segment<3>(at_hub + 6);
-  hub.velocity = x.template segment<3>(at_hub + 9);
-  hub.speed = x(at_hub + 12);
-  return hub;
-}
-
-template <class T>
-elements::RootPose<T> BladeAir::root_of(const Eigen::Matrix<T, arguments, 1>& x) {
-  elements::RootPose<T> root;
-  root.place = x.template segment<3>(at_root);
-  root.axes.col(0) = x.template segment<3>(at_root + 3);
-  root.axes.col(1) = x.template segment<3>(at_root + 6);
-  root.axes.col(2) = math::cross(Vec3<T>(root.axes.col(0)), Vec3<T>(root.axes.col(1)));
-  return root;
-}
-
-template <class T>
 elements::StationMotion<T> BladeAir::motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x,
                                                double t,
                                                const elements::WindInputs<T>* change) const {
-  return elements::station_motion<T>(air().rotor, station(p), x.template head<12>(), root_of<T>(x),
-                                     hub_of<T>(x), t, change);
+  return elements::station_motion<T>(air().rotor, station(p), x.template head<12>(),
+                                     root_pose_of<T>(x.template segment<root_pose_values>(at_root)),
+                                     hub_pose_of<T>(x.template segment<hub_pose_values>(at_hub)), t,
+                                     change);
 }
 
 template <class System>
@@ -245,8 +229,8 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   using std::sqrt;
   const elements::AirRotor& rotor = air().rotor;
   const AirStation& station = this->station(p);
-  const elements::HubPose<T> hub = hub_of<T>(x);
-  const elements::RootPose<T> root = root_of<T>(x);
+  const elements::HubPose<T> hub = hub_pose_of<T>(x.template segment<hub_pose_values>(at_hub));
+  const elements::RootPose<T> root = root_pose_of<T>(x.template segment<root_pose_values>(at_root));
   const elements::StationMotion<T> motion = motion_at<T>(p, x, t, &change);
   const elements::StationAir<T> present =
       elements::station_air<T>(rotor, station, motion, x.template segment<air::unknowns>(at_air),

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "samara/base/index.hpp"
+#include "samara/components/prescribed_motion.hpp"
 #include "samara/components/tower_axes.hpp"
 #include "samara/elements/torque_laws.hpp"
 
@@ -191,9 +192,7 @@ FrameMotion<T> MassDamper::nacelle_motion(const System& system,
     return elements::detail::with_outer_speed<T>(axis, speed, speed_dot,
                                                  elements::detail::seen_from<T>(turn, top));
   }
-  elements::JointMotion now = turbine.yaw_at(system.time());
-  if (turbine.operation.yaw || !turbine.yaw_motion.is_constant())
-    now = {system.varying(now.angle), system.varying(now.rate), system.varying(now.acceleration)};
+  const elements::JointMotion now = prescribed_yaw(system, turbine);
   turn = math::turn_about<T>(Vector3::UnitZ(), T(now.angle)).transpose();
   return elements::detail::with_relative_rate<T>(axis, now.rate, now.acceleration,
                                                  elements::detail::seen_from<T>(turn, top));

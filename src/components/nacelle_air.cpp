@@ -2,6 +2,7 @@
 
 #include "samara/base/index.hpp"
 #include "samara/components/inputs.hpp"
+#include "samara/components/prescribed_motion.hpp"
 #include "samara/components/tower_axes.hpp"
 #include "samara/math/rotation.hpp"
 
@@ -58,12 +59,10 @@ auto NacelleAir::load_of(const System& system, const Eigen::Matrix<T, arguments,
 
 template <class System>
 void NacelleAir::state(System& system) const {
-  elements::JointMotion yaw = turbine_.yaw_at(system.time());
-  const bool is_still = !turbine_.operation.yaw && turbine_.yaw_motion.is_constant();
-  if (!is_still)
-    yaw = {system.varying(yaw.angle), system.varying(yaw.rate), system.varying(yaw.acceleration)};
-  const Memory memory =
-      is_still && !turbine_.air->rotor.wind.changing ? Memory::of_arguments : Memory::none;
+  const elements::JointMotion yaw = prescribed_yaw(system, turbine_);
+  const Memory memory = yaw_varies(turbine_) || turbine_.air->rotor.wind.changing
+                            ? Memory::none
+                            : Memory::of_arguments;
   const auto load = [&]<class T>(const Eigen::Matrix<T, arguments, 1>& x) {
     return load_of<T>(system, x, yaw);
   };

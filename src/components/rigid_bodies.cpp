@@ -3,6 +3,7 @@
 #include <array>
 
 #include "samara/base/index.hpp"
+#include "samara/components/prescribed_motion.hpp"
 #include "samara/components/tower_axes.hpp"
 #include "samara/elements/torque_laws.hpp"
 
@@ -81,19 +82,13 @@ void RigidBodies::set_joints(const System& system, const ChainArguments<T>& x,
   }
   const double t = system.time();
   const model::Operation& operation = turbine_.operation;
-  const auto motion = [&](const elements::JointMotion& now, bool varies) {
-    if (!varies) return now;
-    return elements::JointMotion{system.varying(now.angle), system.varying(now.rate),
-                                 system.varying(now.acceleration)};
-  };
-  states[elements::yaw_node].prescribed =
-      motion(turbine_.yaw_at(t), operation.yaw || !turbine_.yaw_motion.is_constant());
-  states[elements::teeter_node].prescribed =
-      motion(turbine_.teeter_at(t), operation.teeter || !turbine_.teeter_motion.is_constant());
+  states[elements::yaw_node].prescribed = prescribed_yaw(system, turbine_);
+  states[elements::teeter_node].prescribed = prescribed_motion(
+      system, turbine_.teeter_at(t), operation.teeter || !turbine_.teeter_motion.is_constant());
   const math::TimeCurve::Value turning = turbine_.turning_at(t);
   elements::JointMotion& carried = states[elements::generator_node].carried;
-  carried =
-      motion({turning.value, turning.rate, turning.acceleration}, operation.turning.has_value());
+  carried = prescribed_motion(system, {turning.value, turning.rate, turning.acceleration},
+                              operation.turning.has_value());
   if (turbine_.speed != 0.0) carried.angle = system.varying(turning.value);
   if constexpr (System::has_inputs) {
     const TurbineInputs<T>& inputs = system.inputs();

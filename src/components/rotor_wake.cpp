@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "samara/base/index.hpp"
-#include "samara/components/blade_root.hpp"
+#include "samara/components/blade_air.hpp"
 #include "samara/elements/air_station.hpp"
 
 namespace samara::components {
@@ -53,7 +53,6 @@ RotorWake::RotorWake(const model::Turbine& turbine, std::vector<const Beam*> bla
 }
 
 void RotorWake::tie(int hub_port, const std::vector<int>& root_ports) {
-  static_assert(hub_values == hub_pose_values);
   hub_port_ = hub_port;
   root_ports_ = root_ports;
 }
@@ -84,8 +83,7 @@ void RotorWake::describe_part(Registry& registry, std::size_t shape, int sine) {
   const system::Owner owner(system::PartKind::medium, "inflow");
   const std::string place = "harmonic " + std::to_string(shapes_[shape].harmonic);
   const std::string order = std::to_string(shapes_[shape].order);
-  const double scale =
-      std::max({turbine_.speed * rotor().tip_radius, rotor().wind.mean.speed, 1.0}) / 10.0;
+  const double scale = usual_induced_velocity(turbine_);
   const int first = part(shape, sine);
   registry.describe(first,
                     {owner, place, (sine == 0 ? "alpha" : "beta") + order, "m/s",
@@ -99,7 +97,7 @@ void RotorWake::describe_part(Registry& registry, std::size_t shape, int sine) {
 }
 
 void RotorWake::describe(Registry& registry) {
-  flow_.arguments = {port_values(hub_port_, hub_values), part_or_zero(0, 0, true)};
+  flow_.arguments = {port_values(hub_port_, hub_pose_values), part_or_zero(0, 0, true)};
   flow_.provisions = {{flow_port_, 0}};
   for (std::size_t row = 0; row < shapes_.size(); ++row) {
     Connections evolution;
@@ -112,13 +110,14 @@ void RotorWake::describe(Registry& registry) {
     }
     evolutions_.push_back(evolution);
     for (std::size_t column = 0; column < shapes_.size(); ++column) {
-      if (elements::wake_coupling(shapes_[row], shapes_[column]) == 0.0) continue;
+      const double gain = elements::wake_coupling(shapes_[row], shapes_[column]);
+      if (gain == 0.0) continue;
       Coupling coupling{row, column, {}};
       coupling.connections.arguments = {port_values(flow_port_, flow_values),
                                         part_or_zero(column, 0, true),
                                         part_or_zero(column, 1, true)};
       for (int sine = 0; sine < shapes_[row].parts(); ++sine)
-        coupling.connections.shares.push_back({part(row, sine) + 1, 1, sine, -1.0});
+        coupling.connections.shares.push_back({part(row, sine) + 1, 1, sine, -gain});
       couplings_.push_back(coupling);
     }
   }
@@ -134,7 +133,7 @@ void RotorWake::connect_points() {
         Connections& connections = point.connections;
         connections.arguments = {
             unknowns(placed.points[at(p)], 3), unknowns(placed.air[at(p)] + air::force, 3),
-            port_values(root_ports_[k], root_values), port_values(hub_port_, hub_values)};
+            port_values(root_ports_[k], root_pose_values), port_values(hub_port_, hub_pose_values)};
         for (std::size_t i = 0; i < static_cast<std::size_t>(batch); ++i) {
           const std::size_t shape = first + i;
           if (shape >= shapes_.size()) {
@@ -159,10 +158,9 @@ template <class T>
 Vec3<T> RotorWake::wind_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double t,
                            const elements::WindInputs<T>* change) const {
   using math::dot;
-  const Vec3<T> place = x.template head<3>();
-  const Vec3<T> wind =
-      rotor().wind.undisturbed_at<T>(place, t, change) - Vec3<T>(x.template segment<3>(9));
-  const Disk<T> disk = disk_of<T>(upward_, x.template segment<3>(6));
+  const elements::HubPose<T> hub = hub_pose_of<T>(x.template head<hub_pose_values>());
+  const Vec3<T> wind = rotor().wind.undisturbed_at<T>(hub.place, t, change) - hub.velocity;
+  const Disk<T> disk = disk_of<T>(upward_, hub.axis);
   return Vec3<T>(dot(wind, disk.e1), dot(wind, disk.e2), dot(wind, disk.n));
 }
 
@@ -171,22 +169,18 @@ template <class T>
 auto RotorWake::point_terms(const PointBatch& point,
                             const Eigen::Matrix<T, point_arguments, 1>& x) const
     -> Eigen::Matrix<T, point_values, 1> {
-  using math::cross;
   using math::dot;
-  Mat3<T> root;
-  root.col(0) = x.template segment<3>(at_root + 3);
-  root.col(1) = x.template segment<3>(at_root + 6);
-  root.col(2) = cross(Vec3<T>(root.col(0)), Vec3<T>(root.col(1)));
+  const elements::RootPose<T> root = root_pose_of<T>(x.template segment<root_pose_values>(at_root));
+  const elements::HubPose<T> hub = hub_pose_of<T>(x.template segment<hub_pose_values>(at_hub));
   const Vec3<T> local =
       blades_[point.blade]->placed().beam->points[at(point.point)].x.template cast<T>() +
       Vec3<T>(x.template head<3>());
-  const Vec3<T> place = Vec3<T>(x.template segment<3>(at_root)) + root * local;
-  const Vec3<T> arm = place - Vec3<T>(x.template segment<3>(at_hub));
-  const Disk<T> disk = disk_of<T>(upward_, x.template segment<3>(at_hub + 6));
+  const Vec3<T> arm = root.place + root.axes * local - hub.place;
+  const Disk<T> disk = disk_of<T>(upward_, hub.axis);
   const double radius = rotor().tip_radius;
   const T x1 = dot(arm, disk.e1) / T(radius);
   const T x2 = dot(arm, disk.e2) / T(radius);
-  const T thrust = dot(Vec3<T>(root * Vec3<T>(x.template segment<3>(at_force))), disk.n);
+  const T thrust = dot(Vec3<T>(root.axes * Vec3<T>(x.template segment<3>(at_force))), disk.n);
   const double length = blades_[point.blade]->placed().beam->point_length(point.point);
   // Half of tau; the load of a rotor at rest gives no wake.
   const double factor =
@@ -214,7 +208,7 @@ void RotorWake::state(System& system) const {
   const Memory memory = rotor().wind.changing ? Memory::none : Memory::of_arguments;
   const auto flow_of = [&]<class T>(const Eigen::Matrix<T, flow_arguments, 1>& x) {
     const elements::DiskFlow<T> flow = elements::disk_flow<T>(
-        wind_at<T>(x, t, wind_inputs<T>(system)), x(hub_values), rotor().least_speed);
+        wind_at<T>(x, t, wind_inputs<T>(system)), x(hub_pose_values), rotor().least_speed);
     return Eigen::Matrix<T, flow_values, 1>(flow.z1, flow.z2, flow.speed, flow.carrying);
   };
   system.template add<flow_arguments, flow_values>(flow_, flow_of, memory);
@@ -230,9 +224,9 @@ void RotorWake::state(System& system) const {
   }
   for (const Coupling& coupling : couplings_) {
     const auto terms_of = [&]<class T>(const Eigen::Matrix<T, coupling_arguments, 1>& x) {
-      const auto terms =
-          elements::wake_coupling_terms<T>(shapes_[coupling.row], shapes_[coupling.column], x(0),
-                                           x(1), x(flow_values), x(flow_values + 1));
+      const auto terms = elements::wake_coupling_terms<T>(shapes_[coupling.row].harmonic,
+                                                          shapes_[coupling.column].harmonic, x(0),
+                                                          x(1), x(flow_values), x(flow_values + 1));
       return Eigen::Matrix<T, 2, 1>(terms[0], terms[1]);
     };
     system.template add<coupling_arguments, 2>(coupling.connections, terms_of,
@@ -249,8 +243,8 @@ void RotorWake::state(System& system) const {
 
 elements::DiskFlow<double> RotorWake::flow(const Residual<double>& residual) const {
   const auto x = residual.gather<flow_arguments>(flow_);
-  return elements::disk_flow<double>(wind_at<double>(x, residual.time(), nullptr), x(hub_values),
-                                     rotor().least_speed);
+  return elements::disk_flow<double>(wind_at<double>(x, residual.time(), nullptr),
+                                     x(hub_pose_values), rotor().least_speed);
 }
 
 void RotorWake::settle(const Residual<double>& residual, std::vector<double>& values) const {
@@ -286,7 +280,6 @@ void RotorWake::settle(const Residual<double>& residual, std::vector<double>& va
         values[at(part(row, 0))] += elements::wake_coupling(shapes_[row], shapes_[column]) *
                                     t(static_cast<Eigen::Index>(column));
   }
-  std::vector<double> induced(values.size(), 0.0);
   for (const PointBatch& point : points_) {
     auto arguments = arguments_of(point);
     for (std::size_t i = 0; i < static_cast<std::size_t>(batch); ++i) {
@@ -297,8 +290,8 @@ void RotorWake::settle(const Residual<double>& residual, std::vector<double>& va
                                                                     : 0.0;
     }
     const int row = blades_[point.blade]->placed().air[at(point.point)] + air::induced;
-    induced[at(row)] -= point_terms<double>(point, arguments)(2 * batch);
-    values[at(row)] = induced[at(row)];
+    if (point.first_shape == 0) values[at(row)] = 0.0;
+    values[at(row)] -= point_terms<double>(point, arguments)(2 * batch);
   }
 }
 

@@ -179,13 +179,6 @@ class Validation {
     if (scenario_.floquet.least_damped > 0 && scenario_.floquet.modes > 0)
       add("floquet.least_damped",
           "and floquet.modes exclude each other; hint: leave one of them out");
-    if (!turbine_.wind || !turbine_.aero) return;
-    for (const auto& [key, count] : {std::pair{"floquet.modes", scenario_.floquet.modes},
-                                     {"floquet.least_damped", scenario_.floquet.least_damped}})
-      if (count > 0)
-        add(key,
-            "is for structures: the search takes too long with air; hint: leave it out (all "
-            "modes), or aero: none");
   }
 
   /// Checks that loads and prescribed motions are constant or periodic with the rotor, and that the

@@ -55,6 +55,15 @@ struct Steady {
   analysis::Trim trim;
 };
 
+/// Without any deformation.
+inline void make_rigid(model::BeamDefinition& beam) {
+  beam.damping.setZero();
+  for (model::SectionDefinition& section : beam.sections) {
+    section.rigid.fill(true);
+    section.stiffness.setZero();
+  }
+}
+
 /// The rotor on the ground, rigid, without cone, tilt and gravity, in axial wind.
 inline io::Case rigid_rotor(const std::vector<std::string>& settings) {
   std::vector<std::string> all{"gravity=0",
@@ -68,11 +77,7 @@ inline io::Case rigid_rotor(const std::vector<std::string>& settings) {
   all.insert(all.end(), settings.begin(), settings.end());
   io::Case input = io::read_case(input_path("nrel5mw/land"), all);
   input.turbine.has_tower = false;
-  input.turbine.blades.beam.damping.setZero();
-  for (model::SectionDefinition& section : input.turbine.blades.beam.sections) {
-    section.rigid.fill(true);
-    section.stiffness.setZero();
-  }
+  make_rigid(input.turbine.blades.beam);
   return input;
 }
 

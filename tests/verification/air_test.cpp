@@ -267,11 +267,7 @@ BOOST_AUTO_TEST_CASE(a_rotor_on_a_spring_is_damped_by_the_slope_of_its_thrust) {
     turbine.has_tower = true;
     turbine.tower.elements = 1;
     turbine.tower.order = 2;
-    turbine.tower.damping.setZero();
-    for (model::SectionDefinition& section : turbine.tower.sections) {
-      section.rigid.fill(true);
-      section.stiffness.setZero();
-    }
+    make_rigid(turbine.tower);
     model::SupportDefinition& support = turbine.tower.support;
     support.rigid = {true, true, false, true, true, true};
     support.stiffness.setZero();
@@ -331,10 +327,7 @@ BOOST_AUTO_TEST_CASE(lift_after_a_turn_of_the_wind_is_that_of_wagner) {
   io::Case input = io::read_case(input_path("goland/wing"),
                                  {"wind.speed=50", "blades.elements=1", "blades.order=1",
                                   "transient={duration: 0.2, step: 9.144e-5, checkpoint: none}"});
-  for (model::SectionDefinition& section : input.turbine.blades.beam.sections) {
-    section.rigid.fill(true);
-    section.stiffness.setZero();
-  }
+  make_rigid(input.turbine.blades.beam);
   simulation::Scenario scenario = input;
   scenario.transient.channels = {"B1N1Cl", "Wind1VelY"};
   scenario.transient.stations.blade = {0.5};

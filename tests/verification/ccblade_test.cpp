@@ -41,13 +41,8 @@ Steady rotor_at(double ratio, const std::string& thrust) {
        "tower.elements=1", "tower.order=1", "shaft.torsion.joint=locked",
        "shaft.torsion.stiffness=0", "shaft.torsion.damping=0", "aero.airfoil_dynamics=static",
        "aero.inflow=equilibrium", "aero.skew=none", "aero.thrust=" + thrust, "trim.harmonics=8"});
-  for (model::BeamDefinition* beam : {&input.turbine.blades.beam, &input.turbine.tower}) {
-    beam->damping.setZero();
-    for (model::SectionDefinition& section : beam->sections) {
-      section.rigid.fill(true);
-      section.stiffness.setZero();
-    }
-  }
+  make_rigid(input.turbine.blades.beam);
+  make_rigid(input.turbine.tower);
   for (model::AeroSectionDefinition& section : input.turbine.blades.aero_sections)
     section.center = {};
   return Steady(input);

@@ -36,25 +36,15 @@ struct Means {
 Means find_means(const Steady& rotor) {
   const elements::AirRotor& air = rotor.system.turbine().air->rotor;
   const double area = pi * air.tip_radius * air.tip_radius;
-  const petsc::Handle<Vec> z = rotor.system.make_state();
-  const petsc::Handle<Vec> z_dot = rotor.system.make_state();
   const int instants = simulation::instants_of_means(rotor.trim);
   Means means;
-  for (int i = 0; i < instants; ++i) {
-    const double t = rotor.system.period() * i / instants;
-    rotor.trim.solution.evaluate(t, z.get(), z_dot.get());
-    const std::vector<double> state = petsc::values_of(z.get());
-    const std::vector<double> rate = petsc::values_of(z_dot.get());
-    const auto flow = rotor.system.equations().disk_flow(t, state, rate);
+  means.thrust = simulation::mean_channels(rotor.system, rotor.trim, {"RtAeroFxh"}).front();
+  simulation::visit_instants(rotor.system, rotor.trim, [&](double t, Vec z, Vec z_dot) {
+    const auto flow =
+        rotor.system.equations().disk_flow(t, petsc::values_of(z), petsc::values_of(z_dot));
     BOOST_REQUIRE(flow.has_value());
     means.balance += 2.0 * air.density * area * flow->speed * flow->mean / instants;
-    const auto reports = rotor.system.equations().air_report<double>(t, state, rate, {});
-    for (std::size_t k = 0; k < reports.size(); ++k)
-      for (std::size_t p = 0; p < reports[k].size(); ++p)
-        means.thrust += reports[k][p].thrust *
-                        rotor.system.turbine().blades[k].point_length(static_cast<int>(p)) /
-                        instants;
-  }
+  });
   return means;
 }
 
@@ -111,19 +101,15 @@ BOOST_AUTO_TEST_CASE(wake_without_load_decays_with_the_rates_of_its_shapes) {
 BOOST_AUTO_TEST_CASE(every_shape_is_in_balance_with_its_load) {
   const Steady rotor(rotor_at_20({"wind.direction_deg=30", "trim.harmonics=10", "blades.order=1"}));
   const elements::AirRotor& air = rotor.system.turbine().air->rotor;
-  const petsc::Handle<Vec> z = rotor.system.make_state();
-  const petsc::Handle<Vec> z_dot = rotor.system.make_state();
   const int instants = simulation::instants_of_means(rotor.trim);
   const std::vector<elements::WakeShape> shapes =
       elements::make_wake_shapes(air.models.wake_shapes);
   std::vector<double> loads(2 * shapes.size(), 0.0);
   std::vector<double> carried(2 * shapes.size(), 0.0);
   double downstream = 0.0;
-  for (int i = 0; i < instants; ++i) {
-    const double t = rotor.system.period() * i / instants;
-    rotor.trim.solution.evaluate(t, z.get(), z_dot.get());
-    const std::vector<double> state = petsc::values_of(z.get());
-    const std::vector<double> rate = petsc::values_of(z_dot.get());
+  simulation::visit_instants(rotor.system, rotor.trim, [&](double t, Vec z, Vec z_dot) {
+    const std::vector<double> state = petsc::values_of(z);
+    const std::vector<double> rate = petsc::values_of(z_dot);
     const auto reports = rotor.system.equations().air_report<double>(t, state, rate, {});
     for (std::size_t k = 0; k < reports.size(); ++k)
       for (std::size_t p = 0; p < reports[k].size(); ++p) {
@@ -156,7 +142,7 @@ BOOST_AUTO_TEST_CASE(every_shape_is_in_balance_with_its_load) {
         if (unknown.quantity == "t_s" + order) carried[2 * s + 1] += speed * state[u] / instants;
       }
     }
-  }
+  });
   BOOST_TEST(downstream < 0.0);
   const double largest = std::abs(loads[0]);
   int compared = 0;

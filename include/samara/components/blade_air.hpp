@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "samara/components/beam.hpp"
+#include "samara/components/blade_root.hpp"
 #include "samara/components/component.hpp"
 #include "samara/elements/air_station.hpp"
 #include "samara/model/turbine.hpp"
@@ -36,6 +37,9 @@ struct AirPointReport {
   Vec3<T> hub_place;       ///< apex, components n1 n2 n3 [m]
 };
 
+/// Usual velocity of the flow that a rotor induces [m/s], the scale of such unknowns.
+double usual_induced_velocity(const model::Turbine& turbine);
+
 class BladeAir final : public Stated<BladeAir> {
  public:
   /// `k`: number of the blade, from 0. `blade`: its beam, with blocks for the air. Both must
@@ -66,9 +70,8 @@ class BladeAir final : public Stated<BladeAir> {
   static constexpr int at_rates = at_air + elements::air::unknowns;
   static constexpr int rate_count = 10;
   static constexpr int at_hub = at_rates + rate_count;
-  static constexpr int hub_values = 13;
-  static constexpr int at_root = at_hub + hub_values;
-  static constexpr int arguments = at_root + 9;
+  static constexpr int at_root = at_hub + hub_pose_values;
+  static constexpr int arguments = at_root + root_pose_values;
 
   const model::Air& air() const { return *turbine_.air; }
   const elements::AirStation& station(int p) const {
@@ -77,10 +80,6 @@ class BladeAir final : public Stated<BladeAir> {
   void describe_point(Registry& registry, int p) const;
   void connect_point(int p);
   void connect_added_mass(int p);
-  template <class T>
-  static elements::HubPose<T> hub_of(const Eigen::Matrix<T, arguments, 1>& x);
-  template <class T>
-  static elements::RootPose<T> root_of(const Eigen::Matrix<T, arguments, 1>& x);
   template <class T>
   elements::StationMotion<T> motion_at(int p, const Eigen::Matrix<T, arguments, 1>& x, double t,
                                        const elements::WindInputs<T>* change = nullptr) const;

@@ -15,6 +15,29 @@ namespace samara::components {
 /// Values of the port of the hub's pose: place of the apex, h1, h2; velocity of the apex; angular
 /// velocity about h2. Components in the ground.
 inline constexpr int hub_pose_values = 13;
+/// Values of the port of a root's pose: its place, then b1 and b2 of the root. Components in the
+/// ground.
+inline constexpr int root_pose_values = 9;
+
+template <class T>
+elements::HubPose<T> hub_pose_of(const Eigen::Matrix<T, hub_pose_values, 1>& port) {
+  elements::HubPose<T> hub;
+  hub.place = port.template head<3>();
+  hub.axis = port.template segment<3>(6);
+  hub.velocity = port.template segment<3>(9);
+  hub.speed = port(12);
+  return hub;
+}
+
+template <class T>
+elements::RootPose<T> root_pose_of(const Eigen::Matrix<T, root_pose_values, 1>& port) {
+  elements::RootPose<T> root;
+  root.place = port.template head<3>();
+  root.axes.col(0) = port.template segment<3>(3);
+  root.axes.col(1) = port.template segment<3>(6);
+  root.axes.col(2) = math::cross(Vec3<T>(root.axes.col(0)), Vec3<T>(root.axes.col(1)));
+  return root;
+}
 
 /// "flap hinge", "lag hinge", "pitch hinge"
 const char* hinge_name(model::HingeAxis axis);
@@ -28,8 +51,8 @@ class BladeRoot {
   /// `root`: first of the root's reactions. Ports: motion of the hub, load on the hub, motion of
   /// the root.
   void describe(Registry& registry, int root, int hub_port, int load_port, int root_port);
-  /// Adds the port of the root's pose: its place, then b1 and b2 of the root in the ground's axes.
-  void place_pose(Registry& registry) { pose_port_ = registry.add_port(9); }
+  /// Adds the port of the root's pose.
+  void place_pose(Registry& registry) { pose_port_ = registry.add_port(root_pose_values); }
   int pose_port() const { return pose_port_; }
   /// `hub_port`: place of the apex, then h1 and h2.
   void connect_pose(int hub_port);
@@ -241,11 +264,11 @@ void BladeRoot::state_pose(System& system) const {
       if (const Turn<T> turn = turn_of<T>(system, link, angles); turn.moves)
         axes = (axes * math::turn_about<T>(link.axis, turn.angle)).eval();
     }
-    Eigen::Matrix<T, 9, 1> pose;
+    Eigen::Matrix<T, root_pose_values, 1> pose;
     pose << place, axes.col(0), axes.col(1);
     return pose;
   };
-  system.template add<pose_arguments, 9>(pose_, pose_of);
+  system.template add<pose_arguments, root_pose_values>(pose_, pose_of);
 }
 
 }  // namespace samara::components

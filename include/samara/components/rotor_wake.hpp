@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "samara/components/beam.hpp"
+#include "samara/components/blade_root.hpp"
 #include "samara/components/component.hpp"
 #include "samara/elements/rotor_wake.hpp"
 #include "samara/model/turbine.hpp"
@@ -39,10 +40,8 @@ class RotorWake final : public Stated<RotorWake> {
   void settle(const Residual<double>& residual, std::vector<double>& values) const;
 
  private:
-  static constexpr int hub_values = 13;
-  static constexpr int root_values = 9;
   /// Pose of the hub; t of the uniform load.
-  static constexpr int flow_arguments = hub_values + 1;
+  static constexpr int flow_arguments = hub_pose_values + 1;
   /// z1, z2, V_T, carrying speed.
   static constexpr int flow_values = 4;
   /// Flow; t and the rates of both parts.
@@ -54,8 +53,8 @@ class RotorWake final : public Stated<RotorWake> {
   /// u of the point; force per length; poses of root and hub; states.
   static constexpr int at_force = 3;
   static constexpr int at_root = 6;
-  static constexpr int at_hub = at_root + root_values;
-  static constexpr int at_states = at_hub + hub_values;
+  static constexpr int at_hub = at_root + root_pose_values;
+  static constexpr int at_states = at_hub + hub_pose_values;
   static constexpr int point_arguments = at_states + 2 * batch;
   /// Loads of the shapes; induced velocity against the thrust.
   static constexpr int point_values = 2 * batch + 1;

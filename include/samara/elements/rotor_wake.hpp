@@ -105,15 +105,14 @@ struct SteadyWake {
 };
 SteadyWake find_steady_wake(const Vector3& wind, double load, double least);
 
-/// Terms of a row of alpha = L t: L_jn^rm (t_c, t_s), as (cosine, sine) of harmonic r. In complex
-/// form a = alpha_c - i alpha_s, t = t_c - i t_s, z = z1 + i z2:
-///   a^0 = Gamma Re(z^m t),   a^r = Gamma [p t + (-1)^min(r, m) conj(z)^(m + r) conj(t)],
+/// Terms of a row of alpha = L t, divided by Gamma: L_jn^rm (t_c, t_s)/Gamma_jn^rm, as (cosine,
+/// sine) of harmonic r, of a column of harmonic m. In complex form a = alpha_c - i alpha_s,
+/// t = t_c - i t_s, z = z1 + i z2:
+///   a^0 = Re(z^m t),   a^r = p t + (-1)^min(r, m) conj(z)^(m + r) conj(t),
 ///   p = z^(m - r) for m >= r, else conj(z)^(r - m).
 template <class T>
-std::array<T, 2> wake_coupling_terms(const WakeShape& row, const WakeShape& column, const T& z1,
-                                     const T& z2, const T& t_c, const T& t_s) {
-  const int r = row.harmonic;
-  const int m = column.harmonic;
+std::array<T, 2> wake_coupling_terms(int r, int m, const T& z1, const T& z2, const T& t_c,
+                                     const T& t_s) {
   const auto power = [&](int exponent) {  // of z, or of its conjugate where it is negative
     T re(1.0);
     T im(0.0);
@@ -125,14 +124,13 @@ std::array<T, 2> wake_coupling_terms(const WakeShape& row, const WakeShape& colu
     }
     return std::array<T, 2>{re, im};
   };
-  const T gain(wake_coupling(row, column));
   const auto [p, q] = power(m - r);
   const T re = p * t_c + q * t_s;  // of (p + i q)(t_c - i t_s)
-  if (r == 0) return {gain * re, T(0.0)};
+  if (r == 0) return {re, T(0.0)};
   const T im = q * t_c - p * t_s;
   const auto [u, v] = power(-(m + r));  // of (u + i v)(t_c + i t_s)
   const T sign(std::min(r, m) % 2 == 0 ? 1.0 : -1.0);
-  return {gain * (re + sign * (u * t_c - v * t_s)), -(gain * (im + sign * (u * t_s + v * t_c)))};
+  return {re + sign * (u * t_c - v * t_s), -(im + sign * (u * t_s + v * t_c))};
 }
 
 }  // namespace samara::elements

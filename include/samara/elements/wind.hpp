@@ -74,15 +74,17 @@ Vec3<T> MeanWind::at(const Vec3<T>& place, const WindInputs<T>* change) const {
   if (shear_left != 0.0) factor -= (cosine * place(0) + sine * place(1)) * T(shear_left);
   if (shear_up != 0.0) factor += (place(2) - T(height)) * T(shear_up);
   if (gust != 0.0) factor += T(gust);
-  if (change == nullptr) {
-    const T level = factor * T(std::cos(upflow));
-    return Vec3<T>(-(level * sine), level * cosine, factor * T(std::sin(upflow)));
+  T rising(std::sin(upflow));
+  T level(std::cos(upflow));
+  if (change != nullptr) {
+    factor += (place(2) - T(change->height)) * change->shear_up -
+              (cosine * place(0) + sine * place(1)) * change->shear_left;
+    const T angle = change->upflow + T(upflow);
+    rising = sin(angle);
+    level = cos(angle);
   }
-  factor += (place(2) - T(change->height)) * change->shear_up -
-            (cosine * place(0) + sine * place(1)) * change->shear_left;
-  const T rising = change->upflow + T(upflow);
-  const T level = factor * cos(rising);
-  return Vec3<T>(-(level * sine), level * cosine, factor * sin(rising));
+  level *= factor;
+  return Vec3<T>(-(level * sine), level * cosine, factor * rising);
 }
 
 /// A wind that changes with time.

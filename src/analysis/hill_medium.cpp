@@ -1,0 +1,149 @@
+#include "hill_medium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+
+namespace samara::analysis {
+
+using Index = Eigen::Index;
+
+namespace {
+
+/// Unknowns of a group whose exponents are found.
+constexpr Index largest_group = 100;
+/// Relative to the largest: the inverse of a finite exponent.
+constexpr double least_inverse = 1e-10;
+
+}  // namespace
+
+HillMedium::HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& rows,
+                       const Eigen::VectorXd& columns)
+    : tangents_(tangents), rows_(rows), columns_(columns) {
+  const Index size = tangents.size();
+  place_in_group_.assign(static_cast<std::size_t>(size), -1);
+  const auto is_of_medium = [&](Index i) { return tangents.unknown(i).is_of_medium(); };
+  for (Index i = 0; i < size; ++i)
+    if (is_of_medium(i) && tangents.unknown(i).role == system::UnknownRole::state)
+      states_.push_back(i);
+  // Unknowns that refer to each other are one group: the smallest number among them leads it.
+  std::vector<Index> leader(static_cast<std::size_t>(size));
+  std::iota(leader.begin(), leader.end(), Index{0});
+  const auto leader_of = [&leader](Index i) {
+    while (leader[static_cast<std::size_t>(i)] != i) i = leader[static_cast<std::size_t>(i)];
+    return i;
+  };
+  for (const HarmonicTangents::Place& place : tangents.places()) {
+    if (!is_of_medium(place.row) || !is_of_medium(place.column)) continue;
+    const Index a = leader_of(place.row);
+    const Index b = leader_of(place.column);
+    leader[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  std::vector<Index> group_of(static_cast<std::size_t>(size), -1);
+  for (Index i = 0; i < size; ++i) {
+    if (!is_of_medium(i)) continue;
+    const auto first = static_cast<std::size_t>(leader_of(i));
+    if (group_of[first] < 0) {
+      group_of[first] = static_cast<Index>(groups_.size());
+      groups_.emplace_back();
+    }
+    group_of[static_cast<std::size_t>(i)] = group_of[first];
+    Group& group = groups_[static_cast<std::size_t>(group_of[first])];
+    place_in_group_[static_cast<std::size_t>(i)] = static_cast<Index>(group.unknowns.size());
+    group.unknowns.push_back(i);
+  }
+  for (const HarmonicTangents::Place& place : tangents.places())
+    if (is_of_medium(place.row) && is_of_medium(place.column))
+      groups_[static_cast<std::size_t>(group_of[static_cast<std::size_t>(place.row)])]
+          .places.push_back(place);
+}
+
+HillMedium::Matrix HillMedium::block_of(const Group& group, Complex s, bool only_means) const {
+  const Index width = tangents_.width();
+  const auto size = static_cast<Index>(group.unknowns.size()) * width;
+  Matrix block = Matrix::Zero(size, size);
+  for (const HarmonicTangents::Place& place : group.places) {
+    Matrix values =
+        tangents_.coupling(place, s) * rows_(place.row * width) * columns_(place.column * width);
+    const bool is_of_chain = !tangents_.is_border(place.row) && !tangents_.is_border(place.column);
+    if (only_means && is_of_chain) values = values.diagonal().asDiagonal().toDenseMatrix();
+    block.block(place_in_group_[static_cast<std::size_t>(place.row)] * width,
+                place_in_group_[static_cast<std::size_t>(place.column)] * width, width, width) =
+        values;
+  }
+  for (std::size_t i = 0; i < group.unknowns.size(); ++i)
+    for (Index k = 0; k < width; ++k)
+      if (!tangents_.has(group.unknowns[i], static_cast<int>(k) - tangents_.harmonics())) {
+        const Index at = static_cast<Index>(i) * width + k;
+        block(at, at) = 1.0;
+      }
+  return block;
+}
+
+bool HillMedium::factor(Complex s) {
+  bool is_regular = true;
+  for (Group& group : groups_) {
+    group.factors.compute(block_of(group, s, false));
+    is_regular = is_regular && group.factors.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
+  }
+  return is_regular;
+}
+
+void HillMedium::solve(Eigen::Ref<Matrix> x) const {
+  const Index width = tangents_.width();
+  for (const Group& group : groups_) {
+    Matrix part(static_cast<Index>(group.unknowns.size()) * width, x.cols());
+    for (std::size_t i = 0; i < group.unknowns.size(); ++i)
+      part.middleRows(static_cast<Index>(i) * width, width) =
+          x.middleRows(group.unknowns[i] * width, width);
+    part = group.factors.solve(part).eval();
+    for (std::size_t i = 0; i < group.unknowns.size(); ++i)
+      x.middleRows(group.unknowns[i] * width, width) =
+          part.middleRows(static_cast<Index>(i) * width, width);
+  }
+}
+
+void HillMedium::drop(Eigen::Ref<Matrix> x) const {
+  for (const Group& group : groups_)
+    for (const Index unknown : group.unknowns)
+      x.middleRows(unknown * tangents_.width(), tangents_.width()).setZero();
+}
+
+HillMedium::Complex HillMedium::log_determinant_of_means(Complex s) const {
+  Complex sum = 0.0;
+  for (const Group& group : groups_) {
+    const Eigen::PartialPivLU<Matrix> factors(block_of(group, s, true));
+    sum += factors.matrixLU().diagonal().array().log().sum() +
+           std::log(Complex(static_cast<double>(factors.permutationP().determinant())));
+  }
+  return sum;
+}
+
+/// A group that is too large for dense eigenvalues has none.
+std::vector<HillMedium::Complex> HillMedium::exponents() const {
+  std::vector<Complex> all;
+  for (const Group& group : groups_) {
+    const auto size = static_cast<Index>(group.unknowns.size());
+    if (size > largest_group) continue;
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+    Eigen::MatrixXd mass = stiffness;
+    for (const HarmonicTangents::Place& place : group.places) {
+      const HarmonicTangents::Coefficients tangents = tangents_.coefficients(place);
+      const Index row = place_in_group_[static_cast<std::size_t>(place.row)];
+      const Index column = place_in_group_[static_cast<std::size_t>(place.column)];
+      stiffness(row, column) = tangents.stiffness(tangents.stiffness.size() / 2).real();
+      mass(row, column) = tangents.mass(tangents.mass.size() / 2).real();
+    }
+    // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
+    const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);
+    const Eigen::VectorXcd inverses = (-factors.solve(mass)).eval().eigenvalues();
+    const double largest = inverses.cwiseAbs().maxCoeff();
+    for (const Complex inverse : inverses)
+      if (std::abs(inverse) > least_inverse * largest) all.push_back(1.0 / inverse);
+  }
+  return all;
+}
+
+}  // namespace samara::analysis

@@ -1,0 +1,62 @@
+// A medium's part of Hill's eigenproblem (docs/theory.md, section 5.10).
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "harmonic_tangents.hpp"
+
+namespace samara::analysis {
+
+/// The block of A + s B in the rows and columns of a medium's unknowns (states and auxiliaries):
+/// its answer to a motion of the other parts. The block falls into one group for each station of a
+/// blade, or one for a rotor whose stations are coupled.
+class HillMedium {
+ public:
+  using Complex = std::complex<double>;
+  using Matrix = Eigen::MatrixXcd;
+
+  /// `rows`, `columns`: factors of the coefficients of `tangents`, as in HillPencil. All of them
+  /// are kept by reference.
+  HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& rows,
+             const Eigen::VectorXd& columns);
+
+  bool is_empty() const { return groups_.empty(); }
+  /// Numbers of the states among the unknowns of the tangents.
+  const std::vector<Eigen::Index>& states() const { return states_; }
+
+  /// Factors the block for solve(), exact. @returns false where it is singular
+  bool factor(Complex s);
+  /// Solves the block for its part of a vector, in place; the others are not touched.
+  void solve(Eigen::Ref<Matrix> x) const;
+  /// Sets its part of a vector to zero.
+  void drop(Eigen::Ref<Matrix> x) const;
+  /// Logarithm of the determinant of the block as it is in HarmonicPreconditioner: chains have the
+  /// mean tangents in each harmonic. Up to multiples of 2 pi i.
+  Complex log_determinant_of_means(Complex s) const;
+  /// Exponents of the medium with the other parts at rest and mean tangents, up to multiples of
+  /// i Omega [1/s].
+  std::vector<Complex> exponents() const;
+
+ private:
+  using Index = Eigen::Index;
+  struct Group {
+    std::vector<Index> unknowns;
+    std::vector<HarmonicTangents::Place> places;
+    Eigen::PartialPivLU<Matrix> factors;
+  };
+
+  Matrix block_of(const Group& group, Complex s, bool only_means) const;
+
+  const HarmonicTangents& tangents_;
+  const Eigen::VectorXd& rows_;
+  const Eigen::VectorXd& columns_;
+  std::vector<Index> states_;
+  std::vector<Group> groups_;
+  std::vector<Index> place_in_group_;  ///< of each unknown; -1: not of the medium
+};
+
+}  // namespace samara::analysis

@@ -1,0 +1,291 @@
+#include "hill_without_medium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "samara/base/error.hpp"
+
+#include "complex_solver.hpp"
+#include "hill_groups.hpp"
+#include "hill_refinement.hpp"
+
+namespace samara::analysis {
+namespace {
+
+using Complex = std::complex<double>;
+using Index = Eigen::Index;
+using Vector = Eigen::VectorXcd;
+
+/// Relative tolerances of the linear solves, of the eigenpairs of the linear problem and of
+/// corrected ones.
+constexpr double linear_tolerance = 1e-7;
+constexpr double eigenpair_tolerance = 1e-4;
+constexpr double corrected_tolerance = 1e-5;
+/// Real part of the shift, relative to the rotor speed: there are no factors at an exponent.
+constexpr double beside_axis = 0.05;
+/// Krylov space: vectors, of each wanted pair and in addition, and those between two checks.
+constexpr int vectors_of_pair = 4;
+constexpr int more_vectors = 60;
+constexpr int check_interval = 8;
+/// Half the height of the rectangle, relative to the radius of the disc in which all pairs were
+/// found.
+constexpr double part_of_radius = 0.8;
+/// Height outside the rectangle from which pairs may enter it, relative to its height.
+constexpr double part_outside = 0.1;
+/// Correlation of equal series.
+constexpr double same_series = 0.9;
+/// Least part of a series in the harmonics of a copy.
+constexpr double least_of_copy = 0.9;
+/// Least cosine between an eigenvector and its correction: else the shift follows the exponent.
+constexpr double least_overlap = 0.95;
+/// Shifts that follow an exponent, the vectors of their Krylov spaces, and their distance from the
+/// exponent and its change in the end, relative to the rotor speed.
+constexpr int most_shifts = 12;
+constexpr int few_vectors = 12;
+constexpr double beside_exponent = 0.02;
+constexpr double last_change = 0.02;
+
+double correlation(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
+  return std::abs(a.reshaped().dot(b.reshaped())) / (a.norm() * b.norm());
+}
+
+/// Arnoldi's method for (A + sigma B)^-1 B', where B' has no rows of the medium's states. Its
+/// eigenvalues are 1 / (sigma - lambda).
+class KrylovSpace {
+ public:
+  /// The pencil has the shift sigma.
+  KrylovSpace(HillPencil& pencil, const Vector& start, Index most)
+      : pencil_(pencil),
+        shift_(*pencil.shift()),
+        linear_(
+            pencil.size(),
+            [this](const Vector& x, Vector& y) { pencil_.multiply(x, shift_ * x, y); },
+            [this](const Vector& x, Vector& y) { pencil_.precondition(x, y); }, linear_tolerance,
+            "hill_"),
+        right_(pencil.size()),
+        basis_(start.size(), 1),
+        small_(Eigen::MatrixXcd::Zero(most + 1, most)) {
+    basis_.col(0) = image_of(start).normalized();  // without infinite exponents
+  }
+
+  Index size() const { return basis_.cols() - 1; }
+  /// Adds a vector. @returns false where it is in the space
+  bool extend() {
+    constexpr double least = 1e-12;
+    Vector image = image_of(basis_.rightCols(1));
+    const Index step = size();
+    const double before = image.norm();
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      const Vector parts = basis_.adjoint() * image;
+      image -= basis_ * parts;
+      small_.col(step).head(step + 1) += parts;
+    }
+    const double norm = image.norm();
+    basis_.conservativeResize(Eigen::NoChange, step + 2);
+    if (!(norm > least * before)) return false;
+    small_(step + 1, step) = norm;
+    basis_.col(step + 1) = image / norm;
+    return true;
+  }
+
+  struct Pair {
+    Complex value;
+    Vector in_basis;
+    double residual;  ///< relative
+  };
+  /// Those next to the shift first.
+  std::vector<Pair> pairs() const {
+    const Index count = size();
+    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(small_.topLeftCorner(count, count));
+    std::vector<Pair> pairs;
+    for (Index i = 0; i < count; ++i) {
+      const Complex value = solver.eigenvalues()(i);
+      const Vector vector = solver.eigenvectors().col(i);
+      pairs.push_back({value, vector,
+                       std::abs(small_(count, count - 1) * vector(count - 1)) / std::abs(value)});
+    }
+    std::ranges::sort(pairs, {}, [](const Pair& pair) { return -std::abs(pair.value); });
+    return pairs;
+  }
+  Complex exponent_of(const Pair& pair) const { return shift_ - 1.0 / pair.value; }
+  Vector vector_of(const Pair& pair) const {
+    return (basis_.leftCols(size()) * pair.in_basis).normalized();
+  }
+  /// Whether a vector belongs to an infinite exponent: it does not fulfil the linear problem.
+  bool is_infinite(const Pair& pair, const Vector& vector) {
+    Vector product(vector.size());
+    pencil_.multiply(vector, shift_ * vector, product);
+    pencil_.multiply_mass_of_others(vector, right_);
+    const Complex distance = right_.dot(product) / right_.squaredNorm();
+    return std::abs(distance * pair.value - 1.0) > 0.5;
+  }
+
+ private:
+  const Vector& image_of(const Vector& x) {
+    pencil_.multiply_mass_of_others(x, right_);
+    linear_.solve(right_, image_);
+    return image_;
+  }
+
+  HillPencil& pencil_;
+  Complex shift_;
+  ComplexSolver linear_;
+  Vector right_, image_;
+  Eigen::MatrixXcd basis_, small_;
+};
+
+Vector random_vector(const HillPencil& pencil) {
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  Vector vector = Vector::NullaryExpr(
+      pencil.size(), [&] { return Complex(normal(generator), normal(generator)); });
+  pencil.drop_absent(vector);
+  return vector;
+}
+
+}  // namespace
+
+HillRegion HillWithoutMedium::find(double frequency, int count) {
+  std::vector<Approximation> pairs;
+  HillRegion region = find_linear(frequency, count, pairs);
+  const double outside = part_outside * (region.high - region.low);
+  std::erase_if(pairs, [&](const Approximation& pair) {
+    const double height = std::abs(pair.exponent.imag());
+    return std::abs(pair.exponent.real()) > region.decay + outside ||
+           height > region.high + outside || height < region.low - outside;
+  });
+  // Neighbours share factors.
+  std::ranges::sort(pairs, {}, [](const Approximation& pair) { return pair.exponent.imag(); });
+  for (const Approximation& pair : pairs)
+    if (std::optional<HillPair> result = corrected(pair)) add(std::move(*result), region);
+  add_copies(region);
+  return region;
+}
+
+/// Adds a pair or its conjugate, if it is not known.
+void HillWithoutMedium::add(HillPair pair, HillRegion& region) const {
+  if (std::abs(pair.exponent.imag()) < same_found * pencil_.speed()) pair.exponent.imag(0.0);
+  if (pair.exponent.imag() < 0.0) pair = conjugate_of(pair);
+  const bool is_known = std::ranges::any_of(region.pairs, [&](const HillPair& other) {
+    return std::abs(other.exponent - pair.exponent) < same_found * pencil_.speed() &&
+           correlation(other.series, pair.series) > same_series;
+  });
+  if (!is_known) region.pairs.push_back(std::move(pair));
+}
+
+/// Adds copies in the rectangle: several of them may have become one by the correction.
+void HillWithoutMedium::add_copies(HillRegion& region) {
+  const Index sectors = pencil_.sectors();
+  for (std::size_t i = 0; i < region.pairs.size(); ++i)  // also those that it adds
+    for (const Index shift : {sectors, -sectors}) {
+      const HillPair& pair = region.pairs[i];
+      const Complex exponent =
+          pair.exponent + Complex(0.0, static_cast<double>(shift) * pencil_.speed());
+      const double height = std::abs(exponent.imag());
+      if (height > region.high || height < region.low) continue;
+      const Index rows = pair.series.rows();
+      if (std::abs(shift) >= rows) continue;
+      Eigen::MatrixXcd series = Eigen::MatrixXcd::Zero(rows, pair.series.cols());
+      const Index kept = rows - std::abs(shift);
+      series.middleRows(std::max<Index>(-shift, 0), kept) =
+          pair.series.middleRows(std::max<Index>(shift, 0), kept);
+      if (series.norm() < least_of_copy * pair.series.norm()) continue;
+      Approximation copy{exponent, pencil_.vector_of(series).normalized()};
+      if (std::optional<HillPair> result = refined(copy)) add(std::move(*result), region);
+    }
+}
+
+/// The eigenpairs of the linear problem, and the rectangle.
+HillRegion HillWithoutMedium::find_linear(double frequency, int count,
+                                          std::vector<Approximation>& pairs) {
+  if (!pencil_.set_shift({beside_axis * pencil_.speed(), frequency}))
+    throw ConvergenceError("floquet: Hill's method has no factors at " + std::to_string(frequency) +
+                           " rad/s");
+  const Index most = std::min<Index>(pencil_.size(), vectors_of_pair * count + more_vectors);
+  KrylovSpace space(pencil_, random_vector(pencil_), most);
+  std::vector<KrylovSpace::Pair> converged;
+  HillRegion region;
+  while (!region.is_whole && static_cast<int>(converged.size()) < count && space.size() < most) {
+    region.is_whole = !space.extend();
+    if (!region.is_whole && space.size() % check_interval != 0 && space.size() < most) continue;
+    converged = space.pairs();
+    converged.erase(std::ranges::find_if(converged,
+                                         [](const KrylovSpace::Pair& pair) {
+                                           return !(pair.residual < eigenpair_tolerance);
+                                         }),
+                    converged.end());
+  }
+  if (converged.empty()) throw ConvergenceError("floquet: Hill's method finds no modes");
+  double radius = 0.0;
+  for (const KrylovSpace::Pair& pair : converged) {
+    Vector vector = space.vector_of(pair);
+    if (space.is_infinite(pair, vector)) {
+      region.is_whole = true;
+      break;
+    }
+    radius = std::abs(1.0 / pair.value);
+    Complex exponent = space.exponent_of(pair);
+    if (std::abs(exponent.imag()) < beside_axis * pencil_.speed()) exponent.imag(0.0);
+    // Below the axis: it may become a real exponent, or that of a conjugate.
+    if (exponent.imag() > -pencil_.speed()) pairs.push_back({exponent, std::move(vector)});
+  }
+  if (region.is_whole) radius = HillRegion::beyond_all * (radius + 10.0 * pencil_.speed());
+  const double half_height = part_of_radius * radius;
+  region.high = frequency + half_height;
+  region.low = std::max(0.0, frequency - half_height);
+  region.decay =
+      std::sqrt(radius * radius - half_height * half_height) - beside_axis * pencil_.speed();
+  return region;
+}
+
+/// The eigenpair of the pencil that an approximation becomes, if there is one.
+std::optional<HillPair> HillWithoutMedium::corrected(const Approximation& pair) {
+  if (std::optional<HillPair> result = refined(pair)) return result;
+  Approximation next = pair;
+  return move(next) ? refined(next) : std::nullopt;
+}
+
+std::optional<HillPair> HillWithoutMedium::follow(const HillPair& pair) {
+  Approximation approximation{pair.exponent, pencil_.vector_of(pair.series).normalized()};
+  return move(approximation) ? refined(approximation) : std::nullopt;
+}
+
+/// By Newton's method, if it stays with the eigenvector.
+std::optional<HillPair> HillWithoutMedium::refined(const Approximation& pair) {
+  std::vector<HillPair> pairs{{pair.exponent, pencil_.series_of(pair.vector)}};
+  const HillRefinement::Result result = HillRefinement(pencil_).refine(pairs, corrected_tolerance);
+  if (result.residual > eigenpair_tolerance || result.overlap < least_overlap) return std::nullopt;
+  return std::move(pairs.front());
+}
+
+/// Solves linear problems with the exponent of the one before as shift.
+/// @returns false where the exponents do not converge
+bool HillWithoutMedium::move(Approximation& pair) {
+  for (int i = 0; i < most_shifts; ++i) {
+    const double beside = beside_exponent * pencil_.speed();
+    if (!pencil_.set_shift(pair.exponent + Complex(beside, beside))) return false;
+    KrylovSpace space(pencil_, pair.vector, few_vectors);
+    while (space.size() < few_vectors && space.extend()) {
+    }
+    Approximation next;
+    double largest = 0.0;
+    for (const KrylovSpace::Pair& other : space.pairs()) {
+      Vector vector = space.vector_of(other);
+      const double overlap = std::abs(vector.dot(pair.vector)) / pair.vector.norm();
+      if (overlap <= largest) continue;
+      largest = overlap;
+      next = {space.exponent_of(other), std::move(vector)};
+    }
+    const double change = std::abs(next.exponent - pair.exponent);
+    pair = std::move(next);
+    if (change < last_change * pencil_.speed()) return true;
+  }
+  return false;
+}
+
+}  // namespace samara::analysis

@@ -1,0 +1,190 @@
+// Searches for some modes of turbines in wind, against all modes by integration over a period.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <boost/test/unit_test.hpp>
+
+#include "samara/simulation/stability.hpp"
+
+#include "../../src/analysis/hill_search.hpp"
+#include "air_case.hpp"
+
+using namespace samara;
+using namespace samara::test;
+
+namespace {
+
+using Complex = std::complex<double>;
+
+struct Example {
+  std::string name;
+  std::vector<std::string> settings;
+  bool is_counted = true;
+};
+
+/// Six points a blade.
+const std::vector<std::string> coarse{"blades.elements=2", "blades.element_lengths=[1, 1]",
+                                      "blades.order=3", "tower.elements=1", "tower.order=3"};
+
+std::vector<std::string> with_coarse(std::vector<std::string> settings) {
+  settings.insert(settings.begin(), coarse.begin(), coarse.end());
+  return settings;
+}
+
+std::vector<Example> examples() {
+  return {
+      {"nrel5mw/land", with_coarse({})},
+      {"nrel5mw/land", with_coarse({"wind.shear.power=0.2", "wind.direction_deg=20"})},
+      {"nrel5mw/land", with_coarse({"aero.airfoil_dynamics=static", "aero.inflow=equilibrium"})},
+      {"nrel5mw/land", with_coarse({"aero.inflow=peters_he"})},
+      {"iea15mw/land",
+       with_coarse({"wind.speed=15", "shaft.speed_rpm=7.5", "blades.pitch_deg=10"})},
+      // Teeter and inflow move together: modes of strong damping cannot be counted.
+      {"two_bladed/teetering", with_coarse({}), false},
+  };
+}
+
+/// Each mode of `some` has an exponent among `all`, and each resolved mode of a part among `all` in
+/// the region that was searched is one of `some`. Exponents agree within the estimated errors.
+/// Motions of very strong damping are not told from those of the air.
+void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& all, int least = 3) {
+  BOOST_REQUIRE(some.searched);
+  const analysis::SearchedRegion& region = *some.searched;
+  const auto distance = [](Complex a, Complex b) { return std::abs(a - b); };
+  for (const analysis::Mode& mode : some.modes) {
+    BOOST_TEST(mode.resolved, mode.label);
+    double best = std::numeric_limits<double>::infinity();
+    double error = 0.0;
+    for (const analysis::Mode& other : all.modes)
+      if (const double apart = distance(mode.exponent, other.exponent); apart < best) {
+        best = apart;
+        error = other.step_error;
+      }
+    const double size = std::max(std::abs(mode.exponent), some.rotor_speed);
+    BOOST_TEST(best <= (mode.step_error + error + 1e-6) * size,
+               mode.label << " " << mode.exponent << " " << best / size);
+  }
+  int inside = 0;
+  for (const analysis::Mode& mode : all.modes) {
+    const double modulus = std::abs(mode.exponent);
+    if (!mode.resolved || is_of_medium(mode) || modulus < region.low || modulus > region.high ||
+        std::abs(mode.exponent.real()) > 0.99 * region.decay || mode.damping_ratio > 0.9)
+      continue;
+    ++inside;
+    double best = std::numeric_limits<double>::infinity();
+    for (const analysis::Mode& other : some.modes)
+      best = std::min(best, distance(mode.exponent, other.exponent));
+    BOOST_TEST(best < 1e-2 * modulus, mode.label << " " << mode.exponent << " is missing");
+  }
+  BOOST_TEST(inside >= least);
+}
+
+analysis::FloquetOptions some_modes(int modes) {
+  analysis::FloquetOptions options;
+  options.modes = modes;
+  return options;
+}
+
+analysis::FloquetOptions slowest_decays(int modes) {
+  analysis::FloquetOptions options;
+  options.least_damped = modes;
+  return options;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(searches_in_wind_agree_with_integration) {
+  for (const Example& example : examples()) {
+    std::string place = example.name;
+    for (const std::string& setting : example.settings) place += " " + setting;
+    BOOST_TEST_CONTEXT(place) {
+      Steady turbine(io::read_case(input_path(example.name), example.settings));
+      const analysis::ModeSet all = turbine.floquet({180, analysis::FloquetPeriod::automatic, 6});
+      const analysis::ModeSet first = turbine.floquet(some_modes(6));
+      BOOST_TEST(first.modes.size() >= 6U);
+      require_agreement(first, all);
+      if (example.is_counted) BOOST_TEST(first.searched->is_counted);
+      const analysis::ModeSet slowest = turbine.floquet(slowest_decays(4));
+      BOOST_TEST(slowest.modes.size() >= 4U);
+      BOOST_TEST(slowest.searched->is_counted);
+      require_agreement(slowest, all);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(search_in_wind_next_to_a_frequency) {
+  Steady turbine(io::read_case(input_path("nrel5mw/land"), coarse));
+  analysis::FloquetOptions options = some_modes(3);
+  options.near_hz = 2.0;
+  const analysis::ModeSet found = turbine.floquet(options);
+  BOOST_TEST(found.searched->is_counted);
+  require_agreement(found, turbine.floquet({180, analysis::FloquetPeriod::automatic, 6}));
+}
+
+/// In axial wind the tangents are constant in axes of the rotor: no harmonics are left out.
+BOOST_AUTO_TEST_CASE(searches_in_axial_wind_are_exact) {
+  Steady turbine(rotor_in_axial_wind({}));
+  const analysis::ModeSet found = turbine.floquet(some_modes(8));
+  BOOST_TEST(found.searched->is_counted);
+  const analysis::ModeSet all = turbine.constant_modes();
+  int compared = 0;
+  for (const analysis::Mode& mode : found.modes) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const analysis::Mode& other : all.modes)
+      for (const double sign : {1.0, -1.0})
+        best = std::min(
+            best, std::hypot(other.exponent.real() - mode.exponent.real(),
+                             std::remainder(sign * other.exponent.imag() - mode.exponent.imag(),
+                                            found.rotor_speed)));
+    BOOST_TEST(best < 1e-8 * std::abs(mode.exponent), mode.label << " " << mode.exponent);
+    ++compared;
+  }
+  BOOST_TEST(compared >= 8);
+}
+
+/// The runaway rotor of instability_test.cpp, beyond its edge.
+BOOST_AUTO_TEST_CASE(search_in_wind_finds_growth) {
+  io::Case input =
+      io::read_case(input_path("iea15mw/land"),
+                    {"gravity=0", "shaft.tilt_deg=0", "wind.speed=10", "aero.inflow=equilibrium",
+                     "blades.elements=3", "blades.order=3", "shaft.speed_rpm=14.5"});
+  input.turbine.has_tower = false;
+  Steady turbine(input);
+  const analysis::ModeSet all = turbine.floquet({180, analysis::FloquetPeriod::automatic, 6});
+  const analysis::ModeSet found = turbine.floquet(slowest_decays(4));
+  BOOST_TEST((simulation::assess_stability(all).stability == simulation::Stability::unstable));
+  BOOST_TEST((simulation::assess_stability(found).stability == simulation::Stability::unstable));
+  require_agreement(found, all, 0);
+}
+
+BOOST_AUTO_TEST_CASE(count_in_wind_notices_a_missing_exponent) {
+  Steady turbine(io::read_case(input_path("nrel5mw/land"), coarse));
+  analysis::HillPencil pencil(turbine.system, turbine.trim.solution, 1);
+  analysis::HillSearch search(pencil);
+  const analysis::Ranks alone(MPI_COMM_SELF);
+  analysis::HillRegion region = search.find(1.5 * pencil.speed(), 16);
+  region.decay *= 0.8;
+  std::vector<Complex> found;
+  for (const analysis::HillPair& pair : region.pairs) found.push_back(pair.exponent);
+  const analysis::HillSearch::Missing none = search.count_missing(region, found, alone);
+  BOOST_REQUIRE(none.eigenvalues);
+  BOOST_TEST(*none.eigenvalues == 0);
+  BOOST_TEST(none.contraction < 0.6);
+  int checked = 0;
+  for (std::size_t i = 0; i < found.size(); i += 2) {
+    const Complex left_out = found[i];
+    if (left_out.imag() > region.high || std::abs(left_out.real()) > region.decay) continue;
+    std::vector<Complex> others = found;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const analysis::HillSearch::Missing one = search.count_missing(region, others, alone);
+    BOOST_REQUIRE(one.eigenvalues);
+    BOOST_TEST(*one.eigenvalues == (left_out.imag() > 0.0 ? 2 : 1), left_out);
+    ++checked;
+  }
+  BOOST_TEST(checked >= 3);
+}
