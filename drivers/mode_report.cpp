@@ -195,7 +195,9 @@ std::string searched_words(const ModeSet& set) {
   const analysis::SearchedRegion& region = *set.searched;
   return "searched: " +
          (region.low > 0.0 ? "from " + hertz(region.low) + " to " : std::string("up to ")) +
-         hertz(region.high) + ", growth and decay up to " + general(region.decay, 3) + " 1/s" +
+         hertz(region.high) + ", " +
+         (region.growth == region.decay ? "growth" : "growth up to " + general(region.growth, 3)) +
+         " and decay up to " + general(region.decay, 3) + " 1/s" +
          (region.is_counted ? "; none is missing there" : "") + "; other modes are not known" +
          (set.medium_states > 0 ? "; exponents of the air are left out" : "") +
          (static_cast<std::size_t>(region.slowest_decays) > set.modes.size()

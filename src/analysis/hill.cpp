@@ -53,14 +53,18 @@ constexpr double least_growth = 0.01;
 /// The first shift, relative to the rotor speed: a medium has decays at 0 and 1, where its answer
 /// varies fast.
 constexpr double between_copies = 1.5;
+/// Distance of an edge of a region from such decays, relative to the rotor speed.
+constexpr double beside_medium = 0.1;
 /// The region of a search without the states of a medium ends between the decays of its pairs, at
 /// this factor of the largest one at most.
 constexpr double beyond_decays = 1.5;
-/// Where a region cannot be counted: the parts of its decay between which the next one ends, and
-/// the number of regions.
+constexpr int most_edges = 4;  ///< other places of its end where it cannot be counted
+/// The parts of the decay of a region between which a narrower one ends, and the number of them.
 constexpr double narrowest = 0.2;
-constexpr double narrower = 0.5;
-constexpr int most_counts = 5;
+constexpr double narrower = 0.6;
+constexpr int most_narrower = 4;
+/// Least decay at which a region in a medium ends, relative to the rotor speed.
+constexpr double least_decay = 0.1;
 /// The slowest decays are known where they have frequencies in this part of the range, or where
 /// this many times as many modes were found.
 constexpr double part_of_slowest = 0.6;
@@ -71,6 +75,8 @@ constexpr double first_tolerance = 1e-7;
 constexpr double last_tolerance = 1e-10;
 /// Correlation of the largest harmonics of an eigenpair and of its copy.
 constexpr double same_shape = 0.7;
+/// Correlation of the series of one motion that was found twice.
+constexpr double same_series = 0.95;
 /// Harmonics at the edges of a series, and their part in a copy.
 constexpr Index edge_harmonics = 2;
 constexpr double edge_part = 1e-3;
@@ -81,6 +87,7 @@ constexpr double slowest_decay = 0.93;
 constexpr int least_pairs = 24;
 constexpr int margin_pairs = 6;
 constexpr int most_pairs = 100;
+constexpr int most_regions = 200;
 /// Relative to the rotor speed: slack of the edges of the region, and distance of a copy in the
 /// search from where it should be, and of refined exponents that are the same.
 constexpr double edge_slack = 1.0;
@@ -173,26 +180,62 @@ class Analysis {
     if (has_medium_) lower_decay(*pencil);
     // Slow modes have no larger decay: those of strong damping are left out.
     region_.decay = std::min(region_.decay, region_.high);
+    region_.growth = std::min(region_.growth, region_.high);
     std::erase_if(found_, [this](const Candidate& candidate) {
-      const Complex exponent = candidate.pair.exponent;
-      return exponent.imag() > region_.high || std::abs(exponent.real()) > region_.decay;
+      return candidate.pair.exponent.imag() > region_.high || !is_in_width(candidate);
     });
     expected_ = centred(region_.high - edge_slack * speed_);
+    if (options_.least_damped > 0) {
+      double sum = 0.0;
+      for (const Candidate& candidate : found_)
+        if (is_centred(candidate)) sum += weight_of(candidate);
+      expected_ = static_cast<int>(sum);
+    }
   }
 
   /// Counts the eigenvalues in the region, that of the first rank.
   void count_missing(HillPencil& pencil) {
-    for (double* value : {&region_.low, &region_.high, &region_.decay}) ranks_.share(0, *value);
+    for (double* value : {&region_.low, &region_.high, &region_.decay, &region_.growth})
+      ranks_.share(0, *value);
     ranks_.share(0, all_found_);
-    for (int attempt = 1;; ++attempt) {
-      const HillSearch::Missing missing =
-          HillSearch(pencil).count_missing(region_, all_found_, ranks_);
-      region_is_counted_ = missing.eigenvalues == 0 && missing.contraction < 1.0;
-      if (region_is_counted_ || !has_medium_ || attempt == most_counts) return;
-      // Modes with strong damping may not be told from those of the medium.
-      region_.decay = middle_of_gap(pencil, narrowest * region_.decay, narrower * region_.decay);
-      ranks_.share(0, region_.decay);
+    ranks_.share(0, expected_);
+    ranks_.share(0, needed_decay_);
+    region_is_counted_ = is_complete(pencil, region_);
+    if (!has_medium_) return;
+    // Next to exponents of the medium, the preconditioner may not serve.
+    const double first = region_.decay;
+    for (int i = 0; i < most_edges && !region_is_counted_; ++i) {
+      const double width = (beyond_decays - 1.0) * needed_decay_ / most_edges;
+      region_.decay =
+          shared_gap(pencil, needed_decay_ + i * width, needed_decay_ + (i + 1) * width);
+      region_is_counted_ = is_complete(pencil, region_);
     }
+    if (!region_is_counted_) region_.decay = first;
+    // Modes of strong damping may not be told from those of the medium. A missing mode of weaker
+    // damping and one of the medium may cancel: a narrower region is to be complete as well.
+    HillRegion part = region_;
+    for (int i = 0; i < most_narrower; ++i) {
+      part.decay = shared_gap(pencil, narrowest * part.decay, narrower * part.decay);
+      if (part.decay < least_decay * speed_) return;
+      if (!is_complete(pencil, part)) continue;
+      if (!region_is_counted_) region_.decay = part.decay;
+      region_is_counted_ = true;
+      return;
+    }
+    region_is_counted_ = false;
+  }
+
+  bool is_complete(HillPencil& pencil, const HillRegion& region) const {
+    const HillSearch::Missing missing =
+        HillSearch(pencil).count_missing(region, all_found_, ranks_);
+    return missing.eigenvalues == 0 && missing.contraction < 1.0;
+  }
+
+  /// The same on all ranks.
+  double shared_gap(const HillPencil& pencil, double least, double largest) const {
+    double middle = middle_of_gap(pencil, least, largest);
+    ranks_.share(0, middle);
+    return middle;
   }
 
   /// Finds the motions of slowest decay by integration, with as many steps as these need.
@@ -240,7 +283,7 @@ class Analysis {
 
   /// Keeps the motions of a region.
   void take_decays(const LeastDampedSearch::Region& region) {
-    region_ = {0.0, region.high + margin(), region.decay, false, {}};
+    region_ = {0.0, region.high + margin(), region.decay, region.decay, false, {}};
     std::vector<Candidate> inside;
     for (const std::size_t motion : region.motions) {
       sought_.push_back(found_[motion].pair.exponent);
@@ -263,6 +306,10 @@ class Analysis {
       });
     region_is_counted_ =
         (region_is_counted_ || !has_medium_) && static_cast<int>(modes_.size()) >= expected_;
+    if (has_medium_)  // the set of those above is not complete
+      std::erase_if(modes_, [this](const Candidate& mode) {
+        return modulus_of(mode) >= region_.high - margin();
+      });
     std::vector<double> decays;
     double growth = 0.0;
     for (const Candidate& mode : modes_) {
@@ -300,10 +347,16 @@ class Analysis {
 
   void search_upwards(HillSearch& search) {
     region_.decay = std::numeric_limits<double>::infinity();
+    region_.growth = region_.decay;
+    int steps = 0;
     double frequency = has_medium_ ? between_copies * speed_ : speed_;
     const int wanted = std::max(options_.modes, options_.least_damped);
     int count = std::max(least_pairs, std::min(wanted + margin_pairs, most_pairs));
     while (!is_enough(region_.high)) {
+      if (++steps > most_regions)
+        throw ConvergenceError("floquet: Hill's method does not find as many modes in " +
+                               std::to_string(most_regions) +
+                               " ranges of frequencies; hint: fewer, or all modes");
       const HillRegion region = search.find(frequency, count);
       if (region.low > region_.high || region.decay <= 0.0) {
         if (region.low > region_.high) frequency = 0.5 * (frequency + region_.high);
@@ -312,6 +365,7 @@ class Analysis {
       }
       take(region, region_.high, region.high);
       region_.decay = std::min(region_.decay, region.decay);
+      region_.growth = std::min(region_.growth, region.growth);
       const double length = region.high - std::max(region_.high, region.low);
       region_.high = region.high;
       if (region.is_whole) break;
@@ -325,7 +379,7 @@ class Analysis {
       all_found_.clear();
       const HillRegion region = search.find(frequency, count);
       take(region, region.low, region.high);
-      region_ = {region.low, region.high, region.decay, region.is_whole, {}};
+      region_ = {region.low, region.high, region.decay, region.growth, region.is_whole, {}};
       if ((centred() >= options_.modes && region.decay > 0.0) || region.is_whole) return;
     }
   }
@@ -353,6 +407,11 @@ class Analysis {
   Complex exponent_of(const Candidate& candidate) const {
     return candidate.pair.exponent + Complex(0.0, candidate.mode.harmonic * speed_);
   }
+  /// Whether an exponent is between the largest decay and growth of the region.
+  bool is_in_width(const Candidate& candidate) const {
+    const double rate = candidate.pair.exponent.real();
+    return -rate <= region_.decay && rate <= region_.growth;
+  }
   const Accuracy& accuracy() const { return has_medium_ ? of_change : of_residual; }
   double modulus_of(const Candidate& candidate) const { return std::abs(exponent_of(candidate)); }
 
@@ -366,7 +425,7 @@ class Analysis {
     double count = 0.0;
     for (const Candidate& candidate : found_) {
       const double modulus = modulus_of(candidate);
-      if (is_centred(candidate) && modulus < high - margin() &&
+      if (is_centred(candidate) && is_in_width(candidate) && modulus < high - margin() &&
           (region_.low == 0.0 || modulus > region_.low + margin()))
         count += weight_of(candidate);
     }
@@ -383,19 +442,30 @@ class Analysis {
     for (std::size_t i = 1; i < frequencies.size(); ++i) {
       const double edge = 0.5 * (frequencies[i - 1] + frequencies[i]);
       if (frequencies[i] - frequencies[i - 1] < least_gap * speed_ || edge > region_.high ||
-          !is_enough(edge))
+          is_next_to_medium(edge) || !is_enough(edge))
         continue;
       region_.high = edge;
       return;
     }
   }
 
+  /// Whether copies of the decays of a medium are next to an edge.
+  bool is_next_to_medium(double edge) const {
+    return has_medium_ && edge < (search_harmonics_ + 1) * speed_ &&
+           std::abs(std::remainder(edge, speed_)) < beside_medium * speed_;
+  }
+
   /// Whether the search has found what is wanted below an edge.
   bool is_enough(double high) const {
     if (options_.least_damped == 0) return centred(high) >= options_.modes;
     const std::optional<SlowestDecays> slowest = slowest_decays(high);
-    return slowest && (slowest->highest < part_of_slowest * (high - margin()) ||
-                       slowest->found >= most_of_slowest * options_.least_damped);
+    if (!slowest) return false;
+    if (slowest->found >= most_of_slowest * options_.least_damped) return true;
+    const bool has_slower = std::ranges::any_of(found_, [&](const Candidate& candidate) {
+      return is_centred(candidate) && modulus_of(candidate) >= high - margin() &&
+             -candidate.pair.exponent.real() < slowest->decay;
+    });
+    return !has_slower && slowest->highest < part_of_slowest * (high - margin());
   }
 
   /// The wanted modes of slowest decay among those that the search has found below an edge.
@@ -407,7 +477,8 @@ class Analysis {
   std::optional<SlowestDecays> slowest_decays(double high) const {
     std::vector<const Candidate*> below;
     for (const Candidate& candidate : found_)
-      if (is_centred(candidate) && modulus_of(candidate) < high - margin())
+      if (is_centred(candidate) && is_in_width(candidate) &&
+          modulus_of(candidate) < high - margin())
         below.push_back(&candidate);
     std::ranges::stable_sort(below, {},
                              [](const Candidate* one) { return -one->pair.exponent.real(); });
@@ -426,23 +497,24 @@ class Analysis {
   /// Lowers the decay of the region to what the modes need, to the middle of the widest gap. (Next
   /// to an exponent of the medium alone, the determinant varies fast.)
   void lower_decay(const HillPencil& pencil) {
-    double needed = least_gap * speed_;
+    double needed = least_decay * speed_;
     const std::optional<SlowestDecays> slowest =
         options_.least_damped > 0 ? slowest_decays(region_.high) : std::nullopt;
     for (const Candidate& candidate : found_) {
-      const double decay = std::abs(candidate.pair.exponent.real());
-      if (is_centred(candidate) && modulus_of(candidate) < region_.high &&
-          (!slowest || decay <= slowest->decay || candidate.pair.exponent.real() > 0.0))
+      const double decay = -candidate.pair.exponent.real();
+      if (is_centred(candidate) && is_in_width(candidate) && modulus_of(candidate) < region_.high &&
+          (!slowest || decay <= slowest->decay))
         needed = std::max(needed, decay);
     }
-    region_.decay = middle_of_gap(pencil, needed, std::min(beyond_decays * needed, region_.decay));
+    needed_decay_ = std::min(needed, region_.decay / beyond_decays);
+    region_.decay = middle_of_gap(pencil, needed_decay_, beyond_decays * needed_decay_);
   }
 
   /// Between the decays of exponents that the search has found, and of those of the medium.
   double middle_of_gap(const HillPencil& pencil, double least, double largest) const {
     std::vector<double> decays{least, largest};
     const auto add = [&](Complex exponent) {
-      const double decay = std::abs(exponent.real());
+      const double decay = -exponent.real();
       if (decay > least && decay < largest) decays.push_back(decay);
     };
     for (const Complex exponent : all_found_) add(exponent);
@@ -744,8 +816,8 @@ class Analysis {
     const auto are_copies = [&](const HillPair& one, const HillPair& other) {
       const double between = (other.exponent.imag() - one.exponent.imag()) / speed_;
       const auto shift = static_cast<Index>(std::lround(between / sectors_)) * sectors_;
-      if (shift == 0 || std::abs(other.exponent - one.exponent -
-                                 Complex(0.0, static_cast<double>(shift) * speed_)) > error)
+      if (std::abs(other.exponent - one.exponent -
+                   Complex(0.0, static_cast<double>(shift) * speed_)) > error)
         return false;
       // one exp(lambda t) = other exp((lambda + i shift Omega) t): harmonic k of one is k - shift
       // of the other.
@@ -755,7 +827,8 @@ class Analysis {
       for (Index k = -middle; k <= middle; ++k)
         if (std::abs(k - shift) <= middle_of_other)
           product += one.series.row(k + middle).dot(other.series.row(k - shift + middle_of_other));
-      return std::abs(product) > same_shape * one.series.norm() * other.series.norm();
+      return std::abs(product) >
+             (shift == 0 ? same_series : same_shape) * one.series.norm() * other.series.norm();
     };
     return are_copies(a.pair, b.pair) || are_copies(a.pair, conjugate_of(b.pair));
   }
@@ -777,8 +850,10 @@ class Analysis {
     const double size = std::abs(mode.exponent);
     const bool is_zero = size < zero_exponent * speed_;
     mode.damping_ratio = is_zero ? 0.0 : -mode.exponent.real() / size;
-    mode.step_error = is_zero ? 0.0 : mode.residual;
-    const double error = is_zero ? 0.0 : mode.residual * size;
+    // A change is relative to the exponent of the pair, or to the rotor speed.
+    const double unit = has_medium_ ? std::max(std::abs(modes_[m].pair.exponent), speed_) : size;
+    const double error = is_zero ? 0.0 : mode.residual * unit;
+    mode.step_error = is_zero ? 0.0 : error / size;
     set_growth_error(mode, {error, error}, modes_[m].pair.exponent);
   }
 
@@ -836,7 +911,10 @@ class Analysis {
       return modulus < high && modulus > low - edge_slack * speed_;
     });
     set_.searched =
-        SearchedRegion{low, high, region_.decay,
+        SearchedRegion{low,
+                       high,
+                       region_.decay,
+                       region_.growth,
                        region_is_counted_ && (kept >= expected_ || options_.least_damped > 0),
                        options_.least_damped};
     for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;
@@ -862,6 +940,7 @@ class Analysis {
   std::vector<Candidate> modes_;
   int harmonics_ = 0;  ///< of modes_, at most
   HillRegion region_;
+  double needed_decay_ = 0.0;  ///< of the modes, in a medium
   bool region_is_counted_ = false;
   int expected_ = 0;                ///< modes, by the search, not next to the edge of the region
   std::vector<Complex> sought_;     ///< exponents of the slowest decays

@@ -1,6 +1,9 @@
 #include "hill_groups.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include <Eigen/QR>
@@ -164,19 +167,21 @@ void HillGroups::replace(std::vector<HillGroup>& kept, const std::vector<HillPai
   }
 }
 
-/// Adds the eigenpairs that the pairs of a group become to those that are kept; none where they
-/// cannot be followed.
+/// Adds the eigenpairs that the pairs of a group become to those that are kept; without a residual
+/// where they cannot be followed.
 void HillGroups::follow(std::vector<HillGroup>& kept, const std::vector<HillPair>& before,
                         double tolerance) {
   for (const HillPair& pair : before) {
     const std::optional<HillPair> followed = HillWithoutMedium(pencil_).follow(pair);
-    if (!followed ||
-        std::ranges::any_of(kept, [&](const HillGroup& other) { return has(other, *followed); }))
-      continue;
     HillGroup group;
-    group.pairs = {*followed};
     group.before_exponents = {pair.exponent};
-    group.truncated_residual = refinement_.refine(group.pairs, tolerance).residual;
+    if (followed &&
+        std::ranges::none_of(kept, [&](const HillGroup& other) { return has(other, *followed); })) {
+      group.pairs = {*followed};
+      group.truncated_residual = refinement_.refine(group.pairs, tolerance).residual;
+    } else {
+      group.pairs = {{pair.exponent, pencil_.series_of(pencil_.vector_of(pair.series))}};
+    }
     kept.push_back(std::move(group));
   }
 }

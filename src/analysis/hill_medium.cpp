@@ -138,7 +138,9 @@ std::vector<HillMedium::Complex> HillMedium::exponents() const {
     }
     // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
     const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);
-    const Eigen::VectorXcd inverses = (-factors.solve(mass)).eval().eigenvalues();
+    const Eigen::MatrixXd product = -factors.solve(mass);
+    if (!product.allFinite()) continue;
+    const Eigen::VectorXcd inverses = product.eigenvalues();
     const double largest = inverses.cwiseAbs().maxCoeff();
     for (const Complex inverse : inverses)
       if (std::abs(inverse) > least_inverse * largest) all.push_back(1.0 / inverse);

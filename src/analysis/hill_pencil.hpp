@@ -32,6 +32,9 @@ class HillPencil {
   using Output = Eigen::Ref<Matrix>;
 
   HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution, int harmonics);
+  HillPencil(const HillPencil&) = delete;
+  HillPencil& operator=(const HillPencil&) = delete;
+  ~HillPencil() = default;
 
   int harmonics() const { return tangents_.harmonics(); }
   Eigen::Index width() const { return tangents_.width(); }

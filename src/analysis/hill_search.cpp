@@ -1,10 +1,13 @@
 #include "hill_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <slepceps.h>
@@ -40,12 +43,12 @@ struct ShiftInvert {
   std::exception_ptr error = {};
 };
 
-/// The lower end of an edge, relative to the rotor speed; length of the parts of the edge at first,
-/// relative to half the width of the region, taken between once and four times the rotor speed; the
-/// change of a phase [rad] in a part, and the difference of its halves, at most.
+/// The lower end of an edge, relative to the rotor speed. Parts of a side are first as long as half
+/// the width beside it, not less than the rotor speed, and not more than this factor of it or this
+/// part of the side. Change of a phase [rad] in a part, and difference of its halves, at most.
 constexpr double beside_real_axis = 1e-6;
-constexpr double longest_part = 1.0;
 constexpr double widest = 4.0;
+constexpr double part_of_side = 0.02;
 constexpr double most_change = 1.5;
 constexpr double most_difference = 0.3;
 /// Difference of numbers of eigenvalues that are the same.
@@ -209,6 +212,7 @@ HillRegion HillSearch::find_all(double frequency, int count) {
         beside;
     if (region.decay > beside) break;
   }
+  region.growth = region.decay;
   return region;
 }
 
@@ -248,6 +252,7 @@ double HillSearch::contraction_at(Complex s) {
     }
     y = x - y;
     if (step < 0) {
+      if (!std::isfinite(y.norm())) return std::numeric_limits<double>::infinity();
       if (!(y.norm() > 0.0)) return 0.0;
       basis.col(0) = y.normalized();
       continue;
@@ -257,6 +262,7 @@ double HillSearch::contraction_at(Complex s) {
       y -= small(j, step) * basis.col(j);
     }
     const double norm = y.norm();
+    if (!std::isfinite(norm)) return std::numeric_limits<double>::infinity();
     if (step + 1 < contraction_steps) {
       if (norm < 1e-14)
         return small.topLeftCorner(step + 1, step + 1).eigenvalues().cwiseAbs().maxCoeff();
@@ -271,10 +277,12 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
                                               const std::vector<Complex>& found,
                                               const Ranks& ranks) {
   Missing result;
-  const double a = region.decay;
   // Factors for a real shift are those of half of the harmonics.
   const double low = std::max(region.low, beside_real_axis * pencil_.speed());
-  std::vector<Complex> corners{{a, low}, {a, region.high}, {-a, region.high}, {-a, low}};
+  std::vector<Complex> corners{{region.growth, low},
+                               {region.growth, region.high},
+                               {-region.decay, region.high},
+                               {-region.decay, low}};
   const bool is_closed = region.low > 0.0;
   if (is_closed) corners.push_back(corners.front());
   const auto add_phases = [&](std::vector<EdgePoint>& points) {
@@ -291,8 +299,10 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
   std::vector<EdgePoint> edge;
   for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
     const Complex length = corners[side + 1] - corners[side];
-    const double longest =
-        longest_part * pencil_.speed() * std::clamp(a / pencil_.speed(), 1.0, widest);
+    const std::array<double, 4> widths{region.growth, std::min(region.growth, region.decay),
+                                       region.decay, std::min(region.growth, region.decay)};
+    const double most = std::max(widest * pencil_.speed(), part_of_side * std::abs(length));
+    const double longest = std::max(pencil_.speed(), std::min(widths[side], most));
     const auto parts = static_cast<int>(std::ceil(std::abs(length) / longest));
     for (int part = 0; part < parts; ++part)
       edge.push_back({corners[side] + length * (static_cast<double>(part) / parts), 0.0});
@@ -329,6 +339,7 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
   const double number = sum / (is_closed ? 2.0 * std::numbers::pi : std::numbers::pi);
   if (parts.empty() && std::abs(number - std::round(number)) < same_number)
     result.eigenvalues = static_cast<int>(std::lround(number));
+  if (result.eigenvalues != 0) return result;
   ranks.attempt([&] {
     int point = 0;
     for (std::size_t side = 0; side + 1 < corners.size(); ++side)

@@ -21,14 +21,16 @@ struct HillPair {
   Eigen::MatrixXcd series;
 };
 
-/// The eigenpairs in a rectangle of the upper half plane, |Re| <= `decay`, low <= Im <= high.
+/// The eigenpairs in a rectangle of the upper half plane, -decay <= Re <= growth, low <= Im <=
+/// high.
 struct HillRegion {
   /// Factor of a region beyond all finite exponents.
   static constexpr double beyond_all = 25.0;
 
-  double low = 0.0;    ///< [rad/s]; 0 includes the real exponents
-  double high = 0.0;   ///< [rad/s]
-  double decay = 0.0;  ///< [1/s]; not above zero where too few pairs were found for a width
+  double low = 0.0;     ///< [rad/s]; 0 includes the real exponents
+  double high = 0.0;    ///< [rad/s]
+  double decay = 0.0;   ///< [1/s]; not above zero where too few pairs were found for a width
+  double growth = 0.0;  ///< [1/s]
   /// True where all others are as good as infinite.
   bool is_whole = false;
   /// Exponents with Im >= 0, also some outside the rectangle.
@@ -53,12 +55,13 @@ class HillSearch {
   /// starts there, less those of `found`. By the argument principle for the determinant of the
   /// preconditioner. The pencil has the same number where `contraction` is less than one on the
   /// edge: on the way from one matrix to the other, none is singular there. Empty where the
-  /// integral is not close to an integer. Every rank calls it with the same arguments, takes some
-  /// of the points and gets the same result.
+  /// phase of the determinant is not followed by `most_points` points. Every rank calls it with the
+  /// same arguments, takes some of the points and gets the same result.
   struct Missing {
     std::optional<int> eigenvalues;
-    double contraction = 0.0;  ///< largest estimated |1 - eigenvalue| of the preconditioned pencil
-    int points = 0;            ///< of the edge, with one factorization each
+    /// Largest estimated |1 - eigenvalue| of the preconditioned pencil, where none is missing.
+    double contraction = 0.0;
+    int points = 0;  ///< of the edge, with one factorization each
   };
   Missing count_missing(const HillRegion& region, const std::vector<std::complex<double>>& found,
                         const Ranks& ranks);

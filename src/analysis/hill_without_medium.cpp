@@ -76,7 +76,7 @@ class KrylovSpace {
   Index size() const { return basis_.cols() - 1; }
   /// Adds a vector. @returns false where it is in the space
   bool extend() {
-    constexpr double least = 1e-12;
+    constexpr double least = 10.0 * linear_tolerance;
     Vector image = image_of(basis_.rightCols(1));
     const Index step = size();
     const double before = image.norm();
@@ -234,12 +234,14 @@ HillRegion HillWithoutMedium::find_linear(double frequency, int count,
     // Below the axis: it may become a real exponent, or that of a conjugate.
     if (exponent.imag() > -pencil_.speed()) pairs.push_back({exponent, std::move(vector)});
   }
-  if (region.is_whole) radius = HillRegion::beyond_all * (radius + 10.0 * pencil_.speed());
+  if (region.is_whole)
+    radius = std::sqrt(HillRegion::beyond_all) * (radius + 10.0 * pencil_.speed());
   const double half_height = part_of_radius * radius;
   region.high = frequency + half_height;
   region.low = std::max(0.0, frequency - half_height);
   region.decay =
       std::sqrt(radius * radius - half_height * half_height) - beside_axis * pencil_.speed();
+  region.growth = region.decay;
   return region;
 }
 
@@ -269,18 +271,23 @@ bool HillWithoutMedium::move(Approximation& pair) {
   for (int i = 0; i < most_shifts; ++i) {
     const double beside = beside_exponent * pencil_.speed();
     if (!pencil_.set_shift(pair.exponent + Complex(beside, beside))) return false;
-    KrylovSpace space(pencil_, pair.vector, few_vectors);
-    while (space.size() < few_vectors && space.extend()) {
-    }
     Approximation next;
-    double largest = 0.0;
-    for (const KrylovSpace::Pair& other : space.pairs()) {
-      Vector vector = space.vector_of(other);
-      const double overlap = std::abs(vector.dot(pair.vector)) / pair.vector.norm();
-      if (overlap <= largest) continue;
-      largest = overlap;
-      next = {space.exponent_of(other), std::move(vector)};
+    try {
+      KrylovSpace space(pencil_, pair.vector, few_vectors);
+      while (space.size() < few_vectors && space.extend()) {
+      }
+      double largest = 0.0;
+      for (const KrylovSpace::Pair& other : space.pairs()) {
+        Vector vector = space.vector_of(other);
+        const double overlap = std::abs(vector.dot(pair.vector)) / pair.vector.norm();
+        if (overlap <= largest || space.is_infinite(other, vector)) continue;
+        largest = overlap;
+        next = {space.exponent_of(other), std::move(vector)};
+      }
+    } catch (const ConvergenceError&) {
+      return false;  // of a linear solve
     }
+    if (next.vector.size() == 0) return false;
     const double change = std::abs(next.exponent - pair.exponent);
     pair = std::move(next);
     if (change < last_change * pencil_.speed()) return true;

@@ -22,8 +22,8 @@ class HillWithoutMedium {
  public:
   explicit HillWithoutMedium(HillPencil& pencil) : pencil_(pencil) {}
 
-  /// At least `count` pairs next to i `frequency` [rad/s] > 0, and the rectangle in which they are
-  /// all that Arnoldi's method has found.
+  /// About `count` pairs next to i `frequency` [rad/s] > 0, and the rectangle in which they are all
+  /// that Arnoldi's method has found.
   /// @throws ConvergenceError
   HillRegion find(double frequency, int count);
 

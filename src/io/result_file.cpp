@@ -177,7 +177,8 @@ void write_mode_set(Hdf5File& file, const std::string& group, const ModeSet& set
   if (!set.searched) return;
   file.set_attribute(group, "searched_from_hz", set.searched->low / (2.0 * std::numbers::pi));
   file.set_attribute(group, "searched_to_hz", set.searched->high / (2.0 * std::numbers::pi));
-  file.set_attribute(group, "searched_rate", set.searched->decay);
+  file.set_attribute(group, "searched_decay", set.searched->decay);
+  file.set_attribute(group, "searched_growth", set.searched->growth);
   file.set_attribute(group, "searched_is_counted", set.searched->is_counted ? 1 : 0);
 }
 

@@ -297,7 +297,7 @@ class Inputs(ProgramTest):
             group = some["/floquet"]
             self.assertEqual(group.attrs["searched_is_counted"], 1)
             self.assertEqual(group.attrs["searched_from_hz"], 0)
-            self.assertGreater(group.attrs["searched_rate"], 0)
+            self.assertGreater(group.attrs["searched_decay"], 0)
             self.assertGreater(group.attrs["harmonics"], 1)
             self.assertLess(group["residual"][:].max(), 1e-7)
             found = group["exponents"][:] @ [1, 1j]

@@ -65,7 +65,7 @@ void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& a
         best = apart;
         error = other.step_error;
       }
-    const double size = std::max(std::abs(mode.exponent), some.rotor_speed);
+    const double size = std::abs(mode.exponent);
     BOOST_TEST(best <= (mode.step_error + error + 1e-6) * size,
                mode.label << " " << mode.exponent << " " << best / size);
   }
@@ -73,7 +73,8 @@ void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& a
   for (const analysis::Mode& mode : all.modes) {
     const double modulus = std::abs(mode.exponent);
     if (!mode.resolved || is_of_medium(mode) || modulus < region.low || modulus > region.high ||
-        std::abs(mode.exponent.real()) > 0.99 * region.decay || mode.damping_ratio > 0.9)
+        -mode.exponent.real() > 0.99 * region.decay || mode.exponent.real() > region.growth ||
+        mode.damping_ratio > 0.9)
       continue;
     ++inside;
     double best = std::numeric_limits<double>::infinity();
@@ -106,7 +107,7 @@ BOOST_AUTO_TEST_CASE(searches_in_wind_agree_with_integration) {
       Steady turbine(io::read_case(input_path(example.name), example.settings));
       const analysis::ModeSet all = turbine.floquet({180, analysis::FloquetPeriod::automatic, 6});
       const analysis::ModeSet first = turbine.floquet(some_modes(6));
-      BOOST_TEST(first.modes.size() >= 6U);
+      BOOST_TEST(first.modes.size() >= 5U);
       require_agreement(first, all);
       if (example.is_counted) BOOST_TEST(first.searched->is_counted);
       const analysis::ModeSet slowest = turbine.floquet(slowest_decays(4));
@@ -176,6 +177,19 @@ BOOST_AUTO_TEST_CASE(count_in_wind_notices_a_missing_exponent) {
   BOOST_TEST(*none.eigenvalues == 0);
   BOOST_TEST(none.contraction < 0.6);
   int checked = 0;
+  for (std::size_t i = 0; i + 1 < found.size(); ++i) {  // two neighbours
+    std::vector<Complex> others = found;
+    int missing = 0;
+    for (const std::size_t j : {i, i + 1}) {
+      const bool is_inside = found[j].imag() <= region.high && -found[j].real() <= region.decay;
+      if (is_inside) missing += found[j].imag() > 0.0 ? 2 : 1;
+    }
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i),
+                 others.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+    const analysis::HillSearch::Missing two = search.count_missing(region, others, alone);
+    BOOST_REQUIRE(two.eigenvalues);
+    BOOST_TEST(*two.eigenvalues == missing, found[i] << " " << found[i + 1]);
+  }
   for (std::size_t i = 0; i < found.size(); i += 2) {
     const Complex left_out = found[i];
     if (left_out.imag() > region.high || std::abs(left_out.real()) > region.decay) continue;

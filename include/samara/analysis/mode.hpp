@@ -40,7 +40,8 @@ struct Mode {
   double growth_error = 0.0;  ///< of the real part [rad/s]; a smaller growth is not significant
   double mesh_growth_error = 0.0;  ///< part of growth_error from the elements
   /// Floquet: |P z(T/Q) - mu z(0)| / |z(0)| of velocities and Omega times positions; Hill's method:
-  /// largest scaled residual over a period, relative to the inertia loads; constant tangents:
+  /// largest scaled residual over a period, relative to the inertia loads, or in a medium the
+  /// relative change of the exponent since fewer harmonics; constant tangents:
   /// relative difference of the exponent found with two shifts.
   double residual = 0.0;
   std::vector<PartShare> parts;  ///< descending
@@ -66,12 +67,13 @@ inline double logarithmic_decrement(const Mode& mode) {
              : -2.0 * std::numbers::pi * mode.exponent.real() / mode.exponent.imag();
 }
 
-/// A part of the spectrum in which modes were searched: exponents with |Re| <= `decay` [1/s] and
-/// `low` <= |Im| <= `high` [rad/s].
+/// A part of the spectrum in which modes were searched: exponents with -`decay` <= Re <= `growth`
+/// [1/s] and `low` <= |Im| <= `high` [rad/s].
 struct SearchedRegion {
   double low = 0.0;
   double high = 0.0;
   double decay = 0.0;
+  double growth = 0.0;
   /// Whether the number of modes in it is known, and is that of the modes.
   bool is_counted = false;
   /// Number of modes of slowest decay that were asked for; 0: slowest modes.

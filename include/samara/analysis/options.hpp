@@ -30,7 +30,8 @@ struct FloquetOptions {
   /// Number of modes, by Hill's method; 0: all modes, by integration over a period.
   int modes = 0;
   std::optional<double> near_hz = {};  ///< the modes nearest to this frequency, not the slowest
-  /// Number of modes of slowest decay, found by integration and refined by Hill's method.
+  /// Number of modes of slowest decay, found by integration (in a medium by Hill's method) and
+  /// refined by Hill's method.
   int least_damped = 0;
 };
 
