@@ -17,7 +17,7 @@ struct HillGroup {
   std::vector<HillPair> pairs;
   double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
   /// Of each pair: the residual in the time domain, or in a medium, whose answer to a
-  /// passage of the tower has a long series, the change of the exponent since fewer harmonics,
+  /// motion has a long series, the change of the exponent since fewer harmonics,
   /// relative to the larger of the exponent and the rotor speed.
   std::vector<double> residuals;
   std::vector<std::complex<double>> before_exponents;       ///< with fewer harmonics
