@@ -131,9 +131,9 @@ const HarmonicPreconditioner::Chains& HarmonicPreconditioner::chains_of(int harm
 /// Rows and columns: coefficients of exp(i k Omega t), k = -H ... H.
 Eigen::MatrixXcd HarmonicPreconditioner::scaled_block(const Place& place) const {
   const int harmonics = tangents_.harmonics();
-  Eigen::MatrixXcd block =
-      (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_ + width_ - 1) *
-      tangents_.coupling(place, shift_);
+  Eigen::MatrixXcd block = (*row_factors_)(place.row * width_) *
+                           (*column_factors_)(place.column * width_ + width_ - 1) *
+                           tangents_.coupling(place, shift_);
   if (tangents_.is_held(place.column)) {
     block.col(harmonics).setZero();
     if (tangents_.holds(place.row, place.column))

@@ -59,7 +59,7 @@ class HillPencil {
   bool prepare_elimination() { return shift_ && medium_.factor(*shift_); }
   void multiply_eliminated(const Vector& x, Vector& y);
   std::vector<Complex> exponents_of_medium() const { return medium_.exponents(); }
-  void drop_medium(Output x) const { medium_.drop(x); }
+  void drop_medium(Vector& x) const { medium_.drop(x); }
   /// The exponent that fits a vector best: (A + lambda B) x is least in the 2-norm.
   Complex exponent_of(const Vector& x);
 
