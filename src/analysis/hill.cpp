@@ -184,13 +184,8 @@ class Analysis {
     std::erase_if(found_, [this](const Candidate& candidate) {
       return candidate.pair.exponent.imag() > region_.high || !is_in_width(candidate);
     });
-    expected_ = centred(region_.high - edge_slack * speed_);
-    if (options_.least_damped > 0) {
-      double sum = 0.0;
-      for (const Candidate& candidate : found_)
-        if (is_centred(candidate)) sum += weight_of(candidate);
-      expected_ = static_cast<int>(sum);
-    }
+    expected_ = centred(options_.least_damped > 0 ? std::numeric_limits<double>::infinity()
+                                                  : region_.high - edge_slack * speed_);
   }
 
   /// Counts the eigenvalues in the region, that of the first rank.
@@ -200,14 +195,14 @@ class Analysis {
     ranks_.share(0, all_found_);
     ranks_.share(0, expected_);
     ranks_.share(0, needed_decay_);
+    ranks_.share(0, decays_);
     region_is_counted_ = is_complete(pencil, region_);
     if (!has_medium_) return;
     // Next to exponents of the medium, the preconditioner may not serve.
     const double first = region_.decay;
     for (int i = 0; i < most_edges && !region_is_counted_; ++i) {
       const double width = (beyond_decays - 1.0) * needed_decay_ / most_edges;
-      region_.decay =
-          shared_gap(pencil, needed_decay_ + i * width, needed_decay_ + (i + 1) * width);
+      region_.decay = middle_of_gap(needed_decay_ + i * width, needed_decay_ + (i + 1) * width);
       region_is_counted_ = is_complete(pencil, region_);
     }
     if (!region_is_counted_) region_.decay = first;
@@ -215,7 +210,7 @@ class Analysis {
     // damping and one of the medium may cancel: a narrower region is to be complete as well.
     HillRegion part = region_;
     for (int i = 0; i < most_narrower; ++i) {
-      part.decay = shared_gap(pencil, narrowest * part.decay, narrower * part.decay);
+      part.decay = middle_of_gap(narrowest * part.decay, narrower * part.decay);
       if (part.decay < least_decay * speed_) return;
       if (!is_complete(pencil, part)) continue;
       if (!region_is_counted_) region_.decay = part.decay;
@@ -229,13 +224,6 @@ class Analysis {
     const HillSearch::Missing missing =
         HillSearch(pencil).count_missing(region, all_found_, ranks_);
     return missing.eigenvalues == 0 && missing.contraction < 1.0;
-  }
-
-  /// The same on all ranks.
-  double shared_gap(const HillPencil& pencil, double least, double largest) const {
-    double middle = middle_of_gap(pencil, least, largest);
-    ranks_.share(0, middle);
-    return middle;
   }
 
   /// Finds the motions of slowest decay by integration, with as many steps as these need.
@@ -419,16 +407,22 @@ class Analysis {
   double weight_of(const Candidate& candidate) const {
     return 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
   }
-  /// Approximate number of modes that the search has found, with moduli of exponents from the lower
-  /// edge to `high`, less the margin.
-  int centred(double high) const {
-    double count = 0.0;
+  /// Modes that the search has found, with moduli of exponents from the lower edge to `high`, less
+  /// the margin.
+  std::vector<const Candidate*> centred_below(double high) const {
+    std::vector<const Candidate*> below;
     for (const Candidate& candidate : found_) {
       const double modulus = modulus_of(candidate);
       if (is_centred(candidate) && is_in_width(candidate) && modulus < high - margin() &&
           (region_.low == 0.0 || modulus > region_.low + margin()))
-        count += weight_of(candidate);
+        below.push_back(&candidate);
     }
+    return below;
+  }
+  /// Their approximate number.
+  int centred(double high) const {
+    double count = 0.0;
+    for (const Candidate* candidate : centred_below(high)) count += weight_of(*candidate);
     return static_cast<int>(count);
   }
   int centred() const { return centred(region_.high); }
@@ -475,11 +469,7 @@ class Analysis {
     double found = 0.0;    ///< number of all modes
   };
   std::optional<SlowestDecays> slowest_decays(double high) const {
-    std::vector<const Candidate*> below;
-    for (const Candidate& candidate : found_)
-      if (is_centred(candidate) && is_in_width(candidate) &&
-          modulus_of(candidate) < high - margin())
-        below.push_back(&candidate);
+    std::vector<const Candidate*> below = centred_below(high);
     std::ranges::stable_sort(below, {},
                              [](const Candidate* one) { return -one->pair.exponent.real(); });
     SlowestDecays slowest;
@@ -507,26 +497,27 @@ class Analysis {
         needed = std::max(needed, decay);
     }
     needed_decay_ = std::min(needed, region_.decay / beyond_decays);
-    region_.decay = middle_of_gap(pencil, needed_decay_, beyond_decays * needed_decay_);
+    for (const Complex exponent : all_found_) decays_.push_back(-exponent.real());
+    for (const Complex exponent : pencil.exponents_of_medium()) decays_.push_back(-exponent.real());
+    std::ranges::sort(decays_);
+    region_.decay = middle_of_gap(needed_decay_, beyond_decays * needed_decay_);
   }
 
-  /// Between the decays of exponents that the search has found, and of those of the medium.
-  double middle_of_gap(const HillPencil& pencil, double least, double largest) const {
-    std::vector<double> decays{least, largest};
-    const auto add = [&](Complex exponent) {
-      const double decay = -exponent.real();
-      if (decay > least && decay < largest) decays.push_back(decay);
-    };
-    for (const Complex exponent : all_found_) add(exponent);
-    for (const Complex exponent : pencil.exponents_of_medium()) add(exponent);
-    std::ranges::sort(decays);
+  /// Of the widest one between neighbours among `decays_`, in a range.
+  double middle_of_gap(double least, double largest) const {
     double widest = 0.0;
     double middle = largest;
-    for (std::size_t i = 1; i < decays.size(); ++i)
-      if (const double gap = decays[i] - decays[i - 1]; gap > widest) {
-        widest = gap;
-        middle = 0.5 * (decays[i] + decays[i - 1]);
+    double last = least;
+    const auto pass = [&](double decay) {
+      if (decay - last > widest) {
+        widest = decay - last;
+        middle = 0.5 * (decay + last);
       }
+      last = decay;
+    };
+    for (const double decay : decays_)
+      if (decay > least && decay < largest) pass(decay);
+    pass(largest);
     return middle;
   }
 
@@ -645,13 +636,9 @@ class Analysis {
   /// Whether more harmonics are not needed, or of no use. `added`: since the attempt before.
   bool is_last(const HillGroup& group, const std::vector<Candidate>& members, int added) const {
     const double residual = group.residual();
-    const bool has_growth = std::ranges::all_of(members, [this](const Candidate& one) {
-      const Complex exponent = one.pair.exponent;
-      const double growth = std::max(std::abs(exponent.real()), least_growth * std::abs(exponent));
-      return !has_medium_ ||
-             one.residual * std::max(std::abs(exponent), speed_) <= wanted_change * growth;
-    });
-    if ((residual <= accuracy().wanted && has_growth) || harmonics_ == most_harmonics) return true;
+    if ((residual <= accuracy().wanted && (!has_medium_ || know_growth(members))) ||
+        harmonics_ == most_harmonics)
+      return true;
     const bool is_own = std::any_of(members.begin(), members.end(), [this](const Candidate& one) {
       return is_centred(one);  // next to its own harmonic
     });
@@ -660,6 +647,15 @@ class Analysis {
     return (!is_own && is_known) || !members.front().is_found ||
            (residual <= accuracy().largest &&
             residual > std::pow(slowest_decay, added) * group.before);
+  }
+
+  /// Whether the changes of exponents are small beside their growth.
+  bool know_growth(const std::vector<Candidate>& members) const {
+    return std::ranges::all_of(members, [this](const Candidate& one) {
+      const Complex exponent = one.pair.exponent;
+      const double growth = std::max(std::abs(exponent.real()), least_growth * std::abs(exponent));
+      return one.residual * unit_of_change(exponent, speed_) <= wanted_change * growth;
+    });
   }
 
   /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut
@@ -819,15 +815,8 @@ class Analysis {
       if (std::abs(other.exponent - one.exponent -
                    Complex(0.0, static_cast<double>(shift) * speed_)) > error)
         return false;
-      // one exp(lambda t) = other exp((lambda + i shift Omega) t): harmonic k of one is k - shift
-      // of the other.
-      Complex product = 0.0;
-      const Index middle = (one.series.rows() - 1) / 2;
-      const Index middle_of_other = (other.series.rows() - 1) / 2;
-      for (Index k = -middle; k <= middle; ++k)
-        if (std::abs(k - shift) <= middle_of_other)
-          product += one.series.row(k + middle).dot(other.series.row(k - shift + middle_of_other));
-      return std::abs(product) >
+      const Eigen::MatrixXcd copy = shifted_series(one.series, shift, other.series.rows());
+      return std::abs(copy.reshaped().dot(other.series.reshaped())) >
              (shift == 0 ? same_series : same_shape) * one.series.norm() * other.series.norm();
     };
     return are_copies(a.pair, b.pair) || are_copies(a.pair, conjugate_of(b.pair));
@@ -851,7 +840,7 @@ class Analysis {
     const bool is_zero = size < zero_exponent * speed_;
     mode.damping_ratio = is_zero ? 0.0 : -mode.exponent.real() / size;
     // A change is relative to the exponent of the pair, or to the rotor speed.
-    const double unit = has_medium_ ? std::max(std::abs(modes_[m].pair.exponent), speed_) : size;
+    const double unit = has_medium_ ? unit_of_change(modes_[m].pair.exponent, speed_) : size;
     const double error = is_zero ? 0.0 : mode.residual * unit;
     mode.step_error = is_zero ? 0.0 : error / size;
     set_growth_error(mode, {error, error}, modes_[m].pair.exponent);
@@ -940,7 +929,8 @@ class Analysis {
   std::vector<Candidate> modes_;
   int harmonics_ = 0;  ///< of modes_, at most
   HillRegion region_;
-  double needed_decay_ = 0.0;  ///< of the modes, in a medium
+  double needed_decay_ = 0.0;   ///< of the modes, in a medium
+  std::vector<double> decays_;  ///< of exponents by the search and of the medium alone, ascending
   bool region_is_counted_ = false;
   int expected_ = 0;                ///< modes, by the search, not next to the edge of the region
   std::vector<Complex> sought_;     ///< exponents of the slowest decays

@@ -46,6 +46,15 @@ HillPair conjugate_of(const HillPair& pair) {
   return {std::conj(pair.exponent), pair.series.colwise().reverse().conjugate()};
 }
 
+Eigen::MatrixXcd shifted_series(const Eigen::MatrixXcd& series, Index shift, Index rows) {
+  Eigen::MatrixXcd shifted = Eigen::MatrixXcd::Zero(rows, series.cols());
+  const Index offset = shift + (series.rows() - rows) / 2;  // from a row of `shifted`
+  for (Index row = 0; row < rows; ++row)
+    if (row + offset >= 0 && row + offset < series.rows())
+      shifted.row(row) = series.row(row + offset);
+  return shifted;
+}
+
 std::vector<HillGroup> groups_of(std::vector<HillPair> pairs, double speed) {
   // The conjugate of a slow motion belongs to its group: both may be a double zero.
   for (std::size_t i = 0, count = pairs.size(); i < count; ++i) {
@@ -253,7 +262,7 @@ void HillGroups::find_changes(HillGroup& group) const {
     for (const std::complex<double> before : group.before_exponents)
       change = std::min(change, std::abs(pair.exponent - before));
     group.residuals.push_back(
-        std::max(group.truncated_residual, change / std::max(std::abs(pair.exponent), speed_)));
+        std::max(group.truncated_residual, change / unit_of_change(pair.exponent, speed_)));
   }
 }
 

@@ -16,9 +16,8 @@ namespace samara::analysis {
 struct HillGroup {
   std::vector<HillPair> pairs;
   double truncated_residual = std::numeric_limits<double>::infinity();  ///< in its own harmonics
-  /// Of each pair: the residual in the time domain, or in a medium, whose answer to a
-  /// motion has a long series, the change of the exponent since fewer harmonics,
-  /// relative to the larger of the exponent and the rotor speed.
+  /// Of each pair: the residual in the time domain, or in a medium, whose answer to a motion has a
+  /// long series, the change of the exponent since fewer harmonics, relative to unit_of_change().
   std::vector<double> residuals;
   std::vector<std::complex<double>> before_exponents;       ///< with fewer harmonics
   double before = std::numeric_limits<double>::infinity();  ///< residual with fewer harmonics
@@ -28,6 +27,16 @@ struct HillGroup {
 };
 
 HillPair conjugate_of(const HillPair& pair);
+
+/// The series of the copy of a motion whose exponent is larger by i `shift` Omega: its harmonic k
+/// is harmonic k + `shift` of `series`. Of `rows` harmonics, zero where `series` has none.
+Eigen::MatrixXcd shifted_series(const Eigen::MatrixXcd& series, Eigen::Index shift,
+                                Eigen::Index rows);
+
+/// The change of an exponent from one number of harmonics to another is relative to this [rad/s].
+inline double unit_of_change(std::complex<double> exponent, double speed) {
+  return std::max(std::abs(exponent), speed);
+}
 
 /// Groups of eigenpairs, with the conjugates of slow ones. `speed`: of the rotor [rad/s].
 std::vector<HillGroup> groups_of(std::vector<HillPair> pairs, double speed);

@@ -60,18 +60,33 @@ HillMedium::HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& 
           .places.push_back(place);
 }
 
+void HillMedium::take_means() {
+  if (!is_empty()) means_ = tangents_.means();
+}
+
+/// The mean tangents in each harmonic.
+HillMedium::Matrix HillMedium::mean_coupling(const HarmonicTangents::Place& place,
+                                             Complex s) const {
+  const int harmonics = tangents_.harmonics();
+  Matrix block = Matrix::Zero(tangents_.width(), tangents_.width());
+  for (int k = -harmonics; k <= harmonics; ++k)
+    if (tangents_.has(place.row, k) && tangents_.has(place.column, k))
+      block(k + harmonics, k + harmonics) =
+          means_(0, place.number) +
+          (s + Complex(0.0, k * tangents_.rate())) * means_(1, place.number);
+  return block;
+}
+
 HillMedium::Matrix HillMedium::block_of(const Group& group, Complex s, bool only_means) const {
   const Index width = tangents_.width();
   const auto size = static_cast<Index>(group.unknowns.size()) * width;
   Matrix block = Matrix::Zero(size, size);
   for (const HarmonicTangents::Place& place : group.places) {
-    Matrix values =
-        tangents_.coupling(place, s) * rows_(place.row * width) * columns_(place.column * width);
     const bool is_of_chain = !tangents_.is_border(place.row) && !tangents_.is_border(place.column);
-    if (only_means && is_of_chain) values = values.diagonal().asDiagonal().toDenseMatrix();
     block.block(place_in_group_[static_cast<std::size_t>(place.row)] * width,
                 place_in_group_[static_cast<std::size_t>(place.column)] * width, width, width) =
-        values;
+        rows_(place.row * width) * columns_(place.column * width) *
+        (only_means && is_of_chain ? mean_coupling(place, s) : tangents_.coupling(place, s));
   }
   for (std::size_t i = 0; i < group.unknowns.size(); ++i)
     for (Index k = 0; k < width; ++k)
@@ -130,11 +145,10 @@ std::vector<HillMedium::Complex> HillMedium::exponents() const {
     Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
     Eigen::MatrixXd mass = stiffness;
     for (const HarmonicTangents::Place& place : group.places) {
-      const HarmonicTangents::Coefficients tangents = tangents_.coefficients(place);
       const Index row = place_in_group_[static_cast<std::size_t>(place.row)];
       const Index column = place_in_group_[static_cast<std::size_t>(place.column)];
-      stiffness(row, column) = tangents.stiffness(tangents.stiffness.size() / 2).real();
-      mass(row, column) = tangents.mass(tangents.mass.size() / 2).real();
+      stiffness(row, column) = means_(0, place.number);
+      mass(row, column) = means_(1, place.number);
     }
     // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
     const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);

@@ -25,6 +25,8 @@ class HillMedium {
              const Eigen::VectorXd& columns);
 
   bool is_empty() const { return groups_.empty(); }
+  /// Takes the means of the tangents, which have samples now.
+  void take_means();
   /// Numbers of the states among the unknowns of the tangents.
   const std::vector<Eigen::Index>& states() const { return states_; }
 
@@ -50,6 +52,7 @@ class HillMedium {
   };
 
   Matrix block_of(const Group& group, Complex s, bool only_means) const;
+  Matrix mean_coupling(const HarmonicTangents::Place& place, Complex s) const;
 
   const HarmonicTangents& tangents_;
   const Eigen::VectorXd& rows_;
@@ -57,6 +60,7 @@ class HillMedium {
   std::vector<Index> states_;
   std::vector<Group> groups_;
   std::vector<Index> place_in_group_;  ///< of each unknown; -1: not of the medium
+  Eigen::MatrixXd means_;              ///< of K and M, 2 x places
 };
 
 }  // namespace samara::analysis

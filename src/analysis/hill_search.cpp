@@ -15,6 +15,7 @@
 #include "samara/base/error.hpp"
 #include "samara/petsc/options.hpp"
 
+#include "arnoldi.hpp"
 #include "complex_solver.hpp"
 #include "hill_without_medium.hpp"
 
@@ -25,8 +26,7 @@ using Complex = std::complex<double>;
 using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
-/// Relative tolerances of the linear solves and of the eigensolver.
-constexpr double linear_tolerance = 1e-7;
+/// Relative tolerance of the eigensolver.
 constexpr double eigenvalue_tolerance = 1e-6;
 
 /// Real part of the shifts, relative to the rotor speed. Undamped motions, whose exponents are
@@ -54,7 +54,9 @@ constexpr double most_difference = 0.3;
 /// Difference of numbers of eigenvalues that are the same.
 constexpr double same_number = 0.1;
 constexpr int most_points = 1000;
+/// Vectors by which the contraction is estimated, and a norm of round-off.
 constexpr int contraction_steps = 8;
+constexpr double least_change = 1e-14;
 
 /// Real vectors of the eigensolver: mean, then sqrt(2) times real and negative imaginary part of
 /// z_k, k > 0, for each unknown, which keeps the norm of the series.
@@ -124,6 +126,16 @@ struct EdgePoint {
 
 }  // namespace
 
+ComplexSolver solver_at(HillPencil& pencil, Complex shift) {
+  if (!pencil.set_shift(shift))
+    throw ConvergenceError("floquet: Hill's method has no factors at " +
+                           std::to_string(shift.imag()) + " rad/s");
+  return {pencil.size(),
+          [&pencil, shift](const Vector& x, Vector& y) { pencil.multiply(x, shift * x, y); },
+          [&pencil](const Vector& x, Vector& y) { pencil.precondition(x, y); }, linear_tolerance,
+          "hill_"};
+}
+
 HillRegion HillSearch::find(double frequency, int count) {
   return pencil_.has_medium() ? HillWithoutMedium(pencil_).find(frequency, count)
                               : find_all(frequency, count);
@@ -134,12 +146,7 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   const auto n = static_cast<PetscInt>(size);
   const double beside = real_part_of_shift * pencil_.speed();
   const Complex shift(beside, frequency);
-  if (!pencil_.set_shift(shift))
-    throw ConvergenceError("floquet: Hill's method has no factors at " + std::to_string(frequency) +
-                           " rad/s");
-  ComplexSolver linear(
-      size, [&](const Vector& x, Vector& y) { pencil_.multiply(x, shift * x, y); },
-      [&](const Vector& x, Vector& y) { pencil_.precondition(x, y); }, linear_tolerance, "hill_");
+  ComplexSolver linear = solver_at(pencil_, shift);
   ShiftInvert context{pencil_, linear};
   petsc::Handle<Mat> inverse;
   petsc::check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &context, inverse.fill()));
@@ -233,44 +240,33 @@ double HillSearch::contraction_at(Complex s) {
   const bool eliminates = pencil_.has_medium();
   if (!pencil_.set_shift(s) || (eliminates && !pencil_.prepare_elimination()))
     return std::numeric_limits<double>::infinity();
-  Eigen::MatrixXcd basis(pencil_.size(), contraction_steps + 1);
-  Eigen::MatrixXcd small = Eigen::MatrixXcd::Zero(contraction_steps, contraction_steps);
   Vector x = Vector::Constant(pencil_.size(), Complex(1.0, 0.5));
   for (Index i = 0; i < x.size(); ++i) x(i) *= 1.0 + 0.5 * std::sin(static_cast<double>(i));
   pencil_.drop_absent(x);
   if (eliminates) pencil_.drop_medium(x);
   Vector product(x.size());
   Vector y(x.size());
-  // The first vector has the components that the preconditioner changes.
-  for (int step = -1; step < contraction_steps; ++step) {
-    if (step >= 0) x = basis.col(step);
+  const auto change_of = [&](const Vector& of) {  // by 1 less the preconditioned pencil
     if (eliminates) {
-      pencil_.multiply_eliminated(x, y);
+      pencil_.multiply_eliminated(of, y);
     } else {
-      pencil_.multiply(x, s * x, product);
+      pencil_.multiply(of, s * of, product);
       pencil_.precondition(product, y);
     }
-    y = x - y;
-    if (step < 0) {
-      if (!std::isfinite(y.norm())) return std::numeric_limits<double>::infinity();
-      if (!(y.norm() > 0.0)) return 0.0;
-      basis.col(0) = y.normalized();
-      continue;
-    }
-    for (Index j = 0; j <= step; ++j) {
-      small(j, step) = basis.col(j).dot(y);
-      y -= small(j, step) * basis.col(j);
-    }
-    const double norm = y.norm();
-    if (!std::isfinite(norm)) return std::numeric_limits<double>::infinity();
-    if (step + 1 < contraction_steps) {
-      if (norm < 1e-14)
-        return small.topLeftCorner(step + 1, step + 1).eigenvalues().cwiseAbs().maxCoeff();
-      small(step + 1, step) = norm;
-    }
-    basis.col(step + 1) = y / norm;
+    return Vector(of - y);
+  };
+  // The first vector has the components that the preconditioner changes.
+  const Vector start = change_of(x);
+  if (!start.allFinite()) return std::numeric_limits<double>::infinity();
+  if (!(start.norm() > 0.0)) return 0.0;
+  Arnoldi space(start, contraction_steps);
+  bool is_larger = true;
+  while (is_larger && space.size() < contraction_steps) {
+    const Vector image = change_of(space.last());
+    if (!image.allFinite()) return std::numeric_limits<double>::infinity();
+    is_larger = space.extend(image, least_change);
   }
-  return small.eigenvalues().cwiseAbs().maxCoeff();
+  return space.projected().eigenvalues().cwiseAbs().maxCoeff();
 }
 
 HillSearch::Missing HillSearch::count_missing(const HillRegion& region,

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "complex_solver.hpp"
 #include "hill_pencil.hpp"
 #include "ranks.hpp"
 
@@ -37,11 +38,19 @@ struct HillRegion {
   std::vector<HillPair> pairs;
 };
 
+/// Relative tolerance of the linear solves of a search.
+constexpr double linear_tolerance = 1e-7;
+
+/// Solves (A + sigma B) y = x with the shift sigma, which the pencil keeps (options prefix
+/// `hill_`).
+/// @throws ConvergenceError where there are no factors
+ComplexSolver solver_at(HillPencil& pencil, std::complex<double> shift);
+
 /// Finds eigenpairs next to shifts on the imaginary axis by Krylov-Schur with shift and invert
 /// (SLEPc, options prefix `hill_`). Real vectors serve a complex shift sigma: the imaginary part of
-/// (A + sigma B)^-1 B is a real map with the eigenvalues -Im(sigma) / ((sigma - lambda)
-/// (conj(sigma)
-/// - lambda)). In a medium, HillWithoutMedium takes its place.
+/// (A + sigma B)^-1 B is a real map with the eigenvalues
+/// -Im(sigma) / ((sigma - lambda) (conj(sigma) - lambda)). In a medium, HillWithoutMedium takes its
+/// place.
 class HillSearch {
  public:
   explicit HillSearch(HillPencil& pencil) : pencil_(pencil) {}

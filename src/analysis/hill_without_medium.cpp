@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <string>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
 
 #include "samara/base/error.hpp"
 
-#include "complex_solver.hpp"
+#include "arnoldi.hpp"
 #include "hill_groups.hpp"
 #include "hill_refinement.hpp"
 
@@ -21,9 +20,7 @@ using Complex = std::complex<double>;
 using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
-/// Relative tolerances of the linear solves, of the eigenpairs of the linear problem and of
-/// corrected ones.
-constexpr double linear_tolerance = 1e-7;
+/// Relative tolerances of the eigenpairs of the linear problem and of corrected ones.
 constexpr double eigenpair_tolerance = 1e-4;
 constexpr double corrected_tolerance = 1e-5;
 /// Real part of the shift, relative to the rotor speed: there are no factors at an exponent.
@@ -58,39 +55,19 @@ double correlation(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
 /// eigenvalues are 1 / (sigma - lambda).
 class KrylovSpace {
  public:
-  /// The pencil has the shift sigma.
-  KrylovSpace(HillPencil& pencil, const Vector& start, Index most)
+  /// The pencil keeps the shift sigma.
+  KrylovSpace(HillPencil& pencil, Complex shift, const Vector& start, Index most)
       : pencil_(pencil),
-        shift_(*pencil.shift()),
-        linear_(
-            pencil.size(),
-            [this](const Vector& x, Vector& y) { pencil_.multiply(x, shift_ * x, y); },
-            [this](const Vector& x, Vector& y) { pencil_.precondition(x, y); }, linear_tolerance,
-            "hill_"),
+        shift_(shift),
+        linear_(solver_at(pencil, shift)),
         right_(pencil.size()),
-        basis_(start.size(), 1),
-        small_(Eigen::MatrixXcd::Zero(most + 1, most)) {
-    basis_.col(0) = image_of(start).normalized();  // without infinite exponents
-  }
+        space_(image_of(start), most) {}  // without infinite exponents
 
-  Index size() const { return basis_.cols() - 1; }
+  Index size() const { return space_.size(); }
   /// Adds a vector. @returns false where it is in the space
   bool extend() {
-    constexpr double least = 10.0 * linear_tolerance;
-    Vector image = image_of(basis_.rightCols(1));
-    const Index step = size();
-    const double before = image.norm();
-    for (int repeat = 0; repeat < 2; ++repeat) {
-      const Vector parts = basis_.adjoint() * image;
-      image -= basis_ * parts;
-      small_.col(step).head(step + 1) += parts;
-    }
-    const double norm = image.norm();
-    basis_.conservativeResize(Eigen::NoChange, step + 2);
-    if (!(norm > least * before)) return false;
-    small_(step + 1, step) = norm;
-    basis_.col(step + 1) = image / norm;
-    return true;
+    const Vector& image = image_of(space_.last());
+    return space_.extend(image, 10.0 * linear_tolerance * image.norm());
   }
 
   struct Pair {
@@ -100,22 +77,18 @@ class KrylovSpace {
   };
   /// Those next to the shift first.
   std::vector<Pair> pairs() const {
-    const Index count = size();
-    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(small_.topLeftCorner(count, count));
+    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(space_.projected());
     std::vector<Pair> pairs;
-    for (Index i = 0; i < count; ++i) {
+    for (Index i = 0; i < size(); ++i) {
       const Complex value = solver.eigenvalues()(i);
       const Vector vector = solver.eigenvectors().col(i);
-      pairs.push_back({value, vector,
-                       std::abs(small_(count, count - 1) * vector(count - 1)) / std::abs(value)});
+      pairs.push_back({value, vector, space_.residual(vector) / std::abs(value)});
     }
     std::ranges::sort(pairs, {}, [](const Pair& pair) { return -std::abs(pair.value); });
     return pairs;
   }
   Complex exponent_of(const Pair& pair) const { return shift_ - 1.0 / pair.value; }
-  Vector vector_of(const Pair& pair) const {
-    return (basis_.leftCols(size()) * pair.in_basis).normalized();
-  }
+  Vector vector_of(const Pair& pair) const { return space_.vector_of(pair.in_basis).normalized(); }
   /// Whether a vector belongs to an infinite exponent: it does not fulfil the linear problem.
   bool is_infinite(const Pair& pair, const Vector& vector) {
     Vector product(vector.size());
@@ -136,7 +109,7 @@ class KrylovSpace {
   Complex shift_;
   ComplexSolver linear_;
   Vector right_, image_;
-  Eigen::MatrixXcd basis_, small_;
+  Arnoldi space_;
 };
 
 Vector random_vector(const HillPencil& pencil) {
@@ -188,12 +161,7 @@ void HillWithoutMedium::add_copies(HillRegion& region) {
           pair.exponent + Complex(0.0, static_cast<double>(shift) * pencil_.speed());
       const double height = std::abs(exponent.imag());
       if (height > region.high || height < region.low) continue;
-      const Index rows = pair.series.rows();
-      if (std::abs(shift) >= rows) continue;
-      Eigen::MatrixXcd series = Eigen::MatrixXcd::Zero(rows, pair.series.cols());
-      const Index kept = rows - std::abs(shift);
-      series.middleRows(std::max<Index>(-shift, 0), kept) =
-          pair.series.middleRows(std::max<Index>(shift, 0), kept);
+      const Eigen::MatrixXcd series = shifted_series(pair.series, shift, pair.series.rows());
       if (series.norm() < least_of_copy * pair.series.norm()) continue;
       Approximation copy{exponent, pencil_.vector_of(series).normalized()};
       if (std::optional<HillPair> result = refined(copy)) add(std::move(*result), region);
@@ -203,11 +171,9 @@ void HillWithoutMedium::add_copies(HillRegion& region) {
 /// The eigenpairs of the linear problem, and the rectangle.
 HillRegion HillWithoutMedium::find_linear(double frequency, int count,
                                           std::vector<Approximation>& pairs) {
-  if (!pencil_.set_shift({beside_axis * pencil_.speed(), frequency}))
-    throw ConvergenceError("floquet: Hill's method has no factors at " + std::to_string(frequency) +
-                           " rad/s");
   const Index most = std::min<Index>(pencil_.size(), vectors_of_pair * count + more_vectors);
-  KrylovSpace space(pencil_, random_vector(pencil_), most);
+  KrylovSpace space(pencil_, {beside_axis * pencil_.speed(), frequency}, random_vector(pencil_),
+                    most);
   std::vector<KrylovSpace::Pair> converged;
   HillRegion region;
   while (!region.is_whole && static_cast<int>(converged.size()) < count && space.size() < most) {
@@ -249,12 +215,12 @@ HillRegion HillWithoutMedium::find_linear(double frequency, int count,
 std::optional<HillPair> HillWithoutMedium::corrected(const Approximation& pair) {
   if (std::optional<HillPair> result = refined(pair)) return result;
   Approximation next = pair;
-  return move(next) ? refined(next) : std::nullopt;
+  return approach(next) ? refined(next) : std::nullopt;
 }
 
 std::optional<HillPair> HillWithoutMedium::follow(const HillPair& pair) {
   Approximation approximation{pair.exponent, pencil_.vector_of(pair.series).normalized()};
-  return move(approximation) ? refined(approximation) : std::nullopt;
+  return approach(approximation) ? refined(approximation) : std::nullopt;
 }
 
 /// By Newton's method, if it stays with the eigenvector.
@@ -267,13 +233,12 @@ std::optional<HillPair> HillWithoutMedium::refined(const Approximation& pair) {
 
 /// Solves linear problems with the exponent of the one before as shift.
 /// @returns false where the exponents do not converge
-bool HillWithoutMedium::move(Approximation& pair) {
+bool HillWithoutMedium::approach(Approximation& pair) {
   for (int i = 0; i < most_shifts; ++i) {
     const double beside = beside_exponent * pencil_.speed();
-    if (!pencil_.set_shift(pair.exponent + Complex(beside, beside))) return false;
     Approximation next;
     try {
-      KrylovSpace space(pencil_, pair.vector, few_vectors);
+      KrylovSpace space(pencil_, pair.exponent + Complex(beside, beside), pair.vector, few_vectors);
       while (space.size() < few_vectors && space.extend()) {
       }
       double largest = 0.0;
@@ -285,7 +250,7 @@ bool HillWithoutMedium::move(Approximation& pair) {
         next = {space.exponent_of(other), std::move(vector)};
       }
     } catch (const ConvergenceError&) {
-      return false;  // of a linear solve
+      return false;  // no factors, or a linear solve
     }
     if (next.vector.size() == 0) return false;
     const double change = std::abs(next.exponent - pair.exponent);

@@ -44,7 +44,7 @@ class HillWithoutMedium {
   void add_copies(HillRegion& region);
   std::optional<HillPair> corrected(const Approximation& pair);
   std::optional<HillPair> refined(const Approximation& pair);
-  bool move(Approximation& pair);
+  bool approach(Approximation& pair);
 
   HillPencil& pencil_;
 };
