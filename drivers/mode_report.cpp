@@ -164,7 +164,7 @@ std::string rest_words(const StabilityAssessment& result) {
 std::string hertz(double rate) { return general(rate / (2.0 * std::numbers::pi), 3) + " Hz"; }
 
 bool is_of_slow_decays(const ModeSet& set) {
-  return set.searched && set.searched->slowest_decays > 0;
+  return set.searched && set.searched->is_of_slow_decays;
 }
 
 /// Hint where a search has not led to a verdict.
@@ -200,10 +200,10 @@ std::string searched_words(const ModeSet& set) {
          " and decay up to " + general(region.decay, 3) + " 1/s" +
          (region.is_counted ? "; none is missing there" : "") + "; other modes are not known" +
          (set.medium_states > 0 ? "; exponents of the air are left out" : "") +
-         (static_cast<std::size_t>(region.slowest_decays) > set.modes.size()
-              ? "\n" + std::to_string(region.slowest_decays) +
-                    " modes were asked for; the others decay too fast, or are too fast for the "
-                    "search"
+         (static_cast<std::size_t>(region.wanted) > set.modes.size()
+              ? "\n" + std::to_string(region.wanted) + " modes were asked for; the others " +
+                    (region.is_of_slow_decays ? "decay too fast, or are too fast for the search"
+                                              : "were not found")
               : "");
 }
 

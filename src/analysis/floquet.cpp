@@ -672,7 +672,7 @@ class Analysis {
     ranks_.share(0, set_.instances);
     for (Mode& mode : set_.modes) {
       ranks_.share(0, mode.fixed_frame_frequency);
-      ranks_.share(0, mode.label);
+      ranks_.share(0, mode.name);
     }
   }
 

@@ -88,6 +88,9 @@ constexpr int least_pairs = 24;
 constexpr int margin_pairs = 6;
 constexpr int most_pairs = 100;
 constexpr int most_regions = 200;
+/// Ranges in a row without a pair, above which no others are expected. Each is about as high as all
+/// before it.
+constexpr int most_empty = 3;
 /// Relative to the rotor speed: slack of the edges of the region, and distance of a copy in the
 /// search from where it should be, and of refined exponents that are the same.
 constexpr double edge_slack = 1.0;
@@ -337,6 +340,7 @@ class Analysis {
     region_.decay = std::numeric_limits<double>::infinity();
     region_.growth = region_.decay;
     int steps = 0;
+    int empty = 0;
     double frequency = has_medium_ ? between_copies * speed_ : speed_;
     const int wanted = std::max(options_.modes, options_.least_damped);
     int count = std::max(least_pairs, std::min(wanted + margin_pairs, most_pairs));
@@ -351,24 +355,30 @@ class Analysis {
         count += least_pairs / 2;
         continue;
       }
+      const std::size_t known = all_found_.size();
       take(region, region_.high, region.high);
       region_.decay = std::min(region_.decay, region.decay);
       region_.growth = std::min(region_.growth, region.growth);
       const double length = region.high - std::max(region_.high, region.low);
       region_.high = region.high;
-      if (region.is_whole) break;
+      empty = all_found_.size() == known ? empty + 1 : 0;
+      if (region.is_whole || empty == most_empty) break;
+      if (empty > 0) count = least_pairs;
       frequency = region_.high + 0.4 * length;
     }
   }
 
   void search_near(HillSearch& search, double frequency) {
     for (int count = std::max(least_pairs, options_.modes + margin_pairs);; count *= 2) {
+      const std::size_t known = all_found_.size();
       found_.clear();
       all_found_.clear();
       const HillRegion region = search.find(frequency, count);
       take(region, region.low, region.high);
       region_ = {region.low, region.high, region.decay, region.growth, region.is_whole, {}};
-      if ((centred() >= options_.modes && region.decay > 0.0) || region.is_whole) return;
+      if ((centred() >= options_.modes && region.decay > 0.0) || region.is_whole ||
+          (all_found_.size() == known && known > 0) || count > most_pairs)
+        return;
     }
   }
 
@@ -905,7 +915,8 @@ class Analysis {
                        region_.decay,
                        region_.growth,
                        region_is_counted_ && (kept >= expected_ || options_.least_damped > 0),
-                       options_.least_damped};
+                       std::max(options_.modes, options_.least_damped),
+                       options_.least_damped > 0};
     for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;
     Floquet result;
     result.harmonics = harmonics_;

@@ -171,7 +171,8 @@ void HillWithoutMedium::add_copies(HillRegion& region) {
 /// The eigenpairs of the linear problem, and the rectangle.
 HillRegion HillWithoutMedium::find_linear(double frequency, int count,
                                           std::vector<Approximation>& pairs) {
-  const Index most = std::min<Index>(pencil_.size(), vectors_of_pair * count + more_vectors);
+  const Index most =
+      std::min<Index>(pencil_.size(), vectors_of_pair * static_cast<Index>(count) + more_vectors);
   KrylovSpace space(pencil_, {beside_axis * pencil_.speed(), frequency}, random_vector(pencil_),
                     most);
   std::vector<KrylovSpace::Pair> converged;
@@ -200,6 +201,7 @@ HillRegion HillWithoutMedium::find_linear(double frequency, int count,
     // Below the axis: it may become a real exponent, or that of a conjugate.
     if (exponent.imag() > -pencil_.speed()) pairs.push_back({exponent, std::move(vector)});
   }
+  region.is_whole = region.is_whole || space.size() == pencil_.size();
   if (region.is_whole)
     radius = std::sqrt(HillRegion::beyond_all) * (radius + 10.0 * pencil_.speed());
   const double half_height = part_of_radius * radius;

@@ -297,7 +297,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   unite_degenerate(set, sectors, canonical, names);
   for (std::size_t m = 0; m < names.size(); ++m) {
     Mode& mode = set.modes[m];
-    mode.label = names[m].text();
+    mode.name = names[m].text();
     const double frequency = mode.exponent.imag();
     const bool is_rotating = names[m].motion.owner.instance > 0;
     const bool is_clear = leading.empty() || mode.state || leading[m].is_clear;
@@ -331,7 +331,7 @@ void arrange_modes(ModeSet& set) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto key = [&](std::size_t m) {
       return std::tuple(!set.modes[m].resolved, is_of_medium(set.modes[m]), by_size[m],
-                        by_growth[m], set.modes[m].label, harmonic_key(m),
+                        by_growth[m], set.modes[m].name, harmonic_key(m),
                         std::abs(set.modes[m].exponent));
     };
     return key(a) < key(b);
@@ -353,12 +353,12 @@ void arrange_modes(ModeSet& set) {
   // the names of resolved modes.
   std::map<std::string, int> alike;
   for (const Mode& mode : set.modes)
-    if (mode.resolved) ++alike[mode.label];
+    if (mode.resolved) ++alike[mode.name];
   std::map<std::string, int> number;
   for (Mode& mode : set.modes) {
-    const std::string name = mode.label;
-    const int own = ++number[name];
-    if (!name.empty() && (alike[name] > 1 || own > 1)) mode.label += " " + std::to_string(own);
+    const int own = ++number[mode.name];
+    const bool has_number = !mode.name.empty() && (alike[mode.name] > 1 || own > 1);
+    mode.label = mode.name + (has_number ? " " + std::to_string(own) : "");
   }
 }
 

@@ -9,6 +9,7 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/base/format.hpp"
 #include "samara/math/curve_faults.hpp"
+#include "samara/model/turbine.hpp"
 #include "samara/model/validation.hpp"
 #include "samara/simulation/scenario_fields.hpp"
 
@@ -179,6 +180,17 @@ class Validation {
     if (scenario_.floquet.least_damped > 0 && scenario_.floquet.modes > 0)
       add("floquet.least_damped",
           "and floquet.modes exclude each other; hint: leave one of them out");
+    check_count("floquet.modes", scenario_.floquet.modes);
+    check_count("floquet.least_damped", scenario_.floquet.least_damped);
+  }
+
+  /// A search for more modes than there are does not end soon.
+  void check_count(const std::string& field, int count) {
+    if (count == 0 || !faults_.empty()) return;
+    const int all = model::build_turbine(turbine_).degrees_of_freedom;
+    if (count > all)
+      add(field, "is " + std::to_string(count) + ", the turbine has " + std::to_string(all) +
+                     " degrees of freedom; hint: leave it out, for all modes");
   }
 
   /// Checks that loads and prescribed motions are constant or periodic with the rotor, and that the

@@ -271,7 +271,7 @@ namespace {
 
 analysis::Mode mode_of(const std::string& name, Complex exponent, bool resolved = true) {
   analysis::Mode mode;
-  mode.label = name;
+  mode.name = name;
   mode.exponent = exponent;
   mode.resolved = resolved;
   return mode;

@@ -20,7 +20,7 @@ from program import (  # noqa: E402
     ProgramTest,
 )
 
-COMMANDS = ["check", "static", "modes", "trim", "floquet"]
+COMMANDS = ["check", "static", "modes", "trim", "floquet", "campbell"]
 
 
 class CommandLine(ProgramTest):
@@ -347,6 +347,8 @@ class Inputs(ProgramTest):
             self.assertLess(min(abs(exponents["some"] - exponent)), 1e-6 * abs(exponent))
         self.refuse("floquet", case, *coarse, "--set", "floquet.least_damped=4", "--set",
                     "floquet.modes=4", words=["floquet.least_damped", "exclude each other"])
+        for key in ("floquet.least_damped", "floquet.modes"):
+            self.refuse("floquet", case, *coarse, "--set", f"{key}=900", words=[key, "degrees of freedom"])
         self.refuse("floquet", case, *coarse, "--set", "floquet.least_damped=0",
                     words=["floquet.least_damped"])
 

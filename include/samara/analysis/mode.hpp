@@ -28,7 +28,8 @@ struct Mode {
   std::complex<double> step_exponent;
   int harmonic = 0;            ///< k, relative to the principal exponent
   double damping_ratio = 0.0;  ///< -Re / |lambda|; 0 where |lambda| counts as zero
-  std::string label;
+  std::string name;            ///< of its motion: equal for modes of the same motion
+  std::string label;           ///< name and, where several modes have it, number
   /// Im of the exponent in the fixed frame [rad/s]; not-a-number where the motion has no single
   /// frequency there (docs/theory.md, section 5.6).
   double fixed_frame_frequency = std::numeric_limits<double>::quiet_NaN();
@@ -76,8 +77,8 @@ struct SearchedRegion {
   double growth = 0.0;
   /// Whether the number of modes in it is known, and is that of the modes.
   bool is_counted = false;
-  /// Number of modes of slowest decay that were asked for; 0: slowest modes.
-  int slowest_decays = 0;
+  int wanted = 0;                  ///< number of modes that were asked for
+  bool is_of_slow_decays = false;  ///< those of slowest decay, not those next to a frequency
 };
 
 struct ModeSet {
