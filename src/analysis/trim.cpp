@@ -179,7 +179,10 @@ std::optional<Trim> try_near(const system::PeriodicSystem& system, const TrimOpt
   const int least = options.automatic ? std::max(1, options.least_harmonics) : options.harmonics;
   if (harmonics < least) return std::nullopt;
   try {
-    Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, &near->solution, comm);
+    const Residuals residuals =
+        options.is_draft && !options.automatic ? Residuals::none : Residuals::all;
+    Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, &near->solution, comm,
+                                       residuals);
     if (options.automatic && !is_enough(trim, options)) return std::nullopt;
     return trim;
   } catch (const ConvergenceError&) {

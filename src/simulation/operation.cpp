@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -112,31 +113,18 @@ Root find_zero(const SearchRange& range, const Function& f) {
   throw ConvergenceError("no torque that balances the wind was found within 40 steady states");
 }
 
-class OperationFinder {
+}  // namespace
+
+class OperatingPointFinder::Search {
  public:
-  OperationFinder(const Scenario& scenario, const std::vector<ScheduledPoint>& table,
-                  analysis::Observer& observer)
+  Search(const Scenario& scenario, const std::vector<ScheduledPoint>& table,
+         analysis::Observer& observer)
       : scenario_(scenario), setup_(scenario.operation), table_(table), observer_(observer) {
     // The torque is the result.
     scenario_.turbine.shaft.generator.law = {};
     scenario_.turbine.controller.reset();
   }
 
-  std::vector<OperatingPoint> find() {
-    std::vector<double> winds = setup_.wind_speeds;
-    if (winds.empty())
-      for (const ScheduledPoint& row : table_) winds.push_back(row.wind);
-    if (winds.empty()) winds.push_back(scenario_.turbine.wind->speed);
-    std::vector<OperatingPoint> points;
-    for (const double wind : winds) {
-      observer_.progress("operation", static_cast<long>(points.size()),
-                         static_cast<long>(winds.size()));
-      points.push_back(find_at(wind));
-    }
-    return points;
-  }
-
- private:
   OperatingPoint find_at(double wind) {
     const std::string place = "operation at " + general(wind, 6) + " m/s: ";
     try {
@@ -154,6 +142,10 @@ class OperationFinder {
     }
   }
 
+  const turbine::TurbineSystem& system() const { return *system_; }
+  const analysis::Trim& trim() const { return *last_; }
+
+ private:
   /// The steady state at a speed and a pitch.
   const OperatingPoint& evaluate(double wind, double speed, double pitch, bool is_rough = false) {
     if (present_ && present_->wind == wind && present_->speed == speed &&
@@ -164,12 +156,16 @@ class OperationFinder {
     turbine.wind->speed = wind;
     turbine.shaft.speed = speed;
     turbine.blades.pitch = pitch;
-    const turbine::TurbineSystem system(model::build_turbine(turbine), PETSC_COMM_SELF);
+    auto built =
+        std::make_unique<turbine::TurbineSystem>(model::build_turbine(turbine), PETSC_COMM_SELF);
+    const turbine::TurbineSystem& system = *built;
     analysis::Observer silent;
     analysis::TrimOptions options = trim_options(scenario);
+    options.is_draft = is_rough;
     if (is_rough) options.tolerance = std::max(options.tolerance, rough_tolerance);
     last_ =
         solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, last_ ? &*last_ : nullptr);
+    system_ = std::move(built);
     if (!is_rough) require_wake_range(system, *last_);
     OperatingPoint point;
     point.wind = wind;
@@ -354,16 +350,15 @@ class OperationFinder {
   const std::vector<ScheduledPoint>& table_;
   analysis::Observer& observer_;
   std::optional<analysis::Trim> last_;
-  std::optional<OperatingPoint> present_;   ///< of last_
-  std::optional<OperatingPoint> previous_;  ///< of the wind speed before
+  std::unique_ptr<turbine::TurbineSystem> system_;  ///< of last_
+  std::optional<OperatingPoint> present_;           ///< of last_
+  std::optional<OperatingPoint> previous_;          ///< of the wind speed before
   bool present_is_rough_ = false;
   std::vector<PitchedPoint> pitched_;
   double speed_slope_ = 0.0;  ///< of the torque less its law, by the rated torque [s/rad]
   double tip_radius_ = 0.0;
   double density_ = 0.0;
 };
-
-}  // namespace
 
 std::string region_name(OperatingRegion region) {
   switch (region) {
@@ -381,10 +376,40 @@ std::string region_name(OperatingRegion region) {
   return "";
 }
 
+OperatingPointFinder::OperatingPointFinder(const Scenario& scenario,
+                                           const std::vector<ScheduledPoint>& table,
+                                           analysis::Observer& observer)
+    : search_(std::make_unique<Search>(scenario, table, observer)) {}
+
+OperatingPointFinder::~OperatingPointFinder() = default;
+
+OperatingPoint OperatingPointFinder::find_at(double wind) { return search_->find_at(wind); }
+
+const turbine::TurbineSystem& OperatingPointFinder::system() const { return search_->system(); }
+
+const analysis::Trim& OperatingPointFinder::trim() const { return search_->trim(); }
+
+std::vector<double> operating_winds(const Scenario& scenario,
+                                    const std::vector<ScheduledPoint>& table) {
+  std::vector<double> winds = scenario.operation.wind_speeds;
+  if (winds.empty())
+    for (const ScheduledPoint& row : table) winds.push_back(row.wind);
+  if (winds.empty()) winds.push_back(scenario.turbine.wind->speed);
+  return winds;
+}
+
 std::vector<OperatingPoint> find_operation(const Scenario& scenario,
                                            const std::vector<ScheduledPoint>& table,
                                            analysis::Observer& observer) {
-  return OperationFinder(scenario, table, observer).find();
+  OperatingPointFinder finder(scenario, table, observer);
+  const std::vector<double> winds = operating_winds(scenario, table);
+  std::vector<OperatingPoint> points;
+  for (const double wind : winds) {
+    observer.progress("operation", static_cast<long>(points.size()),
+                      static_cast<long>(winds.size()));
+    points.push_back(finder.find_at(wind));
+  }
+  return points;
 }
 
 }  // namespace samara::simulation

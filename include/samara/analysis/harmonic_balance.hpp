@@ -5,12 +5,16 @@
 
 namespace samara::analysis {
 
+/// Residuals of a steady state beside the equations that are solved.
+enum class Residuals { none, all };
+
 /// Solves with exactly `harmonics` harmonics, from `start` where it is not null (its harmonics
 /// may be fewer). Options prefix `trim_`. `comm`: ranks that share a large mesh; all of them have
 /// the same system and get the same solution.
 /// @throws ConvergenceError
 Trim solve_harmonic_balance(const system::PeriodicSystem& system, int harmonics, double tolerance,
-                            const PeriodicSolution* start, MPI_Comm comm = MPI_COMM_SELF);
+                            const PeriodicSolution* start, MPI_Comm comm = MPI_COMM_SELF,
+                            Residuals residuals = Residuals::all);
 
 /// The largest balance row of the residual of `solution`, midway between the samples of harmonic
 /// balance (`shift` 0.5) or at them (0). The constant `loads` hold unconstrained coordinates. The

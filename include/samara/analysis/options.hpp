@@ -16,6 +16,9 @@ struct TrimOptions {
   double tolerance = 1e-10;      ///< of the nonlinear solve, relative
   double auto_tolerance = 1e-6;  ///< of the residual between the samples, relative to the loads
   int steps = 500;               ///< steps per revolution of the shooting method
+  /// Next to a known steady state, leaves out the residuals beside the equations that are solved,
+  /// which then are 0: for the steps of a search. Not with `automatic`.
+  bool is_draft = false;
 };
 
 enum class FloquetPeriod { automatic, full, blade };

@@ -1,11 +1,14 @@
 // Operating points of a turbine in wind: speed, pitch and torque, and the steady state there.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "samara/analysis/observer.hpp"
+#include "samara/analysis/trim.hpp"
 #include "samara/simulation/scenario.hpp"
+#include "samara/turbine/turbine_system.hpp"
 
 namespace samara::simulation {
 
@@ -50,12 +53,34 @@ struct OperatingPoint {
   double imbalance = 0.0;           ///< analysis::Trim::imbalance
 };
 
-/// Finds the operating points of `scenario.operation`. `table`: rows of its table; the speed and
-/// pitch of a wind speed between two rows are linear between them. Without a table the pitch of the
-/// case is the least pitch. Laws of the generator and the controller do not act. Each steady state
-/// is the start of the next one.
-/// @throws InputError where no operating point exists: wind speed, and reason
-/// @throws ConvergenceError, DomainError as analysis::find_trim, with the wind speed
+/// Finds operating points of `scenario.operation`. `table`: rows of its table; the speed and pitch
+/// of a wind speed between two rows are linear between them. Without a table the pitch of the case
+/// is the least pitch. Laws of the generator and the controller do not act. Each steady state is
+/// the start of the next one. `scenario`, `table` and `observer` must outlive the object.
+class OperatingPointFinder {
+ public:
+  OperatingPointFinder(const Scenario& scenario, const std::vector<ScheduledPoint>& table,
+                       analysis::Observer& observer);
+  ~OperatingPointFinder();
+
+  /// @throws InputError where no operating point exists: wind speed, and reason
+  /// @throws ConvergenceError, DomainError as analysis::find_trim, with the wind speed
+  OperatingPoint find_at(double wind);
+
+  /// The turbine and its steady state at the last operating point.
+  const turbine::TurbineSystem& system() const;
+  const analysis::Trim& trim() const;
+
+ private:
+  class Search;
+  std::unique_ptr<Search> search_;
+};
+
+/// The wind speeds of `scenario.operation` [m/s]: listed, those of the table, or that of the case.
+std::vector<double> operating_winds(const Scenario& scenario,
+                                    const std::vector<ScheduledPoint>& table);
+
+/// The operating points at these wind speeds. @throws as OperatingPointFinder::find_at
 std::vector<OperatingPoint> find_operation(const Scenario& scenario,
                                            const std::vector<ScheduledPoint>& table,
                                            analysis::Observer& observer);
