@@ -34,6 +34,9 @@ install(TARGETS samara_library EXPORT SamaraTargets LIBRARY DESTINATION ${CMAKE_
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/samara)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/samara
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/samara/python
+        FILES_MATCHING PATTERN "*.py")
 install(EXPORT SamaraTargets NAMESPACE samara:: DESTINATION ${samara_package})
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/SamaraConfig.cmake.in ${PROJECT_BINARY_DIR}/SamaraConfig.cmake

@@ -1,0 +1,158 @@
+"""The Python package: results as labelled arrays, runs, cases, pictures; and samara plot."""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import BASELINE, PROGRAM, SOURCE, ProgramTest  # noqa: E402
+
+os.environ["SAMARA"] = PROGRAM
+sys.path.insert(0, str(SOURCE / "python"))
+import samara  # noqa: E402
+
+QUICK = {"blades.elements": 2, "tower.elements": 2, "floquet.steps": 120}
+
+
+class Package(ProgramTest):
+    def test_results_are_labelled_and_have_units(self):
+        result = samara.run(BASELINE, "floquet", set=QUICK)
+        self.assertIn("floquet", result)
+        frequency = result["floquet"]["frequency_hz"]
+        self.assertEqual(frequency.dims, ("mode",))
+        self.assertEqual(frequency.attrs["unit"], "Hz")
+        with h5py.File(result.path) as file:
+            numpy.testing.assert_array_equal(frequency.values, file["floquet/frequency_hz"][:])
+        exponents = samara.result.complex_of(result.modes["exponents"])
+        numpy.testing.assert_allclose(abs(exponents.imag), 2 * numpy.pi * frequency, rtol=1e-12)
+        names = list(result["floquet"]["label"].values)
+        self.assertTrue(any(name.startswith("tower fore-aft") for name in names))
+        self.assertIn("--set", result.command_line)
+        self.assertTrue(result.case.startswith("# --set blades.elements=2\n"))
+        with self.assertRaisesRegex(KeyError, "no /campbell"):
+            result["campbell"]
+        with self.assertRaisesRegex(ValueError, "no result of samara"):
+            path = self.folder / "other.h5"
+            h5py.File(path, "w").close()
+            samara.open_result(path)
+
+    def test_errors_of_the_program_are_exceptions(self):
+        with self.assertRaisesRegex(samara.ProgramError, "did you mean") as caught:
+            samara.run(BASELINE, "floquet", set={"blades.elemnts": 2})
+        self.assertEqual(caught.exception.code, 2)
+        run = samara.run(BASELINE, "campbell", set=QUICK, sweep=("gravity", [0, 1e7]), check=False)
+        self.assertTrue(str(run["campbell"]["stability"].values[1]).startswith("failed"))
+        with self.assertRaises(samara.ProgramError) as caught:
+            samara.run(BASELINE, "campbell", set=QUICK, sweep=("gravity", [0, 1e7]))
+        self.assertEqual(caught.exception.code, 3)
+        self.assertIn("campbell", caught.exception.result)
+
+    def test_cases_are_objects(self):
+        case = samara.Case.read(SOURCE / "inputs/lee2002/article_mesh.yaml")
+        case.validate()
+        case["blades.elements"] = 2
+        case["tower.elements"] = 2
+        case["floquet.steps"] = 120
+        self.assertIn("shaft.speed", case)
+        self.assertNotIn("shaft.sped", case)
+        one = samara.run(case, "floquet", output=self.folder / "one.h5")
+        other = samara.run(BASELINE, "floquet", set=QUICK)
+        numpy.testing.assert_array_equal(one["floquet"]["exponents"], other["floquet"]["exponents"])
+        self.assertEqual(list(case.folder.glob(".samara_*")), [])
+        wrong = case.copy()
+        wrong["blades.elemnts"] = 3
+        wrong["gravity"] = "much"
+        with self.assertRaises(samara.CaseError) as caught:
+            wrong.validate()
+        text = str(caught.exception)
+        self.assertIn("elemnts", text)
+        self.assertIn("gravity", text)
+        self.assertNotIn("blades.elemnts", case)
+
+    def plot(self, *arguments):
+        return subprocess.run([PROGRAM, "plot", *map(str, arguments)], cwd=self.folder, text=True,
+                              capture_output=True, check=False)
+
+    def test_pictures(self):
+        self.succeed("campbell", BASELINE, *self.settings(), "--sweep", "shaft.speed=1:3:0.5", "-o",
+                     "c.h5")
+        run = self.plot("c.h5", "-o", "c.svg")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        text = (self.folder / "c.svg").read_text(encoding="utf-8")
+        for word in ("tower fore-aft", "blade flap symmetric", "damping ratio [%]", "shaft.speed", "[Hz]", "2P"):
+            self.assertIn(word, text)
+        # The drawn line is that of the file: its first and last points are at its frequencies.
+        figure = samara.plot.campbell(samara.open_result(self.folder / "c.h5"), frame="own")
+        with h5py.File(self.folder / "c.h5") as file:
+            names = list(file["campbell/mode"].asstr()[:])
+            own = file["campbell/frequency_hz"][:]
+        drawn = {line.get_label(): line for line in figure.axes[0].get_lines()}
+        for name in ("tower fore-aft", "blade flap symmetric"):
+            label = next(found for found in names if found.startswith(name))
+            numpy.testing.assert_array_equal(drawn[label].get_ydata(), own[names.index(label)])
+        self.succeed("floquet", BASELINE, *self.settings(), "-o", "f.h5")
+        run = self.plot("f.h5")
+        self.assertEqual(run.stdout, "picture: f_multipliers.svg\n", run.stderr)
+        for ending in ("png", "pdf"):
+            self.assertEqual(self.plot("f.h5", "-o", f"f.{ending}").returncode, 0)
+            self.assertGreater((self.folder / f"f.{ending}").stat().st_size, 5000)
+        self.succeed("transient", BASELINE, *self.settings(), "--set",
+                     "transient={duration: 2, step: 0.01}", "-o", "t.h5")
+        run = self.plot("t.h5", "series", "--channels", "TwrBsMyt,YawPzn", "-o", "t.svg")
+        self.assertIn("no channel YawPzn", run.stderr)
+        run = self.plot("t.h5", "series", "--channels", "TwrBsMyt", "-o", "t.svg")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("TwrBsMyt [kN-m]", re.sub(r"[·*]", "-", (self.folder / "t.svg").read_text()))
+
+    def settings(self):
+        return [word for key, value in QUICK.items() for word in ("--set", f"{key}={value}")]
+
+    def test_pictures_of_the_air(self):
+        case = SOURCE / "inputs/nrel5mw/land.yaml"
+        coarse = ["--set", "blades.elements=1", "--set", "blades.order=3", "--set",
+                  "tower.elements=1", "--set", "tower.order=3", "--set", "wind.speed=8"]
+        self.succeed("trim", case, *coarse, "-o", "t.h5")
+        run = self.plot("t.h5")
+        self.assertEqual(run.stdout, "picture: t_spanwise.svg\n", run.stderr)
+        self.succeed("operate", case, *coarse, "--set", "operation.wind_speeds=[8, 9]", "-o", "o.h5")
+        run = self.plot("o.h5")
+        self.assertEqual(run.stdout, "picture: o_operation.svg\n", run.stderr)
+        self.assertIn("wind speed [m/s]", (self.folder / "o_operation.svg").read_text())
+
+    def test_wrong_arguments_of_plot(self):
+        self.succeed("trim", BASELINE, *self.settings(), "-o", "trim.h5")
+        for arguments, words in ((["none.h5"], "none.h5"), (["trim.h5"], "nothing to draw"),
+                                 (["trim.h5", "campbel"], "they are campbell"),
+                                 (["trim.h5", "campbell"], "nothing to draw"),
+                                 (["trim.h5", "-o", "x.gif"], "ends in .png, .svg, .pdf")):
+            run = self.plot(*arguments)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+            self.assertIn(words, run.stderr)
+        self.assertEqual(self.plot("--help").returncode, 0)
+        self.refuse("--set", "a=1", "plot", "x.h5", words="the command comes first")
+
+    def test_it_can_be_installed(self):
+        place = self.folder / "environment"
+        subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", place], check=True)
+        # A copy: the installation writes beside the sources.
+        source = self.folder / "python"
+        for path in (SOURCE / "python").rglob("*"):
+            if path.suffix in (".py", ".toml"):
+                self.write(f"python/{path.relative_to(SOURCE / 'python')}", path.read_bytes())
+        subprocess.run([place / "bin/pip", "install", "--quiet", "--no-build-isolation", "--no-deps",
+                        "--disable-pip-version-check", source], check=True, capture_output=True)
+        clean = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+        done = subprocess.run([place / "bin/python", "-c", "import samara; print(samara.__file__)"],
+                              env=clean, cwd="/", text=True, capture_output=True, check=True)
+        self.assertIn(str(place), done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
