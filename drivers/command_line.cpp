@@ -114,6 +114,10 @@ class Parser {
     else if (name == "--restart")
       set_once(line_.restart_path, name,
                value_of(name, "a result to go on from, e.g. --restart run.h5", value));
+    else if (name == "--sweep")
+      set_once(
+          line_.sweep, name,
+          value_of(name, "a key and its values, e.g. --sweep shaft.speed_rpm=0:14:0.5", value));
     else if (name == "--csv")
       set_once(line_.csv_path, name, value_of(name, "a path, e.g. --csv modes.csv", value));
     else
@@ -162,10 +166,10 @@ class Parser {
   }
 
   static std::string unknown_option_words(const std::string& name) {
-    std::vector<std::string> known{"--set",         "--csv",    "--all",     "--air",
-                                   "--first",       "--parked", "--restart", "--mu-order",
-                                   "--report",      "--help",   "--version", "--tower-only",
-                                   "--help-options"};
+    std::vector<std::string> known{"--set",          "--csv",    "--all",     "--air",
+                                   "--first",        "--parked", "--restart", "--mu-order",
+                                   "--report",       "--help",   "--version", "--tower-only",
+                                   "--help-options", "--sweep"};
     for (const decks::StatedQuantity& quantity : decks::stated_quantities())
       known.push_back(std::string("--") + quantity.option);
     const std::string suggestion = suggest(name, known);
@@ -211,6 +215,9 @@ class Parser {
       const auto found = std::find_if(commands_.begin(), commands_.end(),
                                       [&](const Command& c) { return c.name == word; });
       if (found == commands_.end()) throw InputError(unknown_command(word));
+      if (found->hand_over != nullptr)
+        throw InputError(std::string("samara ") + found->name +
+                         ": the command comes first; hint: samara " + found->name + " --help");
       line_.command = &*found;
     } else if (line_.command->formats != nullptr && line_.format.empty()) {
       require_format(word);
@@ -290,6 +297,8 @@ class Parser {
                        " does not use it, samara modes does; hint: --set shaft.speed=0");
     if (!line_.restart_path.empty() && name != "transient")
       throw InputError("--restart: samara " + name + " does not use it, samara transient does");
+    if (!line_.sweep.empty() && !line_.command->has_sweep)
+      throw InputError("--sweep: samara " + name + " has no sweep, samara campbell has one");
     if (!line_.csv_path.empty() && !line_.command->has_csv)
       throw InputError(
           "--csv: samara " + name + " has no table to write" +
@@ -382,6 +391,7 @@ constexpr char option_lines[] =
   --first N         lists the first N modes; the verdict counts all (modes, floquet)
   --parked          the rotor stands still, as with --set shaft.speed=0 (modes)
   --restart FILE.h5 continues from the last checkpoint of a result (transient)
+  --sweep KEY=FROM:TO:STEP or KEY=V1,V2,...: the values of a key (campbell)
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
   --help-options    the prefixes of options of PETSc and SLEPc

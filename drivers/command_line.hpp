@@ -24,12 +24,15 @@ struct Command {
   bool writes_result = false;         ///< also without -o
   bool has_csv = false;
   bool lists_modes = false;
+  bool has_sweep = false;
   /// The case must be valid for this analysis before anything is solved.
   simulation::Analysis analysis = simulation::Analysis::check;
   void (*run)(const Job&) = nullptr;
   std::string (*print)() = nullptr;  ///< prints a text and does nothing else; no operand
   const char* formats = nullptr;  ///< formats of decks, separated by bars: the word before the path
   void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`
+  /// Takes all further words and does not return; nothing is parsed.
+  void (*hand_over)(const std::vector<std::string>&) = nullptr;
   int most_results = 0;  ///< number of results that it reads at once, at most
 };
 
@@ -55,6 +58,7 @@ struct CommandLine {
   std::string result_path;   ///< path of the output; empty: not given
   std::string csv_path;      ///< empty: no table
   std::string restart_path;  ///< path of a result to continue; empty: not given
+  std::string sweep;         ///< key and values; empty: not given
   std::vector<std::string> petsc_options;
 };
 

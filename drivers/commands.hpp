@@ -1,6 +1,9 @@
 // The sub-commands; each has a file of its own.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "samara/turbine/turbine_input_output.hpp"
 
 #include "command_line.hpp"
@@ -17,6 +20,10 @@ void run_transient(const Job& job);
 void run_loads(const Job& job);
 void run_linearize(const Job& job);
 void run_operate(const Job& job);
+void run_campbell(const Job& job);
+
+/// Replaces the process by the Python package's command line. @throws InputError if it cannot
+void run_plot(const std::vector<std::string>& arguments);
 
 void run_import(const CommandLine& line);
 void run_export(const CommandLine& line);

@@ -10,6 +10,8 @@
 #include "samara/io/file_lock.hpp"
 #include "samara/io/result_file.hpp"
 
+#include "sweep.hpp"
+
 namespace samara::drivers {
 
 struct Job {
@@ -22,6 +24,7 @@ struct Job {
   bool air_part = false;               ///< also find the part of the air in the damping
   int first_modes = 0;                 ///< number of listed rows; 0: all
   std::string restart_path;            ///< empty: the run starts at its beginning
+  Sweep sweep;                         ///< not given: the operating points of the case
   /// Results that the command reads, if any; `input` is the case of the first.
   std::vector<std::string> sources;
   std::vector<std::string> settings;  ///< its own --set arguments, not keys of the case

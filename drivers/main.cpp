@@ -31,7 +31,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 12> commands{{
+constexpr std::array<Command, 14> commands{{
     {.name = "check",
      .summary = "reports the model of a case: masses, sizes, unknowns; solves nothing",
      .description =
@@ -112,6 +112,18 @@ constexpr std::array<Command, 12> commands{{
      .has_csv = true,
      .analysis = simulation::Analysis::operate,
      .run = run_operate},
+    {.name = "campbell",
+     .summary = "modes over the operating points or a key: a Campbell diagram",
+     .description =
+         "Finds the modes at each operating point of the case, as samara operate does, or at each\n"
+         "value of a key, and joins them to lines by their shapes. Ranks share the points. A run\n"
+         "that was interrupted or ended goes on where it was, by the same command.\n",
+     .example = "inputs/lee2002/baseline.yaml --sweep shaft.speed=0:4:1",
+     .writes_result = true,
+     .has_csv = true,
+     .has_sweep = true,
+     .analysis = simulation::Analysis::operate,
+     .run = run_campbell},
     {.name = "import",
      .summary = "a case file from a turbine of OpenFAST, windIO or HAWC2",
      .description =
@@ -133,6 +145,11 @@ constexpr std::array<Command, 12> commands{{
      .writes_result = true,
      .convert = run_export,
      .most_results = 1},
+    {.name = "plot",
+     .summary = "pictures of a result: Campbell diagram, multipliers, series, loads",
+     .description = "Draws pictures of a result as .svg, .png or .pdf, each kind that it allows.\n",
+     .example = "RESULT.h5 -o picture.svg",
+     .hand_over = run_plot},
     {.name = "loads",
      .summary = "statistics, extremes, harmonics, cycles, equivalent loads of a result",
      .description =
@@ -211,7 +228,15 @@ Job prepare(const CommandLine& line) {
     job.input = io::read_case(line.case_path, settings);
     if (Session::launch_rank() == 0)
       for (const std::string& note : job.input.notes) std::cerr << note << "\n";
-    io::require_valid(job.input, simulation::validate(job.input, line.command->analysis));
+    if (line.sweep.empty()) {
+      if (line.command->has_sweep && !(job.input.turbine.wind && job.input.turbine.aero))
+        throw InputError("missing --sweep: " + line.case_path +
+                         " has no air for operating points; hint: --sweep "
+                         "shaft.speed_rpm=0:14:0.5");
+      io::require_valid(job.input, simulation::validate(job.input, line.command->analysis));
+    } else {
+      job.sweep = Sweep(line.sweep, line.case_path, settings);
+    }
   }
   if (line.air_part && !(job.input.turbine.wind && job.input.turbine.aero))
     throw InputError("--air: " + line.case_path +
@@ -278,6 +303,11 @@ void print_text(const CommandLine& line) {
 }
 
 int run(const std::vector<std::string>& arguments) {
+  for (const Command& command : commands)
+    if (command.hand_over != nullptr && !arguments.empty() && arguments.front() == command.name) {
+      if (Session::launch_rank() == 0) command.hand_over({arguments.begin() + 1, arguments.end()});
+      return 0;
+    }
   CommandLine line;
   Job job;
   Outcome outcome = attempt("", [&] { line = parse_command_line(arguments, commands); });

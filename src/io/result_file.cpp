@@ -16,6 +16,7 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/version.hpp"
+#include "samara/io/campbell_file.hpp"
 #include "samara/io/load_result.hpp"
 #include "samara/io/operation_table.hpp"
 #include "samara/io/time_series_export.hpp"
@@ -40,9 +41,9 @@ constexpr char schema_attribute[] = "samara_schema";
 constexpr std::string_view mode_table_start = "number,label,";
 constexpr std::string_view trim_table_start = "name,unit,mean";
 constexpr std::string_view static_table_start = "factor,newton_steps,";
-constexpr std::array<std::string_view, 6> table_starts{mode_table_start,   trim_table_start,
-                                                       static_table_start, series_table_start,
-                                                       load_table_start,   operation_table_start};
+constexpr std::array<std::string_view, 7> table_starts{
+    mode_table_start, trim_table_start,      static_table_start,  series_table_start,
+    load_table_start, operation_table_start, campbell_table_start};
 
 /// Harmonics of the participation are kept up to the last ones in which a mode has this share.
 constexpr double smallest_share = 1e-9;

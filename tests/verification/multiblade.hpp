@@ -57,6 +57,8 @@ class Multiblade {
         fixed_.push_back(i);
   }
 
+  /// Unknowns of a blade: zeta is (a0, ac, as), each of this size, then the rest.
+  int blade_size() const { return static_cast<int>(blade_[0].size()); }
   int size() const { return blades * blade_size() + static_cast<int>(fixed_.size()); }
 
   /// Place in zeta of an unknown of tower or joints.
@@ -103,8 +105,6 @@ class Multiblade {
   }
 
  private:
-  int blade_size() const { return static_cast<int>(blade_[0].size()); }
-
   /// Unknowns of the turbine from zeta = (a0, ac, as, fixed).
   template <class Functions>
   Eigen::SparseMatrix<double> transformation(double psi, Functions functions,

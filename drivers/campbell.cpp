@@ -1,0 +1,169 @@
+// samara campbell: the modes at the points of a sweep, joined to lines.
+#include <array>
+#include <exception>
+#include <map>
+
+#include "samara/analysis/linear_algebra.hpp"
+#include "samara/base/error.hpp"
+#include "samara/base/words.hpp"
+#include "samara/io/operation_table.hpp"
+#include "samara/petsc/session.hpp"
+
+#include "campbell_points.hpp"
+#include "campbell_report.hpp"
+#include "commands.hpp"
+#include "interruption.hpp"
+#include "progress.hpp"
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+using simulation::CampbellLine;
+using simulation::CampbellPoint;
+using simulation::StabilityEdge;
+
+constexpr int value_digits = 6;
+
+/// What the files contain: only on the first rank.
+struct Diagram {
+  std::vector<CampbellPoint> points;
+  std::vector<CampbellLine> lines;
+  std::string failures;  ///< whole lines
+  int failed = 0;
+};
+
+Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& files,
+                     analysis::Observer& observer) {
+  Diagram diagram;
+  analysis::ModeTracker tracker;
+  std::map<std::string, std::vector<std::string>> notes;  // places of each
+  for (std::size_t i = 0; i < plan.values.size(); ++i) {
+    if (!files.has(i)) continue;
+    CampbellPoint point = files.read(i);
+    const std::string place = plan.quantity.key + "=" + general(point.value, value_digits);
+    for (const std::string& note : point.notes) notes[note].push_back(place);
+    if (point.failure.empty()) {
+      tracker.add(diagram.points.size(), std::move(point.signatures));
+    } else {
+      diagram.failures += place + ": " + point.failure + "\n";
+      ++diagram.failed;
+    }
+    point.signatures = {};
+    diagram.points.push_back(std::move(point));
+  }
+  for (const auto& [note, places] : notes)
+    observer.note(places.front() +
+                  (places.size() > 1
+                       ? " and " + count(static_cast<int>(places.size()) - 1, "other point")
+                       : "") +
+                  ": " + note);
+  diagram.lines = simulation::name_lines(diagram.points, tracker.lines());
+  return diagram;
+}
+
+/// True on all ranks if it is on one.
+bool is_on_any_rank(bool value) {
+  int any = value ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+  return any != 0;
+}
+
+/// The edges of the first rank, refined by all ranks; the result is on all of them.
+std::vector<StabilityEdge> refine_together(const CampbellPlan& plan,
+                                           std::vector<StabilityEdge> edges,
+                                           analysis::Observer& observer) {
+  int count = static_cast<int>(edges.size());
+  MPI_Bcast(&count, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  edges.resize(static_cast<std::size_t>(count));
+  std::vector<double> numbers;
+  const auto pack = [&] {
+    numbers.clear();
+    for (const StabilityEdge& edge : edges)
+      numbers.insert(numbers.end(), {edge.from, edge.to, static_cast<double>(edge.growing_from),
+                                     static_cast<double>(edge.growing_to)});
+  };
+  const auto unpack = [&] {
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      edges[i] = {numbers[4 * i], numbers[4 * i + 1], static_cast<int>(numbers[4 * i + 2]),
+                  static_cast<int>(numbers[4 * i + 3])};
+  };
+  pack();
+  MPI_Bcast(numbers.data(), 4 * count, MPI_DOUBLE, 0, PETSC_COMM_WORLD);
+  unpack();
+  std::exception_ptr failure;
+  try {
+    refine_edges(plan, edges, observer);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  pack();
+  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), 4 * count, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  unpack();
+  if (failure) std::rethrow_exception(failure);
+  return edges;
+}
+
+}  // namespace
+
+void run_campbell(const Job& job) {
+  analysis::require_whole_spectrum("floquet_");
+  const model::OperatingPointsDefinition& setup = job.input.operation;
+  const bool has_table = !job.sweep.is_given() && !setup.table_path.empty();
+  const std::vector<simulation::ScheduledPoint> table =
+      has_table ? io::read_opt_file(setup.table_path) : std::vector<simulation::ScheduledPoint>();
+  const bool is_first = petsc::Session::rank() == 0;
+  const CampbellPlan plan = plan_campbell(job, table);
+  const io::CampbellPointFiles files(job.result_path, plan.origins);
+  Progress progress(is_first);
+  const Interruption interruption;
+  // A rank that fails waits for the others, which may work on their points for long.
+  std::exception_ptr failure;
+  Diagram diagram;
+  const auto attempt = [&failure](const auto& work) {
+    try {
+      work();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const bool has_failed = is_on_any_rank(failure != nullptr);
+    if (failure) std::rethrow_exception(failure);
+    return !has_failed;
+  };
+  if (!attempt([&] { find_points(plan, files, progress); })) return;
+  if (!attempt([&] {
+        if (is_first) diagram = read_diagram(plan, files, progress);
+      }))
+    return;
+  std::vector<StabilityEdge> edges = simulation::find_edges(diagram.points);
+  if (!attempt([&] { edges = refine_together(plan, edges, progress); })) return;
+  const bool is_interrupted = is_on_any_rank(Interruption::is_asked());
+  progress.finish();
+  if (!is_first) return;
+
+  const bool is_complete = diagram.points.size() == plan.values.size() && !is_interrupted;
+  if (!diagram.points.empty())
+    deliver(
+        job,
+        (job.input.turbine.title.empty() ? job.input.path : job.input.turbine.title) + "\n\n" +
+            campbell_point_table(plan.quantity.key, diagram.points, diagram.lines) + "\n" +
+            campbell_line_table(diagram.points, diagram.lines, edges) +
+            campbell_doubts(diagram.points, diagram.lines),
+        [&](io::ResultFile& file) {
+          io::write_campbell(file, plan.quantity, diagram.points, diagram.lines, edges,
+                             is_complete);
+        },
+        [&](const std::string& path) {
+          io::write_campbell_table(path, diagram.points, diagram.lines);
+        });
+  if (!is_complete)
+    throw Interrupted("interrupted after " + std::to_string(diagram.points.size()) + " of " +
+                      std::to_string(plan.values.size()) +
+                      " points; hint: the same command goes on from here");
+  files.remove();
+  if (diagram.failed > 0)
+    throw ConvergenceError(diagram.failures + std::to_string(diagram.failed) + " of " +
+                           std::to_string(diagram.points.size()) + " points have no modes");
+}
+
+}  // namespace samara::drivers

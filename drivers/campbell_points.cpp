@@ -1,0 +1,169 @@
+#include "campbell_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
+#include "samara/base/version.hpp"
+#include "samara/petsc/session.hpp"
+#include "samara/simulation/steady_state.hpp"
+
+#include "interruption.hpp"
+
+namespace samara::drivers {
+namespace {
+
+using simulation::CampbellPoint;
+using simulation::StabilityEdge;
+
+constexpr int exact_digits = 17;
+
+/// Keeps notes.
+class Notes final : public analysis::Observer {
+ public:
+  void note(const std::string& text) override { texts.push_back(text); }
+  std::vector<std::string> texts;
+};
+
+/// Points with given values of a key.
+class SweepFinder final : public CampbellPointFinder {
+ public:
+  explicit SweepFinder(const Sweep& sweep) : sweep_(sweep) {}
+
+ private:
+  CampbellPoint find_modes(double value, analysis::Observer& observer) override {
+    const io::Case input = sweep_.case_at(value);
+    const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+    analysis::TrimOptions options = simulation::trim_options(input);
+    if (system.turbine().speed == 0.0) options.harmonics = 0;
+    const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
+    last_ = simulation::solve_trim(input, system, options, observer, PETSC_COMM_SELF,
+                                   is_near ? &*last_ : nullptr);
+    simulation::require_wake_range(system, *last_);
+    simulation::note_roughness(*last_, observer);
+    CampbellPoint result = simulation::find_campbell_point(system, *last_, input.floquet, observer);
+    if (input.turbine.wind && input.turbine.aero) result.wind_speed = input.turbine.wind->speed;
+    return result;
+  }
+
+  const Sweep& sweep_;
+  std::optional<analysis::Trim> last_;
+};
+
+/// Operating points of the case.
+class OperationFinder final : public CampbellPointFinder {
+ public:
+  OperationFinder(const io::Case& input, const std::vector<simulation::ScheduledPoint>& table)
+      : input_(input), finder_(input, table, notes_) {}
+
+ private:
+  CampbellPoint find_modes(double value, analysis::Observer& observer) override {
+    notes_.texts.clear();
+    finder_.find_at(value);
+    for (const std::string& note : notes_.texts) observer.note(note);
+    CampbellPoint result =
+        simulation::find_campbell_point(finder_.system(), finder_.trim(), input_.floquet, observer);
+    result.wind_speed = value;
+    return result;
+  }
+
+  const io::Case& input_;
+  Notes notes_;
+  simulation::OperatingPointFinder finder_;
+};
+
+std::string origin_of(const std::string& case_text, const std::string& value) {
+  return std::string("samara ") + version + "\n" + petsc::Session::options() + "\n" + value + "\n" +
+         case_text;
+}
+
+/// Halves the place of an edge until it is accurate, a point has no modes, or the user interrupts.
+void bisect(CampbellPointFinder& finder, StabilityEdge& edge) {
+  const double accuracy = edge_accuracy * std::max(std::abs(edge.to), std::abs(edge.from));
+  while (std::abs(edge.to - edge.from) > accuracy && !Interruption::is_asked()) {
+    const double middle = 0.5 * (edge.from + edge.to);
+    const CampbellPoint point = finder.find(middle);
+    if (!point.failure.empty()) return;
+    const int growing = simulation::count_growing(point);
+    if (growing == edge.growing_from) {
+      edge.from = middle;
+    } else {
+      edge.to = middle;
+      edge.growing_to = growing;
+    }
+  }
+}
+
+}  // namespace
+
+CampbellPoint CampbellPointFinder::find(double value) {
+  Notes notes;
+  CampbellPoint result;
+  const auto fail = [&](const std::exception& error) {
+    result = {};
+    result.failure = error.what();
+  };
+  try {
+    result = find_modes(value, notes);
+  } catch (const InputError& error) {
+    fail(error);
+  } catch (const ConvergenceError& error) {
+    fail(error);
+  } catch (const DomainError& error) {
+    fail(error);
+  }
+  result.value = value;
+  result.notes = std::move(notes.texts);
+  return result;
+}
+
+CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::ScheduledPoint>& table) {
+  CampbellPlan plan;
+  if (job.sweep.is_given()) {
+    plan.quantity = {job.sweep.key(), "as in the case file"};
+    plan.values = job.sweep.values();
+    for (const std::string& text : job.sweep.case_texts())
+      plan.origins.push_back(origin_of(text, ""));
+    plan.finder = std::make_unique<SweepFinder>(job.sweep);
+  } else {
+    plan.quantity = {"wind.speed", "m/s"};
+    plan.values = simulation::operating_winds(job.input, table);
+    for (const double wind : plan.values)
+      plan.origins.push_back(origin_of(job.input.text, general(wind, exact_digits)));
+    plan.finder = std::make_unique<OperationFinder>(job.input, table);
+  }
+  return plan;
+}
+
+void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
+                 analysis::Observer& observer) {
+  const auto rank = static_cast<std::size_t>(petsc::Session::rank());
+  const auto ranks = static_cast<std::size_t>(petsc::Session::size());
+  const std::size_t all = plan.values.size();
+  const std::size_t end = all * (rank + 1) / ranks;
+  const std::size_t first = all * rank / ranks;
+  for (std::size_t point = first; point < end && !Interruption::is_asked(); ++point) {
+    observer.progress("points", static_cast<long>(point - first), static_cast<long>(end - first));
+    if (!files.has(point)) files.write(point, plan.finder->find(plan.values[point]));
+  }
+}
+
+void refine_edges(const CampbellPlan& plan, std::vector<StabilityEdge>& edges,
+                  analysis::Observer& observer) {
+  const auto rank = static_cast<std::size_t>(petsc::Session::rank());
+  const auto ranks = static_cast<std::size_t>(petsc::Session::size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (i % ranks == rank) {
+      observer.progress("edges of instability", static_cast<long>(i),
+                        static_cast<long>(edges.size()));
+      bisect(*plan.finder, edges[i]);
+    } else {
+      edges[i] = {0.0, 0.0, 0, 0};
+    }
+  }
+}
+
+}  // namespace samara::drivers

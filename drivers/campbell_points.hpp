@@ -1,0 +1,57 @@
+// The points of a Campbell diagram: found by all ranks, kept in files.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "samara/analysis/observer.hpp"
+#include "samara/io/campbell_file.hpp"
+#include "samara/simulation/campbell.hpp"
+#include "samara/simulation/operation.hpp"
+
+#include "job.hpp"
+
+namespace samara::drivers {
+
+/// Finds points one after the other, each steady state from the one before.
+class CampbellPointFinder {
+ public:
+  CampbellPointFinder() = default;
+  CampbellPointFinder(const CampbellPointFinder&) = delete;
+  CampbellPointFinder& operator=(const CampbellPointFinder&) = delete;
+  virtual ~CampbellPointFinder() = default;
+
+  /// The point at a value of the swept quantity. Where it has no steady state, or its modes are not
+  /// found, it has the reason.
+  simulation::CampbellPoint find(double value);
+
+ private:
+  /// @throws InputError, ConvergenceError, DomainError
+  virtual simulation::CampbellPoint find_modes(double value, analysis::Observer& observer) = 0;
+};
+
+/// The points to find: at the values of job.sweep, or at the operating points of the case.
+struct CampbellPlan {
+  io::SweptQuantity quantity;
+  std::vector<double> values;
+  std::vector<std::string> origins;  ///< of io::CampbellPointFiles
+  std::unique_ptr<CampbellPointFinder> finder;
+};
+
+/// `job` and `table`, the rows of operation.table, must outlive the plan.
+CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::ScheduledPoint>& table);
+
+/// Finds the points that no file has, those of this rank. Stops when the user interrupts the run.
+void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
+                 analysis::Observer& observer);
+
+/// Refines the places where the number of growing modes changes, by bisection to
+/// `edge_accuracy` relative to the larger value. Ranks share the places; every rank calls it with
+/// the same edges. Stops when the user interrupts the run.
+void refine_edges(const CampbellPlan& plan, std::vector<simulation::StabilityEdge>& edges,
+                  analysis::Observer& observer);
+
+inline constexpr double edge_accuracy = 2e-5;
+
+}  // namespace samara::drivers

@@ -1,0 +1,190 @@
+#include "campbell_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "samara/base/words.hpp"
+
+#include "table.hpp"
+
+namespace samara::drivers {
+namespace {
+
+using analysis::ModeTracker;
+using analysis::TrackedMode;
+using simulation::CampbellLine;
+using simulation::CampbellMode;
+using simulation::CampbellPoint;
+using simulation::GrowthRange;
+using simulation::Stability;
+using simulation::StabilityEdge;
+
+constexpr double to_hertz = 0.5 / std::numbers::pi;
+constexpr double to_rpm = 30.0 / std::numbers::pi;
+constexpr double to_degrees = 180.0 / std::numbers::pi;
+constexpr int value_digits = 6;
+constexpr int edge_digits = 5;  // of what edge_accuracy allows
+constexpr std::size_t most_named = 4;
+
+std::string hertz(double rate) { return fixed(std::abs(rate) * to_hertz, 4); }
+
+std::string verdict_of(const CampbellPoint& point) {
+  if (!point.failure.empty()) return "failed";
+  switch (point.stability) {
+    case Stability::stable:
+      return "stable";
+    case Stability::neutral:
+      return "neutral";
+    case Stability::unstable:
+      return "unstable";
+    case Stability::unknown:
+      break;
+  }
+  return "no verdict";
+}
+
+/// A mode whose damping counts for a verdict.
+bool is_known(const CampbellMode& mode) {
+  return !mode.is_rough && (mode.motion == simulation::Motion::growing ||
+                            mode.motion == simulation::Motion::decaying);
+}
+
+/// The name of the line of each mode.
+std::vector<std::vector<std::string>> names_at(const std::vector<CampbellPoint>& points,
+                                               const std::vector<CampbellLine>& lines) {
+  std::vector<std::vector<std::string>> names(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) names[p].resize(points[p].modes.size());
+  for (const CampbellLine& line : lines)
+    for (const TrackedMode& tracked : line.modes) names[tracked.point][tracked.mode] = line.name;
+  return names;
+}
+
+/// "6.5, 9 to 11": ranges in which a mode grows.
+std::string growing_words(const std::vector<GrowthRange>& ranges) {
+  std::string text;
+  for (const GrowthRange& range : ranges)
+    text += (text.empty() ? "" : ", ") + general(range.from, edge_digits) +
+            (range.to == range.from ? "" : " to " + general(range.to, edge_digits));
+  return text;
+}
+
+/// True if a mode has another frequency in the fixed frame than in the frame of its part.
+bool has_fixed_frame(const std::vector<CampbellPoint>& points) {
+  for (const CampbellPoint& point : points)
+    for (const CampbellMode& mode : point.modes)
+      if (std::isfinite(mode.fixed_frame_frequency) &&
+          mode.fixed_frame_frequency != mode.exponent.imag())
+        return true;
+  return false;
+}
+
+}  // namespace
+
+std::string campbell_point_table(const std::string& key, const std::vector<CampbellPoint>& points,
+                                 const std::vector<CampbellLine>& lines) {
+  const auto names = names_at(points, lines);
+  const bool has_wind = std::ranges::any_of(
+      points, [](const CampbellPoint& point) { return std::isfinite(point.wind_speed); });
+  Table table;
+  table.add_column(key, "");
+  table.add_column("speed", "rpm");
+  if (has_wind) table.add_column("wind", "m/s");
+  table.add_column("pitch", "deg");
+  table.add_column("modes", "");
+  table.add_column("stability", "", Align::left);
+  table.add_column("least damped", "%");
+  table.add_column("", "", Align::left);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const CampbellPoint& point = points[p];
+    const bool is_found = point.failure.empty();
+    std::vector<std::string> row{general(point.value, 6),
+                                 is_found ? fixed(point.rotor_speed * to_rpm, 3) : "-"};
+    if (has_wind)
+      row.push_back(std::isfinite(point.wind_speed) ? general(point.wind_speed, 5) : "-");
+    row.push_back(is_found ? fixed(point.pitch * to_degrees, 3) : "-");
+    row.push_back(is_found ? std::to_string(point.modes.size()) : "-");
+    row.push_back(verdict_of(point));
+    std::optional<std::size_t> least;
+    for (std::size_t m = 0; m < point.modes.size(); ++m)
+      if (is_known(point.modes[m]) &&
+          (!least || point.modes[m].damping_ratio < point.modes[*least].damping_ratio))
+        least = m;
+    row.push_back(least ? fixed(100.0 * point.modes[*least].damping_ratio, 3) : "-");
+    row.push_back(least ? names[p][*least] : point.failure);
+    table.add_row(row);
+  }
+  return table.text();
+}
+
+std::string campbell_line_table(const std::vector<CampbellPoint>& points,
+                                const std::vector<CampbellLine>& lines,
+                                const std::vector<StabilityEdge>& edges) {
+  const bool has_frame = has_fixed_frame(points);
+  Table table;
+  table.add_column("mode", "", Align::left);
+  for (const char* end : {"from", "to"}) {
+    table.add_column(end, "");
+    table.add_column("frequency", "Hz");
+    if (has_frame) table.add_column("fixed frame", "Hz");
+  }
+  table.add_column("least damping", "%");
+  table.add_column("at", "");
+  table.add_column("grows at", "", Align::left);
+  int short_lines = 0;
+  for (const CampbellLine& line : lines) {
+    if (points.size() > 1 && line.modes.size() == 1) {
+      ++short_lines;
+      continue;
+    }
+    std::vector<std::string> row{line.name};
+    for (const TrackedMode* end : {&line.modes.front(), &line.modes.back()}) {
+      const CampbellPoint& point = points[end->point];
+      const CampbellMode& mode = point.modes[end->mode];
+      row.push_back(general(point.value, 6));
+      row.push_back(hertz(tracked_exponent(mode.exponent, *end, point.rotor_speed).imag()));
+      if (has_frame)
+        row.push_back(std::isfinite(mode.fixed_frame_frequency) ? hertz(mode.fixed_frame_frequency)
+                                                                : "-");
+    }
+    const TrackedMode* least = nullptr;
+    const auto damping = [&](const TrackedMode& tracked) {
+      const CampbellPoint& point = points[tracked.point];
+      return tracked_damping(point.modes[tracked.mode].exponent, tracked, point.rotor_speed);
+    };
+    for (const TrackedMode& tracked : line.modes)
+      if (is_known(points[tracked.point].modes[tracked.mode]) &&
+          (least == nullptr || damping(tracked) < damping(*least)))
+        least = &tracked;
+    row.push_back(least != nullptr ? fixed(100.0 * damping(*least), 3) : "-");
+    row.push_back(least != nullptr ? general(points[least->point].value, 6) : "-");
+    row.push_back(growing_words(find_growth(points, line, edges)));
+    table.add_row(row);
+  }
+  return table.text() + (short_lines == 0 ? ""
+                                          : count(short_lines, "mode") +
+                                                " found at one point only: in the result\n");
+}
+
+std::string campbell_doubts(const std::vector<CampbellPoint>& points,
+                            const std::vector<CampbellLine>& lines) {
+  std::string names;
+  std::size_t unclear = 0;
+  std::size_t all = 0;
+  for (const CampbellLine& line : lines)
+    for (std::size_t i = 1; i < line.modes.size(); ++i) {
+      ++all;
+      if (line.modes[i].likeness >= ModeTracker::clear_likeness) continue;
+      if (unclear++ < most_named)
+        names += (names.empty() ? "" : ", ") + line.name + " at " +
+                 general(points[line.modes[i].point].value, 6);
+    }
+  if (unclear == 0) return "";
+  return "unclear, with a likeness below " + general(ModeTracker::clear_likeness, 2) + ", at " +
+         std::to_string(unclear) + " of " + std::to_string(all) +
+         " steps along the lines: " + names + (unclear > most_named ? ", ..." : "") +
+         "\n(hint: a finer sweep there)\n";
+}
+
+}  // namespace samara::drivers

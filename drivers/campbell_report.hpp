@@ -1,0 +1,28 @@
+// A Campbell diagram in tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samara/simulation/campbell.hpp"
+
+namespace samara::drivers {
+
+/// One line per point: speed, pitch, stability, and the least damped mode. `key`: of the swept
+/// quantity.
+std::string campbell_point_table(const std::string& key,
+                                 const std::vector<simulation::CampbellPoint>& points,
+                                 const std::vector<simulation::CampbellLine>& lines);
+
+/// One line per mode with two or more points: frequencies at its ends, least damping, and the
+/// ranges in which it grows.
+std::string campbell_line_table(const std::vector<simulation::CampbellPoint>& points,
+                                const std::vector<simulation::CampbellLine>& lines,
+                                const std::vector<simulation::StabilityEdge>& edges);
+
+/// The steps along lines at which another mode may be as close, whole lines; empty if there are
+/// none.
+std::string campbell_doubts(const std::vector<simulation::CampbellPoint>& points,
+                            const std::vector<simulation::CampbellLine>& lines);
+
+}  // namespace samara::drivers

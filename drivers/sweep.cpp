@@ -1,0 +1,108 @@
+#include "sweep.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
+#include "samara/model/turbine.hpp"
+#include "samara/simulation/validation.hpp"
+
+namespace samara::drivers {
+namespace {
+
+constexpr std::size_t most_values = 10000;
+/// Digits of a value of a range: its multiples of the step are free of round-off.
+constexpr int range_digits = 12;
+constexpr double range_slack = 1e-9;
+
+constexpr char form[] =
+    "expected KEY=FROM:TO:STEP or KEY=V1,V2,..., e.g. --sweep shaft.speed_rpm=0:14:0.5";
+
+std::vector<double> numbers_of(const std::string& text, char between) {
+  std::vector<double> numbers;
+  std::istringstream stream(text);
+  for (std::string word; std::getline(stream, word, between);) {
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number))
+      throw InputError("--sweep: \"" + word + "\" is no number; " + form);
+    numbers.push_back(number);
+  }
+  if (text.ends_with(between)) throw InputError(std::string("--sweep: ") + form);
+  return numbers;
+}
+
+std::vector<double> range_of(const std::vector<double>& limits) {
+  if (limits.size() != 3) throw InputError(std::string("--sweep: ") + form);
+  const double span = limits[1] - limits[0];
+  const double step = limits[2];
+  if (!(span / step >= 0.0) || !std::isfinite(span / step))
+    throw InputError("--sweep: the step " + general(step, 6) + " does not lead from " +
+                     general(limits[0], 6) + " to " + general(limits[1], 6) +
+                     "; hint: a step of the other sign, not 0");
+  const double last = std::floor(span / step * (1.0 + range_slack) + range_slack);
+  if (last >= static_cast<double>(most_values))
+    throw InputError("--sweep: " + general(last + 1.0, 6) + " values; hint: at most " +
+                     std::to_string(most_values));
+  std::vector<double> values;
+  for (int i = 0; i <= static_cast<int>(last); ++i)
+    values.push_back(std::stod(general(limits[0] + i * step, range_digits)));
+  return values;
+}
+
+/// The shortest text of a number that reads as the same.
+std::string exact(double value) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
+
+int degrees_of_freedom(const io::Case& input) {
+  return model::build_turbine(input.turbine).degrees_of_freedom;
+}
+
+}  // namespace
+
+Sweep::Sweep(const std::string& text, std::string path, std::vector<std::string> settings)
+    : path_(std::move(path)), settings_(std::move(settings)) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw InputError(std::string("--sweep: ") + form);
+  const std::string values = text.substr(equals + 1);
+  key_ = text.substr(0, equals);
+  values_ = values.find(':') != std::string::npos ? range_of(numbers_of(values, ':'))
+                                                  : numbers_of(values, ',');
+  std::vector<double> sorted = values_;
+  std::ranges::sort(sorted);
+  const auto twice = std::ranges::adjacent_find(sorted);
+  if (twice != sorted.end())
+    throw InputError("--sweep: " + general(*twice, 6) + " is given twice; leave one of them out");
+  int freedom = 0;
+  for (const double value : values_) {
+    const io::Case input = case_at(value);
+    case_texts_.push_back(input.text);
+    const bool is_first = case_texts_.size() == 1;
+    if (is_first) freedom = degrees_of_freedom(input);
+    if (!is_first && case_texts_.size() == values_.size() && degrees_of_freedom(input) != freedom)
+      throw InputError("--sweep " + key_ +
+                       ": modes of different meshes cannot be compared; hint: a key that keeps "
+                       "the parts and the elements");
+  }
+}
+
+io::Case Sweep::case_at(double value) const {
+  std::vector<std::string> own = settings_;
+  own.push_back(key_ + "=" + exact(value));
+  io::Case input = io::read_case(path_, own);
+  io::require_valid(input, simulation::validate(input, input.turbine.shaft.speed == 0.0
+                                                           ? simulation::Analysis::modes
+                                                           : simulation::Analysis::floquet));
+  return input;
+}
+
+}  // namespace samara::drivers

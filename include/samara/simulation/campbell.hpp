@@ -1,0 +1,98 @@
+// A Campbell diagram: the modes at the points of a sweep, joined to lines.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "samara/analysis/mode_tracking.hpp"
+#include "samara/analysis/observer.hpp"
+#include "samara/analysis/trim.hpp"
+#include "samara/simulation/scenario.hpp"
+#include "samara/simulation/stability.hpp"
+#include "samara/turbine/turbine_system.hpp"
+
+namespace samara::simulation {
+
+/// Harmonics of a mode's energy on either side of its exponent.
+inline constexpr int campbell_harmonics = 8;
+
+/// A mode at a point; values as those of analysis::Mode.
+struct CampbellMode {
+  std::complex<double> exponent;
+  double damping_ratio = 0.0;
+  double fixed_frame_frequency = std::numeric_limits<double>::quiet_NaN();
+  double error = 0.0;         ///< total_error
+  double growth_error = 0.0;  ///< [1/s]
+  Motion motion = Motion::decaying;
+  bool is_rough = false;
+  std::string name;
+  /// Shares of the mean kinetic energy in the harmonics -campbell_harmonics ... of the rotor speed,
+  /// counted from `exponent`; the sum may be less than 1.
+  std::vector<double> participation;
+};
+
+/// The modes at a point of a sweep. Where there is no steady state, or its modes were not found,
+/// `failure` is the reason, and there are no modes.
+struct CampbellPoint {
+  double value = 0.0;                                            ///< of the swept quantity
+  double rotor_speed = 0.0;                                      ///< [rad/s]
+  double wind_speed = std::numeric_limits<double>::quiet_NaN();  ///< [m/s]; none without air
+  double pitch = 0.0;                                            ///< [rad]
+  std::string failure;
+  Stability stability = Stability::unknown;
+  std::vector<std::string> notes;
+  std::vector<CampbellMode> modes;  ///< those of `signatures`
+  analysis::ModeSignatures signatures;
+};
+
+/// The modes about a steady state: all of them or as many as `options` want; at rest all. Sets
+/// everything but `value`, `wind_speed` and `notes`. Serial.
+/// @throws ConvergenceError, DomainError, InputError from the analyses
+CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                                  const analysis::FloquetOptions& options,
+                                  analysis::Observer& observer);
+
+/// A mode over the points of a sweep.
+struct CampbellLine {
+  std::string name;  ///< most frequent name of its modes and, where several lines have it, a number
+  std::vector<analysis::TrackedMode> modes;
+};
+
+/// Number of modes that grow by more than their errors.
+int count_growing(const CampbellPoint& point);
+
+/// A place between two values where the number of growing modes changes.
+struct StabilityEdge {
+  double from = 0.0;
+  double to = 0.0;
+  int growing_from = 0;
+  int growing_to = 0;
+};
+
+/// One edge between each two neighbouring points with different numbers; points that failed, or are
+/// at rest (where the modes change at once), are left out.
+std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points);
+
+/// A range in which the mode of a line grows.
+struct GrowthRange {
+  double from = 0.0;  ///< refined edge, or value of the first point that grows
+  double to = 0.0;
+};
+
+/// The ranges of a line, in the order of its points. An edge applies if the growing modes at both
+/// its sides are as many as at the points.
+std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
+                                     const CampbellLine& line,
+                                     const std::vector<StabilityEdge>& edges);
+
+/// Names the lines and sorts them: by the frequency in the middle of each line, those of the same
+/// name in their order. A point at rest has no influence on a name, if the line has others: modes
+/// that differ only in the phase between the blades have equal exponents there.
+std::vector<CampbellLine> name_lines(const std::vector<CampbellPoint>& points,
+                                     const std::vector<std::vector<analysis::TrackedMode>>& lines);
+
+}  // namespace samara::simulation

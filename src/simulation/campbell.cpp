@@ -1,0 +1,152 @@
+#include "samara/simulation/campbell.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "samara/analysis/constant_modes.hpp"
+#include "samara/analysis/floquet.hpp"
+#include "samara/simulation/held_air.hpp"
+
+namespace samara::simulation {
+namespace {
+
+using analysis::Mode;
+using analysis::ModeSet;
+using analysis::TrackedMode;
+
+std::vector<double> participation_of(const ModeSet& set, std::size_t m) {
+  std::vector<double> shares(2 * campbell_harmonics + 1, 0.0);
+  if (set.participation.size() == 0) {
+    shares[campbell_harmonics] = 1.0;
+    return shares;
+  }
+  for (int k = -campbell_harmonics; k <= campbell_harmonics; ++k) {
+    const Eigen::Index column = k + set.modes[m].harmonic - set.first_harmonic;
+    if (column >= 0 && column < set.participation.cols())
+      shares[static_cast<std::size_t>(k + campbell_harmonics)] =
+          set.participation(static_cast<Eigen::Index>(m), column);
+  }
+  return shares;
+}
+
+const CampbellMode& mode_of(const std::vector<CampbellPoint>& points, const TrackedMode& tracked) {
+  return points[tracked.point].modes[tracked.mode];
+}
+
+bool is_growing(const CampbellMode& mode) {
+  return mode.motion == Motion::growing && !mode.is_rough;
+}
+
+/// The edge between two points, if it is the place of all changes between them.
+std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& b,
+                                   const std::vector<StabilityEdge>& edges) {
+  const auto [low, high] = std::minmax(a.value, b.value);
+  for (const StabilityEdge& edge : edges)
+    if (std::min(edge.from, edge.to) >= low && std::max(edge.from, edge.to) <= high &&
+        edge.growing_from == count_growing(a) && edge.growing_to == count_growing(b))
+      return 0.5 * (edge.from + edge.to);
+  return std::nullopt;
+}
+
+std::string most_frequent_name(const std::vector<CampbellPoint>& points,
+                               const std::vector<TrackedMode>& line) {
+  std::map<std::string, int> turning;
+  std::map<std::string, int> at_rest;
+  for (const TrackedMode& tracked : line)
+    ++(points[tracked.point].rotor_speed > 0.0 ? turning : at_rest)[mode_of(points, tracked).name];
+  const std::map<std::string, int>& names = turning.empty() ? at_rest : turning;
+  return std::ranges::max_element(names, {}, [](const auto& name) { return name.second; })->first;
+}
+
+}  // namespace
+
+CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                                  const analysis::FloquetOptions& options,
+                                  analysis::Observer& observer) {
+  const model::Turbine& turbine = system.turbine();
+  const auto held = hold_wake(system);
+  const turbine::TurbineSystem& small = held ? *held : system;
+  const ModeSet set =
+      turbine.speed > 0.0
+          ? analysis::find_floquet_modes(small, trim.solution, options, PETSC_COMM_SELF, observer)
+                .set
+          : analysis::find_constant_modes(small, trim.solution);
+  const StabilityAssessment assessment = assess_stability(set);
+  CampbellPoint point;
+  point.rotor_speed = turbine.speed;
+  point.pitch = turbine.pitch;
+  point.stability = assessment.stability;
+  point.signatures = analysis::find_signatures(system, set);
+  for (std::size_t& m : point.signatures.modes) {
+    const Mode& mode = set.modes[m];
+    point.modes.push_back({mode.exponent, mode.damping_ratio, mode.fixed_frame_frequency,
+                           total_error(mode), mode.growth_error, assessment.motions[m],
+                           is_rough(mode), mode.name, participation_of(set, m)});
+    m = point.modes.size() - 1;
+  }
+  return point;
+}
+
+int count_growing(const CampbellPoint& point) {
+  return static_cast<int>(std::ranges::count_if(point.modes, is_growing));
+}
+
+std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points) {
+  std::vector<StabilityEdge> edges;
+  const CampbellPoint* last = nullptr;
+  for (const CampbellPoint& point : points) {
+    if (!point.failure.empty()) continue;
+    const bool turns = last != nullptr && last->rotor_speed > 0.0 && point.rotor_speed > 0.0;
+    if (turns && count_growing(*last) != count_growing(point))
+      edges.push_back({last->value, point.value, count_growing(*last), count_growing(point)});
+    last = &point;
+  }
+  return edges;
+}
+
+std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
+                                     const CampbellLine& line,
+                                     const std::vector<StabilityEdge>& edges) {
+  std::vector<GrowthRange> ranges;
+  const auto grows = [&](std::size_t i) { return is_growing(mode_of(points, line.modes[i])); };
+  const auto point_of = [&](std::size_t i) -> const CampbellPoint& {
+    return points[line.modes[i].point];
+  };
+  for (std::size_t i = 0; i < line.modes.size(); ++i) {
+    if (!grows(i)) continue;
+    const std::size_t first = i;
+    while (i + 1 < line.modes.size() && grows(i + 1)) ++i;
+    GrowthRange range{point_of(first).value, point_of(i).value};
+    if (first > 0)
+      range.from = edge_between(point_of(first - 1), point_of(first), edges).value_or(range.from);
+    if (i + 1 < line.modes.size())
+      range.to = edge_between(point_of(i), point_of(i + 1), edges).value_or(range.to);
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+std::vector<CampbellLine> name_lines(const std::vector<CampbellPoint>& points,
+                                     const std::vector<std::vector<TrackedMode>>& lines) {
+  std::vector<std::pair<double, CampbellLine>> sorted;
+  for (const std::vector<TrackedMode>& line : lines) {
+    const TrackedMode& middle = line[line.size() / 2];
+    sorted.emplace_back(std::abs(mode_of(points, middle).exponent),
+                        CampbellLine{most_frequent_name(points, line), line});
+  }
+  std::ranges::stable_sort(sorted, {}, [](const auto& line) { return line.first; });
+  std::map<std::string, int> alike;
+  for (const auto& [frequency, line] : sorted) ++alike[line.name];
+  std::map<std::string, int> number;
+  std::vector<CampbellLine> result;
+  for (auto& [frequency, line] : sorted) {
+    if (alike[line.name] > 1) line.name += " " + std::to_string(++number[line.name]);
+    result.push_back(std::move(line));
+  }
+  return result;
+}
+
+}  // namespace samara::simulation

@@ -1,0 +1,175 @@
+"""samara campbell: sweeps, lines, ranks, interruptions, failing points, wrong arguments."""
+
+import csv
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import BASELINE, LONGEST_RUN, PROGRAM, SOURCE, ProgramTest  # noqa: E402
+
+QUICK = [part for key in ("blades.elements=2", "tower.elements=2", "floquet.steps=120")
+         for part in ("--set", key)]
+SPEEDS = "shaft.speed=0.5:3.5:0.5"
+# Steady states of a sweep start from their neighbours: they differ by the tolerance of the trim.
+SAME = 1e-7
+
+
+class Campbell(ProgramTest):
+    def diagram(self, name):
+        with h5py.File(self.folder / name) as file:
+            group = file["campbell"]
+            values = {key: group[key][:] for key in group if group[key].dtype.kind == "f"}
+            for key in ("mode", "stability"):
+                values[key] = list(group[key].asstr()[:])
+            values["status"] = group.attrs["status"]
+            return values
+
+    def require_same(self, one, other):
+        self.assertEqual(one["mode"], other["mode"])
+        numpy.testing.assert_array_equal(one["value"], other["value"])
+        for key in ("frequency_hz", "growth_rate", "likeness"):
+            numpy.testing.assert_allclose(one[key], other[key], rtol=SAME, atol=SAME, err_msg=key)
+
+    def test_the_lines_are_those_of_floquet_at_each_point(self):
+        text = self.succeed("campbell", BASELINE, *QUICK, "--sweep", SPEEDS, "-o", "c.h5", "--csv",
+                            "c.csv").stdout
+        self.assertIn("tower fore-aft", text)
+        found = self.diagram("c.h5")
+        self.assertEqual(found["status"], "complete")
+        numpy.testing.assert_allclose(found["value"], numpy.arange(0.5, 3.6, 0.5), rtol=1e-12)
+        numpy.testing.assert_allclose(found["rotor_speed"], found["value"], rtol=1e-12)
+        self.assertFalse((self.folder / "c.h5.points").exists())
+        point = 3
+        self.succeed("floquet", BASELINE, *QUICK, "--set", "shaft.speed=2", "-o", "f.h5")
+        with h5py.File(self.folder / "f.h5") as file:
+            exponents = file["floquet/exponents"][:] @ [1, 1j]
+        lines = numpy.flatnonzero(numpy.isfinite(found["growth_rate"][:, point]))
+        self.assertGreaterEqual(len(lines), 8)
+        for line in lines:
+            # The copy of a line differs from that of the mode by a multiple of the rotor speed.
+            wanted = found["growth_rate"][line, point] + 2j * numpy.pi * found["frequency_hz"][line, point]
+            apart = [min(abs(wanted.real - own.real) + abs(numpy.angle(numpy.exp(
+                1j * numpy.pi * (wanted.imag - sign * own.imag)))) / numpy.pi for sign in (1, -1))
+                for own in exponents]
+            self.assertLess(min(apart), 1e-6, found["mode"][line])
+        # The second difference of a frequency is small: another copy is 0.08 Hz or more away.
+        for line, name in enumerate(found["mode"]):
+            steps = numpy.diff(found["frequency_hz"][line], 2)
+            self.assertLess(numpy.nanmax(abs(steps), initial=0.0), 0.05, name)
+        with open(self.folder / "c.csv", newline="") as table:
+            for row in csv.DictReader(table):
+                line = found["mode"].index(row["mode"])
+                at = list(found["value"]).index(float(row["value"]))
+                for key in ("frequency_hz", "growth_rate", "damping_ratio", "likeness"):
+                    self.assertEqual(float(row[key]), found[key][line, at], key)
+        shares = found["participation"].sum(axis=2)
+        self.assertTrue(((shares > 0.5) & (shares < 1 + 1e-9) | (shares == 0.0)).all())
+
+    def test_ranks_share_the_points(self):
+        for ranks in (1, 2, 3):
+            self.succeed("campbell", BASELINE, *QUICK, "--sweep", SPEEDS, "-o", f"{ranks}.h5",
+                         ranks=ranks)
+        for ranks in (2, 3):
+            self.require_same(self.diagram("1.h5"), self.diagram(f"{ranks}.h5"))
+
+    def interrupt(self, number, arguments, points):
+        run = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        folder = self.folder / "c.h5.points"
+        until = time.monotonic() + LONGEST_RUN
+        while len(list(folder.glob("*.h5"))) < points and time.monotonic() < until:
+            self.assertIsNone(run.poll(), "ended before it was interrupted")
+            time.sleep(0.002)
+        run.send_signal(number)
+        out, errors = run.communicate(timeout=LONGEST_RUN)
+        return run.returncode, out, errors
+
+    def test_an_ended_run_goes_on(self):
+        arguments = ["campbell", BASELINE, *QUICK, "--sweep", "shaft.speed=1:4:0.25", "-o", "c.h5"]
+        self.succeed(*arguments[:-1], "whole.h5")
+        whole = self.diagram("whole.h5")
+        self.interrupt(signal.SIGKILL, arguments, 2)
+        points = self.folder / "c.h5.points"
+        kept = {path: path.stat().st_mtime_ns for path in points.glob("*.h5")}
+        self.assertGreaterEqual(len(kept), 2)
+        code, out, errors = self.interrupt(signal.SIGINT, arguments, len(kept) + 2)
+        self.assertEqual(code, 130, errors)
+        self.assertIn("goes on from here", errors)
+        self.assertIn("result: c.h5", out)
+        part = self.diagram("c.h5")
+        self.assertEqual(part["status"], "interrupted")
+        self.assertTrue(4 <= len(part["value"]) < len(whole["value"]))
+        for path, changed in kept.items():
+            self.assertEqual(path.stat().st_mtime_ns, changed, "a point was found twice")
+        # Other settings: the points of the run before are not theirs.
+        self.succeed(*arguments, "--set", "gravity=0.5")
+        self.assertFalse(points.exists())
+        self.interrupt(signal.SIGKILL, arguments, 3)
+        self.succeed(*arguments)
+        self.require_same(self.diagram("c.h5"), whole)
+        self.assertFalse(points.exists())
+
+    def test_a_point_that_fails_does_not_end_the_others(self):
+        run = self.samara("campbell", BASELINE, *QUICK, "--sweep", "gravity=0,1e7,9.81", "-o", "c.h5")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn("gravity=1e+07: ", run.stderr)
+        self.assertIn("1 of 3 points have no modes", run.stderr)
+        found = self.diagram("c.h5")
+        self.assertTrue(found["stability"][1].startswith("failed: "))
+        lines = numpy.isfinite(found["frequency_hz"])
+        self.assertFalse(lines[:, 1].any())
+        self.assertGreater((lines[:, 0] & lines[:, 2]).sum(), 8)
+
+    def test_nothing_foreign_is_touched(self):
+        foreign = self.write("c.h5.points/00002.h5", b"something else")
+        note = self.write("c.h5.points/notes.txt", b"mine")
+        run = self.samara("campbell", BASELINE, *QUICK, "--sweep", "shaft.speed=1,2", "-o", "c.h5")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("00002.h5", run.stderr)
+        self.assertEqual(foreign.read_bytes(), b"something else")
+        foreign.unlink()
+        self.succeed("campbell", BASELINE, *QUICK, "--sweep", "shaft.speed=1,2", "-o", "c.h5")
+        self.assertEqual(note.read_bytes(), b"mine")
+        self.assertEqual(list((self.folder / "c.h5.points").iterdir()), [note])
+
+    def test_wrong_arguments(self):
+        for sweep, words in (("shaft.speed", "KEY=FROM:TO:STEP"),
+                             ("shaft.speed=1:2", "KEY=FROM:TO:STEP"),
+                             ("shaft.speed=1:2:-1", "a step of the other sign"),
+                             ("shaft.speed=1:2:0", "a step of the other sign"),
+                             ("shaft.speed=0:1e9:1", "at most 10000"),
+                             ("shaft.speed=1,2,2", "2 is given twice"),
+                             ("shaft.speed=1,x", '"x" is no number'),
+                             ("shaft.spede=1,2", "did you mean"),
+                             ("shaft.speed=1,-2", "expected a number >= 0"),
+                             ("blades.elements=2,3", "different meshes")):
+            self.refuse("campbell", BASELINE, *QUICK, "--sweep", sweep, words=words)
+        self.refuse("campbell", BASELINE, words="missing --sweep")
+        self.refuse("floquet", BASELINE, "--sweep", "shaft.speed=1,2", words="samara campbell has one")
+
+    def test_operating_points(self):
+        case = SOURCE / "inputs/nrel5mw/land.yaml"
+        coarse = [part for key in ("blades.elements=2", "blades.element_lengths=[1, 1]", "blades.order=3",
+                                   "tower.elements=1", "tower.order=3", "floquet.steps=60",
+                                   "operation.wind_speeds=[8, 10, 16]") for part in ("--set", key)]
+        self.succeed("campbell", case, *coarse, "-o", "c.h5")
+        found = self.diagram("c.h5")
+        self.succeed("operate", case, *coarse, "-o", "o.h5")
+        with h5py.File(self.folder / "o.h5") as file:
+            numpy.testing.assert_allclose(found["pitch"], file["operation/pitch"][:], rtol=1e-6)
+            numpy.testing.assert_allclose(found["rotor_speed"], file["operation/rotor_speed"][:],
+                                          rtol=1e-6)
+        numpy.testing.assert_array_equal(found["wind_speed"], found["value"])
+        line = found["mode"].index("blade flap collective 1")
+        self.assertTrue((found["damping_ratio"][line] > 0.2).all())  # by the air
+
+
+if __name__ == "__main__":
+    unittest.main()
