@@ -146,7 +146,7 @@ void run_campbell(const Job& job) {
     deliver(
         job,
         (job.input.turbine.title.empty() ? job.input.path : job.input.turbine.title) + "\n\n" +
-            campbell_point_table(plan.quantity.key, diagram.points, diagram.lines) + "\n" +
+            campbell_point_table(plan.quantity, diagram.points, diagram.lines) + "\n" +
             campbell_line_table(diagram.points, diagram.lines, edges) +
             campbell_doubts(diagram.points, diagram.lines),
         [&](io::ResultFile& file) {

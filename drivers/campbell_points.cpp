@@ -8,6 +8,7 @@
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
 #include "samara/base/version.hpp"
+#include "samara/io/schema.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/simulation/steady_state.hpp"
 
@@ -123,7 +124,7 @@ CampbellPoint CampbellPointFinder::find(double value) {
 CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::ScheduledPoint>& table) {
   CampbellPlan plan;
   if (job.sweep.is_given()) {
-    plan.quantity = {job.sweep.key(), "as in the case file"};
+    plan.quantity = {job.sweep.key(), io::unit_of_key(job.sweep.key())};
     plan.values = job.sweep.values();
     for (const std::string& text : job.sweep.case_texts())
       plan.origins.push_back(origin_of(text, ""));

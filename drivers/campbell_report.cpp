@@ -82,13 +82,14 @@ bool has_fixed_frame(const std::vector<CampbellPoint>& points) {
 
 }  // namespace
 
-std::string campbell_point_table(const std::string& key, const std::vector<CampbellPoint>& points,
+std::string campbell_point_table(const io::SweptQuantity& quantity,
+                                 const std::vector<CampbellPoint>& points,
                                  const std::vector<CampbellLine>& lines) {
   const auto names = names_at(points, lines);
   const bool has_wind = std::ranges::any_of(
       points, [](const CampbellPoint& point) { return std::isfinite(point.wind_speed); });
   Table table;
-  table.add_column(key, "");
+  table.add_column(quantity.key, quantity.unit == "1" ? "" : quantity.unit);
   table.add_column("speed", "rpm");
   if (has_wind) table.add_column("wind", "m/s");
   table.add_column("pitch", "deg");

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "samara/io/campbell_file.hpp"
 #include "samara/simulation/campbell.hpp"
 
 namespace samara::drivers {
 
-/// One line per point: speed, pitch, stability, and the least damped mode. `key`: of the swept
-/// quantity.
-std::string campbell_point_table(const std::string& key,
+/// One line per point: speed, pitch, stability, and the least damped mode.
+std::string campbell_point_table(const io::SweptQuantity& quantity,
                                  const std::vector<simulation::CampbellPoint>& points,
                                  const std::vector<simulation::CampbellLine>& lines);
 

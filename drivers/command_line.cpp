@@ -391,7 +391,7 @@ constexpr char option_lines[] =
   --first N         lists the first N modes; the verdict counts all (modes, floquet)
   --parked          the rotor stands still, as with --set shaft.speed=0 (modes)
   --restart FILE.h5 continues from the last checkpoint of a result (transient)
-  --sweep KEY=FROM:TO:STEP or KEY=V1,V2,...: the values of a key (campbell)
+  --sweep KEY=VALUES the values of a key (campbell): FROM:TO:STEP, or V1,V2,...
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
   --help-options    the prefixes of options of PETSc and SLEPc
@@ -431,9 +431,12 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
   std::string text = "samara " + std::string(version) +
                      ": rotor dynamics of horizontal-axis wind turbines\n\nusage\n" +
                      "  samara <command>" + options +
-                     "\n  samara import openfast|windio|hawc2 DECK -o CASE.yaml\n  samara export "
-                     "RESULT.h5 -o FILE\n  "
-                     "samara loads RESULT.h5 [options]\n  mpirun -n 4 samara <command>" +
+                     "\n  samara new KIND NAME\n"
+                     "  samara import openfast|windio|hawc2 DECK -o CASE.yaml\n"
+                     "  samara export RESULT.h5 -o FILE\n"
+                     "  samara loads RESULT.h5 [options]\n"
+                     "  samara plot RESULT.h5 [KIND ...] [-o FILE]\n"
+                     "  mpirun -n 4 samara <command>" +
                      options + "\n\ncommands\n";
   for (const Command& command : commands)
     text += "  " + padded(command.name, 10) + command.summary + "\n";

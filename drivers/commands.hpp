@@ -25,6 +25,8 @@ void run_campbell(const Job& job);
 /// Replaces the process by the Python package's command line. @throws InputError if it cannot
 void run_plot(const std::vector<std::string>& arguments);
 
+void run_new(const std::vector<std::string>& arguments);
+
 void run_import(const CommandLine& line);
 void run_export(const CommandLine& line);
 

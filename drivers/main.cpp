@@ -31,7 +31,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 14> commands{{
+constexpr std::array<Command, 15> commands{{
     {.name = "check",
      .summary = "reports the model of a case: masses, sizes, unknowns; solves nothing",
      .description =
@@ -124,6 +124,11 @@ constexpr std::array<Command, 14> commands{{
      .has_sweep = true,
      .analysis = simulation::Analysis::operate,
      .run = run_campbell},
+    {.name = "new",
+     .summary = "a commented case to start from",
+     .description = "Writes a commented case NAME.yaml to start from.\n",
+     .example = "three-bladed mine",
+     .hand_over = run_new},
     {.name = "import",
      .summary = "a case file from a turbine of OpenFAST, windIO or HAWC2",
      .description =

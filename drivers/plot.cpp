@@ -2,7 +2,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <unistd.h>
@@ -10,27 +9,17 @@
 #include "samara/base/error.hpp"
 
 #include "commands.hpp"
+#include "installation.hpp"
 
 namespace samara::drivers {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr char interpreter[] = "/usr/bin/python3";
-
-/// The folder of the package: beside the folder of the program, in a checkout or installed.
-fs::path find_package() {
-  std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
-  for (const char* place : {"python", "share/samara/python"})
-    if (fs::exists(folder / place / "samara" / "plot.py", error)) return folder / place;
-  return {};
-}
 
 }  // namespace
 
 void run_plot(const std::vector<std::string>& arguments) {
-  if (const fs::path package = find_package(); !package.empty()) {
+  if (const std::filesystem::path package = find_installed("python"); !package.empty()) {
     const char* before = std::getenv("PYTHONPATH");
     const std::string path =
         package.string() + (before != nullptr ? std::string(":") + before : "");

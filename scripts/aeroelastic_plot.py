@@ -3,8 +3,8 @@
 
     scripts/aeroelastic_plot.py [-o docs]
 
-operation.svg: operating points of inputs/nrel5mw/land.yaml over the wind speed. damping.svg: frequency
-and damping of its first modes at these points. span.svg: the air along a blade at three of them.
+operation.svg: operating points of inputs/nrel5mw/land.yaml over the wind speed. campbell.svg: frequency
+and damping of its first modes at these points (samara campbell). span.svg: the air along a blade at three of them.
 mesh.svg: change of the damping ratios of the first ten modes with the mesh of the blades, also of
 inputs/iea15mw/land.yaml. --only draws one of them. SAMARA names the program.
 """
@@ -15,6 +15,7 @@ import math
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 
 import h5py
@@ -24,15 +25,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python"))
+import samara
 PROGRAM = os.environ.get("SAMARA", str(ROOT / "build" / "samara"))
 LAND = str(ROOT / "inputs" / "nrel5mw" / "land.yaml")
 WINDS = list(range(4, 26))
 SHOWN = [8.0, 12.0, 20.0]
-MODES = {"tower fore-aft 1": "#1f5f9e", "tower side-side 1": "#6a3d9a",
-         "blade flap collective 1": "#b04a00", "blade lead-lag progressive 1": "#2e7d32",
-         "blade lead-lag regressive 1": "#8bc34a"}
-
-
 INPUTS = {"nrel5mw": "#1f5f9e", "iea15mw": "#b04a00"}
 MESHES = {"nrel5mw": (3, 4, 6, 8, 12, 16), "iea15mw": (4, 6, 8, 10, 12, 16)}  # elements of order 2
 FINEST = 28
@@ -55,12 +53,6 @@ def keys_of(point):
             f"shaft.speed={point['rotor_speed']}", "--set", f"blades.pitch_deg={math.degrees(float(point['pitch']))}"]
 
 
-def read_modes(folder, point):
-    run(folder, "floquet", LAND, *keys_of(point), "--csv", "modes.csv", "-o", "modes.h5")
-    with open(folder / "modes.csv", encoding="utf-8", newline="") as file:
-        return {row["label"]: row for row in csv.DictReader(file)}
-
-
 def draw_operation(points, path):
     figure, axes = plt.subplots(2, 2, figsize=(8, 4.6), sharex=True)
     winds = [float(point["wind_speed"]) for point in points]
@@ -77,24 +69,9 @@ def draw_operation(points, path):
     figure.savefig(path, metadata={"Date": None})
 
 
-def draw_damping(points, modes, path):
-    figure, axes = plt.subplots(1, 2, figsize=(8, 3.6))
-    winds = [float(point["wind_speed"]) for point in points]
-    for label, color in MODES.items():
-        alone = label.removesuffix(" 1")  # where no second one is resolved
-        for axis, key, factor in ((axes[0], "frequency_hz", 1), (axes[1], "damping_ratio", 100)):
-            rows = [(wind, factor * float(found.get(label, found.get(alone))[key]))
-                    for wind, found in zip(winds, modes) if label in found or alone in found]
-            axis.plot(*zip(*rows), "o-", markersize=3, color=color, label=label)
-    axes[0].set_ylabel("frequency in the rotor's axes [Hz]")
-    axes[1].set_ylabel("damping [%]")
-    axes[1].set_yscale("log")
-    for axis in axes:
-        axis.set_xlabel("wind [m/s]")
-        axis.grid(alpha=0.3)
-    axes[0].legend(fontsize=7)
-    figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None})
+def draw_campbell(path):
+    result = samara.run(LAND, "campbell", set={"operation.wind_speeds": WINDS}, ranks=2)
+    samara.plot.draw(result, path, "campbell")
 
 
 def draw_span(folder, points, path):
@@ -158,20 +135,20 @@ def draw_mesh(folder, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "docs")
-    parser.add_argument("--only", choices=["operation", "span", "damping", "mesh"])
+    parser.add_argument("--only", choices=["operation", "span", "campbell", "mesh"])
     arguments = parser.parse_args()
     folder = arguments.output
-    chosen = [arguments.only] if arguments.only else ["operation", "span", "damping", "mesh"]
+    chosen = [arguments.only] if arguments.only else ["operation", "span", "campbell", "mesh"]
     matplotlib.rcParams["svg.hashsalt"] = "samara"
     with tempfile.TemporaryDirectory() as name:
         work = pathlib.Path(name)
-        points = read_points(work) if chosen != ["mesh"] else []
+        points = read_points(work) if {"operation", "span"} & set(chosen) else []
         if "operation" in chosen:
             draw_operation(points, folder / "operation.svg")
         if "span" in chosen:
             draw_span(work, points, folder / "span.svg")
-        if "damping" in chosen:
-            draw_damping(points, [read_modes(work, point) for point in points], folder / "damping.svg")
+        if "campbell" in chosen:
+            draw_campbell(folder / "campbell.svg")
         if "mesh" in chosen:
             draw_mesh(work, folder / "mesh.svg")
 

@@ -31,7 +31,7 @@ class PlotError(ValueError):
 def _pyplot():
     import matplotlib.pyplot as pyplot
 
-    pyplot.rcParams.update({"svg.fonttype": "none", "axes.grid": True, "grid.alpha": 0.25, "font.size": 9,
+    pyplot.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "samara", "axes.grid": True, "grid.alpha": 0.25, "font.size": 9,
                             "legend.frameon": False, "figure.constrained_layout.use": True})
     return pyplot
 
@@ -93,7 +93,7 @@ def campbell(result, frame="fixed", first=14):
         above.plot(values, order * turns, color=GREY, linewidth=0.6, zorder=0)
         above.annotate(f"{order}P", (values[-1], min(order * turns[-1], 1.04 * top)), color=GREY, fontsize=7,
                        annotation_clip=True)
-    key = _label(data.attrs.get("key", "value"), unit_of(data["value"]).replace("as in the case file", ""))
+    key = _label(data.attrs.get("key", "value"), unit_of(data["value"]))
     above.set(xlabel=key, ylabel=f"frequency, {'fixed frame' if frame == 'fixed' else 'frame of the part'} [Hz]",
               ylim=(0.0, 1.08 * top))
     below.set(xlabel=key, ylabel="damping ratio [%]")

@@ -1,8 +1,10 @@
 #include "samara/io/schema.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -274,6 +276,26 @@ class SchemaWriter : public fields::Description {
   std::vector<std::vector<std::string>> needed_;
 };
 
+/// The entry of a schema for the next word of a path, in any of the forms that a value may have;
+/// null: there is none.
+const Json* find_entry(const Json& schema, const std::string& word) {
+  const bool is_number = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+    return std::isdigit(c) != 0;
+  });
+  if (const auto properties = schema.find("properties");
+      properties != schema.end() && properties->contains(word))
+    return &(*properties)[word];
+  if (is_number && schema.contains("items") && schema["items"].is_object()) return &schema["items"];
+  for (const char* others : {"patternProperties", "additionalProperties"})
+    if (const auto found = schema.find(others);
+        found != schema.end() && found->is_object() && !found->empty())
+      return others[0] == 'p' ? &found->front() : &*found;
+  if (const auto ways = schema.find("anyOf"); ways != schema.end())
+    for (const Json& way : *ways)
+      if (const Json* entry = find_entry(way, word)) return entry;
+  return nullptr;
+}
+
 }  // namespace
 
 std::string case_schema() {
@@ -292,6 +314,20 @@ std::string case_schema() {
   declare(visitor, loads);
   schema["definitions"]["loads"] = writer.take();
   return schema.dump(2) + "\n";
+}
+
+std::string unit_of_key(const std::string& path) {
+  static const Json schema = Json::parse(case_schema());
+  const Json* entry = &schema;
+  std::string unit = "1";
+  std::istringstream words(path);
+  for (std::string word; std::getline(words, word, '.');) {
+    entry = find_entry(*entry, word);
+    if (entry == nullptr) return "1";
+    // The numbers of a list have the unit of the list.
+    if (entry->contains("x-unit")) unit = entry->value("x-unit", unit);
+  }
+  return unit;
 }
 
 }  // namespace samara::io

@@ -43,6 +43,8 @@ class Campbell(ProgramTest):
         self.assertIn("tower fore-aft", text)
         found = self.diagram("c.h5")
         self.assertEqual(found["status"], "complete")
+        with h5py.File(self.folder / "c.h5") as file:
+            self.assertEqual(file["campbell/value"].attrs["unit"], "rad/s")
         numpy.testing.assert_allclose(found["value"], numpy.arange(0.5, 3.6, 0.5), rtol=1e-12)
         numpy.testing.assert_allclose(found["rotor_speed"], found["value"], rtol=1e-12)
         self.assertFalse((self.folder / "c.h5.points").exists())

@@ -41,6 +41,30 @@ class CommandLine(ProgramTest):
                 words = [str(SOURCE / w) if w.startswith("inputs/") else w for w in words]
                 self.succeed(*words)
 
+    def complete(self, *words):
+        """Bash's completions of the last word."""
+        script = (f"source {SOURCE / 'completions/samara'}; COMP_WORDS=({' '.join(repr(w) for w in words)}); "
+                  f"COMP_CWORD={len(words) - 1}; compopt() {{ :; }}; _samara; printf '%s\\n' \"${{COMPREPLY[@]}}\"")
+        done = subprocess.run(["bash", "-c", script], cwd=self.folder, text=True, capture_output=True,
+                              check=True)
+        return done.stdout.split()
+
+    def test_bash_completes_commands_options_and_files(self):
+        listed = re.search(r"(?s)^commands\n(.*?)\n\n", self.succeed("--help").stdout, re.MULTILINE).group(1)
+        commands = {line.split()[0] for line in listed.splitlines()}
+        self.assertEqual(commands, {word for word in self.complete("samara", "") if word[0] != "-"})
+        self.assertEqual(self.complete("samara", "camp"), ["campbell"])
+        self.assertEqual(self.complete("samara", "campbell", "--sw"), ["--sweep"])
+        self.assertEqual(self.complete("samara", "trim", "--sw"), [])
+        for command in commands - {"plot", "new", "schema"}:
+            for option in self.complete("samara", command, "--"):
+                self.assertIn(option, self.succeed(command, "--help").stdout, command)
+        for name in ("case.yaml", "result.h5", "notes.txt"):
+            self.write(name, "")
+        self.assertEqual(self.complete("samara", "floquet", ""), ["case.yaml"])
+        self.assertEqual(self.complete("samara", "plot", ""), ["result.h5"])
+        self.assertEqual(self.complete("samara", "new", "three"), ["three-bladed"])
+
     def test_prefixes_of_solver_options(self):
         table = self.succeed("--help-options").stdout
         page = (SOURCE / "docs/case_file.md").read_text(encoding="utf-8")

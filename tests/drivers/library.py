@@ -52,6 +52,14 @@ class Library(unittest.TestCase):
         for name in ("samara", "samara-controller-host"):
             self.assertTrue(os.access(self.tree / "bin" / name, os.X_OK), name)
 
+    def test_the_installed_program_has_its_templates_and_its_pictures(self):
+        folder = pathlib.Path(self.temporary.name) / "installed"
+        folder.mkdir()
+        program = self.tree / "bin/samara"
+        run(program, "new", "beam", "mine", cwd=folder)
+        run(program, "floquet", "mine.yaml", cwd=folder)
+        self.assertEqual(run(program, "plot", "mine.h5", cwd=folder), "picture: mine_multipliers.svg\n")
+
     def test_a_beam_has_the_frequencies_of_euler_and_bernoulli(self):
         rows, _ = self.found("beam", r"(\S+) Hz +(\S+)\n")
         factors = sorted(factor for _, factor in rows)
