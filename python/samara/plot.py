@@ -6,8 +6,10 @@ Colours are those of Okabe and Ito, which the colour-blind distinguish, with lin
 """
 
 import argparse
+import difflib
 import itertools
 import pathlib
+import re
 import sys
 
 import matplotlib
@@ -150,6 +152,44 @@ def spanwise(result):
     return figure
 
 
+def azimuth(result, unknowns=None):
+    """Unknowns of the periodic steady state over the azimuth of blade 1, of samara trim or floquet.
+
+    unknowns: their names as in /model/unknowns/name; by default tip and root of blade 1 and the tower top.
+    """
+    names = [str(name) for name in result["model/unknowns"]["name"].values]
+    units = [str(unit) for unit in result["model/unknowns"]["unit"].values]
+    usual = re.compile(r"blade 1 tip u\d|blade 1 root M\d|tower top u\d")
+    chosen = list(unknowns or [name for name in names if usual.fullmatch(name)])
+    for name in chosen:
+        if name not in names:
+            near = difflib.get_close_matches(name, names, 3, 0.5)
+            raise PlotError(f"{result.path}: no unknown \"{name}\"" + (f"; near are {', '.join(near)}" if near else ""))
+    if not chosen:
+        raise PlotError(f"{result.path}: name the unknowns to draw, e.g. \"{names[0]}\"")
+    harmonics = result["trim"]["harmonics"].values
+    start = float(result["model"]["azimuth"])
+    angle = numpy.linspace(0.0, 2.0 * numpy.pi, 361)
+    pyplot = _pyplot()
+    rows = -(-len(chosen) // 3)
+    figure, grid = pyplot.subplots(rows, 3, figsize=(10, 1.9 * rows + 0.6), sharex=True, squeeze=False)
+    for axes, name in itertools.zip_longest(grid.flat, chosen):
+        if name is None:
+            axes.axis("off")
+            continue
+        row = harmonics[names.index(name)]
+        values = numpy.full_like(angle, row[0])
+        for k in range(1, len(row) // 2 + 1):
+            values += row[2 * k - 1] * numpy.cos(k * (angle - start)) + row[2 * k] * numpy.sin(k * (angle - start))
+        axes.plot(numpy.degrees(angle), values, color=COLOURS[0], linewidth=1.2)
+        axes.set_ylabel(_label(name, units[names.index(name)]), fontsize=7)
+        axes.set_xticks([0, 90, 180, 270, 360])
+    for axes in grid[-1]:
+        axes.set_xlabel("azimuth of blade 1 [deg]")
+    _title(figure, result, "steady state over a revolution")
+    return figure
+
+
 def series(result, channels=None):
     """Time series of samara transient, and their spectra."""
     data = result["transient"]
@@ -201,7 +241,7 @@ def operation(result):
 
 KINDS = {"campbell": (campbell, "campbell"), "multipliers": (multipliers, "floquet"),
          "operation": (operation, "operation"), "spanwise": (spanwise, "trim/air"),
-         "series": (series, "transient")}
+         "azimuth": (azimuth, "trim"), "series": (series, "transient")}
 
 
 def kinds_of(result):
@@ -209,7 +249,9 @@ def kinds_of(result):
     found = []
     for kind, (_, group) in KINDS.items():
         try:
-            if group in result and result[group]:
+            # A constant steady state has nothing to show over the azimuth.
+            is_constant = kind == "azimuth" and group in result and result[group]["harmonics"].shape[1] == 1
+            if group in result and result[group] and not is_constant:
                 found.append(kind)
         except (KeyError, OSError):
             continue
@@ -246,11 +288,13 @@ def main(arguments=None):
                         help="name of the picture, .svg, .png or .pdf; several kinds have their names in it. Without "
                         "it RESULT_KIND.svg in the current folder")
     parser.add_argument("--channels", help="of a time series, separated by commas")
+    parser.add_argument("--unknowns", help="of a steady state over the azimuth, separated by commas")
     parser.add_argument("--frame", choices=("fixed", "own"), help="of the frequencies in a Campbell diagram")
     parser.add_argument("--first", type=int, metavar="N", help="number of modes in a Campbell diagram")
     given = parser.parse_args(arguments)
     matplotlib.use("Agg")
     options = {"series": {"channels": given.channels.split(",")} if given.channels else {},
+               "azimuth": {"unknowns": given.unknowns.split(",")} if given.unknowns else {},
                "campbell": {key: value for key, value in (("frame", given.frame), ("first", given.first)) if value}}
     try:
         result = open_result(given.result)

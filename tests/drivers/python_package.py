@@ -119,7 +119,7 @@ class Package(ProgramTest):
                   "tower.elements=1", "--set", "tower.order=3", "--set", "wind.speed=8"]
         self.succeed("trim", case, *coarse, "-o", "t.h5")
         run = self.plot("t.h5")
-        self.assertEqual(run.stdout, "picture: t_spanwise.svg\n", run.stderr)
+        self.assertEqual(run.stdout, "picture: t_spanwise.svg\npicture: t_azimuth.svg\n", run.stderr)
         self.succeed("operate", case, *coarse, "--set", "operation.wind_speeds=[8, 9]", "-o", "o.h5")
         run = self.plot("o.h5")
         self.assertEqual(run.stdout, "picture: o_operation.svg\n", run.stderr)
