@@ -138,11 +138,11 @@ void run_campbell(const Job& job) {
   std::vector<StabilityEdge> edges = simulation::find_edges(diagram.points);
   if (!attempt([&] { edges = refine_together(plan, edges, progress); })) return;
   const bool is_interrupted = is_on_any_rank(Interruption::is_asked());
+  int found = static_cast<int>(diagram.points.size());
+  MPI_Bcast(&found, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  const bool is_complete = found == static_cast<int>(plan.values.size()) && !is_interrupted;
   progress.finish();
-  if (!is_first) return;
-
-  const bool is_complete = diagram.points.size() == plan.values.size() && !is_interrupted;
-  if (!diagram.points.empty())
+  if (is_first && found > 0)
     deliver(
         job,
         (job.input.turbine.title.empty() ? job.input.path : job.input.turbine.title) + "\n\n" +
@@ -156,10 +156,12 @@ void run_campbell(const Job& job) {
         [&](const std::string& path) {
           io::write_campbell_table(path, diagram.points, diagram.lines);
         });
+  // On all ranks: the signal may have come to any of them.
   if (!is_complete)
-    throw Interrupted("interrupted after " + std::to_string(diagram.points.size()) + " of " +
+    throw Interrupted("interrupted after " + std::to_string(found) + " of " +
                       std::to_string(plan.values.size()) +
                       " points; hint: the same command goes on from here");
+  if (!is_first) return;
   files.remove();
   if (diagram.failed > 0)
     throw ConvergenceError(diagram.failures + std::to_string(diagram.failed) + " of " +

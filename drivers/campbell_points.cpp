@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -83,7 +84,8 @@ std::string origin_of(const std::string& case_text, const std::string& value) {
 
 /// Halves the place of an edge until it is accurate, a point has no modes, or the user interrupts.
 void bisect(CampbellPointFinder& finder, StabilityEdge& edge) {
-  const double accuracy = edge_accuracy * std::max(std::abs(edge.to), std::abs(edge.from));
+  const double accuracy =
+      simulation::edge_accuracy * std::max(std::abs(edge.to), std::abs(edge.from));
   while (std::abs(edge.to - edge.from) > accuracy && !Interruption::is_asked()) {
     const double middle = 0.5 * (edge.from + edge.to);
     const CampbellPoint point = finder.find(middle);
@@ -106,6 +108,7 @@ CampbellPoint CampbellPointFinder::find(double value) {
   const auto fail = [&](const std::exception& error) {
     result = {};
     result.failure = error.what();
+    result.rotor_speed = result.pitch = std::numeric_limits<double>::quiet_NaN();
   };
   try {
     result = find_modes(value, notes);
@@ -132,8 +135,12 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
   } else {
     plan.quantity = {"wind.speed", "m/s"};
     plan.values = simulation::operating_winds(job.input, table);
+    std::string rows;
+    for (const simulation::ScheduledPoint& row : table)
+      for (const double value : {row.wind, row.speed, row.pitch})
+        rows += general(value, exact_digits) + " ";
     for (const double wind : plan.values)
-      plan.origins.push_back(origin_of(job.input.text, general(wind, exact_digits)));
+      plan.origins.push_back(origin_of(job.input.text, rows + general(wind, exact_digits)));
     plan.finder = std::make_unique<OperationFinder>(job.input, table);
   }
   return plan;
@@ -143,12 +150,16 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
                  analysis::Observer& observer) {
   const auto rank = static_cast<std::size_t>(petsc::Session::rank());
   const auto ranks = static_cast<std::size_t>(petsc::Session::size());
-  const std::size_t all = plan.values.size();
-  const std::size_t end = all * (rank + 1) / ranks;
-  const std::size_t first = all * rank / ranks;
-  for (std::size_t point = first; point < end && !Interruption::is_asked(); ++point) {
-    observer.progress("points", static_cast<long>(point - first), static_cast<long>(end - first));
-    if (!files.has(point)) files.write(point, plan.finder->find(plan.values[point]));
+  std::vector<std::size_t> missing;
+  for (std::size_t point = 0; point < plan.values.size(); ++point)
+    if (!files.has(point)) missing.push_back(point);
+  // No rank writes before all have looked.
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const std::size_t first = missing.size() * rank / ranks;
+  const std::size_t end = missing.size() * (rank + 1) / ranks;
+  for (std::size_t i = first; i < end && !Interruption::is_asked(); ++i) {
+    observer.progress("points", static_cast<long>(i - first), static_cast<long>(end - first));
+    files.write(missing[i], plan.finder->find(plan.values[missing[i]]));
   }
 }
 

@@ -47,11 +47,9 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
                  analysis::Observer& observer);
 
 /// Refines the places where the number of growing modes changes, by bisection to
-/// `edge_accuracy` relative to the larger value. Ranks share the places; every rank calls it with
-/// the same edges. Stops when the user interrupts the run.
+/// simulation::edge_accuracy relative to the larger value. Ranks share the places; every rank calls
+/// it with the same edges. Stops when the user interrupts the run.
 void refine_edges(const CampbellPlan& plan, std::vector<simulation::StabilityEdge>& edges,
                   analysis::Observer& observer);
-
-inline constexpr double edge_accuracy = 2e-5;
 
 }  // namespace samara::drivers

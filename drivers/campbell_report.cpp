@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "samara/base/words.hpp"
 
@@ -51,14 +50,27 @@ bool is_known(const CampbellMode& mode) {
                             mode.motion == simulation::Motion::decaying);
 }
 
-/// The name of the line of each mode.
-std::vector<std::vector<std::string>> names_at(const std::vector<CampbellPoint>& points,
-                                               const std::vector<CampbellLine>& lines) {
-  std::vector<std::vector<std::string>> names(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p) names[p].resize(points[p].modes.size());
+/// A mode on its line.
+struct Placed {
+  const CampbellLine* line = nullptr;
+  const TrackedMode* tracked = nullptr;
+};
+
+/// The place of each mode of each point.
+std::vector<std::vector<Placed>> places_of(const std::vector<CampbellPoint>& points,
+                                           const std::vector<CampbellLine>& lines) {
+  std::vector<std::vector<Placed>> places(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) places[p].resize(points[p].modes.size());
   for (const CampbellLine& line : lines)
-    for (const TrackedMode& tracked : line.modes) names[tracked.point][tracked.mode] = line.name;
-  return names;
+    for (const TrackedMode& tracked : line.modes)
+      places[tracked.point][tracked.mode] = {&line, &tracked};
+  return places;
+}
+
+/// Damping ratio of the copy that the line follows.
+double damping_of(const std::vector<CampbellPoint>& points, const TrackedMode& tracked) {
+  const CampbellPoint& point = points[tracked.point];
+  return tracked_damping(point.modes[tracked.mode].exponent, tracked, point.rotor_speed);
 }
 
 /// "6.5, 9 to 11": ranges in which a mode grows.
@@ -85,9 +97,11 @@ bool has_fixed_frame(const std::vector<CampbellPoint>& points) {
 std::string campbell_point_table(const io::SweptQuantity& quantity,
                                  const std::vector<CampbellPoint>& points,
                                  const std::vector<CampbellLine>& lines) {
-  const auto names = names_at(points, lines);
-  const bool has_wind = std::ranges::any_of(
-      points, [](const CampbellPoint& point) { return std::isfinite(point.wind_speed); });
+  const std::vector<std::vector<Placed>> places = places_of(points, lines);
+  const bool has_wind =
+      quantity.key != "wind.speed" && std::ranges::any_of(points, [](const CampbellPoint& point) {
+        return std::isfinite(point.wind_speed);
+      });
   Table table;
   table.add_column(quantity.key, quantity.unit == "1" ? "" : quantity.unit);
   table.add_column("speed", "rpm");
@@ -107,13 +121,15 @@ std::string campbell_point_table(const io::SweptQuantity& quantity,
     row.push_back(is_found ? fixed(point.pitch * to_degrees, 3) : "-");
     row.push_back(is_found ? std::to_string(point.modes.size()) : "-");
     row.push_back(verdict_of(point));
-    std::optional<std::size_t> least;
-    for (std::size_t m = 0; m < point.modes.size(); ++m)
-      if (is_known(point.modes[m]) &&
-          (!least || point.modes[m].damping_ratio < point.modes[*least].damping_ratio))
-        least = m;
-    row.push_back(least ? fixed(100.0 * point.modes[*least].damping_ratio, 3) : "-");
-    row.push_back(least ? names[p][*least] : point.failure);
+    const Placed* least = nullptr;
+    for (std::size_t m = 0; m < point.modes.size(); ++m) {
+      const Placed& placed = places[p][m];
+      if (is_known(point.modes[m]) && (least == nullptr || damping_of(points, *placed.tracked) <
+                                                               damping_of(points, *least->tracked)))
+        least = &placed;
+    }
+    row.push_back(least != nullptr ? fixed(100.0 * damping_of(points, *least->tracked), 3) : "-");
+    row.push_back(least != nullptr ? least->line->name : point.failure);
     table.add_row(row);
   }
   return table.text();
@@ -133,6 +149,7 @@ std::string campbell_line_table(const std::vector<CampbellPoint>& points,
   table.add_column("least damping", "%");
   table.add_column("at", "");
   table.add_column("grows at", "", Align::left);
+  table.add_column("remark", "", Align::left);
   int short_lines = 0;
   for (const CampbellLine& line : lines) {
     if (points.size() > 1 && line.modes.size() == 1) {
@@ -150,17 +167,19 @@ std::string campbell_line_table(const std::vector<CampbellPoint>& points,
                                                                 : "-");
     }
     const TrackedMode* least = nullptr;
-    const auto damping = [&](const TrackedMode& tracked) {
-      const CampbellPoint& point = points[tracked.point];
-      return tracked_damping(point.modes[tracked.mode].exponent, tracked, point.rotor_speed);
-    };
     for (const TrackedMode& tracked : line.modes)
       if (is_known(points[tracked.point].modes[tracked.mode]) &&
-          (least == nullptr || damping(tracked) < damping(*least)))
+          (least == nullptr || damping_of(points, tracked) < damping_of(points, *least)))
         least = &tracked;
-    row.push_back(least != nullptr ? fixed(100.0 * damping(*least), 3) : "-");
+    row.push_back(least != nullptr ? fixed(100.0 * damping_of(points, *least), 3) : "-");
     row.push_back(least != nullptr ? general(points[least->point].value, 6) : "-");
     row.push_back(growing_words(find_growth(points, line, edges)));
+    double error = 0.0;
+    for (const TrackedMode& tracked : line.modes)
+      error = std::max(error, points[tracked.point].modes[tracked.mode].error);
+    row.push_back(error > simulation::marked_error
+                      ? "error up to " + general(100.0 * std::min(error, 1.0), 2) + " %"
+                      : "");
     table.add_row(row);
   }
   return table.text() + (short_lines == 0 ? ""

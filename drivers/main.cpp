@@ -122,7 +122,7 @@ constexpr std::array<Command, 15> commands{{
      .writes_result = true,
      .has_csv = true,
      .has_sweep = true,
-     .analysis = simulation::Analysis::operate,
+     .analysis = simulation::Analysis::campbell,
      .run = run_campbell},
     {.name = "new",
      .summary = "a commented case to start from",

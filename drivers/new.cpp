@@ -63,6 +63,8 @@ void run_new(const std::vector<std::string>& arguments) {
   std::string text =
       io::read_whole_file((folder / (arguments[0] + ".yaml")).string(), 1, "template");
   const std::string name = path.stem().string();
+  if (name.find_first_of("\"\\\n") != std::string::npos)
+    throw InputError("the name has a quote or a backslash; hint: another name");
   for (std::size_t i = text.find(placeholder); i != std::string::npos;
        i = text.find(placeholder, i + name.size()))
     text.replace(i, std::size(placeholder) - 1, name);

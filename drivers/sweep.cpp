@@ -16,7 +16,8 @@ namespace samara::drivers {
 namespace {
 
 constexpr std::size_t most_values = 10000;
-/// Digits of a value of a range: its multiples of the step are free of round-off.
+/// Digits of a value of a range, and the part of a step that counts as zero: multiples of the step
+/// are free of round-off.
 constexpr int range_digits = 12;
 constexpr double range_slack = 1e-9;
 
@@ -50,15 +51,21 @@ std::vector<double> range_of(const std::vector<double>& limits) {
     throw InputError("--sweep: " + general(last + 1.0, 6) + " values; hint: at most " +
                      std::to_string(most_values));
   std::vector<double> values;
-  for (int i = 0; i <= static_cast<int>(last); ++i)
-    values.push_back(std::stod(general(limits[0] + i * step, range_digits)));
+  for (int i = 0; i <= static_cast<int>(last); ++i) {
+    const double value = std::stod(general(limits[0] + i * step, range_digits));
+    values.push_back(std::abs(value) < range_slack * std::abs(step) ? 0.0 : value);
+  }
   return values;
 }
 
-/// The shortest text of a number that reads as the same.
+/// The shortest text of a number that reads as the same; a whole number has no exponent.
 std::string exact(double value) {
+  constexpr double most_exact = 1e15;
   std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  const bool is_whole = value == std::floor(value) && std::abs(value) < most_exact;
+  const auto [end, error] = is_whole ? std::to_chars(text.data(), text.data() + text.size(), value,
+                                                     std::chars_format::fixed)
+                                     : std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
 }
 

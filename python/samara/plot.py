@@ -53,10 +53,12 @@ def _title(figure, result, text):
 def campbell(result, frame="fixed", first=14):
     """The Campbell diagram and the damping of a result of samara campbell.
 
-    frame: "fixed" or "own" (that of the part that moves). Lines are as wide as the share of the kinetic energy in
-    their frequency; harmonics with more than 5 % are drawn, too. first: number of modes, by their frequency.
+    frame: "fixed", or "own", that of the part that moves. A line whose modes have no single frequency in the fixed frame
+    is drawn in its own. In the own frame further harmonics with more than 5 % of the kinetic energy are drawn as thin
+    lines, as wide as their share: a part that turns and one that does not have no common harmonics in the fixed frame.
+    first: number of modes, by their frequency.
     """
-    data = result["campbell"]
+    data = result["campbell"].sortby("value")
     if "mode" not in data:
         raise PlotError(f"{result.path}: no point has modes")
     pyplot = _pyplot()
@@ -72,14 +74,13 @@ def campbell(result, frame="fixed", first=14):
     for number, line in enumerate(lines):
         name = str(data["mode"].values[line])
         style = _style(number)
-        frequency = own[line]
-        if frame == "fixed":
-            frequency = numpy.where(numpy.isfinite(ground[line]), ground[line], own[line])
+        is_fixed = frame == "fixed" and 2 * numpy.isfinite(ground[line]).sum() >= numpy.isfinite(own[line]).sum()
+        frequency = ground[line] if is_fixed else own[line]
         top = max(top, numpy.nanmax(frequency))
         shares = data["participation"].values[line]
         for column, k in enumerate(harmonics):
             share = shares[:, column]
-            if k == 0 or numpy.nanmax(share, initial=0.0) < LEAST_SHARE:
+            if frame == "fixed" or k == 0 or numpy.nanmax(share, initial=0.0) < LEAST_SHARE:
                 continue
             branch = numpy.where(share >= LEAST_SHARE, abs(frequency + k * turns), numpy.nan)
             above.plot(values, branch, color=style["color"], linewidth=0.3 + 1.5 * numpy.nanmax(share), alpha=0.35)

@@ -377,7 +377,7 @@ class Analysis {
       take(region, region.low, region.high);
       region_ = {region.low, region.high, region.decay, region.growth, region.is_whole, {}};
       if ((centred() >= options_.modes && region.decay > 0.0) || region.is_whole ||
-          (all_found_.size() == known && known > 0) || count > most_pairs)
+          (all_found_.size() == known && known > 0) || count > 4 * most_pairs)
         return;
     }
   }

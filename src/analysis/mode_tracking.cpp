@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -46,31 +47,74 @@ constexpr double most_change_by_speed = 2.0;
 /// Relative difference of exponents that are the same: their modes may mix.
 constexpr double same_exponent = 1e-4;
 
-/// The symmetric square root of a weight: unlike a root by pivoting, it changes little when the
-/// weight changes little.
-Eigen::MatrixXd symmetric_root(const EnergyGroup& group) {
-  const auto n = static_cast<Index>(group.unknowns.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      Eigen::Map<const Eigen::MatrixXd>(group.weight.data(), n, n));
-  const Eigen::MatrixXd& vectors = solver.eigenvectors();
-  return vectors * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         vectors.transpose();
-}
-
-/// Signals of columns of all unknowns.
-Eigen::MatrixXcd signals_of(const std::vector<EnergyGroup>& groups,
-                            const std::vector<Eigen::MatrixXd>& roots,
-                            const Eigen::MatrixXcd& shape) {
-  Index rows = 0;
-  for (const Eigen::MatrixXd& root : roots) rows += root.rows();
-  Eigen::MatrixXcd signals(rows, shape.cols());
-  Index row = 0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    signals.middleRows(row, roots[g].rows()) = roots[g] * shape(groups[g].unknowns, Eigen::all);
-    row += roots[g].rows();
+/// Signals by the numbers of the unknowns: energies of the same unknowns add up, and an energy that
+/// one of two systems lacks (a spring without stiffness) is a row of zeros.
+class EnergySignals {
+ public:
+  explicit EnergySignals(const system::PeriodicSystem& system)
+      : size_(system.size()), first_(static_cast<std::size_t>(system.size())) {
+    std::iota(first_.begin(), first_.end(), 0);
+    for (const EnergyGroup& group : system.energy_groups())
+      for (const PetscInt unknown : group.unknowns)
+        first_[find(unknown)] = find(group.unknowns.front());
+    std::map<std::size_t, std::vector<PetscInt>> joined;
+    std::vector<bool> has_energy(first_.size(), false);
+    for (const EnergyGroup& group : system.energy_groups())
+      for (const PetscInt unknown : group.unknowns)
+        has_energy[static_cast<std::size_t>(unknown)] = true;
+    for (std::size_t i = 0; i < first_.size(); ++i)
+      if (has_energy[i]) joined[find(static_cast<PetscInt>(i))].push_back(static_cast<PetscInt>(i));
+    std::map<std::size_t, Eigen::MatrixXd> weights;
+    for (const auto& [root, unknowns] : joined) {
+      const auto n = static_cast<Index>(unknowns.size());
+      weights[root] = Eigen::MatrixXd::Zero(n, n);
+    }
+    for (const EnergyGroup& group : system.energy_groups()) {
+      if (group.unknowns.empty()) continue;
+      const std::size_t root = find(group.unknowns.front());
+      const auto n = static_cast<Index>(group.unknowns.size());
+      std::vector<Index> places;
+      for (const PetscInt unknown : group.unknowns)
+        places.push_back(std::ranges::lower_bound(joined[root], unknown) - joined[root].begin());
+      weights[root](places, places) += Eigen::Map<const Eigen::MatrixXd>(group.weight.data(), n, n);
+    }
+    for (const auto& [root, unknowns] : joined)
+      parts_.push_back({unknowns, symmetric_root(weights[root])});
   }
-  return signals;
-}
+
+  /// Signals of columns of all unknowns.
+  Eigen::MatrixXcd of(const Eigen::MatrixXcd& shape) const {
+    Eigen::MatrixXcd signals = Eigen::MatrixXcd::Zero(size_, shape.cols());
+    for (const Part& part : parts_)
+      signals(part.unknowns, Eigen::all) = part.root * shape(part.unknowns, Eigen::all);
+    return signals;
+  }
+
+ private:
+  /// Unknowns whose energies are coupled.
+  struct Part {
+    std::vector<PetscInt> unknowns;
+    Eigen::MatrixXd root;
+  };
+
+  std::size_t find(PetscInt unknown) {
+    auto i = static_cast<std::size_t>(unknown);
+    while (first_[i] != i) i = first_[i] = first_[first_[i]];
+    return i;
+  }
+
+  /// Unlike a root by pivoting, it changes little when the weight changes little.
+  static Eigen::MatrixXd symmetric_root(const Eigen::MatrixXd& weight) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(weight);
+    const Eigen::MatrixXd& vectors = solver.eigenvectors();
+    return vectors * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+           vectors.transpose();
+  }
+
+  Index size_;
+  std::vector<std::size_t> first_;  ///< of each unknown: another one that is coupled with it
+  std::vector<Part> parts_;
+};
 
 /// samples x harmonics: signals times this matrix are the harmonics from -H to H, by least squares
 /// (the samples need not be at equal distances).
@@ -263,9 +307,7 @@ double shared_likeness(const ModeSignatures& from, const ModeSignatures& to,
 }  // namespace
 
 ModeSignatures find_signatures(const system::PeriodicSystem& system, const ModeSet& set) {
-  const std::vector<EnergyGroup>& groups = system.energy_groups();
-  std::vector<Eigen::MatrixXd> roots;
-  for (const EnergyGroup& group : groups) roots.push_back(symmetric_root(group));
+  const EnergySignals energy_signals(system);
   const auto samples = static_cast<int>(set.shape_times.size());
   const int harmonics =
       set.rotor_speed > 0.0 ? std::min(most_harmonics, (samples - 1) / samples_a_harmonic) : 0;
@@ -283,7 +325,7 @@ ModeSignatures find_signatures(const system::PeriodicSystem& system, const ModeS
     for (Index s = 0; s < shape.cols(); ++s)
       shape.col(s) *= std::polar(
           1.0, -mode.harmonic * set.rotor_speed * set.shape_times[static_cast<std::size_t>(s)]);
-    Eigen::MatrixXcd signals = signals_of(groups, roots, shape) * fit;
+    Eigen::MatrixXcd signals = energy_signals.of(shape) * fit;
     const double energy = signals.squaredNorm();
     if (!(energy > no_energy * largest * largest)) continue;
     result.modes.push_back(m);
@@ -301,7 +343,7 @@ std::vector<ModeLink> link_modes(const ModeSignatures& from, const ModeSignature
     throw InputError("modes of different meshes cannot be compared: " +
                      std::to_string(from.shapes.front().rows()) + " and " +
                      std::to_string(to.shapes.front().rows()) +
-                     " signals; hint: a sweep keeps the parts and the elements");
+                     " unknowns; hint: a sweep keeps the parts and the elements");
   Likeness likeness = find_likeness(from, to);
   leave_out_far_exponents(from, to, likeness);
   std::vector<Index> rows;

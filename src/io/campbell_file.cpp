@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -93,9 +94,10 @@ LineValues values_of(const CampbellPoint& point, const TrackedMode& tracked) {
   values.exponent = tracked_exponent(mode.exponent, tracked, point.rotor_speed);
   values.fixed_frame_frequency = mode.fixed_frame_frequency;
   values.damping_ratio = tracked_damping(mode.exponent, tracked, point.rotor_speed);
-  values.error = mode.error;
+  const double size = std::abs(values.exponent);
+  values.error = size > 0.0 ? mode.error * std::abs(mode.exponent) / size : mode.error;
   values.growth_error = mode.growth_error;
-  values.is_growing = mode.motion == simulation::Motion::growing ? 1.0 : 0.0;
+  values.is_growing = simulation::is_growing(mode) ? 1.0 : 0.0;
   values.likeness = tracked.likeness;
   // Harmonic k of a line is at |Im| + k Omega of its copy, harmonic k of a mode at its exponent.
   const int direction = values.exponent.imag() < 0.0 ? -1 : 1;
@@ -139,8 +141,14 @@ CampbellPointFiles::CampbellPointFiles(const std::string& result_path,
     : folder_(resolved_path(result_path) + ".points"), origins_(std::move(origins)) {}
 
 std::string CampbellPointFiles::path_of(std::size_t point) const {
+  // FNV-1a, 64 bits: the same name for the same origin in every run.
+  std::uint64_t hash = 14695981039346656037U;
+  for (const char letter : origins_[point]) {
+    hash ^= static_cast<unsigned char>(letter);
+    hash *= 1099511628211U;
+  }
   std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "/%05zu.h5", point + 1);
+  std::snprintf(name.data(), name.size(), "/%016llx.h5", static_cast<unsigned long long>(hash));
   return folder_ + name.data();
 }
 
@@ -255,7 +263,15 @@ CampbellPoint CampbellPointFiles::read(std::size_t point) const {
 
 void CampbellPointFiles::remove() const {
   std::error_code error;
-  for (std::size_t point = 0; point < origins_.size(); ++point) fs::remove(path_of(point), error);
+  std::vector<fs::path> points;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
+    if (entry.path().extension() == ".h5") points.push_back(entry.path());
+  for (const fs::path& path : points) {
+    try {
+      if (Hdf5Reader(path.string()).has(origin_name)) fs::remove(path, error);
+    } catch (const InputError&) {  // not a file of this program
+    }
+  }
   fs::remove(folder_, error);  // only if it is empty
 }
 

@@ -36,17 +36,16 @@ const CampbellMode& mode_of(const std::vector<CampbellPoint>& points, const Trac
   return points[tracked.point].modes[tracked.mode];
 }
 
-bool is_growing(const CampbellMode& mode) {
-  return mode.motion == Motion::growing && !mode.is_rough;
-}
-
-/// The edge between two points, if it is the place of all changes between them.
+/// The refined edge between two points, if the numbers of growing modes beside it are those of the
+/// points.
 std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& b,
                                    const std::vector<StabilityEdge>& edges) {
   const auto [low, high] = std::minmax(a.value, b.value);
+  const double accuracy = edge_accuracy * std::max(std::abs(low), std::abs(high));
   for (const StabilityEdge& edge : edges)
-    if (std::min(edge.from, edge.to) >= low && std::max(edge.from, edge.to) <= high &&
-        edge.growing_from == count_growing(a) && edge.growing_to == count_growing(b))
+    if (std::abs(edge.to - edge.from) <= accuracy && std::min(edge.from, edge.to) >= low &&
+        std::max(edge.from, edge.to) <= high && edge.growing_from == count_growing(a) &&
+        edge.growing_to == count_growing(b))
       return 0.5 * (edge.from + edge.to);
   return std::nullopt;
 }
@@ -88,6 +87,10 @@ CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const an
     m = point.modes.size() - 1;
   }
   return point;
+}
+
+bool is_growing(const CampbellMode& mode) {
+  return mode.motion == Motion::growing && !mode.is_rough;
 }
 
 int count_growing(const CampbellPoint& point) {
@@ -134,7 +137,9 @@ std::vector<CampbellLine> name_lines(const std::vector<CampbellPoint>& points,
   std::vector<std::pair<double, CampbellLine>> sorted;
   for (const std::vector<TrackedMode>& line : lines) {
     const TrackedMode& middle = line[line.size() / 2];
-    sorted.emplace_back(std::abs(mode_of(points, middle).exponent),
+    sorted.emplace_back(std::abs(tracked_exponent(mode_of(points, middle).exponent, middle,
+                                                  points[middle.point].rotor_speed)
+                                     .imag()),
                         CampbellLine{most_frequent_name(points, line), line});
   }
   std::ranges::stable_sort(sorted, {}, [](const auto& line) { return line.first; });

@@ -92,6 +92,11 @@ class Validation {
         check_steady();
         check_operation();
         break;
+      case Analysis::campbell:
+        check_steady();
+        check_operation();
+        check_search();
+        break;
     }
     return std::move(faults_);
   }
@@ -175,6 +180,10 @@ class Validation {
           "must not be 0: a parked rotor has no period; hint: use samara modes, or "
           "--set "
           "shaft.speed=...");
+    check_search();
+  }
+
+  void check_search() {
     if (scenario_.floquet.near_hz && scenario_.floquet.modes == 0)
       add("floquet.near_hz", "needs floquet.modes, the number of modes to find");
     if (scenario_.floquet.least_damped > 0 && scenario_.floquet.modes > 0)

@@ -132,14 +132,33 @@ class Campbell(ProgramTest):
     def test_nothing_foreign_is_touched(self):
         foreign = self.write("c.h5.points/00002.h5", b"something else")
         note = self.write("c.h5.points/notes.txt", b"mine")
-        run = self.samara("campbell", BASELINE, *QUICK, "--sweep", "shaft.speed=1,2", "-o", "c.h5")
-        self.assertEqual(run.returncode, 2, run.stderr)
-        self.assertIn("00002.h5", run.stderr)
-        self.assertEqual(foreign.read_bytes(), b"something else")
-        foreign.unlink()
         self.succeed("campbell", BASELINE, *QUICK, "--sweep", "shaft.speed=1,2", "-o", "c.h5")
         self.assertEqual(note.read_bytes(), b"mine")
-        self.assertEqual(list((self.folder / "c.h5.points").iterdir()), [note])
+        self.assertEqual(foreign.read_bytes(), b"something else")
+        self.assertEqual(set((self.folder / "c.h5.points").iterdir()), {note, foreign})
+
+    def test_a_spring_from_nothing(self):
+        """A part without stiffness at one point has no energy there, and the others are compared."""
+        self.succeed("campbell", BASELINE, *QUICK, "--sweep", "hub.teeter.stiffness=0:2e5:1e5", "-o", "c.h5")
+        found = self.diagram("c.h5")
+        line = next(i for i, name in enumerate(found["mode"]) if name.startswith("tower side-side"))
+        self.assertTrue(numpy.isfinite(found["frequency_hz"][line]).all())
+        self.assertTrue((found["likeness"][line] > 0.9).all())
+
+    def test_ranges_are_free_of_round_off(self):
+        self.succeed("campbell", BASELINE, *QUICK, "--sweep", "shaft.speed=1.2:0:-0.4", "-o", "c.h5")
+        numpy.testing.assert_array_equal(self.diagram("c.h5")["value"], [1.2, 0.8, 0.4, 0.0])
+
+    def test_an_interrupted_run_goes_on_with_finer_steps(self):
+        arguments = ["campbell", BASELINE, *QUICK, "-o", "c.h5", "--sweep"]
+        self.interrupt(signal.SIGKILL, [*arguments, "shaft.speed=1:4:0.5"], 2)
+        kept = {path: path.stat().st_mtime_ns for path in (self.folder / "c.h5.points").glob("*.h5")}
+        code, _, _ = self.interrupt(signal.SIGINT, [*arguments, "shaft.speed=1:4:0.25"], len(kept) + 1)
+        self.assertEqual(code, 130)
+        for path, changed in kept.items():
+            self.assertEqual(path.stat().st_mtime_ns, changed, "a point was found twice")
+        self.succeed(*arguments, "shaft.speed=3,3.5")
+        self.assertFalse((self.folder / "c.h5.points").exists())
 
     def test_wrong_arguments(self):
         for sweep, words in (("shaft.speed", "KEY=FROM:TO:STEP"),
@@ -154,6 +173,9 @@ class Campbell(ProgramTest):
                              ("blades.elements=2,3", "different meshes")):
             self.refuse("campbell", BASELINE, *QUICK, "--sweep", sweep, words=words)
         self.refuse("campbell", BASELINE, words="missing --sweep")
+        case = SOURCE / "inputs/nrel5mw/land.yaml"
+        self.refuse("campbell", case, "--set", "floquet.modes=5000", words="degrees of freedom")
+        self.refuse("campbell", case, "--set", "floquet.near_hz=1", words="floquet.modes")
         self.refuse("floquet", BASELINE, "--sweep", "shaft.speed=1,2", words="samara campbell has one")
 
     def test_operating_points(self):

@@ -18,7 +18,7 @@ class New(ProgramTest):
                 run = self.succeed("new", kind, name)
                 self.assertEqual(run.stdout, f"case: {name}.yaml\nnext: samara check {name}.yaml\n")
                 text = (self.folder / f"{name}.yaml").read_text(encoding="utf-8")
-                self.assertIn(f"title: {name}", text)
+                self.assertIn(f'title: "{name}"', text)
                 self.assertNotIn("NAME", text)
                 commands = re.findall(r"(?m)^#   samara (\w+ \S+(?: --sweep \S+)?)", text)
                 self.assertGreaterEqual(len(commands), 3)

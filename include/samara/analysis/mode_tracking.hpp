@@ -15,7 +15,8 @@ namespace samara::analysis {
 
 /// Shapes of the modes of one system, for comparison with those of a similar one. A shape is the
 /// factor u(psi) of the motion u(psi) exp(lambda t), with the exponent lambda of Mode::exponent and
-/// psi = Omega t, in signals whose sum of squares is twice the energy, kinetic and of strains.
+/// psi = Omega t, in signals whose sum of squares is twice the energy, kinetic and of strains: one
+/// for each unknown.
 struct ModeSignatures {
   double rotor_speed = 0.0;                     ///< Omega [rad/s]; 0: shapes are constant
   std::vector<std::size_t> modes;               ///< their indices in ModeSet::modes

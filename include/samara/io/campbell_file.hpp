@@ -18,8 +18,9 @@ struct SweptQuantity {
 };
 
 /// The points of a sweep, each a file of its own in the folder RESULT.h5.points from the moment
-/// when it is found: a run that was ended goes on with the points that are there. Ranks may write
-/// different points at the same time.
+/// when it is found: a run that was ended goes on with the points that are there. The name of a
+/// file comes from its origin, so that a finer sweep finds the points of a coarser one. Ranks may
+/// write different points at the same time.
 class CampbellPointFiles {
  public:
   /// `origins`: for each point a text that is equal only for the same case and options.
@@ -34,7 +35,8 @@ class CampbellPointFiles {
   void write(std::size_t point, const simulation::CampbellPoint& content) const;
   /// @throws InputError if there is no whole file
   simulation::CampbellPoint read(std::size_t point) const;
-  /// Removes the files of all points, and the folder if nothing else is in it.
+  /// Removes the files of points, also those of earlier runs that were ended, and the folder if
+  /// nothing else is in it.
   void remove() const;
 
  private:

@@ -62,7 +62,9 @@ struct CampbellLine {
   std::vector<analysis::TrackedMode> modes;
 };
 
-/// Number of modes that grow by more than their errors.
+/// True for a mode that grows by more than its error, which is not too large.
+bool is_growing(const CampbellMode& mode);
+/// Number of such modes.
 int count_growing(const CampbellPoint& point);
 
 /// A place between two values where the number of growing modes changes.
@@ -72,6 +74,9 @@ struct StabilityEdge {
   int growing_from = 0;
   int growing_to = 0;
 };
+
+/// Distance of the sides of a refined edge, relative to the larger value of the points beside it.
+inline constexpr double edge_accuracy = 2e-5;
 
 /// One edge between each two neighbouring points with different numbers; points that failed, or are
 /// at rest (where the modes change at once), are left out.
@@ -83,8 +88,8 @@ struct GrowthRange {
   double to = 0.0;
 };
 
-/// The ranges of a line, in the order of its points. An edge applies if the growing modes at both
-/// its sides are as many as at the points.
+/// The ranges of a line, in the order of its points. An edge applies if it is refined and the
+/// growing modes at both its sides are as many as at the points.
 std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
                                      const CampbellLine& line,
                                      const std::vector<StabilityEdge>& edges);
