@@ -1,5 +1,6 @@
 #include "progress.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -26,7 +27,7 @@ std::string words_of(double part, double left) {
   std::string text = std::to_string(static_cast<int>(100.0 * part)) + " %";
   if (!(left >= 1.0) || left > most_seconds) return text;
   constexpr int minute = 60;
-  const int seconds = static_cast<int>(left + 0.5);
+  const long seconds = std::lround(left);
   text += ", ";
   if (seconds >= minute) text += std::to_string(seconds / minute) + " min ";
   return text + std::to_string(seconds % minute) + " s left";
