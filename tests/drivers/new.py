@@ -24,8 +24,8 @@ class New(ProgramTest):
                 self.assertGreaterEqual(len(commands), 3)
                 for command in commands:
                     words = command.split()
-                    if words[0] == "campbell" and kind == "rotor-in-air":
-                        words += ["--set", "operation.wind_speeds=[8, 16]"]
+                    if words[0] in ("operate", "campbell") and kind == "rotor-in-air":
+                        words += ["--set", "operation.wind_speeds=[8, 16]", "--set", "blades.elements=2"]
                     elif words[0] == "campbell":
                         words[-1] = words[-1].split("=")[0] + "=6,8"
                     self.succeed(*words)
