@@ -1,9 +1,9 @@
 // samara campbell: the modes at the points of a sweep, joined to lines.
-#include <array>
-#include <exception>
 #include <map>
+#include <optional>
 
 #include "samara/analysis/linear_algebra.hpp"
+#include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
 #include "samara/base/words.hpp"
 #include "samara/io/operation_table.hpp"
@@ -39,8 +39,9 @@ Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& fil
   analysis::ModeTracker tracker;
   std::map<std::string, std::vector<std::string>> notes;  // places of each
   for (std::size_t i = 0; i < plan.values.size(); ++i) {
-    if (!files.has(i)) continue;
-    CampbellPoint point = files.read(i);
+    std::optional<CampbellPoint> read = files.read(i);
+    if (!read) continue;
+    CampbellPoint& point = *read;
     const std::string place = plan.quantity.key + "=" + general(point.value, value_digits);
     for (const std::string& note : point.notes) notes[note].push_back(place);
     if (point.failure.empty()) {
@@ -62,45 +63,14 @@ Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& fil
   return diagram;
 }
 
-/// True on all ranks if it is on one.
-bool is_on_any_rank(bool value) {
-  int any = value ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-  return any != 0;
-}
-
 /// The edges of the first rank, refined by all ranks; the result is on all of them.
 std::vector<StabilityEdge> refine_together(const CampbellPlan& plan,
                                            std::vector<StabilityEdge> edges,
+                                           const analysis::Ranks& ranks,
                                            analysis::Observer& observer) {
-  int count = static_cast<int>(edges.size());
-  MPI_Bcast(&count, 1, MPI_INT, 0, PETSC_COMM_WORLD);
-  edges.resize(static_cast<std::size_t>(count));
-  std::vector<double> numbers;
-  const auto pack = [&] {
-    numbers.clear();
-    for (const StabilityEdge& edge : edges)
-      numbers.insert(numbers.end(), {edge.from, edge.to, static_cast<double>(edge.growing_from),
-                                     static_cast<double>(edge.growing_to)});
-  };
-  const auto unpack = [&] {
-    for (std::size_t i = 0; i < edges.size(); ++i)
-      edges[i] = {numbers[4 * i], numbers[4 * i + 1], static_cast<int>(numbers[4 * i + 2]),
-                  static_cast<int>(numbers[4 * i + 3])};
-  };
-  pack();
-  MPI_Bcast(numbers.data(), 4 * count, MPI_DOUBLE, 0, PETSC_COMM_WORLD);
-  unpack();
-  std::exception_ptr failure;
-  try {
-    refine_edges(plan, edges, observer);
-  } catch (...) {
-    failure = std::current_exception();
-  }
-  pack();
-  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), 4 * count, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-  unpack();
-  if (failure) std::rethrow_exception(failure);
+  ranks.share(0, edges);
+  ranks.attempt([&] { refine_edges(plan, edges, ranks, observer); });
+  for (std::size_t i = 0; i < edges.size(); ++i) ranks.share(rank_of_edge(i, ranks), edges[i]);
   return edges;
 }
 
@@ -117,35 +87,24 @@ void run_campbell(const Job& job) {
   const io::CampbellPointFiles files(job.result_path, plan.origins);
   Progress progress(is_first);
   const Interruption interruption;
+  const analysis::Ranks ranks(PETSC_COMM_WORLD);
   // A rank that fails waits for the others, which may work on their points for long.
-  std::exception_ptr failure;
+  ranks.attempt([&] { find_points(plan, files, ranks, progress); });
   Diagram diagram;
-  const auto attempt = [&failure](const auto& work) {
-    try {
-      work();
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    const bool has_failed = is_on_any_rank(failure != nullptr);
-    if (failure) std::rethrow_exception(failure);
-    return !has_failed;
-  };
-  if (!attempt([&] { find_points(plan, files, progress); })) return;
-  if (!attempt([&] {
-        if (is_first) diagram = read_diagram(plan, files, progress);
-      }))
-    return;
-  std::vector<StabilityEdge> edges = simulation::find_edges(diagram.points);
-  if (!attempt([&] { edges = refine_together(plan, edges, progress); })) return;
-  const bool is_interrupted = is_on_any_rank(Interruption::is_asked());
+  ranks.attempt([&] {
+    if (is_first) diagram = read_diagram(plan, files, progress);
+  });
+  const std::vector<StabilityEdge> edges =
+      refine_together(plan, simulation::find_edges(diagram.points), ranks, progress);
+  const bool is_interrupted = !ranks.all(!Interruption::is_asked());
   int found = static_cast<int>(diagram.points.size());
-  MPI_Bcast(&found, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  ranks.share(0, found);
   const bool is_complete = found == static_cast<int>(plan.values.size()) && !is_interrupted;
   progress.finish();
   if (is_first && found > 0)
     deliver(
         job,
-        (job.input.turbine.title.empty() ? job.input.path : job.input.turbine.title) + "\n\n" +
+        title_of(job.input) + "\n\n" +
             campbell_point_table(plan.quantity, diagram.points, diagram.lines) + "\n" +
             campbell_line_table(diagram.points, diagram.lines, edges) +
             campbell_doubts(diagram.points, diagram.lines),

@@ -39,11 +39,9 @@ class SweepFinder final : public CampbellPointFinder {
   CampbellPoint find_modes(double value, analysis::Observer& observer) override {
     const io::Case input = sweep_.case_at(value);
     const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
-    analysis::TrimOptions options = simulation::trim_options(input);
-    if (system.turbine().speed == 0.0) options.harmonics = 0;
     const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
-    last_ = simulation::solve_trim(input, system, options, observer, PETSC_COMM_SELF,
-                                   is_near ? &*last_ : nullptr);
+    last_ = simulation::solve_trim(input, system, simulation::trim_options(input), observer,
+                                   PETSC_COMM_SELF, is_near ? &*last_ : nullptr);
     simulation::require_wake_range(system, *last_);
     simulation::note_roughness(*last_, observer);
     CampbellPoint result = simulation::find_campbell_point(system, *last_, input.floquet, observer);
@@ -59,13 +57,11 @@ class SweepFinder final : public CampbellPointFinder {
 class OperationFinder final : public CampbellPointFinder {
  public:
   OperationFinder(const io::Case& input, const std::vector<simulation::ScheduledPoint>& table)
-      : input_(input), finder_(input, table, notes_) {}
+      : input_(input), finder_(input, table) {}
 
  private:
   CampbellPoint find_modes(double value, analysis::Observer& observer) override {
-    notes_.texts.clear();
-    finder_.find_at(value);
-    for (const std::string& note : notes_.texts) observer.note(note);
+    finder_.find_at(value, observer);
     CampbellPoint result =
         simulation::find_campbell_point(finder_.system(), finder_.trim(), input_.floquet, observer);
     result.wind_speed = value;
@@ -73,7 +69,6 @@ class OperationFinder final : public CampbellPointFinder {
   }
 
   const io::Case& input_;
-  Notes notes_;
   simulation::OperatingPointFinder finder_;
 };
 
@@ -147,16 +142,16 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
 }
 
 void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
-                 analysis::Observer& observer) {
-  const auto rank = static_cast<std::size_t>(petsc::Session::rank());
-  const auto ranks = static_cast<std::size_t>(petsc::Session::size());
+                 const analysis::Ranks& ranks, analysis::Observer& observer) {
+  const auto rank = static_cast<std::size_t>(ranks.rank);
+  const auto size = static_cast<std::size_t>(ranks.size);
   std::vector<std::size_t> missing;
   for (std::size_t point = 0; point < plan.values.size(); ++point)
     if (!files.has(point)) missing.push_back(point);
   // No rank writes before all have looked.
-  MPI_Barrier(PETSC_COMM_WORLD);
-  const std::size_t first = missing.size() * rank / ranks;
-  const std::size_t end = missing.size() * (rank + 1) / ranks;
+  MPI_Barrier(ranks.comm);
+  const std::size_t first = missing.size() * rank / size;
+  const std::size_t end = missing.size() * (rank + 1) / size;
   for (std::size_t i = first; i < end && !Interruption::is_asked(); ++i) {
     observer.progress("points", static_cast<long>(i - first), static_cast<long>(end - first));
     files.write(missing[i], plan.finder->find(plan.values[missing[i]]));
@@ -164,17 +159,12 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
 }
 
 void refine_edges(const CampbellPlan& plan, std::vector<StabilityEdge>& edges,
-                  analysis::Observer& observer) {
-  const auto rank = static_cast<std::size_t>(petsc::Session::rank());
-  const auto ranks = static_cast<std::size_t>(petsc::Session::size());
+                  const analysis::Ranks& ranks, analysis::Observer& observer) {
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (i % ranks == rank) {
-      observer.progress("edges of instability", static_cast<long>(i),
-                        static_cast<long>(edges.size()));
-      bisect(*plan.finder, edges[i]);
-    } else {
-      edges[i] = {0.0, 0.0, 0, 0};
-    }
+    if (rank_of_edge(i, ranks) != ranks.rank) continue;
+    observer.progress("edges of instability", static_cast<long>(i),
+                      static_cast<long>(edges.size()));
+    bisect(*plan.finder, edges[i]);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "samara/analysis/observer.hpp"
+#include "samara/analysis/ranks.hpp"
 #include "samara/io/campbell_file.hpp"
 #include "samara/simulation/campbell.hpp"
 #include "samara/simulation/operation.hpp"
@@ -44,12 +45,16 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
 
 /// Finds the points that no file has, those of this rank. Stops when the user interrupts the run.
 void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
-                 analysis::Observer& observer);
+                 const analysis::Ranks& ranks, analysis::Observer& observer);
 
-/// Refines the places where the number of growing modes changes, by bisection to
-/// simulation::edge_accuracy relative to the larger value. Ranks share the places; every rank calls
-/// it with the same edges. Stops when the user interrupts the run.
+/// Refines the edges of this rank by bisection to simulation::edge_accuracy relative to the larger
+/// value. Stops when the user interrupts the run.
 void refine_edges(const CampbellPlan& plan, std::vector<simulation::StabilityEdge>& edges,
-                  analysis::Observer& observer);
+                  const analysis::Ranks& ranks, analysis::Observer& observer);
+
+/// The rank that refines an edge.
+inline int rank_of_edge(std::size_t edge, const analysis::Ranks& ranks) {
+  return static_cast<int>(edge % static_cast<std::size_t>(ranks.size));
+}
 
 }  // namespace samara::drivers

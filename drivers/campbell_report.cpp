@@ -17,7 +17,6 @@ using simulation::CampbellLine;
 using simulation::CampbellMode;
 using simulation::CampbellPoint;
 using simulation::GrowthRange;
-using simulation::Stability;
 using simulation::StabilityEdge;
 
 constexpr double to_hertz = 0.5 / std::numbers::pi;
@@ -28,21 +27,6 @@ constexpr int edge_digits = 5;  // of what edge_accuracy allows
 constexpr std::size_t most_named = 4;
 
 std::string hertz(double rate) { return fixed(std::abs(rate) * to_hertz, 4); }
-
-std::string verdict_of(const CampbellPoint& point) {
-  if (!point.failure.empty()) return "failed";
-  switch (point.stability) {
-    case Stability::stable:
-      return "stable";
-    case Stability::neutral:
-      return "neutral";
-    case Stability::unstable:
-      return "unstable";
-    case Stability::unknown:
-      break;
-  }
-  return "no verdict";
-}
 
 /// A mode whose damping counts for a verdict.
 bool is_known(const CampbellMode& mode) {
@@ -114,13 +98,13 @@ std::string campbell_point_table(const io::SweptQuantity& quantity,
   for (std::size_t p = 0; p < points.size(); ++p) {
     const CampbellPoint& point = points[p];
     const bool is_found = point.failure.empty();
-    std::vector<std::string> row{general(point.value, 6),
+    std::vector<std::string> row{general(point.value, value_digits),
                                  is_found ? fixed(point.rotor_speed * to_rpm, 3) : "-"};
     if (has_wind)
       row.push_back(std::isfinite(point.wind_speed) ? general(point.wind_speed, 5) : "-");
     row.push_back(is_found ? fixed(point.pitch * to_degrees, 3) : "-");
     row.push_back(is_found ? std::to_string(point.modes.size()) : "-");
-    row.push_back(verdict_of(point));
+    row.push_back(is_found ? word_of(point.stability) : "failed");
     const Placed* least = nullptr;
     for (std::size_t m = 0; m < point.modes.size(); ++m) {
       const Placed& placed = places[p][m];
@@ -160,7 +144,7 @@ std::string campbell_line_table(const std::vector<CampbellPoint>& points,
     for (const TrackedMode* end : {&line.modes.front(), &line.modes.back()}) {
       const CampbellPoint& point = points[end->point];
       const CampbellMode& mode = point.modes[end->mode];
-      row.push_back(general(point.value, 6));
+      row.push_back(general(point.value, value_digits));
       row.push_back(hertz(tracked_exponent(mode.exponent, *end, point.rotor_speed).imag()));
       if (has_frame)
         row.push_back(std::isfinite(mode.fixed_frame_frequency) ? hertz(mode.fixed_frame_frequency)
@@ -172,7 +156,7 @@ std::string campbell_line_table(const std::vector<CampbellPoint>& points,
           (least == nullptr || damping_of(points, tracked) < damping_of(points, *least)))
         least = &tracked;
     row.push_back(least != nullptr ? fixed(100.0 * damping_of(points, *least), 3) : "-");
-    row.push_back(least != nullptr ? general(points[least->point].value, 6) : "-");
+    row.push_back(least != nullptr ? general(points[least->point].value, value_digits) : "-");
     row.push_back(growing_words(find_growth(points, line, edges)));
     double error = 0.0;
     for (const TrackedMode& tracked : line.modes)
@@ -198,7 +182,7 @@ std::string campbell_doubts(const std::vector<CampbellPoint>& points,
       if (line.modes[i].likeness >= ModeTracker::clear_likeness) continue;
       if (unclear++ < most_named)
         names += (names.empty() ? "" : ", ") + line.name + " at " +
-                 general(points[line.modes[i].point].value, 6);
+                 general(points[line.modes[i].point].value, value_digits);
     }
   if (unclear == 0) return "";
   return "unclear, with a likeness below " + general(ModeTracker::clear_likeness, 2) + ", at " +

@@ -22,12 +22,6 @@ std::vector<std::string> names_of(std::span<const Command> commands) {
   return names;
 }
 
-std::string join(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
-
 bool is_safe(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
          std::string_view("-_=./:,+@%").find(c) != std::string_view::npos;
@@ -403,6 +397,12 @@ std::string padded(const std::string& word, std::size_t width) {
 }
 
 }  // namespace
+
+std::string join(const std::vector<std::string>& words, const std::string& between) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
 
 CommandLine parse_command_line(const std::vector<std::string>& arguments,
                                std::span<const Command> commands) {

@@ -67,6 +67,9 @@ struct CommandLine {
 CommandLine parse_command_line(const std::vector<std::string>& arguments,
                                std::span<const Command> commands);
 
+/// The words, with a text between each two.
+std::string join(const std::vector<std::string>& words, const std::string& between);
+
 /// The text of --help, of the program or of one command.
 std::string help_text(const CommandLine& line, std::span<const Command> commands);
 

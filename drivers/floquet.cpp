@@ -23,8 +23,7 @@ namespace {
 
 std::string headline(const io::Case& input, const analysis::Floquet& floquet, PetscInt unknowns) {
   const double speed = floquet.set.rotor_speed;
-  const std::string title = (input.turbine.title.empty() ? input.path : input.turbine.title) +
-                            "\nrotor speed " + general(speed, 6) + " rad/s; ";
+  const std::string title = title_of(input) + "\nrotor speed " + general(speed, 6) + " rad/s; ";
   if (floquet.harmonics > 0)
     return title + std::to_string(unknowns) + " unknowns; Hill's method, shapes of up to " +
            count(floquet.harmonics, "harmonic") + "\n\n";

@@ -30,6 +30,11 @@ struct Job {
   std::vector<std::string> settings;  ///< its own --set arguments, not keys of the case
 };
 
+/// The title of a case, or its path where it has none.
+inline const std::string& title_of(const io::Case& input) {
+  return input.turbine.title.empty() ? input.path : input.turbine.title;
+}
+
 /// Record of the run, for the attributes of the result.
 io::RunRecord record_of(const Job& job);
 

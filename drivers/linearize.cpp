@@ -17,7 +17,7 @@ namespace samara::drivers {
 namespace {
 
 std::string summary(const io::Case& input, const linear::Linearization& linear) {
-  std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
+  std::string text = title_of(input) + "\n";
   text += linear.rotor_speed > 0.0 ? "rotor speed " + general(linear.rotor_speed, 6) + " rad/s, " +
                                          count(linear.series_azimuths, "azimuth")
                                    : std::string("parked rotor");

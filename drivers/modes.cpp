@@ -25,8 +25,8 @@ std::string headline(const io::Case& input, const analysis::ModeSet& set) {
                                 ? "rotor speed " + general(set.rotor_speed, 6) +
                                       " rad/s, frequencies in the rotor's axes (--parked: at rest)"
                                 : "parked rotor";
-  return (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n" + rotor + "; " +
-         count(set.degrees_of_freedom, "degree") + " of freedom\n\n";
+  return title_of(input) + "\n" + rotor + "; " + count(set.degrees_of_freedom, "degree") +
+         " of freedom\n\n";
 }
 
 }  // namespace
@@ -37,10 +37,8 @@ void run_modes(const Job& job) {
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  analysis::TrimOptions options = simulation::trim_options(job.input);
-  if (turbine.speed == 0.0) options.harmonics = 0;
-  const analysis::Trim trim =
-      simulation::solve_trim(job.input, system, options, progress, PETSC_COMM_WORLD);
+  const analysis::Trim trim = simulation::solve_trim(
+      job.input, system, simulation::trim_options(job.input), progress, PETSC_COMM_WORLD);
   simulation::require_wake_range(system, trim);
   if (!trim.solution.is_constant())
     throw InputError(

@@ -67,8 +67,7 @@ void run_operate(const Job& job) {
   const std::vector<OperatingPoint> points = simulation::find_operation(job.input, table, progress);
   progress.finish();
   if (!is_first) return;
-  std::string text = (job.input.turbine.title.empty() ? job.input.path : job.input.turbine.title) +
-                     "\n\n" + point_table(points);
+  std::string text = title_of(job.input) + "\n\n" + point_table(points);
   if (!setup.opt_path.empty()) {
     io::write_opt_file(setup.opt_path, points);
     text += "table for HAWC2: " + setup.opt_path + "\n";

@@ -78,7 +78,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
     residual = std::max(residual, state.residual);
   }
   const bool by_arc = path.method == analysis::StaticMethod::arc_length;
-  std::string text = (definition.title.empty() ? input.path : definition.title) + "\n";
+  std::string text = title_of(input) + "\n";
   text += "loads        gravity " + general(definition.gravity, 6) + " m/s^2, " +
           count(static_cast<int>(definition.loads.size()), "prescribed load") +
           "; all times the load factor\n";

@@ -4,11 +4,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
+#include "samara/base/number.hpp"
 #include "samara/model/turbine.hpp"
 #include "samara/simulation/validation.hpp"
 
@@ -28,11 +30,9 @@ std::vector<double> numbers_of(const std::string& text, char between) {
   std::vector<double> numbers;
   std::istringstream stream(text);
   for (std::string word; std::getline(stream, word, between);) {
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number))
-      throw InputError("--sweep: \"" + word + "\" is no number; " + form);
-    numbers.push_back(number);
+    const std::optional<double> number = parse_number(word);
+    if (!number) throw InputError("--sweep: \"" + word + "\" is no number; " + form);
+    numbers.push_back(*number);
   }
   if (text.ends_with(between)) throw InputError(std::string("--sweep: ") + form);
   return numbers;
@@ -69,10 +69,6 @@ std::string exact(double value) {
   return {text.data(), end};
 }
 
-int degrees_of_freedom(const io::Case& input) {
-  return model::build_turbine(input.turbine).degrees_of_freedom;
-}
-
 }  // namespace
 
 Sweep::Sweep(const std::string& text, std::string path, std::vector<std::string> settings)
@@ -89,16 +85,16 @@ Sweep::Sweep(const std::string& text, std::string path, std::vector<std::string>
   const auto twice = std::ranges::adjacent_find(sorted);
   if (twice != sorted.end())
     throw InputError("--sweep: " + general(*twice, 6) + " is given twice; leave one of them out");
-  int freedom = 0;
+  std::optional<int> freedom;
   for (const double value : values_) {
     const io::Case input = case_at(value);
     case_texts_.push_back(input.text);
-    const bool is_first = case_texts_.size() == 1;
-    if (is_first) freedom = degrees_of_freedom(input);
-    if (!is_first && case_texts_.size() == values_.size() && degrees_of_freedom(input) != freedom)
+    const int own = model::build_turbine(input.turbine).degrees_of_freedom;
+    if (freedom.value_or(own) != own)
       throw InputError("--sweep " + key_ +
                        ": modes of different meshes cannot be compared; hint: a key that keeps "
                        "the parts and the elements");
+    freedom = own;
   }
 }
 

@@ -49,7 +49,7 @@ std::string summary(const io::Case& input, const simulation::TransientSummary& d
   const analysis::TransientRun& run = done.run;
   const double simulated = run.end.time - done.began;
   const double followed = 1.0 / (simulation::steps_a_cycle * input.transient.options.step);
-  std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
+  std::string text = title_of(input) + "\n";
   text += "time         " + general(done.began, 6) + " to " + general(run.end.time, 6) + " s" +
           (run.reason == analysis::TransientEnd::complete ? "" : ": interrupted") + "\n";
   text += "method       " + run.method + ", " + std::to_string(run.steps) + " steps, " +

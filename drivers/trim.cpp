@@ -209,7 +209,7 @@ void write_air(io::ResultFile& file, const simulation::SpanwiseAir& air) {
 
 std::string summary(const io::Case& input, const turbine::TurbineSystem& system, const Trim& trim) {
   const int harmonics = trim.solution.harmonics();
-  std::string text = (input.turbine.title.empty() ? input.path : input.turbine.title) + "\n";
+  std::string text = title_of(input) + "\n";
   text += "rotor speed  " + general(input.turbine.shaft.speed, 6) + " rad/s\n";
   text += "method       ";
   text += trim.method == analysis::TrimMethod::shooting ? "shooting" : "harmonic balance";

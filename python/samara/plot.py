@@ -33,8 +33,8 @@ class PlotError(ValueError):
 def _pyplot():
     import matplotlib.pyplot as pyplot
 
-    pyplot.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "samara", "axes.grid": True, "grid.alpha": 0.25, "font.size": 9,
-                            "legend.frameon": False, "figure.constrained_layout.use": True})
+    pyplot.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "samara", "axes.grid": True, "grid.alpha": 0.25,
+                            "font.size": 9, "legend.frameon": False, "figure.constrained_layout.use": True})
     return pyplot
 
 
@@ -48,6 +48,21 @@ def _label(name, unit):
 
 def _title(figure, result, text):
     figure.suptitle(f"{result.title}: {text}" if text else result.title, fontsize=10)
+
+
+def _panels(result, text, names, draw_panel, xlabel):
+    """Panels in three columns, one for each name: draw_panel(axes, name) draws it and returns its label."""
+    rows = -(-len(names) // 3)
+    figure, grid = _pyplot().subplots(rows, 3, figsize=(10, 2.1 * rows), sharex=True, squeeze=False)
+    for axes, name in itertools.zip_longest(grid.flat, names):
+        if name is None:
+            axes.axis("off")
+        else:
+            axes.set_ylabel(draw_panel(axes, name), fontsize=7)
+    for axes in grid[-1]:
+        axes.set_xlabel(xlabel)
+    _title(figure, result, text)
+    return figure
 
 
 def campbell(result, frame="fixed", first=14):
@@ -135,22 +150,16 @@ def spanwise(result):
         raise PlotError(f"{result.path}: no distribution along the blades; samara trim of a case with air writes one")
     place = next((name for name in data if data[name].ndim == 1 and "radius" in name), None)
     names = [name for name in data if data[name].ndim >= 1 and name != place and data[name].dtype.kind == "f"]
-    pyplot = _pyplot()
-    rows = -(-len(names) // 3)
-    figure, grid = pyplot.subplots(rows, 3, figsize=(10, 2.1 * rows), sharex=True, squeeze=False)
-    for axes, name in itertools.zip_longest(grid.flat, names):
-        if name is None:
-            axes.axis("off")
-            continue
+
+    def draw_panel(axes, name):
         values = data[name].values
         at = data[place].values if place else numpy.arange(values.shape[-1])
         for number, own in enumerate(values.reshape(-1, values.shape[-1])):
             axes.plot(at, own, linewidth=1.2, **_style(number))
-        axes.set_ylabel(_label(name.replace("_", " "), unit_of(data[name])), fontsize=7)
-    for axes in grid[-1]:
-        axes.set_xlabel(_label(place.replace("_", " "), unit_of(data[place])) if place else "station")
-    _title(figure, result, "steady air along the blades")
-    return figure
+        return _label(name.replace("_", " "), unit_of(data[name]))
+
+    return _panels(result, "steady air along the blades", names, draw_panel,
+                   _label(place.replace("_", " "), unit_of(data[place])) if place else "station")
 
 
 def azimuth(result, unknowns=None):
@@ -171,24 +180,17 @@ def azimuth(result, unknowns=None):
     harmonics = result["trim"]["harmonics"].values
     start = float(result["model"]["azimuth"])
     angle = numpy.linspace(0.0, 2.0 * numpy.pi, 361)
-    pyplot = _pyplot()
-    rows = -(-len(chosen) // 3)
-    figure, grid = pyplot.subplots(rows, 3, figsize=(10, 1.9 * rows + 0.6), sharex=True, squeeze=False)
-    for axes, name in itertools.zip_longest(grid.flat, chosen):
-        if name is None:
-            axes.axis("off")
-            continue
+
+    def draw_panel(axes, name):
         row = harmonics[names.index(name)]
         values = numpy.full_like(angle, row[0])
         for k in range(1, len(row) // 2 + 1):
             values += row[2 * k - 1] * numpy.cos(k * (angle - start)) + row[2 * k] * numpy.sin(k * (angle - start))
         axes.plot(numpy.degrees(angle), values, color=COLOURS[0], linewidth=1.2)
-        axes.set_ylabel(_label(name, units[names.index(name)]), fontsize=7)
         axes.set_xticks([0, 90, 180, 270, 360])
-    for axes in grid[-1]:
-        axes.set_xlabel("azimuth of blade 1 [deg]")
-    _title(figure, result, "steady state over a revolution")
-    return figure
+        return _label(name, units[names.index(name)])
+
+    return _panels(result, "steady state over a revolution", chosen, draw_panel, "azimuth of blade 1 [deg]")
 
 
 def series(result, channels=None):
@@ -224,20 +226,13 @@ def series(result, channels=None):
 def operation(result):
     """Operating points of samara operate over the wind speed."""
     data = result["operation"]
-    names = [name for name in data if data[name].dtype.kind == "f" and name not in ("imbalance",)]
-    pyplot = _pyplot()
-    rows = -(-len(names) // 3)
-    figure, grid = pyplot.subplots(rows, 3, figsize=(10, 2.1 * rows), sharex=True, squeeze=False)
-    for axes, name in itertools.zip_longest(grid.flat, names):
-        if name is None:
-            axes.axis("off")
-            continue
+    names = [name for name in data if data[name].dtype.kind == "f" and name != "imbalance"]
+
+    def draw_panel(axes, name):
         axes.plot(data["wind_speed"].values, data[name].values, marker=".", linewidth=1.2, color=COLOURS[0])
-        axes.set_ylabel(_label(name.replace("_", " "), unit_of(data[name])), fontsize=7)
-    for axes in grid[-1]:
-        axes.set_xlabel(_label("wind speed", unit_of(data["wind_speed"])))
-    _title(figure, result, "operating points")
-    return figure
+        return _label(name.replace("_", " "), unit_of(data[name]))
+
+    return _panels(result, "operating points", names, draw_panel, _label("wind speed", unit_of(data["wind_speed"])))
 
 
 KINDS = {"campbell": (campbell, "campbell"), "multipliers": (multipliers, "floquet"),

@@ -14,12 +14,12 @@
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/mode_error.hpp"
+#include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
 #include "energy_coordinates.hpp"
 #include "energy_shares.hpp"
-#include "ranks.hpp"
 #include "sector_motion.hpp"
 #include "signal_series.hpp"
 #include "state_parts.hpp"

@@ -10,6 +10,7 @@
 #include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/mode_error.hpp"
+#include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/session.hpp"
 
@@ -17,7 +18,6 @@
 #include "hill_pencil.hpp"
 #include "hill_search.hpp"
 #include "least_damped_search.hpp"
-#include "ranks.hpp"
 #include "sector_motion.hpp"
 #include "state_parts.hpp"
 

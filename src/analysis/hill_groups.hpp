@@ -5,10 +5,11 @@
 #include <limits>
 #include <vector>
 
+#include "samara/analysis/ranks.hpp"
+
 #include "hill_pencil.hpp"
 #include "hill_refinement.hpp"
 #include "hill_search.hpp"
-#include "ranks.hpp"
 
 namespace samara::analysis {
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "samara/analysis/periodic_solution.hpp"
+#include "samara/analysis/ranks.hpp"
 #include "samara/system/periodic_system.hpp"
 
 #include "hill_search.hpp"
-#include "ranks.hpp"
 
 namespace samara::analysis {
 

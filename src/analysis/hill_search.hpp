@@ -7,9 +7,10 @@
 
 #include <Eigen/Core>
 
+#include "samara/analysis/ranks.hpp"
+
 #include "complex_solver.hpp"
 #include "hill_pencil.hpp"
-#include "ranks.hpp"
 
 namespace samara::analysis {
 

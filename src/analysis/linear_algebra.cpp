@@ -8,13 +8,13 @@
 
 #include <petscblaslapack.h>
 
+#include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/options.hpp"
 
 #include "blas.hpp"
 #include "block_factors.hpp"
 #include "matrix_entries.hpp"
-#include "ranks.hpp"
 
 namespace samara::analysis {
 namespace {

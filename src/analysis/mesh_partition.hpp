@@ -7,9 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "samara/analysis/ranks.hpp"
 #include "samara/system/periodic_system.hpp"
-
-#include "ranks.hpp"
 
 namespace samara::analysis {
 

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "samara/analysis/harmonic_energy.hpp"
-
-#include "ranks.hpp"
+#include "samara/analysis/ranks.hpp"
 
 namespace samara::analysis {
 

@@ -45,7 +45,7 @@ constexpr char participation_name[] = "/point/participation";
 constexpr char signals_name[] = "/point/signals";
 
 constexpr std::size_t point_values = 5;
-constexpr std::size_t mode_values = 8;
+constexpr std::size_t mode_values = 7;
 
 Meaning plain(const std::vector<std::string>& axes) { return {"1", "none", "internal", axes}; }
 
@@ -60,20 +60,6 @@ std::vector<std::string> texts_of(const std::string& lines) {
   std::istringstream stream(lines);
   for (std::string text; std::getline(stream, text);) texts.push_back(text);
   return texts;
-}
-
-const char* word_of(Stability stability) {
-  switch (stability) {
-    case Stability::stable:
-      return "stable";
-    case Stability::neutral:
-      return "neutral";
-    case Stability::unstable:
-      return "unstable";
-    case Stability::unknown:
-      break;
-  }
-  return "no verdict";
 }
 
 /// The values of a mode on a line, for the copy that the line follows.
@@ -152,17 +138,20 @@ std::string CampbellPointFiles::path_of(std::size_t point) const {
   return folder_ + name.data();
 }
 
-bool CampbellPointFiles::has(std::size_t point) const {
+std::unique_ptr<Hdf5Reader> CampbellPointFiles::open(std::size_t point) const {
   const std::string path = path_of(point);
   std::error_code error;
-  if (!fs::exists(path, error) && !error) return false;
-  const Hdf5Reader file(path);
-  if (!file.has(origin_name))
+  if (!fs::exists(path, error) && !error) return nullptr;
+  auto file = std::make_unique<Hdf5Reader>(path);
+  if (!file->has(origin_name))
     throw InputError(path +
                      ": is not a point of a Campbell diagram; hint: another name for the "
                      "result, or remove the file");
-  return file.text(origin_name) == origins_[point];
+  if (file->text(origin_name) != origins_[point]) return nullptr;
+  return file;
 }
+
+bool CampbellPointFiles::has(std::size_t point) const { return open(point) != nullptr; }
 
 void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) const {
   std::error_code error;
@@ -181,7 +170,7 @@ void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) 
     std::vector<double> shares;
     std::vector<std::string> names;
     for (const CampbellMode& mode : content.modes) {
-      numbers.insert(numbers.end(), {mode.exponent.real(), mode.exponent.imag(), mode.damping_ratio,
+      numbers.insert(numbers.end(), {mode.exponent.real(), mode.exponent.imag(),
                                      mode.fixed_frame_frequency, mode.error, mode.growth_error,
                                      static_cast<double>(mode.motion), mode.is_rough ? 1.0 : 0.0});
       shares.insert(shares.end(), mode.participation.begin(), mode.participation.end());
@@ -203,10 +192,13 @@ void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) 
   write_whole_file(path_of(point), file.image());
 }
 
-CampbellPoint CampbellPointFiles::read(std::size_t point) const {
-  const std::string path = path_of(point);
-  const Hdf5Reader file(path);
-  const auto refuse = [&path] { throw InputError(path + ": is damaged; hint: remove the file"); };
+std::optional<CampbellPoint> CampbellPointFiles::read(std::size_t point) const {
+  const std::unique_ptr<Hdf5Reader> opened = open(point);
+  if (!opened) return std::nullopt;
+  const Hdf5Reader& file = *opened;
+  const auto refuse = [this, point] {
+    throw InputError(path_of(point) + ": is damaged; hint: remove the file");
+  };
   CampbellPoint content;
   const std::vector<double> values = file.numbers(values_name);
   if (values.size() != point_values) refuse();
@@ -237,12 +229,11 @@ CampbellPoint CampbellPointFiles::read(std::size_t point) const {
     const double* own = &numbers[m * mode_values];
     CampbellMode mode;
     mode.exponent = {own[0], own[1]};
-    mode.damping_ratio = own[2];
-    mode.fixed_frame_frequency = own[3];
-    mode.error = own[4];
-    mode.growth_error = own[5];
-    mode.motion = static_cast<simulation::Motion>(static_cast<int>(own[6]));
-    mode.is_rough = own[7] != 0.0;
+    mode.fixed_frame_frequency = own[2];
+    mode.error = own[3];
+    mode.growth_error = own[4];
+    mode.motion = static_cast<simulation::Motion>(static_cast<int>(own[5]));
+    mode.is_rough = own[6] != 0.0;
     mode.name = names[m];
     mode.participation.assign(shares.begin() + static_cast<long>(m * harmonics),
                               shares.begin() + static_cast<long>((m + 1) * harmonics));

@@ -81,9 +81,9 @@ CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const an
   point.signatures = analysis::find_signatures(system, set);
   for (std::size_t& m : point.signatures.modes) {
     const Mode& mode = set.modes[m];
-    point.modes.push_back({mode.exponent, mode.damping_ratio, mode.fixed_frame_frequency,
-                           total_error(mode), mode.growth_error, assessment.motions[m],
-                           is_rough(mode), mode.name, participation_of(set, m)});
+    point.modes.push_back({mode.exponent, mode.fixed_frame_frequency, total_error(mode),
+                           mode.growth_error, assessment.motions[m], is_rough(mode), mode.name,
+                           participation_of(set, m)});
     m = point.modes.size() - 1;
   }
   return point;

@@ -117,19 +117,17 @@ Root find_zero(const SearchRange& range, const Function& f) {
 
 class OperatingPointFinder::Search {
  public:
-  Search(const Scenario& scenario, const std::vector<ScheduledPoint>& table,
-         analysis::Observer& observer)
-      : scenario_(scenario), setup_(scenario.operation), table_(table), observer_(observer) {
+  Search(const Scenario& scenario, const std::vector<ScheduledPoint>& table)
+      : scenario_(scenario), setup_(scenario.operation), table_(table) {
     // The torque is the result.
     scenario_.turbine.shaft.generator.law = {};
     scenario_.turbine.controller.reset();
   }
 
-  OperatingPoint find_at(double wind) {
+  OperatingPoint find_at(double wind, analysis::Observer& observer) {
     const std::string place = "operation at " + general(wind, 6) + " m/s: ";
     try {
       OperatingPoint point = table_.empty() ? search(wind) : follow_table(wind);
-      analysis::Observer& observer = observer_;
       note_roughness(*last_, observer, place + "trim");
       previous_ = point;
       return point;
@@ -348,7 +346,6 @@ class OperatingPointFinder::Search {
   Scenario scenario_;
   const model::OperatingPointsDefinition& setup_;
   const std::vector<ScheduledPoint>& table_;
-  analysis::Observer& observer_;
   std::optional<analysis::Trim> last_;
   std::unique_ptr<turbine::TurbineSystem> system_;  ///< of last_
   std::optional<OperatingPoint> present_;           ///< of last_
@@ -377,13 +374,14 @@ std::string region_name(OperatingRegion region) {
 }
 
 OperatingPointFinder::OperatingPointFinder(const Scenario& scenario,
-                                           const std::vector<ScheduledPoint>& table,
-                                           analysis::Observer& observer)
-    : search_(std::make_unique<Search>(scenario, table, observer)) {}
+                                           const std::vector<ScheduledPoint>& table)
+    : search_(std::make_unique<Search>(scenario, table)) {}
 
 OperatingPointFinder::~OperatingPointFinder() = default;
 
-OperatingPoint OperatingPointFinder::find_at(double wind) { return search_->find_at(wind); }
+OperatingPoint OperatingPointFinder::find_at(double wind, analysis::Observer& observer) {
+  return search_->find_at(wind, observer);
+}
 
 const turbine::TurbineSystem& OperatingPointFinder::system() const { return search_->system(); }
 
@@ -401,13 +399,13 @@ std::vector<double> operating_winds(const Scenario& scenario,
 std::vector<OperatingPoint> find_operation(const Scenario& scenario,
                                            const std::vector<ScheduledPoint>& table,
                                            analysis::Observer& observer) {
-  OperatingPointFinder finder(scenario, table, observer);
+  OperatingPointFinder finder(scenario, table);
   const std::vector<double> winds = operating_winds(scenario, table);
   std::vector<OperatingPoint> points;
   for (const double wind : winds) {
     observer.progress("operation", static_cast<long>(points.size()),
                       static_cast<long>(winds.size()));
-    points.push_back(finder.find_at(wind));
+    points.push_back(finder.find_at(wind, observer));
   }
   return points;
 }

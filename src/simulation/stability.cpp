@@ -98,6 +98,20 @@ bool knows_first_modes(const ModeSet& set) {
 
 }  // namespace
 
+const char* word_of(Stability stability) {
+  switch (stability) {
+    case Stability::stable:
+      return "stable";
+    case Stability::neutral:
+      return "neutral";
+    case Stability::unstable:
+      return "unstable";
+    case Stability::unknown:
+      break;
+  }
+  return "no verdict";
+}
+
 Motion motion_of(const Mode& mode, double rotor_speed) {
   const double zero = analysis::zero_exponent * rate_scale(rotor_speed);
   // Step and round-off cause an error of the growth of an exponent near zero; the elements do not.

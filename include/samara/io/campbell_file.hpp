@@ -2,6 +2,8 @@
 // as comma-separated values (docs/case_file.md, "Results").
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +12,8 @@
 #include "samara/simulation/campbell.hpp"
 
 namespace samara::io {
+
+class Hdf5Reader;
 
 /// The swept quantity.
 struct SweptQuantity {
@@ -33,14 +37,16 @@ class CampbellPointFiles {
   bool has(std::size_t point) const;
   /// @throws InternalError if the file cannot be written
   void write(std::size_t point, const simulation::CampbellPoint& content) const;
-  /// @throws InputError if there is no whole file
-  simulation::CampbellPoint read(std::size_t point) const;
+  /// The point; none as in has(). @throws InputError as has(), and if the file is damaged
+  std::optional<simulation::CampbellPoint> read(std::size_t point) const;
   /// Removes the files of points, also those of earlier runs that were ended, and the folder if
   /// nothing else is in it.
   void remove() const;
 
  private:
   std::string path_of(std::size_t point) const;
+  /// The file of the point, if it has one of its origin; else null.
+  std::unique_ptr<Hdf5Reader> open(std::size_t point) const;
 
   std::string folder_;
   std::vector<std::string> origins_;

@@ -23,7 +23,6 @@ inline constexpr int campbell_harmonics = 8;
 /// A mode at a point; values as those of analysis::Mode.
 struct CampbellMode {
   std::complex<double> exponent;
-  double damping_ratio = 0.0;
   double fixed_frame_frequency = std::numeric_limits<double>::quiet_NaN();
   double error = 0.0;         ///< total_error
   double growth_error = 0.0;  ///< [1/s]

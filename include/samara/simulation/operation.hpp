@@ -56,16 +56,15 @@ struct OperatingPoint {
 /// Finds operating points of `scenario.operation`. `table`: rows of its table; the speed and pitch
 /// of a wind speed between two rows are linear between them. Without a table the pitch of the case
 /// is the least pitch. Laws of the generator and the controller do not act. Each steady state is
-/// the start of the next one. `scenario`, `table` and `observer` must outlive the object.
+/// the start of the next one. `scenario` and `table` must outlive the object.
 class OperatingPointFinder {
  public:
-  OperatingPointFinder(const Scenario& scenario, const std::vector<ScheduledPoint>& table,
-                       analysis::Observer& observer);
+  OperatingPointFinder(const Scenario& scenario, const std::vector<ScheduledPoint>& table);
   ~OperatingPointFinder();
 
   /// @throws InputError where no operating point exists: wind speed, and reason
   /// @throws ConvergenceError, DomainError as analysis::find_trim, with the wind speed
-  OperatingPoint find_at(double wind);
+  OperatingPoint find_at(double wind, analysis::Observer& observer);
 
   /// The turbine and its steady state at the last operating point.
   const turbine::TurbineSystem& system() const;

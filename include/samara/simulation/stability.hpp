@@ -31,6 +31,9 @@ enum class Stability {
   unknown,   ///< there is no verdict: `StabilityAssessment::doubt`
 };
 
+/// "stable", "neutral", "unstable", "no verdict".
+const char* word_of(Stability stability);
+
 /// Reason why there is no verdict.
 enum class Doubt {
   none,

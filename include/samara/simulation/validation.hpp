@@ -9,7 +9,17 @@
 
 namespace samara::simulation {
 
-enum class Analysis { check, statics, modes, trim, floquet, transient, linearize, operate, campbell };
+enum class Analysis {
+  check,
+  statics,
+  modes,
+  trim,
+  floquet,
+  transient,
+  linearize,
+  operate,
+  campbell
+};
 
 /// All faults: faults of the turbine (model::find_faults) and settings that the analysis does not
 /// accept.
