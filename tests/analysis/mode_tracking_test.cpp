@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <random>
 
 #include <boost/test/unit_test.hpp>
 
@@ -202,6 +203,64 @@ BOOST_AUTO_TEST_CASE(modes_of_equal_multipliers_stay_on_lines) {
   const Sweep sweep = run(systems);
   BOOST_TEST(sweep.lines.size() == 4U);
   for (const auto& line : sweep.lines) BOOST_TEST(line.size() == systems.size());
+}
+
+BOOST_AUTO_TEST_CASE(any_copy_of_a_mode_at_each_point_is_the_same_motion) {
+  // u exp(lambda t) = (u exp(i s psi)) exp((lambda - i s Omega) t), and the conjugate. Each point
+  // has another copy of each mode, in any order and of any scale.
+  constexpr double speed = 0.9;
+  constexpr int most = 8;  // harmonics
+  constexpr int own = 2;   // of a mode, so that its copies have no others
+  constexpr int signals = 12;
+  const std::vector<Complex> exponents{{-0.1, 1.3}, {-0.2, 2.15}, {0.05, 3.0}, {-0.4, 4.4}};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> real(-1.0F, 1.0F);
+  std::vector<Eigen::MatrixXcf> modes;
+  for (std::size_t m = 0; m < exponents.size(); ++m) {
+    Eigen::MatrixXcf shape = Eigen::MatrixXcf::Zero(signals, 2 * most + 1);
+    for (auto& value : shape.middleCols(most - own, 2 * own + 1).reshaped())
+      value = {real(random), real(random)};
+    modes.push_back(shape / shape.norm());
+  }
+  analysis::ModeTracker tracker;
+  std::vector<std::vector<Complex>> printed;
+  for (std::size_t point = 0; point < 40; ++point) {
+    std::vector<std::size_t> order{0, 1, 2, 3};
+    std::shuffle(order.begin(), order.end(), random);
+    analysis::ModeSignatures signatures;
+    signatures.rotor_speed = speed;
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      const std::size_t m = order[place];
+      const bool is_conjugate = random() % 2 == 1;
+      const int shift = static_cast<int>(random() % 5) - 2;
+      Eigen::MatrixXcf copy = Eigen::MatrixXcf::Zero(signals, 2 * most + 1);
+      for (int k = -own; k <= own; ++k) {
+        const Eigen::VectorXcf part = modes[m].col(most + k);
+        if (is_conjugate)
+          copy.col(most - k + shift) = part.conjugate();
+        else
+          copy.col(most + k + shift) = part;
+      }
+      signatures.modes.push_back(place);
+      signatures.shapes.emplace_back(copy * std::polar(1.0F, 3.0F * real(random)));
+      signatures.exponents.push_back((is_conjugate ? std::conj(exponents[m]) : exponents[m]) -
+                                     Complex(0.0, shift * speed));
+    }
+    printed.push_back(signatures.exponents);
+    tracker.add(point, signatures);
+  }
+  const auto lines = tracker.lines();
+  BOOST_TEST_REQUIRE(lines.size() == exponents.size());
+  for (const auto& line : lines) {
+    BOOST_TEST(line.size() == printed.size());
+    const auto at = [&](const analysis::TrackedMode& tracked) {
+      return tracked_exponent(printed[tracked.point][tracked.mode], tracked, speed);
+    };
+    for (const analysis::TrackedMode& tracked : line) {
+      BOOST_TEST(std::abs(at(tracked) - at(line.front())) < 1e-12, tracked.point);
+      BOOST_TEST(std::abs(tracked.likeness - 1.0) < 1e-2);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(integration_and_hill_find_the_same_shapes) {
