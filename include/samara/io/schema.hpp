@@ -10,8 +10,8 @@ namespace samara::io {
 /// if words describe the default instead of a value.
 std::string case_schema();
 
-/// Unit of a key of a case file by its path, "blades.sections.0.mass": "kg/m"; "1" for a pure number
-/// and for a key that is not known.
+/// Unit of a key of a case file by its path, "blades.sections.0.mass": "kg/m"; "1" for a pure
+/// number and for a key that is not known.
 std::string unit_of_key(const std::string& path);
 
 }  // namespace samara::io
