@@ -209,7 +209,7 @@ class Parser {
       const auto found = std::find_if(commands_.begin(), commands_.end(),
                                       [&](const Command& c) { return c.name == word; });
       if (found == commands_.end()) throw InputError(unknown_command(word));
-      if (found->hand_over != nullptr)
+      if (found->hand_over != nullptr && found->hands_over == nullptr)
         throw InputError(std::string("samara ") + found->name +
                          ": the command comes first; hint: samara " + found->name + " --help");
       line_.command = &*found;
@@ -359,8 +359,9 @@ constexpr char import_lines[] =
 
 constexpr char export_lines[] =
     R"(options
-  -o FILE           the time series, in the format of its ending.
+  -o FILE           the time series, in the format of its ending, or NAME.pvd.
                     Only a file that samara wrote is overwritten
+  --format vtk      the motion for ParaView, with further options
   --help            this text
 )";
 
@@ -436,6 +437,7 @@ std::string help_text(const CommandLine& line, std::span<const Command> commands
                      "  samara export RESULT.h5 -o FILE\n"
                      "  samara loads RESULT.h5 [options]\n"
                      "  samara plot RESULT.h5 [KIND ...] [-o FILE]\n"
+                     "  samara report RESULT.h5 [RESULT.h5 ...] -o report.html\n"
                      "  mpirun -n 4 samara <command>" +
                      options + "\n\ncommands\n";
   for (const Command& command : commands)

@@ -31,6 +31,8 @@ struct Command {
   std::string (*print)() = nullptr;  ///< prints a text and does nothing else; no operand
   const char* formats = nullptr;  ///< formats of decks, separated by bars: the word before the path
   void (*convert)(const CommandLine&) = nullptr;  ///< instead of `run`
+  /// The words that hand_over takes; null: all.
+  bool (*hands_over)(const std::vector<std::string>&) = nullptr;
   /// Takes all further words; nothing is parsed. @throws InputError
   void (*hand_over)(const std::vector<std::string>&) = nullptr;
   int most_results = 0;  ///< number of results that it reads at once, at most

@@ -22,8 +22,14 @@ void run_linearize(const Job& job);
 void run_operate(const Job& job);
 void run_campbell(const Job& job);
 
-/// Replaces the process by the Python package's command line. @throws InputError if it cannot
+/// These replace the process by the Python package's command line. @throws InputError if they
+/// cannot
 void run_plot(const std::vector<std::string>& arguments);
+void run_report(const std::vector<std::string>& arguments);
+void run_vtk(const std::vector<std::string>& arguments);
+
+/// True for arguments of samara export that run_vtk takes: --format, or a name that ends in .pvd.
+bool asks_for_vtk(const std::vector<std::string>& arguments);
 
 void run_new(const std::vector<std::string>& arguments);
 

@@ -68,6 +68,7 @@ void run_floquet(const Job& job) {
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
         file.write_floquet(floquet);
+        file.write_geometry(system, trim, "/floquet", floquet.set);
         if (air) write_air_part(file, "/floquet", *air, turbine.blades.size());
       },
       [&](const std::string& path) { io::write_mode_table(path, floquet.set); });

@@ -31,7 +31,7 @@ namespace {
 
 using petsc::Session;
 
-constexpr std::array<Command, 15> commands{{
+constexpr std::array<Command, 16> commands{{
     {.name = "check",
      .summary = "reports the model of a case: masses, sizes, unknowns; solves nothing",
      .description =
@@ -140,21 +140,32 @@ constexpr std::array<Command, 15> commands{{
      .formats = "openfast|windio|hawc2",
      .convert = run_import},
     {.name = "export",
-     .summary = "a time series in one file: .h5, .csv, or .out and .outb of OpenFAST",
+     .summary = "a time series as .h5, .csv, .out or .outb; a motion for ParaView, .pvd",
      .description =
          "Writes the time series of a result of samara transient as one file, by its ending: .h5, "
          "the\n"
          "whole result without its folder of parts; .csv; .out or .outb, OpenFAST's text and\n"
-         "binary output, for the programs that read those; .outb has 16 bits a value.\n",
+         "binary output, for the programs that read those; .outb has 16 bits a value. The ending\n"
+         ".pvd, or --format vtk, writes the motion of a mode (--mode N), of the steady state or "
+         "of\n"
+         "a load path for ParaView: samara export --format vtk --help.\n",
      .example = "RESULT.h5 -o series.csv",
      .writes_result = true,
      .convert = run_export,
+     .hands_over = asks_for_vtk,
+     .hand_over = run_vtk,
      .most_results = 1},
     {.name = "plot",
      .summary = "pictures of a result: Campbell diagram, multipliers, series, loads",
      .description = "Draws pictures of a result as .svg, .png or .pdf, each kind that it allows.\n",
      .example = "RESULT.h5 -o picture.svg",
      .hand_over = run_plot},
+    {.name = "report",
+     .summary = "one page for the browser: modes, Campbell diagram, the turbine in motion",
+     .description = "Writes results as one page that needs no network: tables, diagrams, and the\n"
+                    "turbine moving in its modes.\n",
+     .example = "RESULT.h5 -o report.html",
+     .hand_over = run_report},
     {.name = "loads",
      .summary = "statistics, extremes, harmonics, cycles, equivalent loads of a result",
      .description =
@@ -310,7 +321,9 @@ void print_text(const CommandLine& line) {
 int run(const std::vector<std::string>& arguments) {
   for (const Command& command : commands)
     if (command.hand_over != nullptr && !arguments.empty() && arguments.front() == command.name) {
-      if (Session::launch_rank() == 0) command.hand_over({arguments.begin() + 1, arguments.end()});
+      const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+      if (command.hands_over != nullptr && !command.hands_over(rest)) break;
+      if (Session::launch_rank() == 0) command.hand_over(rest);
       return 0;
     }
   CommandLine line;

@@ -65,6 +65,7 @@ void run_modes(const Job& job) {
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
         file.write_modes(set);
+        file.write_geometry(system, trim, "/modes", set);
         if (air) write_air_part(file, "/modes", *air, turbine.blades.size());
       },
       [&](const std::string& path) { io::write_mode_table(path, set); });

@@ -144,6 +144,7 @@ void run_static(const Job& job) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_static(path);
+        file.write_geometry(system, path);
       },
       [&](const std::string& name) { io::write_static_table(name, system, path); });
 }

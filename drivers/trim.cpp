@@ -262,6 +262,7 @@ void run_trim(const Job& job) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
+        file.write_geometry(system, trim);
         write_air(file, simulation::find_spanwise_air(system, trim));
       },
       [&](const std::string& path) { io::write_trim_table(path, system, trim); });

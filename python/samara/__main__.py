@@ -1,13 +1,17 @@
-"""python3 -m samara plot RESULT.h5 [KIND ...]"""
+"""python3 -m samara plot|report|vtk ARGUMENTS: pictures, a page, and files for ParaView of a result."""
 
+import importlib
 import sys
 
+COMMANDS = {"plot": "plot", "report": "report", "vtk": "vtk"}
+PACKAGES = ("python3-matplotlib python3-h5netcdf python3-h5py python3-meshio python3-numpy python3-xarray python3-yaml "
+            "python3-jsonschema")
+
 if __name__ == "__main__":
+    if sys.argv[1:2] == [] or sys.argv[1] not in COMMANDS:
+        sys.exit(f"usage: python3 -m samara {'|'.join(COMMANDS)} RESULT.h5 [options]; --help of each explains it")
     try:
-        from .plot import main
+        module = importlib.import_module(f".{COMMANDS[sys.argv[1]]}", "samara")
     except ImportError as error:
-        sys.exit(f"samara: {error}; hint: apt install python3-matplotlib python3-h5netcdf python3-xarray "
-                 "python3-yaml python3-jsonschema")
-    if sys.argv[1:2] != ["plot"]:
-        sys.exit("usage: python3 -m samara plot RESULT.h5 [KIND ...]; python3 -m samara plot --help")
-    sys.exit(main(sys.argv[2:]))
+        sys.exit(f"samara: {error}; hint: apt install {PACKAGES}")
+    sys.exit(module.main(sys.argv[2:]))

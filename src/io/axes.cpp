@@ -4,6 +4,8 @@ namespace samara::io {
 
 std::vector<std::string> words_of_axis(const std::string& axis) {
   if (axis == complex_axis) return {"re", "im"};
+  if (axis == vector_axis) return {"x", "y", "z"};
+  if (axis == motion_axis) return {"x", "y", "z", "about x", "about y", "about z"};
   return {};
 }
 

@@ -7,6 +7,9 @@
 namespace samara::io {
 
 inline constexpr char complex_axis[] = "re_im";
+inline constexpr char vector_axis[] = "xyz";
+inline constexpr char motion_axis[] = "displacement_rotation";
+inline constexpr char node_axis[] = "node";
 inline constexpr char mode_axis[] = "mode";
 inline constexpr char unknown_axis[] = "unknown";
 inline constexpr char channel_axis[] = "channel_name";

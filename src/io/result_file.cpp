@@ -24,6 +24,7 @@
 #include "samara/io/whole_file.hpp"
 
 #include "axes.hpp"
+#include "geometry_groups.hpp"
 #include "hdf5_file.hpp"
 #include "hdf5_trial.hpp"
 #include "held_loads.hpp"
@@ -47,6 +48,9 @@ constexpr std::array<std::string_view, 7> table_starts{
 
 /// Harmonics of the participation are kept up to the last ones in which a mode has this share.
 constexpr double smallest_share = 1e-9;
+
+/// Instants of a revolution at which the places of the nodes are written.
+constexpr int geometry_instants = 24;
 
 constexpr char no_frame[] = "none";
 constexpr char mode_frame[] = "frame of each part: tower, nacelle fixed; blades, hub rotating";
@@ -237,6 +241,16 @@ void write_participation(Hdf5File& file, const std::string& group, const ModeSet
               "share of the mean kinetic energy, up to the harmonics beyond which no share reaches "
               "1e-9",
               {mode_axis, "participation_harmonic"}});
+}
+
+std::vector<TurbineInstant> instants_at(const std::vector<double>& times,
+                                        const analysis::PeriodicSolution& solution) {
+  std::vector<TurbineInstant> instants;
+  for (const double t : times)
+    instants.push_back(
+        {t, solution.coefficients() *
+                analysis::PeriodicSolution::basis(solution.harmonics(), solution.period(), t)});
+  return instants;
 }
 
 bool has_hdf5_signature(const std::string& path) {
@@ -562,6 +576,29 @@ void ResultFile::write_floquet(const analysis::Floquet& floquet) {
 void ResultFile::write_modes(const ModeSet& set) {
   write_mode_set(storage_->file, "/modes", set);
   write_shapes(storage_->file, "/modes", set);
+}
+
+void ResultFile::write_geometry(const turbine::TurbineSystem& system, const analysis::Trim& trim) {
+  std::vector<double> times{0.0};
+  const bool turns = system.period() > 0.0;
+  for (int i = 1; turns && i < geometry_instants; ++i)
+    times.push_back(system.period() * i / geometry_instants);
+  io::write_geometry(storage_->file, system, instants_at(times, trim.solution), "instant");
+}
+
+void ResultFile::write_geometry(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                                const std::string& group, const ModeSet& set) {
+  if (set.shapes.empty()) return write_geometry(system, trim);
+  const std::vector<TurbineInstant> instants = instants_at(set.shape_times, trim.solution);
+  io::write_geometry(storage_->file, system, instants, "instant");
+  write_node_motions(storage_->file, group, system, set, instants);
+}
+
+void ResultFile::write_geometry(const turbine::TurbineSystem& system,
+                                const analysis::StaticPath& path) {
+  std::vector<TurbineInstant> instants;
+  for (const analysis::StaticState& state : path.states) instants.push_back({0.0, state.z});
+  io::write_geometry(storage_->file, system, instants, "state");
 }
 
 void ResultFile::write_linearization(const linear::Linearization& linearization) {

@@ -121,6 +121,28 @@ class Floquet(ProgramTest):
         numpy.testing.assert_allclose(largest[resolved], 1.0, rtol=1e-5)
         self.assertTrue(numpy.isnan(shapes[:][~resolved]).all())
 
+    def test_places_of_the_nodes_are_those_of_the_unknowns(self):
+        names = list(self.file["model/unknowns/name"].asstr()[:])
+        geometry = self.file["geometry"]
+        parts = geometry["part"].asstr()[:]
+        top = numpy.flatnonzero(parts == "tower")[-1]
+        moved = geometry["place"][:, top] - geometry["undeformed"][:, top]
+        series = self.file["trim/harmonics"][:]
+        phase = self.file["model/rotor_speed"][()] * geometry["time"][:]
+        basis = [numpy.ones_like(phase)]
+        for k in range(1, series.shape[1] // 2 + 1):
+            basis += [numpy.cos(k * phase), numpy.sin(k * phase)]
+        rows = [names.index(f"tower top u{i}") for i in (1, 2, 3)]
+        up, side, downwind = series[rows] @ numpy.array(basis)
+        numpy.testing.assert_allclose(moved, numpy.transpose([downwind, -side, up]), atol=1e-12)
+        # In a mode the top moves as its shape says.
+        shape = self.file["floquet/modes"][:, :, rows, :]
+        motion = self.file["floquet/node_motion"][:, :, top, :3, :]
+        known = self.file["floquet/resolved"][:] == 1
+        expected = numpy.stack([shape[:, :, 2], -shape[:, :, 1], shape[:, :, 0]], axis=2)
+        numpy.testing.assert_allclose(motion[known], expected[known], atol=2e-6)
+        self.assertTrue((abs(numpy.linalg.norm(geometry["axes"][:], axis=-1) - 1) < 1e-12).all())
+
     def test_trim_has_a_row_an_unknown(self):
         harmonics = self.file["/trim/harmonics"]
         self.assertEqual(harmonics.shape, (len(self.file["/model/unknowns/name"]), 2 * 4 + 1))
@@ -205,7 +227,7 @@ class Others(ProgramTest):
             blade = check["/model/mass/blade_1"][()]
             self.assertAlmostEqual(blade, 67.5772 * 8.42, delta=1e-9)
         with h5py.File(self.folder / "trim.h5") as trim:
-            self.assertEqual(set(trim), {"case", "model", "trim"})
+            self.assertEqual(set(trim), {"case", "geometry", "model", "trim"})
             names = trim["/model/unknowns/name"].asstr()[:]
             with open(self.folder / "trim.csv", newline="", encoding="utf-8") as stream:
                 rows = list(csv.reader(stream))
@@ -218,7 +240,7 @@ class Others(ProgramTest):
         self.succeed("static", BASELINE, *QUICK, *settings, "-o", "x.h5", "--csv", "x.csv")
         self.succeed("static", BASELINE, *QUICK, *settings, "-o", "x.h5", "--csv", "x.csv")
         with h5py.File(self.folder / "x.h5") as file:
-            self.assertEqual(set(file), {"case", "model", "static"})
+            self.assertEqual(set(file), {"case", "geometry", "model", "static"})
             group = file["/static"]
             names = file["/model/unknowns/name"].asstr()[:]
             numpy.testing.assert_allclose(group["factor"][:], numpy.arange(6) / 5)

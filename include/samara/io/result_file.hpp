@@ -64,6 +64,15 @@ class ResultFile {
   /// /modes: the datasets of /floquet, except those that belong to a period.
   void write_modes(const analysis::ModeSet& set);
 
+  /// /geometry in a periodic steady state, over a revolution.
+  void write_geometry(const turbine::TurbineSystem& system, const analysis::Trim& trim);
+  /// The same at the times of the shapes of modes, and the motions of its nodes in them, in `group`
+  /// ("/floquet", "/modes").
+  void write_geometry(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                      const std::string& group, const analysis::ModeSet& set);
+  /// The same in the states of a path.
+  void write_geometry(const turbine::TurbineSystem& system, const analysis::StaticPath& path);
+
   /// /linearize
   void write_linearization(const linear::Linearization& linearization);
 

@@ -1,0 +1,71 @@
+// samara plot, report, and export to ParaView, by the Python package samara.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "samara/base/error.hpp"
+
+#include "commands.hpp"
+#include "installation.hpp"
+
+namespace samara::drivers {
+namespace {
+
+constexpr char interpreter[] = "/usr/bin/python3";
+
+/// Replaces the process by the Python package's command line.
+void run_python(const std::string& command, const std::vector<std::string>& arguments) {
+  if (const std::filesystem::path package = find_installed("python"); !package.empty()) {
+    const char* before = std::getenv("PYTHONPATH");
+    const std::string path =
+        package.string() + (before != nullptr ? std::string(":") + before : "");
+    ::setenv("PYTHONPATH", path.c_str(), 1);
+  }
+  const char* named = std::getenv("SAMARA_PYTHON");
+  std::vector<std::string> words{named != nullptr ? named : interpreter, "-m", "samara", command};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  ::execvp(pointers.front(), pointers.data());
+  throw InputError(words.front() +
+                   " cannot be started; hint: apt install python3, or SAMARA_PYTHON "
+                   "names another interpreter");
+}
+
+constexpr char vtk_ending[] = ".pvd";
+constexpr char format_option[] = "--format";
+constexpr char vtk_format[] = "vtk";
+
+}  // namespace
+
+void run_plot(const std::vector<std::string>& arguments) { run_python("plot", arguments); }
+
+void run_report(const std::vector<std::string>& arguments) { run_python("report", arguments); }
+
+bool asks_for_vtk(const std::vector<std::string>& arguments) {
+  return std::ranges::any_of(arguments, [](const std::string& argument) {
+    return argument == format_option || argument.ends_with(vtk_ending);
+  });
+}
+
+void run_vtk(const std::vector<std::string>& arguments) {
+  std::vector<std::string> rest;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] != format_option) {
+      rest.push_back(arguments[i]);
+      continue;
+    }
+    const std::string format = ++i < arguments.size() ? arguments[i] : "";
+    if (format != vtk_format)
+      throw InputError(std::string(format_option) + ": expected " + vtk_format + ", got \"" +
+                       format + "\"; hint: the ending of -o selects all other formats");
+  }
+  run_python("vtk", rest);
+}
+
+}  // namespace samara::drivers
