@@ -105,6 +105,9 @@ class Parser {
     else if (name == "--first")
       line_.first_modes =
           number_of(name, value_of(name, "a number of modes, e.g. --first 10", value));
+    else if (name == "--sensitivity")
+      set_once(line_.sensitivity, name,
+               value_of(name, "keys of the case, e.g. --sensitivity blades.damping", value));
     else if (name == "--restart")
       set_once(line_.restart_path, name,
                value_of(name, "a result to go on from, e.g. --restart run.h5", value));
@@ -286,6 +289,8 @@ class Parser {
       throw InputError("--air: samara " + name + " lists no modes; modes and floquet do");
     if (line_.first_modes > 0 && !line_.command->lists_modes)
       throw InputError("--first: samara " + name + " lists no modes; modes and floquet do");
+    if (!line_.sensitivity.empty() && name != "floquet")
+      throw InputError("--sensitivity: samara " + name + " does not use it, samara floquet does");
     if (line_.parked && name != "modes")
       throw InputError("--parked: samara " + name +
                        " does not use it, samara modes does; hint: --set shaft.speed=0");
@@ -384,6 +389,8 @@ constexpr char option_lines[] =
   --air             part of the air in the damping, by the modes under constant air loads (modes,
                     floquet; takes about twice the time)
   --first N         lists the first N modes; the verdict counts all (modes, floquet)
+  --sensitivity KEYS derivatives of the listed modes to numbers of the case (floquet): keys
+                    separated by commas, * for all items: tower.sections.*.mass
   --parked          the rotor stands still, as with --set shaft.speed=0 (modes)
   --restart FILE.h5 continues from the last checkpoint of a result (transient)
   --sweep KEY=VALUES the values of a key (campbell): FROM:TO:STEP, or V1,V2,...

@@ -54,7 +54,8 @@ struct CommandLine {
   bool report = false;        ///< --report: print the report, even without a case file
   bool all_modes = false;
   bool air_part = false;
-  int first_modes = 0;  ///< rows of a table of modes; 0: all
+  int first_modes = 0;      ///< rows of a table of modes; 0: all
+  std::string sensitivity;  ///< patterns of keys, separated by commas
   bool parked = false;
   std::vector<std::string> settings;
   std::string result_path;   ///< path of the output; empty: not given

@@ -2,6 +2,8 @@
 #include "samara/analysis/floquet.hpp"
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/trim.hpp"
@@ -10,12 +12,14 @@
 #include "samara/simulation/air_part.hpp"
 #include "samara/simulation/held_air.hpp"
 #include "samara/simulation/steady_state.hpp"
+#include "samara/simulation/validation.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
 #include "mode_report.hpp"
 #include "progress.hpp"
+#include "sensitivity_report.hpp"
 #include "table.hpp"
 
 namespace samara::drivers {
@@ -35,6 +39,55 @@ std::string headline(const io::Case& input, const analysis::Floquet& floquet, Pe
          " a revolution, integrated over " + span + "\n\n";
 }
 
+simulation::ScenarioAt scenarios_of(const Job& job) {
+  return [&job](const simulation::Parameter& parameter, double value) {
+    std::vector<std::string> settings = job.input.settings;
+    settings.push_back(parameter.key + "=" + shortest(value));
+    try {
+      io::Case input = io::parse_case(job.input.path, job.input.file_text(), settings);
+      io::require_valid(input, simulation::validate(input, simulation::Analysis::floquet));
+      return input;
+    } catch (const InputError& error) {
+      // The number is not one of --set.
+      const std::string message = error.what();
+      const std::string option = "--set ";
+      throw InputError(
+          message.starts_with(option) ? "--sensitivity " + message.substr(option.size()) : message);
+    }
+  };
+}
+
+std::vector<simulation::Parameter> all_parameters(const std::vector<ParameterGroup>& groups) {
+  std::vector<simulation::Parameter> parameters;
+  for (const ParameterGroup& group : groups)
+    parameters.insert(parameters.end(), group.parameters.begin(), group.parameters.end());
+  return parameters;
+}
+
+/// Those of the listed modes to the numbers of --sensitivity.
+Sensitivities find_sensitivities(const Job& job, std::vector<ParameterGroup> groups,
+                                 const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                                 const analysis::ModeSet& set, Progress& progress) {
+  Sensitivities result;
+  const bool is_first = petsc::Session::rank() == 0;  // it has all modes
+  const simulation::StabilityAssessment assessment =
+      is_first ? simulation::assess_stability(set) : simulation::StabilityAssessment();
+  if (is_first)
+    for (const std::size_t m : listed_modes(set, assessment, {false, job.first_modes, nullptr}))
+      if (!is_of_medium(set.modes[m])) result.modes.push_back(m);
+  const std::vector<simulation::Sensitivity> found = simulation::find_sensitivities(
+      job.input, system, trim, set, result.modes, all_parameters(groups), scenarios_of(job),
+      progress, PETSC_COMM_WORLD);
+  auto next = found.begin();
+  for (const ParameterGroup& group : groups) {
+    const auto end = next + static_cast<std::ptrdiff_t>(group.parameters.size());
+    result.found.emplace_back(next, end);
+    next = end;
+  }
+  result.groups = std::move(groups);
+  return result;
+}
+
 }  // namespace
 
 void run_floquet(const Job& job) {
@@ -42,6 +95,8 @@ void run_floquet(const Job& job) {
   const model::Turbine turbine = model::build_turbine(job.input.turbine);
   const turbine::TurbineSystem system(turbine, PETSC_COMM_SELF);
   const bool is_first = petsc::Session::rank() == 0;
+  std::vector<ParameterGroup> groups = find_parameters(job);
+  simulation::require_range(all_parameters(groups), scenarios_of(job));
   Progress progress(is_first);
   const analysis::Trim trim = simulation::find_trim(job.input, system, progress, PETSC_COMM_WORLD);
   const auto held = simulation::hold_wake(system);
@@ -54,6 +109,9 @@ void run_floquet(const Job& job) {
         analysis::find_floquet_modes(*still, trim.solution, job.input.floquet, PETSC_COMM_WORLD,
                                      progress)
             .set);
+  std::optional<Sensitivities> sensitivities;
+  if (!groups.empty())
+    sensitivities = find_sensitivities(job, std::move(groups), system, trim, floquet.set, progress);
   progress.finish();
   if (!is_first) return;
   const simulation::StabilityAssessment assessment = simulation::assess_stability(floquet.set);
@@ -62,13 +120,15 @@ void run_floquet(const Job& job) {
       headline(job.input, floquet, system.size()) +
           mode_table(floquet.set, assessment,
                      {job.all_modes, job.first_modes, air ? &*air : nullptr}) +
-          "\n" + verdict_text(floquet.set, assessment, job.all_modes),
+          "\n" + verdict_text(floquet.set, assessment, job.all_modes) +
+          (sensitivities ? sensitivity_tables(floquet.set, *sensitivities) : ""),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
         file.write_trim(trim);
         file.write_floquet(floquet);
         file.write_geometry(system, trim, "/floquet", floquet.set);
+        if (sensitivities) write_sensitivities(file, floquet.set, *sensitivities);
         if (air) write_air_part(file, "/floquet", *air, turbine.blades.size());
       },
       [&](const std::string& path) { io::write_mode_table(path, floquet.set); });

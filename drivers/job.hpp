@@ -23,6 +23,7 @@ struct Job {
   bool all_modes = false;              ///< also list modes that are not resolved
   bool air_part = false;               ///< also find the part of the air in the damping
   int first_modes = 0;                 ///< number of listed rows; 0: all
+  std::string sensitivity;             ///< patterns of keys; empty: none
   std::string restart_path;            ///< empty: the run starts at its beginning
   Sweep sweep;                         ///< not given: the operating points of the case
   /// Results that the command reads, if any; `input` is the case of the first.

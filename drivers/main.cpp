@@ -264,6 +264,7 @@ Job prepare(const CommandLine& line) {
   job.all_modes = line.all_modes;
   job.air_part = line.air_part;
   job.first_modes = line.first_modes;
+  job.sensitivity = line.sensitivity;
   if (job.result_path.empty() && line.command->writes_result)
     job.result_path = std::filesystem::path(line.case_path).stem().string() + ".h5";
   if (Session::launch_rank() != 0) return job;

@@ -284,7 +284,26 @@ bool is_listed(const ModeSet& set, const StabilityAssessment& assessment, std::s
          (!is_of_medium(set.modes[m]) || assessment.motions[m] == Motion::growing);
 }
 
+/// All modes that could be listed.
+std::vector<std::size_t> rows_of(const ModeSet& set, const StabilityAssessment& assessment,
+                                 bool all) {
+  std::vector<std::size_t> rows;
+  for (const bool resolved : {true, false})
+    for (std::size_t m = 0; m < set.modes.size(); ++m)
+      if (set.modes[m].resolved == resolved && (all || is_listed(set, assessment, m)))
+        rows.push_back(m);
+  return rows;
+}
+
 }  // namespace
+
+std::vector<std::size_t> listed_modes(const ModeSet& set, const StabilityAssessment& assessment,
+                                      const ModeListing& listing) {
+  std::vector<std::size_t> rows = rows_of(set, assessment, listing.all);
+  if (listing.first > 0)
+    rows.resize(std::min(rows.size(), static_cast<std::size_t>(listing.first)));
+  return rows;
+}
 
 std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment,
                        const ModeListing& listing) {
@@ -301,19 +320,12 @@ std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment
   if (set.participation.size() > 0) table.add_column("harmonic", "k");
   table.add_column("energy in", "%", Align::left);
   table.add_column(set.participation.size() > 0 ? "other k, remark" : "", "", Align::left);
-  std::vector<std::size_t> rows;
-  for (const bool resolved : {true, false})
-    for (std::size_t m = 0; m < set.modes.size(); ++m)
-      if (set.modes[m].resolved == resolved && (listing.all || is_listed(set, assessment, m)))
-        rows.push_back(m);
-  const std::size_t shown = listing.first > 0
-                                ? std::min(rows.size(), static_cast<std::size_t>(listing.first))
-                                : rows.size();
-  for (std::size_t i = 0; i < shown; ++i)
-    table.add_row(row_of(set, assessment, rows[i], listing.air));
-  return table.text() + (shown < rows.size()
-                             ? "the first " + std::to_string(shown) + " of " +
-                                   count(static_cast<int>(rows.size()), "mode") + " (--first)\n"
+  const std::size_t all = rows_of(set, assessment, listing.all).size();
+  const std::vector<std::size_t> rows = listed_modes(set, assessment, listing);
+  for (const std::size_t m : rows) table.add_row(row_of(set, assessment, m, listing.air));
+  return table.text() + (rows.size() < all
+                             ? "the first " + std::to_string(rows.size()) + " of " +
+                                   count(static_cast<int>(all), "mode") + " (--first)\n"
                              : "");
 }
 

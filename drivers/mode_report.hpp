@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "samara/analysis/mode.hpp"
 #include "samara/io/result_file.hpp"
@@ -20,6 +21,11 @@ struct ModeListing {
 /// Writes `group`/held_air_damping, held_air_likeness, air_work and the lengths of the stations.
 void write_air_part(io::ResultFile& file, const std::string& group, const simulation::AirPart& part,
                     std::size_t blades);
+
+/// Numbers of the modes that a listing has, in its order.
+std::vector<std::size_t> listed_modes(const analysis::ModeSet& set,
+                                      const simulation::StabilityAssessment& assessment,
+                                      const ModeListing& listing);
 
 /// One line per mode, with its number in the result. Modes that are not resolved are below the
 /// others. Harmonics are listed if the set has participations.

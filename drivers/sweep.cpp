@@ -1,8 +1,6 @@
 #include "sweep.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -58,17 +56,6 @@ std::vector<double> range_of(const std::vector<double>& limits) {
   return values;
 }
 
-/// The shortest text of a number that reads as the same; a whole number has no exponent.
-std::string exact(double value) {
-  constexpr double most_exact = 1e15;
-  std::array<char, 32> text{};
-  const bool is_whole = value == std::floor(value) && std::abs(value) < most_exact;
-  const auto [end, error] = is_whole ? std::to_chars(text.data(), text.data() + text.size(), value,
-                                                     std::chars_format::fixed)
-                                     : std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end};
-}
-
 }  // namespace
 
 Sweep::Sweep(const std::string& text, std::string path, std::vector<std::string> settings)
@@ -100,7 +87,7 @@ Sweep::Sweep(const std::string& text, std::string path, std::vector<std::string>
 
 io::Case Sweep::case_at(double value) const {
   std::vector<std::string> own = settings_;
-  own.push_back(key_ + "=" + exact(value));
+  own.push_back(key_ + "=" + shortest(value));
   io::Case input = io::read_case(path_, own);
   io::require_valid(input, simulation::validate(input, input.turbine.shaft.speed == 0.0
                                                            ? simulation::Analysis::modes

@@ -130,6 +130,7 @@ void run_transient(const Job& job) {
   const model::Turbine& turbine = simulation.turbine();
   const turbine::TurbineSystem begun(turbine, PETSC_COMM_SELF);
   const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
+  const analysis::TransientStart begin = simulation.state().point;
   io::TimeSeriesContent content;
   content.channels = simulation.channels();
   content.azimuth = turbine.azimuth;
@@ -139,6 +140,8 @@ void run_transient(const Job& job) {
                           [&](io::ResultFile& result) {
                             result.write_model(begun);
                             write_masses(result, masses);
+                            if (transient.has_places)
+                              result.write_geometry(begun, begin.time, begin.z);
                           });
   if (!job.restart_path.empty() && io::is_same_file(job.restart_path, job.result_path))
     file.resume();

@@ -7,8 +7,8 @@ namespace samara::analysis {
 using Index = Eigen::Index;
 
 HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                       int harmonics)
-    : tangents_(system, harmonics, true),
+                       int harmonics, bool by_sector)
+    : tangents_(system, harmonics, by_sector),
       preconditioner_(tangents_),
       medium_(tangents_, rows_, columns_) {
   tangents_.sample(solution);
@@ -119,6 +119,11 @@ HillPencil::Complex HillPencil::exponent_of(const Vector& x) {
   multiply(x, Vector::Zero(size()), stiffness);
   multiply_mass(x, mass);
   return -mass.dot(stiffness) / mass.squaredNorm();
+}
+
+void HillPencil::take_scales(const HillPencil& other) {
+  rows_ = other.rows_;
+  columns_ = other.columns_;
 }
 
 bool HillPencil::set_shift(Complex s) {

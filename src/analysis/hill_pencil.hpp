@@ -31,7 +31,9 @@ class HillPencil {
   using Input = const Eigen::Ref<const Matrix>&;
   using Output = Eigen::Ref<Matrix>;
 
-  HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution, int harmonics);
+  /// `by_sector`: of one blade among identical ones, if there are such.
+  HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution, int harmonics,
+             bool by_sector = true);
   HillPencil(const HillPencil&) = delete;
   HillPencil& operator=(const HillPencil&) = delete;
   ~HillPencil() = default;
@@ -62,6 +64,8 @@ class HillPencil {
   void drop_medium(Vector& x) const { medium_.drop(x); }
   /// The exponent that fits a vector best: (A + lambda B) x is least in the 2-norm.
   Complex exponent_of(const Vector& x);
+  /// Takes the scales of another pencil, of a system with the same unknowns.
+  void take_scales(const HillPencil& other);
 
   /// Approximates (A + s B)^-1 from now on.
   /// @returns false where it is singular to working precision

@@ -5,13 +5,12 @@
 #include <limits>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
 #include "samara/base/error.hpp"
 
-#include "complex_solver.hpp"
+#include "hill_bordered_solver.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -29,10 +28,6 @@ constexpr int most_steps = 20;
 /// Relative residual of the linear solves: what Newton's step can use, between these.
 constexpr double finest_solve = 1e-6;
 constexpr double coarsest_solve = 3e-2;
-/// Distance of the shift from the exponents, and largest one at which factors are used again,
-/// relative to the rotor speed.
-constexpr double beside = 0.02;
-constexpr double largest_distance = 0.5;
 /// X with orthonormal columns and T with an upper triangle, of the same subspace.
 void to_schur_form(Eigen::MatrixXcd& X, Eigen::MatrixXcd& T) {
   const Index m = X.cols();
@@ -48,15 +43,6 @@ void to_schur_form(Eigen::MatrixXcd& X, Eigen::MatrixXcd& T) {
 
 }  // namespace
 
-/// @returns false where the preconditioner has no factors
-bool HillRefinement::take_shift(Complex exponent) {
-  const double speed = pencil_.speed();
-  const std::optional<Complex> shift = pencil_.shift();
-  if (shift && std::abs(*shift - exponent) < largest_distance * speed) return true;
-  return pencil_.set_shift(exponent +
-                           Complex(beside * speed, exponent.imag() == 0.0 ? beside * speed : 0.0));
-}
-
 void HillRefinement::find_residual(Subspace& subspace) {
   subspace.residual.resize(subspace.X.rows(), subspace.X.cols());
   subspace.mass.resize(subspace.X.rows(), subspace.X.cols());
@@ -70,54 +56,18 @@ void HillRefinement::find_residual(Subspace& subspace) {
 /// Adds C to X and D to T, A C + B (C T + X D) = -residual, X^H C = 0.
 /// @returns false where the linear solves fail
 bool HillRefinement::correct(Subspace& subspace, double tolerance) {
-  Matrix& X = subspace.X;
-  Matrix& T = subspace.T;
-  if (!take_shift(T.diagonal().mean())) return false;
-  const Index n = X.rows();
-  const Index m = X.cols();
-  Matrix Y(n, m);
-  pencil_.precondition(subspace.mass, Y);
-  const Eigen::PartialPivLU<Matrix> complement(X.adjoint() * Y);
-  // A vector has C by column, then D.
-  const auto main_part = [&](auto& vector) { return Eigen::Map<Matrix>(vector.data(), n, m); };
-  const auto border = [&](auto& vector) { return Eigen::Map<Matrix>(vector.data() + n * m, m, m); };
-  const auto in_main_part = [&](const Vector& vector) {
-    return Eigen::Map<const Matrix>(vector.data(), n, m);
-  };
-  const auto in_border = [&](const Vector& vector) {
-    return Eigen::Map<const Matrix>(vector.data() + n * m, m, m);
-  };
   // A step leaves about the square of the residual.
   const double accuracy = std::clamp(std::max(0.1 * subspace.size, 0.3 * tolerance / subspace.size),
                                      finest_solve, coarsest_solve);
-  ComplexSolver solver(
-      n * m + m * m,
-      [&](const Vector& x, Vector& y) {
-        y.resize(x.size());
-        const auto C = in_main_part(x);
-        pencil_.multiply(C, C * T + X * in_border(x), main_part(y));
-        border(y) = X.adjoint() * C;
-      },
-      [&](const Vector& x, Vector& y) {
-        y.resize(x.size());
-        auto C = main_part(y);
-        auto D = border(y);
-        pencil_.precondition(in_main_part(x), C);
-        D = complement.solve(X.adjoint() * C - in_border(x));
-        C -= Y * D;
-      },
-      accuracy, "hill_refine_");
-  Vector right = Vector::Zero(n * m + m * m);
-  main_part(right) = -subspace.residual;
-  Vector solution;
   try {
-    solver.solve(right, solution);
+    HillBorderedSolver solver(pencil_, subspace.X, subspace.T, subspace.mass, accuracy);
+    const HillBorderedSolver::Solution change = solver.solve(-subspace.residual);
+    subspace.X += change.C;
+    subspace.T += change.D;
   } catch (const ConvergenceError&) {
     return false;
   }
-  X += main_part(solution);
-  T += border(solution);
-  to_schur_form(X, T);
+  to_schur_form(subspace.X, subspace.T);
   return true;
 }
 

@@ -35,7 +35,6 @@ class HillRefinement {
     double size = 0.0;      ///< of the residual, relative
   };
 
-  bool take_shift(Complex exponent);
   void find_residual(Subspace& subspace);
   bool correct(Subspace& subspace, double tolerance);
 

@@ -15,6 +15,8 @@
 #include "samara/base/error.hpp"
 #include "samara/math/assignment.hpp"
 
+#include "shape_series.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -25,8 +27,6 @@ using system::EnergyGroup;
 /// Harmonics of a shape relative to its exponent. The shape of a mode of given exponent changes
 /// slowly over the azimuth, so that a few are enough to recognize it.
 constexpr int most_harmonics = 8;
-/// Samples for each harmonic in the fit.
-constexpr int samples_a_harmonic = 3;
 constexpr int azimuths = 16;
 /// Harmonics between the copies of one mode at neighbouring points.
 constexpr int most_shift = 6;
@@ -115,17 +115,6 @@ class EnergySignals {
   std::vector<std::size_t> first_;  ///< of each unknown: another one that is coupled with it
   std::vector<Part> parts_;
 };
-
-/// samples x harmonics: signals times this matrix are the harmonics from -H to H, by least squares
-/// (the samples need not be at equal distances).
-Eigen::MatrixXcd fit_of(const std::vector<double>& times, double rotor_speed, int harmonics) {
-  Eigen::MatrixXcd waves(2 * harmonics + 1, static_cast<Index>(times.size()));
-  for (Index s = 0; s < waves.cols(); ++s)
-    for (int k = -harmonics; k <= harmonics; ++k)
-      waves(k + harmonics, s) =
-          std::polar(1.0, k * rotor_speed * times[static_cast<std::size_t>(s)]);
-  return waves.completeOrthogonalDecomposition().pseudoInverse();
-}
 
 /// Real and imaginary parts of all shapes at an azimuth: signals x (2 modes).
 Eigen::MatrixXd shapes_at(const ModeSignatures& signatures, double azimuth) {
@@ -308,10 +297,9 @@ double shared_likeness(const ModeSignatures& from, const ModeSignatures& to,
 
 ModeSignatures find_signatures(const system::PeriodicSystem& system, const ModeSet& set) {
   const EnergySignals energy_signals(system);
-  const auto samples = static_cast<int>(set.shape_times.size());
   const int harmonics =
-      set.rotor_speed > 0.0 ? std::min(most_harmonics, (samples - 1) / samples_a_harmonic) : 0;
-  const Eigen::MatrixXcd fit = fit_of(set.shape_times, set.rotor_speed, harmonics);
+      set.rotor_speed > 0.0 ? harmonics_of_samples(set.shape_times.size(), most_harmonics) : 0;
+  const Eigen::MatrixXcd fit = harmonics_fit(set.shape_times, set.rotor_speed, harmonics);
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   ModeSignatures result;
   result.rotor_speed = set.rotor_speed;
@@ -320,11 +308,8 @@ ModeSignatures find_signatures(const system::PeriodicSystem& system, const ModeS
     if (!mode.resolved || is_of_medium(mode) || set.shapes[m].size() == 0 ||
         std::abs(mode.exponent) < zero)
       continue;
-    Eigen::MatrixXcd shape = set.shapes[m];
+    const Eigen::MatrixXcd shape = centred_shape(set, m);
     const double largest = shape.cwiseAbs().maxCoeff();
-    for (Index s = 0; s < shape.cols(); ++s)
-      shape.col(s) *= std::polar(
-          1.0, -mode.harmonic * set.rotor_speed * set.shape_times[static_cast<std::size_t>(s)]);
     Eigen::MatrixXcd signals = energy_signals.of(shape) * fit;
     const double energy = signals.squaredNorm();
     if (!(energy > no_energy * largest * largest)) continue;

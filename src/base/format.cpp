@@ -1,6 +1,8 @@
 #include "samara/base/format.hpp"
 
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace samara {
@@ -24,6 +26,16 @@ std::string general(double value, int digits) { return print("%.*g", digits, val
 
 std::string count(int number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
+std::string shortest(double value) {
+  constexpr double most_exact = 1e15;
+  std::array<char, 32> text{};
+  const bool is_whole = value == std::floor(value) && std::abs(value) < most_exact;
+  const auto [end, error] = is_whole ? std::to_chars(text.data(), text.data() + text.size(), value,
+                                                     std::chars_format::fixed)
+                                     : std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
 }
 
 }  // namespace samara

@@ -77,6 +77,8 @@ std::string read_file(const std::string& path) {
 
 }  // namespace
 
+std::string Case::file_text() const { return text.substr(setting_lines(*this).size()); }
+
 Case read_case(const std::string& path, const std::vector<std::string>& settings) {
   return parse_case(path, read_file(path), settings);
 }
@@ -112,7 +114,7 @@ Case parse_case(const std::string& path, const std::string& text,
 void require_valid(const Case& input, const std::vector<Fault>& faults) {
   if (faults.empty()) return;
   ErrorList errors(input.path, input.settings);
-  YamlNode root = parse_yaml(input.text.substr(setting_lines(input).size()));
+  YamlNode root = parse_yaml(input.file_text());
   apply_settings(input.settings, root, errors);
   errors.add(faults, root);
   errors.throw_if_any();

@@ -594,6 +594,11 @@ void ResultFile::write_geometry(const turbine::TurbineSystem& system, const anal
   write_node_motions(storage_->file, group, system, set, instants);
 }
 
+void ResultFile::write_geometry(const turbine::TurbineSystem& system, double t,
+                                const Eigen::VectorXd& z) {
+  io::write_geometry(storage_->file, system, {{t, z}}, "instant");
+}
+
 void ResultFile::write_geometry(const turbine::TurbineSystem& system,
                                 const analysis::StaticPath& path) {
   std::vector<TurbineInstant> instants;

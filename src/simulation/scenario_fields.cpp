@@ -420,6 +420,8 @@ void declare_output(Visitor& fields, const model::TurbineDefinition& turbine,
       Field("channels", "names of [channels.md](channels.md)").or_else("all but those of stations"),
       transient.channels);
   declare_stations(fields, turbine, transient.stations);
+  fields.flag({"places", "adds the places of the turbine's nodes, for animations"},
+              transient.has_places);
 }
 
 void declare_transient(Visitor& fields, const model::TurbineDefinition& turbine,

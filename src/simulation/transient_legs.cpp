@@ -45,7 +45,7 @@ ChannelWatch::ChannelWatch(const TransientSetup& transient, TransientOutput& out
 void ChannelWatch::begin_leg(const turbine::TurbineSystem& system,
                              const std::vector<std::size_t>& watched, const TransientState& state) {
   state_ = state;
-  channels_.emplace(system, transient_.stations, transient_.channels);
+  channels_.emplace(system, transient_);
   values_.resize(channels_->channels().size());
   ranges_.resize(values_.size());
   watched_ = watched;

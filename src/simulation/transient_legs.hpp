@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "samara/simulation/output_channels.hpp"
 #include "samara/simulation/transient_simulation.hpp"
 
 #include "control_loop.hpp"
@@ -48,7 +49,7 @@ class ChannelWatch final : public analysis::TransientObserver {
   TransientOutput& output_;
   ControlLoop* loop_;
   TransientState state_;
-  std::optional<turbine::TurbineChannels> channels_;
+  std::optional<OutputChannels> channels_;
   std::optional<turbine::TurbineChannels> watch_;
   std::vector<std::size_t> watched_;
   std::vector<double> levels_;  ///< levels of the watched channels at the last sample

@@ -7,6 +7,7 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
+#include "samara/simulation/output_channels.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/simulation/validation.hpp"
 
@@ -254,9 +255,8 @@ std::vector<turbine::Channel> find_channels(const TransientSetup& transient,
       at_place("transient.events[" + std::to_string(i) + "].when.channel", [&] {
         return turbine::TurbineChannels(system, transient.stations, {trigger.channel});
       });
-  return at_place("transient.output.channels", [&] {
-    return turbine::TurbineChannels(system, transient.stations, transient.channels).channels();
-  });
+  return at_place("transient.output.channels",
+                  [&] { return OutputChannels(system, transient).channels(); });
 }
 
 }  // namespace samara::simulation

@@ -17,4 +17,7 @@ std::string general(double value, int digits);
 /// "1 mode", "3 modes".
 std::string count(int number, const std::string& noun);
 
+/// The shortest text of a number that reads as the same; a whole number has no exponent.
+std::string shortest(double value);
+
 }  // namespace samara

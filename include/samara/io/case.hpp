@@ -19,6 +19,9 @@ struct Case : simulation::Scenario {
   std::vector<std::string> polar_settings;
   std::string model_text;          ///< the keys that define the model; equal for equal models
   std::vector<std::string> notes;  ///< about keys without their apparent effect, with places
+
+  /// `text` without the lines of settings.
+  std::string file_text() const;
 };
 
 /// Reads and validates a case. `settings` are `key.path=value` pairs that replace or add keys

@@ -70,6 +70,8 @@ class ResultFile {
   /// ("/floquet", "/modes").
   void write_geometry(const turbine::TurbineSystem& system, const analysis::Trim& trim,
                       const std::string& group, const analysis::ModeSet& set);
+  /// The same in one state.
+  void write_geometry(const turbine::TurbineSystem& system, double t, const Eigen::VectorXd& z);
   /// The same in the states of a path.
   void write_geometry(const turbine::TurbineSystem& system, const analysis::StaticPath& path);
 

@@ -33,6 +33,7 @@ struct TransientSetup {
   long output_steps = 1;              ///< steps between rows of the time series
   std::vector<std::string> channels;  ///< empty: all channels except those of stations
   turbine::ChannelStations stations;
+  bool has_places = false;                ///< rows have the places of the turbine's nodes
   std::optional<math::TimeCurve> speed;   ///< speed of the generator [rad/s]
   std::optional<math::TimeCurve> pitch;   ///< pitch of all blades [rad]
   std::optional<math::TimeCurve> yaw;     ///< [rad]

@@ -1,0 +1,63 @@
+// Derivatives of the exponents of modes with respect to a parameter of the system (docs/theory.md,
+// section 5.13): direct differentiation of Hill's eigenproblem, the change of the steady state and
+// of the rotor speed included.
+#pragma once
+
+#include <complex>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "samara/analysis/mode.hpp"
+#include "samara/analysis/periodic_solution.hpp"
+#include "samara/system/periodic_system.hpp"
+
+namespace samara::analysis {
+
+/// The modes of a steady state and their derivatives. For r(p) = (A(p) + lambda B(p)) x with the
+/// pencil of the system and steady state at the value p of a parameter, an eigenpair at p_0 changes
+/// by (A + lambda B) x' + lambda' B x = - dr/dp.
+class ExponentDerivatives {
+ public:
+  /// Finds the eigenpairs of `modes` (numbers in `set`, with shapes) in Hill's eigenproblem, with
+  /// as many harmonics as their exponents need. All arguments but `modes` are kept by reference.
+  ExponentDerivatives(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                      const ModeSet& set, const std::vector<std::size_t>& modes);
+  ~ExponentDerivatives();
+  ExponentDerivatives(const ExponentDerivatives&) = delete;
+  ExponentDerivatives& operator=(const ExponentDerivatives&) = delete;
+
+  /// r of all modes.
+  struct Residuals {
+    std::vector<Eigen::MatrixXcd> groups;
+    double speed = 0.0;  ///< of the rotor [rad/s]
+    bool by_sector = true;
+  };
+  /// r in another system with the same unknowns, about its own steady state. `by_sector`: in
+  /// motions of one blade among identical ones; then the other system must have as many.
+  Residuals residuals(const system::PeriodicSystem& other, const PeriodicSolution& solution,
+                      bool by_sector);
+
+  /// Derivatives of the modes' exponents [1/s per unit of p], with their identified harmonics, for
+  /// each of `rates`, derivatives of the residuals: modes x rates. Not-a-number for a mode whose
+  /// eigenpair was not found, for one at rest, and for equal exponents.
+  /// @throws ConvergenceError
+  Eigen::MatrixXcd derivatives(const std::vector<Residuals>& rates);
+
+ private:
+  class Basis;
+  Basis& basis(bool by_sector);
+
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  const ModeSet& set_;
+  std::vector<std::size_t> modes_;
+  std::unique_ptr<Basis> whole_, sector_;
+};
+
+/// a R + b S, of residuals from the same modes.
+ExponentDerivatives::Residuals combine(double a, const ExponentDerivatives::Residuals& R, double b,
+                                       const ExponentDerivatives::Residuals& S);
+
+}  // namespace samara::analysis

@@ -1,0 +1,91 @@
+"""samara floquet --sensitivity: derivatives in the result, tables, ranks and errors."""
+
+import pathlib
+import sys
+import unittest
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+from program import ProgramTest  # noqa: E402
+
+# One rigid blade on a flap hinge at the hub radius, of mass 4 kg/m and length 9 m.
+CASE = """samara: 1
+gravity: 0
+shaft: {speed: 3}
+hub: {radius: 1}
+blades:
+  count: 3
+  length: 9
+  elements: 3
+  order: 2
+  sections: [{mass: 4, inertia: [0, 0, 0], stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}]
+  hinges: [{axis: flap, offset: 1, joint: free, stiffness: 3000, damping: 200}]
+"""
+
+
+class Sensitivity(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.case = self.folder / "hinged.yaml"
+        self.case.write_text(CASE, encoding="utf-8")
+
+    def rates_of(self, path):
+        with h5py.File(self.folder / path) as file:
+            group = file["floquet/sensitivity"]
+            return (list(group["key"].asstr()[:]), list(group["unit"].asstr()[:]),
+                    group["exponent_rate"][:] @ [1, 1j], group["error"][:], file["floquet/exponents"][:] @ [1, 1j])
+
+    def test_a_hinge_has_the_derivatives_of_its_closed_form(self):
+        run = self.succeed("floquet", "hinged.yaml", "--sensitivity", "blades.hinges.*.stiffness,shaft.speed,hub",
+                            "-o", "run.h5")
+        keys, units, rates, errors, exponents = self.rates_of("run.h5")
+        self.assertEqual(keys, ["blades.hinges.0.stiffness", "shaft.speed", "hub.radius"])
+        self.assertEqual(units, ["N m/rad", "rad/s", "m"])
+        inertia, static = 4 * 9**3 / 3, 4 * 9**2 / 2
+        exponent = -0.5 * 200 / inertia + 1j * numpy.sqrt(3000 / inertia + 9 * (1 + static / inertia)
+                                                          - 0.25 * (200 / inertia) ** 2)
+        slope = 2 * exponent + 200 / inertia
+        copies = numpy.round((exponents - exponent).imag / 3)
+        # A root further outboard, behind the same hinge: I' = 2 S, S' = m l.
+        by_radius = (200 * 2 * static / inertia**2 * exponent + 3000 * 2 * static / inertia**2
+                     - 9 * (4 * 9 / inertia - 2 * static**2 / inertia**2)) / slope
+        expected = numpy.stack([numpy.full(3, -1 / inertia / slope), -6 * (1 + static / inertia) / slope + 1j * copies,
+                                numpy.full(3, by_radius)], axis=1)
+        self.assertLess(abs(rates / expected - 1).max(), 1e-6)
+        self.assertLess((errors / abs(expected)).max(), 1e-4)
+        # The table has the change for one per cent.
+        change = 0.01 * 3 * expected[0, 1].imag / (2 * numpy.pi)
+        row = next(line for line in run.stdout.split("sensitivity to shaft.speed")[1].splitlines() if line.startswith("1 "))
+        self.assertIn(f"{change:.4g}", row)
+
+    def test_ranks_find_the_same(self):
+        arguments = ["floquet", "hinged.yaml", "--sensitivity", "blades.hinges,hub.radius", "-o"]
+        self.succeed(*arguments, "one.h5")
+        self.succeed(*arguments, "two.h5", ranks=2)
+        one, two = self.rates_of("one.h5"), self.rates_of("two.h5")
+        self.assertEqual(one[:2], two[:2])
+        numpy.testing.assert_allclose(one[2], two[2], rtol=1e-7)
+
+    def test_a_key_that_is_zero_has_its_derivative_per_unit(self):
+        run = self.succeed("floquet", "hinged.yaml", "--set", "gravity=0", "--set", "blades.hinges.0.damping=0",
+                            "--sensitivity", "blades.hinges.0.damping", "-o", "zero.h5")
+        _, _, rates, _, _ = self.rates_of("zero.h5")
+        inertia = 4 * 9**3 / 3
+        self.assertLess(abs(rates + 0.5 / inertia).max(), 1e-6 / inertia)
+        self.assertIn("per unit", run.stdout)
+
+    def test_errors_name_the_key(self):
+        for keys, words in (("blades.hinge", 'no "hinge"; did you mean "hinges"?'),
+                            ("blades.count", "blades.count"),
+                            ("blades.hinges.0.axis", "no number there"),
+                            ("shaft.speed,shaft", "shaft.speed is named twice")):
+            with self.subTest(keys=keys):
+                self.refuse("floquet", "hinged.yaml", "--sensitivity", keys, "-o", "none.h5", words=[words])
+                self.assertFalse((self.folder / "none.h5").exists())
+        self.refuse("modes", "hinged.yaml", "--sensitivity", "shaft.speed", words=["samara floquet does"])
+
+
+if __name__ == "__main__":
+    unittest.main()
