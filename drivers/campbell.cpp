@@ -23,8 +23,6 @@ using simulation::CampbellLine;
 using simulation::CampbellPoint;
 using simulation::StabilityEdge;
 
-constexpr int value_digits = 6;
-
 /// What the files contain: only on the first rank.
 struct Diagram {
   std::vector<CampbellPoint> points;
@@ -38,11 +36,11 @@ Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& fil
   Diagram diagram;
   analysis::ModeTracker tracker;
   std::map<std::string, std::vector<std::string>> notes;  // places of each
-  for (std::size_t i = 0; i < plan.values.size(); ++i) {
+  for (std::size_t i = 0; i < plan.places.size(); ++i) {
     std::optional<CampbellPoint> read = files.read(i);
     if (!read) continue;
     CampbellPoint& point = *read;
-    const std::string place = plan.quantity.key + "=" + general(point.value, value_digits);
+    const std::string place = words_of(plan.quantities, point.place);
     for (const std::string& note : point.notes) notes[note].push_back(place);
     if (point.failure.empty()) {
       tracker.add(diagram.points.size(), std::move(point.signatures));
@@ -99,17 +97,17 @@ void run_campbell(const Job& job) {
   const bool is_interrupted = !ranks.all(!Interruption::is_asked());
   int found = static_cast<int>(diagram.points.size());
   ranks.share(0, found);
-  const bool is_complete = found == static_cast<int>(plan.values.size()) && !is_interrupted;
+  const bool is_complete = found == static_cast<int>(plan.places.size()) && !is_interrupted;
   progress.finish();
   if (is_first && found > 0)
     deliver(
         job,
         title_of(job.input) + "\n\n" +
-            campbell_point_table(plan.quantity, diagram.points, diagram.lines) + "\n" +
+            campbell_point_table(plan.quantities, diagram.points, diagram.lines) + "\n" +
             campbell_line_table(diagram.points, diagram.lines, edges) +
             campbell_doubts(diagram.points, diagram.lines),
         [&](io::ResultFile& file) {
-          io::write_campbell(file, plan.quantity, diagram.points, diagram.lines, edges,
+          io::write_campbell(file, plan.quantities, diagram.points, diagram.lines, edges,
                              is_complete);
         },
         [&](const std::string& path) {
@@ -118,7 +116,7 @@ void run_campbell(const Job& job) {
   // On all ranks: the signal may have come to any of them.
   if (!is_complete)
     throw Interrupted("interrupted after " + std::to_string(found) + " of " +
-                      std::to_string(plan.values.size()) +
+                      std::to_string(plan.places.size()) +
                       " points; hint: the same command goes on from here");
   if (!is_first) return;
   files.remove();

@@ -20,6 +20,7 @@ namespace {
 
 using simulation::CampbellPoint;
 using simulation::StabilityEdge;
+using simulation::SweepPlace;
 
 constexpr int exact_digits = 17;
 
@@ -36,8 +37,8 @@ class SweepFinder final : public CampbellPointFinder {
   explicit SweepFinder(const Sweep& sweep) : sweep_(sweep) {}
 
  private:
-  CampbellPoint find_modes(double value, analysis::Observer& observer) override {
-    const io::Case input = sweep_.case_at(value);
+  CampbellPoint find_modes(const SweepPlace& place, analysis::Observer& observer) override {
+    const io::Case input = sweep_.case_at(place);
     const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
     const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
     last_ = simulation::solve_trim(input, system, simulation::trim_options(input), observer,
@@ -60,11 +61,11 @@ class OperationFinder final : public CampbellPointFinder {
       : input_(input), finder_(input, table) {}
 
  private:
-  CampbellPoint find_modes(double value, analysis::Observer& observer) override {
-    finder_.find_at(value, observer);
+  CampbellPoint find_modes(const SweepPlace& place, analysis::Observer& observer) override {
+    finder_.find_at(place.value, observer);
     CampbellPoint result =
         simulation::find_campbell_point(finder_.system(), finder_.trim(), input_.floquet, observer);
-    result.wind_speed = value;
+    result.wind_speed = place.value;
     return result;
   }
 
@@ -83,7 +84,7 @@ void bisect(CampbellPointFinder& finder, StabilityEdge& edge) {
       simulation::edge_accuracy * std::max(std::abs(edge.to), std::abs(edge.from));
   while (std::abs(edge.to - edge.from) > accuracy && !Interruption::is_asked()) {
     const double middle = 0.5 * (edge.from + edge.to);
-    const CampbellPoint point = finder.find(middle);
+    const CampbellPoint point = finder.find({middle, edge.second});
     if (!point.failure.empty()) return;
     const int growing = simulation::count_growing(point);
     if (growing == edge.growing_from) {
@@ -97,7 +98,7 @@ void bisect(CampbellPointFinder& finder, StabilityEdge& edge) {
 
 }  // namespace
 
-CampbellPoint CampbellPointFinder::find(double value) {
+CampbellPoint CampbellPointFinder::find(const SweepPlace& place) {
   Notes notes;
   CampbellPoint result;
   const auto fail = [&](const std::exception& error) {
@@ -106,7 +107,7 @@ CampbellPoint CampbellPointFinder::find(double value) {
     result.rotor_speed = result.pitch = std::numeric_limits<double>::quiet_NaN();
   };
   try {
-    result = find_modes(value, notes);
+    result = find_modes(place, notes);
   } catch (const InputError& error) {
     fail(error);
   } catch (const ConvergenceError& error) {
@@ -114,7 +115,7 @@ CampbellPoint CampbellPointFinder::find(double value) {
   } catch (const DomainError& error) {
     fail(error);
   }
-  result.value = value;
+  result.place = place;
   result.notes = std::move(notes.texts);
   return result;
 }
@@ -122,20 +123,22 @@ CampbellPoint CampbellPointFinder::find(double value) {
 CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::ScheduledPoint>& table) {
   CampbellPlan plan;
   if (job.sweep.is_given()) {
-    plan.quantity = {job.sweep.key(), io::unit_of_key(job.sweep.key())};
-    plan.values = job.sweep.values();
+    for (const std::string& key : job.sweep.keys())
+      plan.quantities.push_back({key, io::unit_of_key(key)});
+    plan.places = job.sweep.places();
     for (const std::string& text : job.sweep.case_texts())
       plan.origins.push_back(origin_of(text, ""));
     plan.finder = std::make_unique<SweepFinder>(job.sweep);
   } else {
-    plan.quantity = {"wind.speed", "m/s"};
-    plan.values = simulation::operating_winds(job.input, table);
+    plan.quantities = {{"wind.speed", "m/s"}};
     std::string rows;
     for (const simulation::ScheduledPoint& row : table)
       for (const double value : {row.wind, row.speed, row.pitch})
         rows += general(value, exact_digits) + " ";
-    for (const double wind : plan.values)
+    for (const double wind : simulation::operating_winds(job.input, table)) {
+      plan.places.push_back({wind});
       plan.origins.push_back(origin_of(job.input.text, rows + general(wind, exact_digits)));
+    }
     plan.finder = std::make_unique<OperationFinder>(job.input, table);
   }
   return plan;
@@ -146,7 +149,7 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
   const auto rank = static_cast<std::size_t>(ranks.rank);
   const auto size = static_cast<std::size_t>(ranks.size);
   std::vector<std::size_t> missing;
-  for (std::size_t point = 0; point < plan.values.size(); ++point)
+  for (std::size_t point = 0; point < plan.places.size(); ++point)
     if (!files.has(point)) missing.push_back(point);
   // No rank writes before all have looked.
   MPI_Barrier(ranks.comm);
@@ -154,7 +157,7 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
   const std::size_t end = missing.size() * (rank + 1) / size;
   for (std::size_t i = first; i < end && !Interruption::is_asked(); ++i) {
     observer.progress("points", static_cast<long>(i - first), static_cast<long>(end - first));
-    files.write(missing[i], plan.finder->find(plan.values[missing[i]]));
+    files.write(missing[i], plan.finder->find(plan.places[missing[i]]));
   }
 }
 

@@ -23,19 +23,20 @@ class CampbellPointFinder {
   CampbellPointFinder& operator=(const CampbellPointFinder&) = delete;
   virtual ~CampbellPointFinder() = default;
 
-  /// The point at a value of the swept quantity. Where it has no steady state, or its modes are not
-  /// found, it has the reason.
-  simulation::CampbellPoint find(double value);
+  /// The point at a place. Where it has no steady state, or its modes are not found, it has the
+  /// reason.
+  simulation::CampbellPoint find(const simulation::SweepPlace& place);
 
  private:
   /// @throws InputError, ConvergenceError, DomainError
-  virtual simulation::CampbellPoint find_modes(double value, analysis::Observer& observer) = 0;
+  virtual simulation::CampbellPoint find_modes(const simulation::SweepPlace& place,
+                                               analysis::Observer& observer) = 0;
 };
 
-/// The points to find: at the values of job.sweep, or at the operating points of the case.
+/// The points to find: at the places of job.sweep, or at the operating points of the case.
 struct CampbellPlan {
-  io::SweptQuantity quantity;
-  std::vector<double> values;
+  std::vector<io::SweptQuantity> quantities;  ///< one, or the two of a map
+  std::vector<simulation::SweepPlace> places;
   std::vector<std::string> origins;  ///< of io::CampbellPointFiles
   std::unique_ptr<CampbellPointFinder> finder;
 };

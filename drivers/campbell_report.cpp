@@ -66,6 +66,26 @@ std::string growing_words(const std::vector<GrowthRange>& ranges) {
   return text;
 }
 
+bool is_map(const std::vector<CampbellPoint>& points) {
+  return !points.empty() && std::isfinite(points.front().place.second);
+}
+
+std::string place_words(const CampbellPoint& point) {
+  return general(point.place.value, value_digits) +
+         (std::isfinite(point.place.second) ? ", " + general(point.place.second, value_digits)
+                                            : "");
+}
+
+/// "12 of 45 points"; empty where a mode grows nowhere.
+std::string growing_part(const std::vector<CampbellPoint>& points, const CampbellLine& line) {
+  const auto growing = std::ranges::count_if(line.modes, [&](const TrackedMode& tracked) {
+    return is_growing(points[tracked.point].modes[tracked.mode]);
+  });
+  return growing == 0 ? ""
+                      : std::to_string(growing) + " of " +
+                            count(static_cast<int>(line.modes.size()), "point");
+}
+
 /// True if a mode has another frequency in the fixed frame than in the frame of its part.
 bool has_fixed_frame(const std::vector<CampbellPoint>& points) {
   for (const CampbellPoint& point : points)
@@ -78,16 +98,25 @@ bool has_fixed_frame(const std::vector<CampbellPoint>& points) {
 
 }  // namespace
 
-std::string campbell_point_table(const io::SweptQuantity& quantity,
+std::string words_of(const std::vector<io::SweptQuantity>& quantities,
+                     const simulation::SweepPlace& place) {
+  std::string text = quantities.front().key + "=" + general(place.value, value_digits);
+  if (quantities.size() > 1)
+    text += ", " + quantities.back().key + "=" + general(place.second, value_digits);
+  return text;
+}
+
+std::string campbell_point_table(const std::vector<io::SweptQuantity>& quantities,
                                  const std::vector<CampbellPoint>& points,
                                  const std::vector<CampbellLine>& lines) {
   const std::vector<std::vector<Placed>> places = places_of(points, lines);
   const bool has_wind =
-      quantity.key != "wind.speed" && std::ranges::any_of(points, [](const CampbellPoint& point) {
-        return std::isfinite(point.wind_speed);
-      });
+      quantities.front().key != "wind.speed" && quantities.back().key != "wind.speed" &&
+      std::ranges::any_of(
+          points, [](const CampbellPoint& point) { return std::isfinite(point.wind_speed); });
   Table table;
-  table.add_column(quantity.key, quantity.unit == "1" ? "" : quantity.unit);
+  for (const io::SweptQuantity& quantity : quantities)
+    table.add_column(quantity.key, quantity.unit == "1" ? "" : quantity.unit);
   table.add_column("speed", "rpm");
   if (has_wind) table.add_column("wind", "m/s");
   table.add_column("pitch", "deg");
@@ -98,8 +127,9 @@ std::string campbell_point_table(const io::SweptQuantity& quantity,
   for (std::size_t p = 0; p < points.size(); ++p) {
     const CampbellPoint& point = points[p];
     const bool is_found = point.failure.empty();
-    std::vector<std::string> row{general(point.value, value_digits),
-                                 is_found ? fixed(point.rotor_speed * to_rpm, 3) : "-"};
+    std::vector<std::string> row{general(point.place.value, value_digits)};
+    if (quantities.size() > 1) row.push_back(general(point.place.second, value_digits));
+    row.push_back(is_found ? fixed(point.rotor_speed * to_rpm, 3) : "-");
     if (has_wind)
       row.push_back(std::isfinite(point.wind_speed) ? general(point.wind_speed, 5) : "-");
     row.push_back(is_found ? fixed(point.pitch * to_degrees, 3) : "-");
@@ -144,7 +174,7 @@ std::string campbell_line_table(const std::vector<CampbellPoint>& points,
     for (const TrackedMode* end : {&line.modes.front(), &line.modes.back()}) {
       const CampbellPoint& point = points[end->point];
       const CampbellMode& mode = point.modes[end->mode];
-      row.push_back(general(point.value, value_digits));
+      row.push_back(place_words(point));
       row.push_back(hertz(tracked_exponent(mode.exponent, *end, point.rotor_speed).imag()));
       if (has_frame)
         row.push_back(std::isfinite(mode.fixed_frame_frequency) ? hertz(mode.fixed_frame_frequency)
@@ -156,8 +186,9 @@ std::string campbell_line_table(const std::vector<CampbellPoint>& points,
           (least == nullptr || damping_of(points, tracked) < damping_of(points, *least)))
         least = &tracked;
     row.push_back(least != nullptr ? fixed(100.0 * damping_of(points, *least), 3) : "-");
-    row.push_back(least != nullptr ? general(points[least->point].value, value_digits) : "-");
-    row.push_back(growing_words(find_growth(points, line, edges)));
+    row.push_back(least != nullptr ? place_words(points[least->point]) : "-");
+    row.push_back(is_map(points) ? growing_part(points, line)
+                                 : growing_words(find_growth(points, line, edges)));
     double error = 0.0;
     for (const TrackedMode& tracked : line.modes)
       error = std::max(error, points[tracked.point].modes[tracked.mode].error);
@@ -182,7 +213,7 @@ std::string campbell_doubts(const std::vector<CampbellPoint>& points,
       if (line.modes[i].likeness >= ModeTracker::clear_likeness) continue;
       if (unclear++ < most_named)
         names += (names.empty() ? "" : ", ") + line.name + " at " +
-                 general(points[line.modes[i].point].value, value_digits);
+                 place_words(points[line.modes[i].point]);
     }
   if (unclear == 0) return "";
   return "unclear, with a likeness below " + general(ModeTracker::clear_likeness, 2) + ", at " +

@@ -112,8 +112,7 @@ class Parser {
       set_once(line_.restart_path, name,
                value_of(name, "a result to go on from, e.g. --restart run.h5", value));
     else if (name == "--sweep")
-      set_once(
-          line_.sweep, name,
+      line_.sweep.push_back(
           value_of(name, "a key and its values, e.g. --sweep shaft.speed_rpm=0:14:0.5", value));
     else if (name == "--csv")
       set_once(line_.csv_path, name, value_of(name, "a path, e.g. --csv modes.csv", value));
@@ -393,7 +392,8 @@ constexpr char option_lines[] =
                     separated by commas, * for all items: tower.sections.*.mass
   --parked          the rotor stands still, as with --set shaft.speed=0 (modes)
   --restart FILE.h5 continues from the last checkpoint of a result (transient)
-  --sweep KEY=VALUES the values of a key (campbell): FROM:TO:STEP, or V1,V2,...
+  --sweep KEY=VALUES the values of a key (campbell): FROM:TO:STEP, or V1,V2,...; given twice, a
+                    map over two keys
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
   --help-options    the prefixes of options of PETSc and SLEPc

@@ -58,10 +58,10 @@ struct CommandLine {
   std::string sensitivity;  ///< patterns of keys, separated by commas
   bool parked = false;
   std::vector<std::string> settings;
-  std::string result_path;   ///< path of the output; empty: not given
-  std::string csv_path;      ///< empty: no table
-  std::string restart_path;  ///< path of a result to continue; empty: not given
-  std::string sweep;         ///< key and values; empty: not given
+  std::string result_path;         ///< path of the output; empty: not given
+  std::string csv_path;            ///< empty: no table
+  std::string restart_path;        ///< path of a result to continue; empty: not given
+  std::vector<std::string> sweep;  ///< keys and values; empty: not given
   std::vector<std::string> petsc_options;
 };
 

@@ -12,6 +12,8 @@
 #include "samara/model/turbine.hpp"
 #include "samara/simulation/validation.hpp"
 
+#include "command_line.hpp"
+
 namespace samara::drivers {
 namespace {
 
@@ -56,38 +58,80 @@ std::vector<double> range_of(const std::vector<double>& limits) {
   return values;
 }
 
-}  // namespace
+/// A key and its values.
+struct Axis {
+  std::string key;
+  std::vector<double> values;
+};
 
-Sweep::Sweep(const std::string& text, std::string path, std::vector<std::string> settings)
-    : path_(std::move(path)), settings_(std::move(settings)) {
+Axis read_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw InputError(std::string("--sweep: ") + form);
   const std::string values = text.substr(equals + 1);
-  key_ = text.substr(0, equals);
-  values_ = values.find(':') != std::string::npos ? range_of(numbers_of(values, ':'))
-                                                  : numbers_of(values, ',');
-  std::vector<double> sorted = values_;
+  Axis axis{text.substr(0, equals), values.find(':') != std::string::npos
+                                        ? range_of(numbers_of(values, ':'))
+                                        : numbers_of(values, ',')};
+  std::vector<double> sorted = axis.values;
   std::ranges::sort(sorted);
   const auto twice = std::ranges::adjacent_find(sorted);
   if (twice != sorted.end())
     throw InputError("--sweep: " + general(*twice, 6) + " is given twice; leave one of them out");
+  return axis;
+}
+
+std::vector<simulation::SweepPlace> places_of(const std::vector<Axis>& axes) {
+  std::vector<simulation::SweepPlace> places;
+  std::vector<double> row = axes.front().values;
+  if (axes.size() == 1) {
+    for (const double value : row) places.push_back({value});
+    return places;
+  }
+  for (const double second : axes.back().values) {
+    for (const double value : row) places.push_back({value, second});
+    std::ranges::reverse(row);
+  }
+  return places;
+}
+
+}  // namespace
+
+Sweep::Sweep(const std::vector<std::string>& texts, std::string path,
+             std::vector<std::string> settings)
+    : path_(std::move(path)), settings_(std::move(settings)) {
+  if (texts.size() > 2)
+    throw InputError("--sweep is given " + std::to_string(texts.size()) +
+                     " times; hint: one key, or two for a map");
+  std::vector<Axis> axes;
+  for (const std::string& text : texts) {
+    axes.push_back(read_axis(text));
+    keys_.push_back(axes.back().key);
+  }
+  if (keys_.size() == 2 && keys_.front() == keys_.back())
+    throw InputError("--sweep: " + keys_.front() + " is given twice; hint: two keys for a map");
+  std::size_t count = 1;
+  for (const Axis& axis : axes) count *= axis.values.size();
+  if (count > most_values)
+    throw InputError("--sweep: " + std::to_string(count) + " points; hint: at most " +
+                     std::to_string(most_values));
+  places_ = places_of(axes);
   std::optional<int> freedom;
-  for (const double value : values_) {
-    const io::Case input = case_at(value);
+  for (const simulation::SweepPlace& place : places_) {
+    const io::Case input = case_at(place);
     case_texts_.push_back(input.text);
     const int own = model::build_turbine(input.turbine).degrees_of_freedom;
     if (freedom.value_or(own) != own)
-      throw InputError("--sweep " + key_ +
+      throw InputError("--sweep " + join(keys_, ", ") +
                        ": modes of different meshes cannot be compared; hint: a key that keeps "
                        "the parts and the elements");
     freedom = own;
   }
 }
 
-io::Case Sweep::case_at(double value) const {
+io::Case Sweep::case_at(const simulation::SweepPlace& place) const {
   std::vector<std::string> own = settings_;
-  own.push_back(key_ + "=" + shortest(value));
+  own.push_back(keys_.front() + "=" + shortest(place.value));
+  if (keys_.size() > 1) own.push_back(keys_.back() + "=" + shortest(place.second));
   io::Case input = io::read_case(path_, own);
   io::require_valid(input, simulation::validate(input, input.turbine.shaft.speed == 0.0
                                                            ? simulation::Analysis::modes

@@ -14,6 +14,7 @@
 #include "samara/io/whole_file.hpp"
 #include "samara/io/wind_files.hpp"
 #include "samara/petsc/session.hpp"
+#include "samara/simulation/output_channels.hpp"
 #include "samara/simulation/transient_simulation.hpp"
 #include "samara/simulation/validation.hpp"
 
@@ -29,19 +30,20 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// The first `count` channels.
 std::string channel_table(const std::vector<turbine::Channel>& channels,
-                          const std::vector<simulation::ChannelRange>& ranges) {
+                          const std::vector<simulation::ChannelRange>& ranges, std::size_t count) {
   Table table;
   table.add_column("channel", "", Align::left);
   table.add_column("unit", "", Align::left);
   for (const char* name : {"least", "mean", "largest", "last"}) table.add_column(name, "");
-  for (std::size_t i = 0; i < channels.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const simulation::ChannelRange& range = ranges[i];
     if (range.rows == 0) continue;
     table.add_row({channels[i].name, channels[i].unit, general(range.least, 4),
                    general(range.mean(), 4), general(range.largest, 4), general(range.last, 4)});
   }
-  return table.text();
+  return table.text() + (count < channels.size() ? "and places of nodes\n" : "");
 }
 
 std::string summary(const io::Case& input, const simulation::TransientSummary& done,
@@ -131,6 +133,8 @@ void run_transient(const Job& job) {
   const turbine::TurbineSystem begun(turbine, PETSC_COMM_SELF);
   const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
   const analysis::TransientStart begin = simulation.state().point;
+  std::size_t listed = simulation.channels().size();
+  if (transient.has_places) listed -= simulation::channels_of_places(begun);
   io::TimeSeriesContent content;
   content.channels = simulation.channels();
   content.azimuth = turbine.azimuth;
@@ -157,8 +161,8 @@ void run_transient(const Job& job) {
     file.finish(is_complete ? "complete" : "interrupted", is_complete ? &done.run.end : nullptr);
     progress.finish();
     std::cout << summary(job.input, done, seconds)
-              << channel_table(simulation.channels(), done.ranges) << "result: " << job.result_path
-              << "\n"
+              << channel_table(simulation.channels(), done.ranges, listed)
+              << "result: " << job.result_path << "\n"
               << std::flush;
     if (!is_complete)
       throw Interrupted("interrupted at t = " + general(done.run.end.time, 6) + " s" +

@@ -44,7 +44,7 @@ constexpr char mode_names_name[] = "/point/mode_names";
 constexpr char participation_name[] = "/point/participation";
 constexpr char signals_name[] = "/point/signals";
 
-constexpr std::size_t point_values = 5;
+constexpr std::size_t point_values = 6;
 constexpr std::size_t mode_values = 7;
 
 Meaning plain(const std::vector<std::string>& axes) { return {"1", "none", "internal", axes}; }
@@ -98,13 +98,16 @@ LineValues values_of(const CampbellPoint& point, const TrackedMode& tracked) {
   return values;
 }
 
-void write_edges(ResultFile& file, const SweptQuantity& quantity,
+void write_edges(ResultFile& file, const std::vector<SweptQuantity>& quantities,
                  const std::vector<StabilityEdge>& edges) {
   if (edges.empty()) return;
+  const SweptQuantity& quantity = quantities.front();
   std::vector<double> places;
+  std::vector<double> seconds;
   std::vector<double> growing;
   for (const StabilityEdge& edge : edges) {
     places.insert(places.end(), {edge.from, edge.to});
+    seconds.push_back(edge.second);
     growing.insert(growing.end(),
                    {static_cast<double>(edge.growing_from), static_cast<double>(edge.growing_to)});
   }
@@ -116,6 +119,10 @@ void write_edges(ResultFile& file, const SweptQuantity& quantity,
        "none",
        "values of " + quantity.key + " between which the number of growing modes changes",
        {"edge", "side"}});
+  if (quantities.size() > 1)
+    file.write_values(
+        "/campbell/edge_second_value", seconds,
+        {quantities.back().unit, "none", "value of " + quantities.back().key + " there", {"edge"}});
   file.write_array("/campbell/edge_growing", growing, {edges.size(), 2},
                    {"1", "none", "number of growing modes there", {"edge", "side"}});
 }
@@ -160,9 +167,9 @@ void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) 
   file.write(origin_name, origins_[point], plain({}));
   file.write(failure_name, content.failure + "\n", plain({}));
   file.write(notes_name, lines_of(content.notes) + "\n", plain({}));
-  const std::array<double, point_values> values{content.value, content.rotor_speed,
-                                                content.wind_speed, content.pitch,
-                                                static_cast<double>(content.stability)};
+  const std::array<double, point_values> values{
+      content.place.value, content.place.second, content.rotor_speed,
+      content.wind_speed,  content.pitch,        static_cast<double>(content.stability)};
   file.write(values_name, values, {values.size()}, plain({"entry"}));
   const std::size_t count = content.modes.size();
   if (count > 0) {
@@ -202,11 +209,11 @@ std::optional<CampbellPoint> CampbellPointFiles::read(std::size_t point) const {
   CampbellPoint content;
   const std::vector<double> values = file.numbers(values_name);
   if (values.size() != point_values) refuse();
-  content.value = values[0];
-  content.rotor_speed = values[1];
-  content.wind_speed = values[2];
-  content.pitch = values[3];
-  content.stability = static_cast<Stability>(static_cast<int>(values[4]));
+  content.place = {values[0], values[1]};
+  content.rotor_speed = values[2];
+  content.wind_speed = values[3];
+  content.pitch = values[4];
+  content.stability = static_cast<Stability>(static_cast<int>(values[5]));
   content.failure = file.text(failure_name);
   while (content.failure.ends_with('\n')) content.failure.pop_back();
   for (const std::string& note : texts_of(file.text(notes_name)))
@@ -266,7 +273,7 @@ void CampbellPointFiles::remove() const {
   fs::remove(folder_, error);  // only if it is empty
 }
 
-void write_campbell(ResultFile& file, const SweptQuantity& quantity,
+void write_campbell(ResultFile& file, const std::vector<SweptQuantity>& quantities,
                     const std::vector<CampbellPoint>& points,
                     const std::vector<CampbellLine>& lines, const std::vector<StabilityEdge>& edges,
                     bool is_complete) {
@@ -275,13 +282,23 @@ void write_campbell(ResultFile& file, const SweptQuantity& quantity,
     for (const CampbellPoint& point : points) values.push_back(value(point));
     file.write_values("/campbell/" + name, values, meaning);
   };
-  of_points("value", {quantity.unit, "none", "value of " + quantity.key, {"value"}},
-            [](const CampbellPoint& point) { return point.value; });
-  of_points("rotor_speed", {"rad/s", "about +s2", "mean speed of the rotor", {"value"}},
+  const SweptQuantity& quantity = quantities.front();
+  const bool is_map = quantities.size() > 1;
+  // The axis of the points: their values, or their numbers in a map.
+  const std::string axis = is_map ? "point" : "value";
+  of_points("value", {quantity.unit, "none", "value of " + quantity.key, {axis}},
+            [](const CampbellPoint& point) { return point.place.value; });
+  if (is_map) {
+    const SweptQuantity& second = quantities.back();
+    of_points("second_value", {second.unit, "none", "value of " + second.key, {axis}},
+              [](const CampbellPoint& point) { return point.place.second; });
+    file.set_attribute("/campbell", "second_key", second.key);
+  }
+  of_points("rotor_speed", {"rad/s", "about +s2", "mean speed of the rotor", {axis}},
             [](const CampbellPoint& point) { return point.rotor_speed; });
-  of_points("wind_speed", {"m/s", "none", "speed of the wind; not-a-number without air", {"value"}},
+  of_points("wind_speed", {"m/s", "none", "speed of the wind; not-a-number without air", {axis}},
             [](const CampbellPoint& point) { return point.wind_speed; });
-  of_points("pitch", {"rad", "none", "pitch of the blades, toward feather", {"value"}},
+  of_points("pitch", {"rad", "none", "pitch of the blades, toward feather", {axis}},
             [](const CampbellPoint& point) { return point.pitch; });
   std::vector<std::string> verdicts;
   for (const CampbellPoint& point : points)
@@ -292,10 +309,10 @@ void write_campbell(ResultFile& file, const SweptQuantity& quantity,
                     "none",
                     "stable, neutral, unstable or no verdict; failed: and the reason where no "
                     "modes were found",
-                    {"value"}});
+                    {axis}});
   file.set_attribute("/campbell", "key", quantity.key);
   file.set_attribute("/campbell", "status", is_complete ? "complete" : "interrupted");
-  write_edges(file, quantity, edges);
+  write_edges(file, quantities, edges);
   std::vector<std::string> names;
   for (const CampbellLine& line : lines) names.push_back(line.name);
   if (names.empty()) return;
@@ -313,7 +330,7 @@ void write_campbell(ResultFile& file, const SweptQuantity& quantity,
                      {unit,
                       "none",
                       description + "; not-a-number where the mode was not found",
-                      {"mode", "value"}});
+                      {"mode", axis}});
   };
   of_lines("growth_rate", "1/s", "real part of the exponent",
            [](const LineValues& entry) { return entry.exponent.real(); });
@@ -348,7 +365,7 @@ void write_campbell(ResultFile& file, const SweptQuantity& quantity,
                    {"1",
                     "none",
                     "share of the mean kinetic energy in each harmonic",
-                    {"mode", "value", "harmonic"}});
+                    {"mode", axis, "harmonic"}});
 }
 
 void write_campbell_table(const std::string& path, const std::vector<CampbellPoint>& points,
@@ -356,18 +373,22 @@ void write_campbell_table(const std::string& path, const std::vector<CampbellPoi
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text.precision(std::numeric_limits<double>::max_digits10);
+  const bool is_map = !points.empty() && std::isfinite(points.front().place.second);
   text << campbell_table_start
        << "rotor_speed,frequency_hz,fixed_frame_frequency_hz,damping_ratio,growth_rate,error,"
-          "error_growth,likeness\n";
+          "error_growth,likeness"
+       << (is_map ? ",second_value" : "") << '\n';
   for (const CampbellLine& line : lines)
     for (const TrackedMode& tracked : line.modes) {
       const CampbellPoint& point = points[tracked.point];
       const LineValues values = values_of(point, tracked);
-      text << point.value << ',' << line.name << ',' << point.rotor_speed << ','
+      text << point.place.value << ',' << line.name << ',' << point.rotor_speed << ','
            << std::abs(values.exponent.imag()) / two_pi << ','
            << values.fixed_frame_frequency / two_pi << ',' << values.damping_ratio << ','
            << values.exponent.real() << ',' << values.error << ',' << values.growth_error << ','
-           << values.likeness << '\n';
+           << values.likeness;
+      if (is_map) text << ',' << point.place.second;
+      text << '\n';
     }
   write_whole_file(path, text.str());
 }

@@ -40,10 +40,11 @@ const CampbellMode& mode_of(const std::vector<CampbellPoint>& points, const Trac
 /// points.
 std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& b,
                                    const std::vector<StabilityEdge>& edges) {
-  const auto [low, high] = std::minmax(a.value, b.value);
+  const auto [low, high] = std::minmax(a.place.value, b.place.value);
   const double accuracy = edge_accuracy * std::max(std::abs(low), std::abs(high));
   for (const StabilityEdge& edge : edges)
-    if (std::abs(edge.to - edge.from) <= accuracy && std::min(edge.from, edge.to) >= low &&
+    if (are_in_a_row({edge.from, edge.second}, a.place) &&
+        std::abs(edge.to - edge.from) <= accuracy && std::min(edge.from, edge.to) >= low &&
         std::max(edge.from, edge.to) <= high && edge.growing_from == count_growing(a) &&
         edge.growing_to == count_growing(b))
       return 0.5 * (edge.from + edge.to);
@@ -61,6 +62,10 @@ std::string most_frequent_name(const std::vector<CampbellPoint>& points,
 }
 
 }  // namespace
+
+bool are_in_a_row(const SweepPlace& a, const SweepPlace& b) {
+  return std::isnan(a.second) ? std::isnan(b.second) : a.second == b.second;
+}
 
 CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const analysis::Trim& trim,
                                   const analysis::FloquetOptions& options,
@@ -102,9 +107,11 @@ std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points) 
   const CampbellPoint* last = nullptr;
   for (const CampbellPoint& point : points) {
     if (!point.failure.empty()) continue;
-    const bool turns = last != nullptr && last->rotor_speed > 0.0 && point.rotor_speed > 0.0;
+    const bool turns = last != nullptr && are_in_a_row(last->place, point.place) &&
+                       last->rotor_speed > 0.0 && point.rotor_speed > 0.0;
     if (turns && count_growing(*last) != count_growing(point))
-      edges.push_back({last->value, point.value, count_growing(*last), count_growing(point)});
+      edges.push_back({last->place.value, point.place.value, point.place.second,
+                       count_growing(*last), count_growing(point)});
     last = &point;
   }
   return edges;
@@ -121,11 +128,15 @@ std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
   for (std::size_t i = 0; i < line.modes.size(); ++i) {
     if (!grows(i)) continue;
     const std::size_t first = i;
-    while (i + 1 < line.modes.size() && grows(i + 1)) ++i;
-    GrowthRange range{point_of(first).value, point_of(i).value};
-    if (first > 0)
+    const auto goes_on = [&](std::size_t before, std::size_t after) {
+      return are_in_a_row(point_of(before).place, point_of(after).place);
+    };
+    while (i + 1 < line.modes.size() && grows(i + 1) && goes_on(i, i + 1)) ++i;
+    GrowthRange range{point_of(first).place.value, point_of(i).place.value,
+                      point_of(i).place.second};
+    if (first > 0 && goes_on(first - 1, first))
       range.from = edge_between(point_of(first - 1), point_of(first), edges).value_or(range.from);
-    if (i + 1 < line.modes.size())
+    if (i + 1 < line.modes.size() && goes_on(i, i + 1))
       range.to = edge_between(point_of(i), point_of(i + 1), edges).value_or(range.to);
     ranges.push_back(range);
   }

@@ -14,6 +14,10 @@ constexpr char ground[] = "ground";
 
 }  // namespace
 
+std::size_t channels_of_places(const turbine::TurbineSystem& system) {
+  return 6 * turbine::TurbineGeometry(system).nodes().size();
+}
+
 OutputChannels::OutputChannels(const turbine::TurbineSystem& system,
                                const TransientSetup& transient)
     : channels_(system, transient.stations, transient.channels), all_(channels_.channels()) {

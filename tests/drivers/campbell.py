@@ -74,6 +74,33 @@ class Campbell(ProgramTest):
         shares = found["participation"].sum(axis=2)
         self.assertTrue(((shares > 0.5) & (shares < 1 + 1e-9) | (shares == 0.0)).all())
 
+    def test_two_keys_make_a_map(self):
+        sweep = ["--sweep", "shaft.speed=1:3:1"]
+        self.succeed("campbell", BASELINE, *QUICK, *sweep, "--sweep", "gravity=0,9.81", "-o", "map.h5", "--csv", "map.csv")
+        found = self.diagram("map.h5")
+        # There and back, so that neighbours differ in one key.
+        numpy.testing.assert_array_equal(found["value"], [1, 2, 3, 3, 2, 1])
+        numpy.testing.assert_array_equal(found["second_value"], [0, 0, 0, 9.81, 9.81, 9.81])
+        self.succeed("campbell", BASELINE, *QUICK, *sweep, "--set", "gravity=9.81", "-o", "row.h5")
+        row = self.diagram("row.h5")
+        compared = 0
+        for name, own in zip(row["mode"], row["frequency_hz"]):
+            if name not in found["mode"] or not numpy.isfinite(own).all():
+                continue
+            whole = found["frequency_hz"][found["mode"].index(name)]
+            # Lines of a row may follow other copies.
+            speed = row["value"] / (2 * numpy.pi)
+            apart = whole[:2:-1] - own
+            numpy.testing.assert_allclose(apart, numpy.round(apart / speed) * speed, atol=1e-6, err_msg=name)
+            compared += 1
+        self.assertGreaterEqual(compared, 6)  # others have another number in their name
+        with open(self.folder / "map.csv", encoding="utf-8") as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual({line["second_value"] for line in rows}, {"0", "9.8100000000000005"})
+        self.refuse("campbell", BASELINE, *sweep, *sweep, words=["two keys for a map"])
+        self.refuse("campbell", BASELINE, *sweep, "--sweep", "gravity=0,1", "--sweep", "hub.radius=1,2",
+                    words=["given 3 times"])
+
     def test_ranks_share_the_points(self):
         for ranks in (1, 2, 3):
             self.succeed("campbell", BASELINE, *QUICK, "--sweep", SPEEDS, "-o", f"{ranks}.h5",

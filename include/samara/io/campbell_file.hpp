@@ -55,8 +55,8 @@ class CampbellPointFiles {
 /// Beginning of the table of comma-separated values.
 inline constexpr std::string_view campbell_table_start = "value,mode,";
 
-/// /campbell
-void write_campbell(ResultFile& file, const SweptQuantity& quantity,
+/// /campbell. `quantities`: one, or the two of a map.
+void write_campbell(ResultFile& file, const std::vector<SweptQuantity>& quantities,
                     const std::vector<simulation::CampbellPoint>& points,
                     const std::vector<simulation::CampbellLine>& lines,
                     const std::vector<simulation::StabilityEdge>& edges, bool is_complete);

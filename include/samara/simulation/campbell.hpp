@@ -20,6 +20,15 @@ namespace samara::simulation {
 /// Harmonics of a mode's energy on either side of its exponent.
 inline constexpr int campbell_harmonics = 8;
 
+/// Values of the swept quantities: of one, or of the two of a map.
+struct SweepPlace {
+  double value = 0.0;
+  double second = std::numeric_limits<double>::quiet_NaN();  ///< not-a-number: of one quantity
+};
+
+/// Whether both belong to one row of a map, or to a sweep of one quantity.
+bool are_in_a_row(const SweepPlace& a, const SweepPlace& b);
+
 /// A mode at a point; values as those of analysis::Mode.
 struct CampbellMode {
   std::complex<double> exponent;
@@ -37,7 +46,7 @@ struct CampbellMode {
 /// The modes at a point of a sweep. Where there is no steady state, or its modes were not found,
 /// `failure` is the reason, and there are no modes.
 struct CampbellPoint {
-  double value = 0.0;                                            ///< of the swept quantity
+  SweepPlace place;
   double rotor_speed = 0.0;                                      ///< [rad/s]
   double wind_speed = std::numeric_limits<double>::quiet_NaN();  ///< [m/s]; none without air
   double pitch = 0.0;                                            ///< [rad]
@@ -49,7 +58,7 @@ struct CampbellPoint {
 };
 
 /// The modes about a steady state: all of them or as many as `options` want; at rest all. Sets
-/// everything but `value`, `wind_speed` and `notes`. Serial.
+/// everything but `place`, `wind_speed` and `notes`. Serial.
 /// @throws ConvergenceError, DomainError, InputError from the analyses
 CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const analysis::Trim& trim,
                                   const analysis::FloquetOptions& options,
@@ -66,10 +75,11 @@ bool is_growing(const CampbellMode& mode);
 /// Number of such modes.
 int count_growing(const CampbellPoint& point);
 
-/// A place between two values where the number of growing modes changes.
+/// A place between two values of the first quantity where the number of growing modes changes.
 struct StabilityEdge {
   double from = 0.0;
   double to = 0.0;
+  double second = std::numeric_limits<double>::quiet_NaN();  ///< as in SweepPlace
   int growing_from = 0;
   int growing_to = 0;
 };
@@ -77,14 +87,15 @@ struct StabilityEdge {
 /// Distance of the sides of a refined edge, relative to the larger value of the points beside it.
 inline constexpr double edge_accuracy = 2e-5;
 
-/// One edge between each two neighbouring points with different numbers; points that failed, or are
-/// at rest (where the modes change at once), are left out.
+/// One edge between each two neighbouring points of a row with different numbers; points that
+/// failed, or are at rest (where the modes change at once), are left out.
 std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points);
 
-/// A range in which the mode of a line grows.
+/// A range in which the mode of a line grows, in a row.
 struct GrowthRange {
   double from = 0.0;  ///< refined edge, or value of the first point that grows
   double to = 0.0;
+  double second = std::numeric_limits<double>::quiet_NaN();  ///< as in SweepPlace
 };
 
 /// The ranges of a line, in the order of its points. An edge applies if it is refined and the

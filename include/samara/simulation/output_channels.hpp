@@ -11,6 +11,9 @@
 
 namespace samara::simulation {
 
+/// Number of the channels of places.
+std::size_t channels_of_places(const turbine::TurbineSystem& system);
+
 /// The channels that a setup names, then, if it asks for places, those of each node of
 /// turbine::TurbineGeometry: Node1Px, Node1Py, Node1Pz, its place [m], and Node1Rx, Node1Ry,
 /// Node1Rz, the rotation vector of its axes from x y z [deg], in the ground.
