@@ -28,23 +28,34 @@ target_link_libraries(
   PRIVATE samara_external_petsc samara_external_files PkgConfig::FFTW PkgConfig::MUPARSER
   INTERFACE Eigen3::Eigen PkgConfig::SLEPC PkgConfig::PETSC MPI::MPI_CXX)
 
+# Components: the packages of cmake/packages.cmake. `cmake --install` installs all of them, and the Python
+# package where the program finds it under any prefix.
 set(samara_package ${CMAKE_INSTALL_LIBDIR}/cmake/Samara)
-install(TARGETS samara samara_controller_host RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS samara_library EXPORT SamaraTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/samara)
+install(TARGETS samara samara_controller_host RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+        COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/samara
+        COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/completions/samara
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/templates DESTINATION ${CMAKE_INSTALL_DATADIR}/samara)
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/templates DESTINATION ${CMAKE_INSTALL_DATADIR}/samara
+        COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/docs/samara.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+        COMPONENT program OPTIONAL)
+install(TARGETS samara_library EXPORT SamaraTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
+        FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/samara
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/samara/python
-        FILES_MATCHING PATTERN "*.py")
-install(EXPORT SamaraTargets NAMESPACE samara:: DESTINATION ${samara_package})
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/samara/python COMPONENT python_of_prefix
+        PATTERN "__pycache__" EXCLUDE)
+install(EXPORT SamaraTargets NAMESPACE samara:: DESTINATION ${samara_package}
+        COMPONENT development)
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/SamaraConfig.cmake.in ${PROJECT_BINARY_DIR}/SamaraConfig.cmake
   INSTALL_DESTINATION ${samara_package})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/SamaraConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/SamaraConfig.cmake
-              ${PROJECT_BINARY_DIR}/SamaraConfigVersion.cmake DESTINATION ${samara_package})
+              ${PROJECT_BINARY_DIR}/SamaraConfigVersion.cmake
+        DESTINATION ${samara_package} COMPONENT development)
