@@ -4,7 +4,7 @@ import importlib
 import sys
 
 COMMANDS = {"plot": "plot", "report": "report", "vtk": "vtk"}
-PACKAGES = ("python3-matplotlib python3-h5netcdf python3-h5py python3-meshio python3-numpy python3-xarray python3-yaml "
+PACKAGES = ("python3-matplotlib python3-h5netcdf python3-h5py python3-numpy python3-xarray python3-yaml "
             "python3-jsonschema")
 
 if __name__ == "__main__":

@@ -94,6 +94,10 @@ class Campbell(ProgramTest):
             numpy.testing.assert_allclose(apart, numpy.round(apart / speed) * speed, atol=1e-6, err_msg=name)
             compared += 1
         self.assertGreaterEqual(compared, 6)  # others have another number in their name
+        self.succeed("plot", "map.h5", "-o", "map.svg")
+        picture = (self.folder / "map.svg").read_text(encoding="utf-8")
+        for word in ("shaft.speed [rad/s]", "gravity [m/s^2]", "largest growth rate [1/s]"):
+            self.assertIn(word, picture)
         with open(self.folder / "map.csv", encoding="utf-8") as table:
             rows = list(csv.DictReader(table))
         self.assertEqual({line["second_value"] for line in rows}, {"0", "9.8100000000000005"})

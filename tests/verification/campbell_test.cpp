@@ -42,7 +42,7 @@ Diagram sweep(const std::string& name, const std::vector<std::string>& settings,
     const analysis::Trim trim = analysis::find_trim(system, options, observer);
     diagram.points.push_back(
         simulation::find_campbell_point(system, trim, input.floquet, observer));
-    diagram.points.back().value = rpm;
+    diagram.points.back().place.value = rpm;
     tracker.add(diagram.points.size() - 1, diagram.points.back().signatures);
   }
   diagram.lines = simulation::name_lines(diagram.points, tracker.lines());
@@ -91,8 +91,9 @@ BOOST_AUTO_TEST_CASE(no_line_of_the_nrel5mw_jumps_from_rest_to_14_rpm) {
       const double bend = frequency_at(diagram, line->modes[i - 1]) -
                           2.0 * frequency_at(diagram, line->modes[i]) +
                           frequency_at(diagram, line->modes[i + 1]);
-      BOOST_TEST(std::abs(bend) < 0.5 / 60.0 + 4e-3 * frequency_at(diagram, line->modes[i]),
-                 name << " at " << diagram.points[line->modes[i].point].value << " rpm: " << bend);
+      BOOST_TEST(
+          std::abs(bend) < 0.5 / 60.0 + 4e-3 * frequency_at(diagram, line->modes[i]),
+          name << " at " << diagram.points[line->modes[i].point].place.value << " rpm: " << bend);
     }
   // The limit from above names the modes at rest, where the flap modes are 0.03 Hz apart.
   for (const char* name : {"blade flap regressive 1", "blade flap progressive 1"})
