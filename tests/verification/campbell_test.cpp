@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(no_line_of_the_nrel5mw_jumps_from_rest_to_14_rpm) {
     }
   // The limit from above names the modes at rest, where the flap modes are 0.03 Hz apart.
   for (const char* name : {"blade flap regressive 1", "blade flap progressive 1"})
-    BOOST_TEST(diagram.points[lines.at(name)->modes.front().point].value == 0.0);
+    BOOST_TEST(diagram.points[lines.at(name)->modes.front().point].place.value == 0.0);
 }
 
 BOOST_AUTO_TEST_CASE(whirl_is_named_as_multiblade_coordinates_see_it) {
@@ -131,13 +131,13 @@ BOOST_AUTO_TEST_CASE(whirl_is_named_as_multiblade_coordinates_see_it) {
       const auto found = std::ranges::min_element(
           modes, {}, [&](const MultibladeMode& one) { return std::abs(one.exponent - wanted); });
       BOOST_TEST(std::abs(found->exponent - wanted) < 2e-3 * std::abs(wanted),
-                 line.name << " at " << point.value << " rpm");
+                 line.name << " at " << point.place.value << " rpm");
       const Eigen::VectorXcd cosine = found->shape.segment(size, size);
       const Eigen::VectorXcd sine = found->shape.segment(2 * size, size);
       const double ahead = (cosine + Complex(0.0, 1.0) * sine).norm();
       const double behind = (cosine - Complex(0.0, 1.0) * sine).norm();
       BOOST_TEST((ahead > behind) == is_progressive,
-                 line.name << " at " << point.value << " rpm: " << ahead << " " << behind);
+                 line.name << " at " << point.place.value << " rpm: " << ahead << " " << behind);
       ++compared;
     }
   }
