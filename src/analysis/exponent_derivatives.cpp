@@ -205,14 +205,20 @@ class ExponentDerivatives::Basis {
     const auto count = static_cast<Index>(pairs.size());
     Group group;
     group.level = pencils_.size() - 1;
-    group.members = numbers;
-    group.members.resize(pairs.size(), starts_.size());
+    group.members.assign(pairs.size(), starts_.size());
     Matrix X(pencil().size(), count);
     Matrix T = Matrix::Zero(count, count);
     for (Index j = 0; j < count; ++j) {
       const HillPair& pair = pairs[static_cast<std::size_t>(j)];
       X.col(j) = pencil().vector_of(pair.series).normalized();
       T(j, j) = pair.exponent;
+      // A conjugate is no member.
+      for (const std::size_t i : numbers)
+        if (starts_[i].pair.exponent == pair.exponent &&
+            std::ranges::find(group.members, i) == group.members.end()) {
+          group.members[static_cast<std::size_t>(j)] = i;
+          break;
+        }
     }
     // Of an orthonormal basis of the same subspace, X = Q R: T becomes R T R^-1, and the columns of
     // R are its eigenvectors.
