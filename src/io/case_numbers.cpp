@@ -43,7 +43,7 @@ class Search {
       is_found = true;
       visit(node.children[i], join_path(key, names.back()), depth + 1);
     }
-    if (is_found || hint_ != "") return;
+    if (is_found || !hint_.empty()) return;
     hint_ = names.empty() ? (key.empty() ? "the case" : key) + " has no keys"
                           : (key.empty() ? "" : key + ": ") + "no \"" + words_[depth] + "\"" +
                                 suggest(words_[depth], names);
