@@ -86,7 +86,9 @@ std::vector<ParameterGroup> find_parameters(const Job& job) {
   std::istringstream patterns(job.sensitivity);
   for (std::string pattern; std::getline(patterns, pattern, ',');) {
     ParameterGroup group{pattern, {}};
-    for (const io::CaseNumber& number : io::find_numbers(job.input, pattern)) {
+    const std::vector<io::CaseNumber> numbers =
+        at_place("--sensitivity", [&] { return io::find_numbers(job.input, pattern); });
+    for (const io::CaseNumber& number : numbers) {
       if (!keys.insert(number.key).second)
         throw InputError("--sensitivity: " + number.key +
                          " is named twice; hint: patterns that have no key in common");

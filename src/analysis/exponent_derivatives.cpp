@@ -70,14 +70,14 @@ class ExponentDerivatives::Basis {
   };
 
   Basis(const system::PeriodicSystem& system, const PeriodicSolution& solution, const ModeSet& set,
-        const std::vector<std::size_t>& modes, bool by_sector)
+        bool by_sector)
       : system_(system), solution_(solution), by_sector_(by_sector) {
     add_pencil(std::max(least_harmonics, solution.harmonics()));
     if (!pencil().is_solvable())
       throw InputError(
           "floquet: derivatives of exponents need a turbine whose blades are chains of elements; "
           "hint: blades.elements of 2 or more");
-    for (const std::size_t mode : modes) starts_.push_back(start_of(set, mode));
+    for (std::size_t m = 0; m < set.modes.size(); ++m) starts_.push_back(start_of(set, m));
     refine();
   }
 
@@ -241,15 +241,14 @@ class ExponentDerivatives::Basis {
 };
 
 ExponentDerivatives::ExponentDerivatives(const system::PeriodicSystem& system,
-                                         const PeriodicSolution& solution, const ModeSet& set,
-                                         const std::vector<std::size_t>& modes)
-    : system_(system), solution_(solution), set_(set), modes_(modes) {}
+                                         const PeriodicSolution& solution, const ModeSet& set)
+    : system_(system), solution_(solution), set_(set) {}
 
 ExponentDerivatives::~ExponentDerivatives() = default;
 
 ExponentDerivatives::Basis& ExponentDerivatives::basis(bool by_sector) {
   std::unique_ptr<Basis>& own = by_sector ? sector_ : whole_;
-  if (!own) own = std::make_unique<Basis>(system_, solution_, set_, modes_, by_sector);
+  if (!own) own = std::make_unique<Basis>(system_, solution_, set_, by_sector);
   return *own;
 }
 
@@ -277,7 +276,7 @@ ExponentDerivatives::Residuals ExponentDerivatives::residuals(const system::Peri
 
 Eigen::MatrixXcd ExponentDerivatives::derivatives(const std::vector<Residuals>& rates) {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  Matrix result = Matrix::Constant(static_cast<Index>(modes_.size()),
+  Matrix result = Matrix::Constant(static_cast<Index>(set_.modes.size()),
                                    static_cast<Index>(rates.size()), Complex(none, none));
   for (const bool by_sector : {true, false}) {
     if (std::ranges::none_of(
@@ -297,7 +296,7 @@ Eigen::MatrixXcd ExponentDerivatives::derivatives(const std::vector<Residuals>& 
         for (std::size_t j = 0; j < group.members.size(); ++j) {
           const auto at = static_cast<Index>(j);
           const std::size_t member = group.members[j];
-          if (member >= modes_.size() || !is_single(group.exponents, at, own.speed())) continue;
+          if (member >= set_.modes.size() || !is_single(group.exponents, at, own.speed())) continue;
           result(static_cast<Index>(member), static_cast<Index>(p)) =
               change(at, at) + Complex(0.0, own.starts()[member].harmonic * rates[p].speed);
         }

@@ -70,8 +70,7 @@ std::vector<CaseNumber> find_numbers(const Case& input, const std::string& patte
   Search search(words, numbers);
   search.visit(root, "", 0);
   if (numbers.empty())
-    throw InputError("--sensitivity " + pattern + ": " +
-                     (search.hint().empty() ? "no number there" : search.hint()) +
+    throw InputError(pattern + ": " + (search.hint().empty() ? "no number there" : search.hint()) +
                      "; hint: a key that the case has, or --set gives it its default");
   return numbers;
 }

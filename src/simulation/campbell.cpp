@@ -43,8 +43,7 @@ std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& 
   const auto [low, high] = std::minmax(a.place.value, b.place.value);
   const double accuracy = edge_accuracy * std::max(std::abs(low), std::abs(high));
   for (const StabilityEdge& edge : edges)
-    if (are_in_a_row({edge.from, edge.second}, a.place) &&
-        std::abs(edge.to - edge.from) <= accuracy && std::min(edge.from, edge.to) >= low &&
+    if (std::abs(edge.to - edge.from) <= accuracy && std::min(edge.from, edge.to) >= low &&
         std::max(edge.from, edge.to) <= high && edge.growing_from == count_growing(a) &&
         edge.growing_to == count_growing(b))
       return 0.5 * (edge.from + edge.to);
@@ -128,15 +127,11 @@ std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
   for (std::size_t i = 0; i < line.modes.size(); ++i) {
     if (!grows(i)) continue;
     const std::size_t first = i;
-    const auto goes_on = [&](std::size_t before, std::size_t after) {
-      return are_in_a_row(point_of(before).place, point_of(after).place);
-    };
-    while (i + 1 < line.modes.size() && grows(i + 1) && goes_on(i, i + 1)) ++i;
-    GrowthRange range{point_of(first).place.value, point_of(i).place.value,
-                      point_of(i).place.second};
-    if (first > 0 && goes_on(first - 1, first))
+    while (i + 1 < line.modes.size() && grows(i + 1)) ++i;
+    GrowthRange range{point_of(first).place.value, point_of(i).place.value};
+    if (first > 0)
       range.from = edge_between(point_of(first - 1), point_of(first), edges).value_or(range.from);
-    if (i + 1 < line.modes.size() && goes_on(i, i + 1))
+    if (i + 1 < line.modes.size())
       range.to = edge_between(point_of(i), point_of(i + 1), edges).value_or(range.to);
     ranges.push_back(range);
   }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -232,9 +231,7 @@ std::vector<Sensitivity> find_sensitivities(
   const auto held = hold_wake(system);
   const turbine::TurbineSystem& linear = held ? *held : system;
   const analysis::ModeSet some = share_modes(set, modes, ranks);
-  std::vector<std::size_t> all(some.modes.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  ExponentDerivatives derivatives(linear, trim.solution, some, all);
+  ExponentDerivatives derivatives(linear, trim.solution, some);
   Differences differences(scenario, linear, trim, scenario_at, derivatives);
   std::vector<Sensitivity> found(parameters.size());
   // Neighbours stay on one rank, which takes some of them at a time: their residuals need memory.

@@ -20,10 +20,11 @@ namespace samara::analysis {
 /// by (A + lambda B) x' + lambda' B x = - dr/dp.
 class ExponentDerivatives {
  public:
-  /// Finds the eigenpairs of `modes` (numbers in `set`, with shapes) in Hill's eigenproblem, with
-  /// as many harmonics as their exponents need. All arguments but `modes` are kept by reference.
+  /// Finds the eigenpairs of the modes of `set`, by their shapes, in Hill's eigenproblem, with as
+  /// many harmonics as their exponents need. Of a mode only the exponent and its harmonic are used.
+  /// All arguments are kept by reference.
   ExponentDerivatives(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                      const ModeSet& set, const std::vector<std::size_t>& modes);
+                      const ModeSet& set);
   ~ExponentDerivatives();
   ExponentDerivatives(const ExponentDerivatives&) = delete;
   ExponentDerivatives& operator=(const ExponentDerivatives&) = delete;
@@ -52,7 +53,6 @@ class ExponentDerivatives {
   const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;
   const ModeSet& set_;
-  std::vector<std::size_t> modes_;
   std::unique_ptr<Basis> whole_, sector_;
 };
 

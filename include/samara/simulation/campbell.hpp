@@ -91,15 +91,14 @@ inline constexpr double edge_accuracy = 2e-5;
 /// failed, or are at rest (where the modes change at once), are left out.
 std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points);
 
-/// A range in which the mode of a line grows, in a row.
+/// A range in which the mode of a line grows.
 struct GrowthRange {
   double from = 0.0;  ///< refined edge, or value of the first point that grows
   double to = 0.0;
-  double second = std::numeric_limits<double>::quiet_NaN();  ///< as in SweepPlace
 };
 
-/// The ranges of a line, in the order of its points. An edge applies if it is refined and the
-/// growing modes at both its sides are as many as at the points.
+/// The ranges of a line of a sweep of one quantity, in the order of its points. An edge applies if
+/// it is refined and the growing modes at both its sides are as many as at the points.
 std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
                                      const CampbellLine& line,
                                      const std::vector<StabilityEdge>& edges);
