@@ -1,6 +1,7 @@
 // samara floquet: the stability of the periodic steady state.
 #include "samara/analysis/floquet.hpp"
 
+#include <exception>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -110,10 +111,21 @@ void run_floquet(const Job& job) {
                                      progress)
             .set);
   std::optional<Sensitivities> sensitivities;
-  if (!groups.empty())
-    sensitivities = find_sensitivities(job, std::move(groups), system, trim, floquet.set, progress);
+  std::exception_ptr failure;  // of the sensitivities: the modes are delivered all the same
+  try {
+    if (!groups.empty())
+      sensitivities =
+          find_sensitivities(job, std::move(groups), system, trim, floquet.set, progress);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception&) {
+    failure = std::current_exception();
+  }
   progress.finish();
-  if (!is_first) return;
+  if (!is_first) {
+    if (failure) std::rethrow_exception(failure);
+    return;
+  }
   const simulation::StabilityAssessment assessment = simulation::assess_stability(floquet.set);
   deliver(
       job,
@@ -132,6 +144,7 @@ void run_floquet(const Job& job) {
         if (air) write_air_part(file, "/floquet", *air, turbine.blades.size());
       },
       [&](const std::string& path) { io::write_mode_table(path, floquet.set); });
+  if (failure) std::rethrow_exception(failure);
   require_verdict(floquet.set, assessment);
 }
 

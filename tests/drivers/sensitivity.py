@@ -8,7 +8,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import ProgramTest  # noqa: E402
+from program import SOURCE, ProgramTest  # noqa: E402
 
 # One rigid blade on a flap hinge at the hub radius, of mass 4 kg/m and length 9 m.
 CASE = """samara: 1
@@ -75,6 +75,17 @@ class Sensitivity(ProgramTest):
         inertia = 4 * 9**3 / 3
         self.assertLess(abs(rates + 0.5 / inertia).max(), 1e-6 / inertia)
         self.assertIn("per unit", run.stdout)
+
+    def test_modes_are_kept_where_derivatives_fail(self):
+        baseline = SOURCE / "inputs/lee2002/baseline.yaml"
+        run = self.samara("floquet", baseline, "--set", "gravity=9.81", "--first", "8", "--sensitivity", "shaft.speed",
+                          "-o", "kept.h5", "-hill_refine_ksp_max_it", "3")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn("does not converge", run.stderr)
+        self.assertIn("tower fore-aft", run.stdout)
+        with h5py.File(self.folder / "kept.h5") as file:
+            self.assertIn("exponents", file["floquet"])
+            self.assertNotIn("sensitivity", file["floquet"])
 
     def test_errors_name_the_key(self):
         for keys, words in (("blades.hinge", 'no "hinge"; did you mean "hinges"?'),
