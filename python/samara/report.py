@@ -10,6 +10,7 @@ import argparse
 import base64
 import html
 import json
+import os
 import pathlib
 import sys
 
@@ -27,6 +28,8 @@ LEAST_HARMONICS = (1e-5, 1e-4, 1e-3, 3e-3)  # relative to the largest one of a m
 SERIES_BYTES = 1_200_000  # of the time series in a page, as base64
 FRAME_BYTES = 1_200_000  # of the places and rotations in time series, the same
 MOST_FRAMES = 4000  # of one time series
+
+MARK = "<!-- written by samara report -->"
 
 # As in analysis/mode.hpp, simulation/stability.hpp and drivers/mode_report.cpp.
 ZERO_EXPONENT = 1e-6  # relative to the rotor speed, or 1 rad/s
@@ -390,8 +393,18 @@ def write(paths, output):
     output = pathlib.Path(output)
     if output.suffix not in (".html", ".htm"):
         raise ReportError(f"{output}: expected a name that ends in .html")
+    if output.exists() and MARK not in output.read_bytes()[:200].decode("utf-8", "replace"):
+        raise ReportError(f"{output}: exists and is no page of samara report; hint: another name behind -o, or remove it")
+    if not output.parent.is_dir():
+        raise ReportError(f"{output.parent}: no such folder; hint: make it first")
     results = [open_result(path) for path in paths]
-    output.write_text(page_of(results), encoding="utf-8")
+    page = page_of(results).replace("\n", f"\n{MARK}\n", 1)
+    whole = output.with_name(f".{output.name}.{os.getpid()}")  # a page that is there stays until the new one is whole
+    try:
+        whole.write_text(page, encoding="utf-8")
+        whole.replace(output)
+    finally:
+        whole.unlink(missing_ok=True)
     return output
 
 

@@ -73,5 +73,10 @@ def unit_of(array):
 
 
 def open_result(path):
-    """The result at a path. Raises OSError or ValueError where there is none."""
-    return Result(path)
+    """The result at a path. Raises OSError or ValueError where there is none, with a hint."""
+    try:
+        return Result(path)
+    except FileNotFoundError as error:
+        raise FileNotFoundError(f"{path}: no such file; hint: samara floquet CASE.yaml -o {path}") from error
+    except OSError as error:
+        raise OSError(f"{path}: cannot be read as a result; hint: the .h5 of a run") from error

@@ -267,15 +267,6 @@ def _frames_of(result, turbine, tubes, given):
     return _mode_frames(turbine, tubes, mode, given)
 
 
-def _open(path):
-    try:
-        return open_result(path)
-    except FileNotFoundError as error:
-        raise ExportError(f"{path}: no such file; hint: samara floquet CASE.yaml -o {path}") from error
-    except OSError as error:
-        raise ExportError(f"{path}: cannot be read as a result; hint: samara export reads the .h5 of a run") from error
-
-
 def _is_ours(path):
     with open(path, "rb") as file:
         return MARK.encode() in file.read(200)
@@ -370,7 +361,7 @@ def main(arguments=None):
             raise ExportError(f"--scale {given.scale}: expected a finite number")
         if given.held is not None and (given.steady or not numpy.isfinite(given.held)):
             raise ExportError("--held: expected an azimuth in degrees, and a mode; hint: --mode N --held 90")
-        result = _open(given.result)
+        result = open_result(given.result)
         _check_options(result, given)
         turbine = Turbine(result)
         tubes = Tubes(turbine)

@@ -185,6 +185,20 @@ class Page(Results):
             self.assertRegex(run.stderr, words)
         self.assertEqual(list(self.folder.glob("x.*")), [])
 
+    def test_a_page_of_another_program_stays(self):
+        foreign = self.folder / "foreign.html"
+        foreign.write_text("mine", encoding="utf-8")
+        for output, words in (("foreign.html", "no page of samara report; hint:"), ("none/x.html", "none: no such folder; hint:")):
+            run = subprocess.run([PROGRAM, "report", "lee.h5", "-o", output], cwd=self.folder, text=True, capture_output=True,
+                                 check=False)
+            self.assertEqual((run.returncode, len(run.stderr.splitlines())), (2, 1), run.stderr)
+            self.assertIn(words, run.stderr)
+        self.assertEqual(foreign.read_text(encoding="utf-8"), "mine")
+        own = ["report", "lee.h5", "-o", "own.html"]
+        for _ in range(2):  # a page of its own is written anew
+            subprocess.run([PROGRAM, *own], cwd=self.folder, capture_output=True, check=True)
+        self.assertEqual(list(self.folder.glob(".own*")), [])
+
     def test_motions_stay_within_their_room(self):
         result = report.open_result(self.folder / "lee.h5")
         whole = report.motions_of(result, 10**9)
