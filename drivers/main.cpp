@@ -19,6 +19,7 @@
 #include "samara/io/result_file.hpp"
 #include "samara/io/result_reader.hpp"
 #include "samara/io/schema.hpp"
+#include "samara/petsc/blas_kernels.hpp"
 #include "samara/petsc/session.hpp"
 
 #include "command_line.hpp"
@@ -313,10 +314,12 @@ void print_text(const CommandLine& line) {
     std::cout << solver_options_text();
   else if (line.request == Request::print)
     std::cout << line.command->print();
-  else
+  else {
+    petsc::choose_blas_kernels();
     std::cout << "samara " << version << "\n"
               << petsc::library_versions() << "\n"
               << io::file_library_version() << "\n";
+  }
 }
 
 int run(const std::vector<std::string>& arguments) {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "samara/base/error.hpp"
+#include "samara/petsc/blas_kernels.hpp"
 #include "samara/petsc/handle.hpp"
 
 namespace samara::petsc {
@@ -83,6 +84,7 @@ Session::Session(const std::vector<std::string>& options) {
   MPI_Initialized(&has_mpi);
   if (has_mpi == 0) prepare_transport();
   take_home_options();
+  choose_blas_kernels();
   std::vector<std::string> words{"samara"};
   words.insert(words.end(), own_options.begin(), own_options.end());
   words.insert(words.end(), options.begin(), options.end());
@@ -214,7 +216,8 @@ std::string library_versions() {
   const auto line = [](const std::string& text) {
     return text.substr(0, text.find_last_not_of(" \n") + 1);
   };
-  return line(petsc) + "\n" + line(slepc) + "\n" + whole.substr(0, whole.find(','));
+  return line(petsc) + "\n" + line(slepc) + "\n" + whole.substr(0, whole.find(',')) + "\n" +
+         blas_version();
 }
 
 }  // namespace samara::petsc

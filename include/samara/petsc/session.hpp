@@ -54,7 +54,7 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 };
 
-/// Versions of PETSc, SLEPc and MPI as text.
+/// Versions of PETSc, SLEPc, MPI and BLAS as text, a line each.
 std::string library_versions();
 
 }  // namespace samara::petsc
