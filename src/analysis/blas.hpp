@@ -2,7 +2,10 @@
 // PETSc's -log_view.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <complex>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -31,6 +34,12 @@ void dtrsv_(const char*, const char*, const char*, const Integer*, const double*
             double*, const Integer*);
 void zgetrs_(const char*, const Integer*, const Integer*, const Complex*, const Integer*,
              const Integer*, Complex*, const Integer*, Integer*);
+void dtrtri_(const char*, const char*, const Integer*, double*, const Integer*, Integer*);
+void ztrtri_(const char*, const char*, const Integer*, Complex*, const Integer*, Integer*);
+void dlaswp_(const Integer*, double*, const Integer*, const Integer*, const Integer*,
+             const Integer*, const Integer*);
+void zlaswp_(const Integer*, Complex*, const Integer*, const Integer*, const Integer*,
+             const Integer*, const Integer*);
 void zgetri_(const Integer*, Complex*, const Integer*, const Integer*, Complex*, const Integer*,
              Integer*);
 }
@@ -128,10 +137,109 @@ inline void solve_columns(Integer n, Integer m, const Complex* factors, const In
   zgetrs_("N", &n, &m, factors, &n, interchanges, b, &n, &status);
 }
 
+/// C = `a_factor` A B + `c_factor` C; A: m x k, B: k x n.
+inline void multiply(Integer m, Integer n, Integer k, double a_factor, const double* a, Integer lda,
+                     const double* b, Integer ldb, double c_factor, double* c, Integer ldc) {
+  BLASgemm_("N", "N", &m, &n, &k, &a_factor, a, &lda, b, &ldb, &c_factor, c, &ldc);
+}
+inline void multiply(Integer m, Integer n, Integer k, Complex a_factor, const Complex* a,
+                     Integer lda, const Complex* b, Integer ldb, Complex c_factor, Complex* c,
+                     Integer ldc) {
+  zgemm_("N", "N", &m, &n, &k, &a_factor, a, &lda, b, &ldb, &c_factor, c, &ldc);
+}
+
+/// The inverse of the upper (`part` 'U') or unit lower ('L') triangle of `a`, in its place.
+inline void invert_triangle(char part, Integer n, double* a, Integer lda) {
+  Integer status = 0;
+  dtrtri_(&part, part == 'L' ? "U" : "N", &n, a, &lda, &status);
+}
+inline void invert_triangle(char part, Integer n, Complex* a, Integer lda) {
+  Integer status = 0;
+  ztrtri_(&part, part == 'L' ? "U" : "N", &n, a, &lda, &status);
+}
+
+inline void interchange_rows(Integer n, Integer m, const Integer* interchanges, double* b) {
+  const Integer one = 1;
+  dlaswp_(&m, b, &n, &one, &n, interchanges, &one);
+}
+inline void interchange_rows(Integer n, Integer m, const Integer* interchanges, Complex* b) {
+  const Integer one = 1;
+  zlaswp_(&m, b, &n, &one, &n, interchanges, &one);
+}
+
+/// Solves for many columns with products of matrices only, whose kernels are three times as fast
+/// as those of triangular solves: the triangles on the diagonal are inverted in groups of rows.
+template <class Scalar>
+class TriangleInverses {
+ public:
+  TriangleInverses(Integer n, const Scalar* factors, const Integer* interchanges)
+      : n_(n), factors_(factors), interchanges_(interchanges) {
+    for (Integer first = 0; first < n; first += group)
+      for (const char part : {'L', 'U'}) {
+        inverses_.push_back({});
+        std::array<Scalar, group* group>& inverse = inverses_.back();
+        const Integer rows = rows_at(first);
+        for (Integer c = 0; c < rows; ++c)
+          for (Integer r = 0; r < rows; ++r)
+            inverse[static_cast<std::size_t>(c * rows + r)] = value(part, first, r, c);
+        invert_triangle(part, rows, inverse.data(), rows);
+      }
+  }
+
+  /// b: n x m.
+  void solve(Integer m, Scalar* b) {
+    work_.resize(static_cast<std::size_t>(n_ * std::min(m, columns_at_once)));
+    for (Integer first = 0; first < m; first += columns_at_once)
+      solve_some(std::min(columns_at_once, m - first), b + static_cast<std::ptrdiff_t>(first) * n_);
+  }
+
+ private:
+  static constexpr Integer group = 18;
+  static constexpr Integer columns_at_once = 128;  ///< their values stay in the cache
+
+  [[nodiscard]] Integer rows_at(Integer first) const { return std::min(group, n_ - first); }
+  [[nodiscard]] Scalar value(char part, Integer first, Integer r, Integer c) const {
+    if (part == 'L' && r == c) return 1.0;
+    return (part == 'L') == (r > c) ? factors_[(first + c) * n_ + first + r] : 0.0;
+  }
+  [[nodiscard]] const Scalar* inverse(char part, Integer first) const {
+    return inverses_[static_cast<std::size_t>(2 * (first / group) + (part == 'L' ? 0 : 1))].data();
+  }
+
+  void solve_some(Integer m, Scalar* b) {
+    interchange_rows(n_, m, interchanges_, b);
+    Scalar* y = work_.data();
+    for (Integer first = 0; first < n_; first += group) {
+      const Integer rows = rows_at(first);
+      const Integer next = first + rows;
+      multiply(rows, m, rows, 1.0, inverse('L', first), rows, b + first, n_, 0.0, y + first, n_);
+      if (next < n_)
+        multiply(n_ - next, m, rows, -1.0, factors_ + first * n_ + next, n_, y + first, n_, 1.0,
+                 b + next, n_);
+    }
+    for (Integer first = (n_ - 1) / group * group; first >= 0; first -= group) {
+      const Integer rows = rows_at(first);
+      multiply(rows, m, rows, 1.0, inverse('U', first), rows, y + first, n_, 0.0, b + first, n_);
+      if (first > 0)
+        multiply(first, m, rows, -1.0, factors_ + first * n_, n_, b + first, n_, 1.0, y, n_);
+    }
+  }
+
+  Integer n_;
+  const Scalar* factors_;
+  const Integer* interchanges_;
+  std::vector<std::array<Scalar, group * group>> inverses_;  ///< 'L', 'U' of each group
+  std::vector<Scalar> work_;
+};
+
+/// From here on, the inverses of triangles cost less than they save.
+constexpr Integer many_columns = 64;
+
 /// Solves for the columns of the n x m matrix b with the result of factor().
 template <class Scalar>
 void solve(Integer n, Integer m, const Scalar* factors, const Integer* interchanges, Scalar* b) {
   count_operations<Scalar>(1.0 * n * n * m);
+  if (m >= many_columns) return TriangleInverses<Scalar>(n, factors, interchanges).solve(m, b);
   if (m != 1) return solve_columns(n, m, factors, interchanges, b);
   for (Integer i = 0; i < n; ++i)
     if (const Integer other = interchanges[i] - 1; other != i) std::swap(b[i], b[other]);

@@ -49,6 +49,11 @@ constexpr double least_reduction = 1e-3;
 /// Largest number of entries of a matrix that is factored because GMRES does not converge.
 constexpr double most_entries = 2e8;
 
+/// A start whose residual is this small against that of the undeformed system, and the steps for
+/// which a tangent serves from there.
+constexpr double near_solution = 0.05;
+constexpr PetscInt steps_near_solution = 3;
+
 /// Newton's method: line search and number of steps.
 struct NewtonLimits {
   const char* line_search = SNESLINESEARCHBT;
@@ -612,9 +617,12 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
   if (start != nullptr) {
     // The residual of a good start is too small to fall by the factor of the tolerance. But such a
     // start has no values for new harmonics; one step finds them.
-    enough = std::max(enough, tolerance * residual_at(undeformed, context));
-    if (residual_at(h, context) > vanished)
-      petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
+    const double whole = residual_at(undeformed, context);
+    const double at_start = residual_at(h, context);
+    enough = std::max(enough, tolerance * whole);
+    if (at_start > vanished) petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
+    if (at_start < near_solution * whole)
+      petsc::check(SNESSetLagJacobian(solver.get(), steps_near_solution));
   }
   petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, limits.most_steps, 10000));
   SNESLineSearch search = nullptr;

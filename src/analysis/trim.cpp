@@ -179,11 +179,10 @@ std::optional<Trim> try_near(const system::PeriodicSystem& system, const TrimOpt
   const int least = options.automatic ? std::max(1, options.least_harmonics) : options.harmonics;
   if (harmonics < least) return std::nullopt;
   try {
-    const Residuals residuals =
-        options.is_draft && !options.automatic ? Residuals::none : Residuals::all;
+    const Residuals residuals = options.is_draft ? Residuals::none : Residuals::all;
     Trim trim = solve_harmonic_balance(system, harmonics, options.tolerance, &near->solution, comm,
                                        residuals);
-    if (options.automatic && !is_enough(trim, options)) return std::nullopt;
+    if (options.automatic && !options.is_draft && !is_enough(trim, options)) return std::nullopt;
     return trim;
   } catch (const ConvergenceError&) {
   } catch (const DomainError&) {

@@ -61,6 +61,76 @@ void add_means(const turbine::TurbineSystem& system, const analysis::Trim& trim,
     point.*means[j].value = values[j] * means[j].factor;
 }
 
+/// Farthest extrapolation, in distances of the points before.
+constexpr double farthest = 2.5;
+
+/// A steady state, and what it belongs to.
+struct Solved {
+  double wind = 0.0;
+  double speed = 0.0;
+  double pitch = 0.0;
+  Eigen::MatrixXd coefficients;
+};
+
+/// Starts of steady states from those before: the change with the wind speed continues that of the
+/// last two operating points, the change with speed or pitch is that of the last two steady states
+/// at one wind speed.
+class StartPredictor {
+ public:
+  /// Takes a steady state of the present search.
+  void add(Solved solved) {
+    if (last_ && last_->wind == solved.wind) take_slope(*last_, solved);
+    last_ = std::move(solved);
+  }
+
+  /// The last steady state is that of an operating point.
+  void finish_point() {
+    if (!last_) return;
+    before_ = std::move(point_);
+    point_ = last_;
+  }
+
+  /// Coefficients of a start; empty before the first steady state.
+  std::optional<Eigen::MatrixXd> predict(double wind, double speed, double pitch) const {
+    if (!last_) return std::nullopt;
+    Solved start = *last_;
+    if (wind != last_->wind && point_ && before_ && have_one_size(*point_, *before_) &&
+        point_->wind != before_->wind) {
+      const double share = (wind - point_->wind) / (point_->wind - before_->wind);
+      if (std::abs(share) <= farthest) {
+        start.speed = point_->speed + share * (point_->speed - before_->speed);
+        start.pitch = point_->pitch + share * (point_->pitch - before_->pitch);
+        start.coefficients =
+            point_->coefficients + share * (point_->coefficients - before_->coefficients);
+      }
+    }
+    add_change(speed_slope_, speed - start.speed, start.coefficients);
+    add_change(pitch_slope_, pitch - start.pitch, start.coefficients);
+    return std::move(start.coefficients);
+  }
+
+ private:
+  static bool have_one_size(const Solved& a, const Solved& b) {
+    return a.coefficients.cols() == b.coefficients.cols();
+  }
+  static void add_change(const Eigen::MatrixXd& slope, double change, Eigen::MatrixXd& to) {
+    if (slope.cols() == to.cols()) to += change * slope;
+  }
+  void take_slope(const Solved& a, const Solved& b) {
+    if (!have_one_size(a, b)) return;
+    if (a.speed != b.speed && a.pitch == b.pitch)
+      speed_slope_ = (b.coefficients - a.coefficients) / (b.speed - a.speed);
+    if (a.pitch != b.pitch && a.speed == b.speed)
+      pitch_slope_ = (b.coefficients - a.coefficients) / (b.pitch - a.pitch);
+  }
+
+  std::optional<Solved> last_;
+  std::optional<Solved> point_;   ///< last operating point
+  std::optional<Solved> before_;  ///< the one before
+  Eigen::MatrixXd speed_slope_;   ///< empty: not known
+  Eigen::MatrixXd pitch_slope_;
+};
+
 /// End of a search for the zero of a falling function.
 enum class Found { zero, above_range, below_range };
 
@@ -130,6 +200,7 @@ class OperatingPointFinder::Search {
       OperatingPoint point = table_.empty() ? search(wind) : follow_table(wind);
       note_roughness(*last_, observer, place + "trim");
       previous_ = point;
+      starts_.finish_point();
       return point;
     } catch (const InputError& error) {
       throw InputError(place + error.what());
@@ -161,8 +232,11 @@ class OperatingPointFinder::Search {
     analysis::TrimOptions options = trim_options(scenario);
     options.is_draft = is_rough;
     if (is_rough) options.tolerance = std::max(options.tolerance, rough_tolerance);
+    if (const auto start = starts_.predict(wind, speed, pitch))
+      last_->solution = analysis::PeriodicSolution(*start, system.period());
     last_ =
         solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, last_ ? &*last_ : nullptr);
+    starts_.add({wind, speed, pitch, last_->solution.coefficients()});
     system_ = std::move(built);
     if (!is_rough) require_wake_range(system, *last_);
     OperatingPoint point;
@@ -297,7 +371,9 @@ class OperatingPointFinder::Search {
   OperatingPoint search_pitch(double wind) {
     const double torque = rated_torque();
     SearchRange range{fine_pitch(), fine_pitch() + pitch_range, start_pitch(wind), 1.0 * degree,
-                      extrapolate(wind, &PitchedPoint::slope, 2).value_or(0.0)};
+                      extrapolate(
+                          wind, [](const PitchedPoint& point) { return point.slope; }, 2)
+                          .value_or(0.0)};
     const Root root = find_zero(range, [&](double pitch, bool is_rough) {
       return (evaluate(wind, setup_.rated_speed, pitch, is_rough).torque - torque) / torque;
     });
@@ -321,8 +397,8 @@ class OperatingPointFinder::Search {
   };
 
   /// Value at a wind speed of the polynomial through the last points, `most` at the most.
-  std::optional<double> extrapolate(double wind, double PitchedPoint::*value,
-                                    std::size_t most) const {
+  template <class Value>
+  std::optional<double> extrapolate(double wind, const Value& value, std::size_t most) const {
     if (pitched_.empty()) return std::nullopt;
     const std::size_t first = pitched_.size() - std::min(pitched_.size(), most);
     double sum = 0.0;
@@ -330,23 +406,29 @@ class OperatingPointFinder::Search {
       double weight = 1.0;
       for (std::size_t j = first; j < pitched_.size(); ++j)
         if (j != i) weight *= (wind - pitched_[j].wind) / (pitched_[i].wind - pitched_[j].wind);
-      sum += weight * pitched_[i].*value;
+      sum += weight * value(pitched_[i]);
     }
     return sum;
   }
 
-  /// From the last points, or from a usual schedule: 20 deg (V/V_rated - 1)^0.6.
+  /// From a usual schedule, 20 deg (V/V_rated - 1)^0.6, or from the last points: the power 1/0.6 of
+  /// the pitch is nearly linear.
   double start_pitch(double wind) {
-    if (const std::optional<double> pitch = extrapolate(wind, &PitchedPoint::pitch, 3))
-      return *pitch;
+    constexpr double exponent = 0.6;
+    const auto measure = [this](const PitchedPoint& point) {
+      return std::pow(std::max(point.pitch - fine_pitch(), 0.0), 1.0 / exponent);
+    };
+    if (const std::optional<double> value = extrapolate(wind, measure, 3))
+      return fine_pitch() + std::pow(std::max(*value, 0.0), exponent);
     const double beyond = wind / *estimate_rated_wind() - 1.0;
-    return fine_pitch() + 20.0 * degree * std::pow(std::max(beyond, 0.02), 0.6);
+    return fine_pitch() + 20.0 * degree * std::pow(std::max(beyond, 0.02), exponent);
   }
 
   Scenario scenario_;
   const model::OperatingPointsDefinition& setup_;
   const std::vector<ScheduledPoint>& table_;
   std::optional<analysis::Trim> last_;
+  StartPredictor starts_;
   std::unique_ptr<turbine::TurbineSystem> system_;  ///< of last_
   std::optional<OperatingPoint> present_;           ///< of last_
   std::optional<OperatingPoint> previous_;          ///< of the wind speed before
