@@ -1,6 +1,7 @@
 #include "harmonic_preconditioner.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -34,6 +35,21 @@ Eigen::MatrixXcd to_series(const Eigen::Ref<const Eigen::MatrixXd>& coefficients
     series.row(harmonics - k) = series.row(harmonics + k).conjugate();
   }
   return series;
+}
+
+using Columns = Eigen::Map<Eigen::MatrixXcd, Eigen::Unaligned, Eigen::OuterStride<>>;
+
+/// c = c - a b. Products with one column do not pay for the preparation of those with many.
+void subtract_product(const Eigen::MatrixXcd& a, const Columns& b, Columns c) {
+  if (b.cols() != 1) {
+    c.noalias() -= a * b;
+    return;
+  }
+  blas::subtract_product(static_cast<blas::Integer>(a.rows()), 1,
+                         static_cast<blas::Integer>(a.cols()), a.data(),
+                         static_cast<blas::Integer>(a.rows()), b.data(),
+                         static_cast<blas::Integer>(b.rows()), c.data(),
+                         static_cast<blas::Integer>(c.rows()));
 }
 
 }  // namespace
@@ -217,7 +233,7 @@ void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
   for (const Coupling& coupling : couplings_back_) {
     of_border[coupling.border].push_back(&coupling);
     double& limit = least[coupling.border];
-    limit = std::max(limit, least_coupling * coupling.block.cwiseAbs().maxCoeff());
+    limit = std::max(limit, least_coupling * std::sqrt(coupling.block.cwiseAbs2().maxCoeff()));
   }
   Eigen::MatrixXcd right;
   for (int k = first_harmonic(); k <= harmonics; ++k) {
@@ -229,10 +245,10 @@ void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
     std::vector<std::pair<Index, Index>> kept;  // border and harmonic's number
     std::set<Index> filled;
     for (const auto& [border, couplings] : of_border) {
-      const double limit = least[border];
+      const double limit = least[border] * least[border];
       for (Index c = 0; c < width_; ++c)
         if (std::any_of(couplings.begin(), couplings.end(), [&](const Coupling* coupling) {
-              return std::abs(coupling->block(k + harmonics, c)) > limit;
+              return std::norm(coupling->block(k + harmonics, c)) > limit;
             }))
           kept.emplace_back(border, c);
       if (!kept.empty() && kept.back().first == border)
@@ -335,7 +351,6 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
     between.middleCols(c * interior, interior) =
         right.middleCols(c * unknowns, unknowns)(Eigen::all, interior_);
   if (border_size() > 0) {
-    using Columns = Eigen::Map<Eigen::MatrixXcd, Eigen::Unaligned, Eigen::OuterStride<>>;
     const auto of_unknown = [&](Eigen::MatrixXcd& from, Index number, Index all) {
       return Columns(from.col(number).data(), width_, columns, Eigen::OuterStride<>(all * width_));
     };
@@ -346,8 +361,8 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
       for (int k = 1; k <= tangents_.harmonics(); ++k)
         between.row(tangents_.harmonics() - k) = between.row(tangents_.harmonics() + k).conjugate();
     for (const Coupling& coupling : couplings_)
-      of_unknown(border, coupling.border, border_size()).noalias() -=
-          coupling.block * of_unknown(between, coupling.interior, interior);
+      subtract_product(coupling.block, of_unknown(between, coupling.interior, interior),
+                       of_unknown(border, coupling.border, border_size()));
     if (tangents_.partition() != nullptr) tangents_.partition()->ranks().sum(border);
     for (Index c = 0; c < columns; ++c)
       border.middleCols(c * border_size(), border_size()) +=
@@ -361,8 +376,8 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
     of_border(present_, Eigen::all) = schur_columns_.asDiagonal() * unknown;
     border = of_border.reshaped(width_, border_size() * columns);
     for (const Coupling& coupling : couplings_back_)
-      of_unknown(given, coupling.interior, interior).noalias() -=
-          coupling.block * of_unknown(border, coupling.border, border_size());
+      subtract_product(coupling.block, of_unknown(border, coupling.border, border_size()),
+                       of_unknown(given, coupling.interior, interior));
     for (Index c = 0; c < columns; ++c)
       solution.middleCols(c * unknowns, unknowns)(Eigen::all, border_) =
           border.middleCols(c * border_size(), border_size());

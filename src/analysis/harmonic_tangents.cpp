@@ -93,14 +93,16 @@ void HarmonicTangents::make_map(TangentPattern& whole) {
   const int samples = sample_count(system_, harmonics_);
   values_of_.resize(samples, width_);
   projection_.resize(width_, samples);
-  to_coefficients_.resize(2 * width_ - 1, samples);
+  to_series_.resize(2 * width_, samples);
   for (int k = 0; k < samples; ++k) {
     const double t = period() * k / samples;
     values_of_.row(k) = PeriodicSolution::basis(harmonics_, period(), t);
     projection_.col(k) = fourier_weights(harmonics_, period(), t, samples);
-    for (int m = 1 - width_; m < width_; ++m)
-      to_coefficients_(m + width_ - 1, k) =
-          std::polar(1.0 / samples, -2.0 * std::numbers::pi * m * k / samples);
+    for (int m = 0; m < width_; ++m) {
+      const double angle = 2.0 * std::numbers::pi * m * k / samples;
+      to_series_(m, k) = std::cos(angle) / samples;
+      to_series_(width_ + m, k) = -std::sin(angle) / samples;
+    }
   }
   sampled_.resize(2 * samples, pattern_.nonZeros());
   for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i)
@@ -375,19 +377,24 @@ void HarmonicTangents::drop_absent(Eigen::MatrixXd& rows) const {
   }
 }
 
-HarmonicTangents::Coefficients HarmonicTangents::coefficients(const Place& place) const {
-  const Eigen::Index samples = values_of_.rows();
-  const auto sampled = sampled_.col(place.number);
-  return {to_coefficients_ * sampled.head(samples), to_coefficients_ * sampled.tail(samples)};
-}
-
 Eigen::MatrixXcd HarmonicTangents::coupling(const Place& place, std::complex<double> shift) const {
-  const Coefficients tangents = coefficients(place);
+  const Eigen::Index samples = values_of_.rows();
+  // Fourier coefficients m = 0 ... 2 H of K and M; those of -m are conjugate to those of m.
+  const Eigen::MatrixXd half =
+      to_series_ * Eigen::Map<const Eigen::MatrixXd>(sampled_.col(place.number).data(), samples, 2);
+  Eigen::VectorXcd stiffness(2 * width_ - 1);
+  Eigen::VectorXcd mass(2 * width_ - 1);
+  for (int m = 0; m < width_; ++m) {
+    stiffness(width_ - 1 + m) = {half(m, 0), half(width_ + m, 0)};
+    stiffness(width_ - 1 - m) = {half(m, 0), -half(width_ + m, 0)};
+    mass(width_ - 1 + m) = {half(m, 1), half(width_ + m, 1)};
+    mass(width_ - 1 - m) = {half(m, 1), -half(width_ + m, 1)};
+  }
   Eigen::MatrixXcd block(width_, width_);
   for (int k = -harmonics_; k <= harmonics_; ++k) {
     const std::complex<double> rate = shift + std::complex<double>(0.0, k * this->rate());
-    block.col(k + harmonics_) = tangents.stiffness.segment(harmonics_ - k, width_) +
-                                rate * tangents.mass.segment(harmonics_ - k, width_);
+    block.col(k + harmonics_) =
+        stiffness.segment(harmonics_ - k, width_) + rate * mass.segment(harmonics_ - k, width_);
   }
   for (int k = -harmonics_; k <= harmonics_; ++k) {
     if (!has(place.row, k)) block.row(k + harmonics_).setZero();

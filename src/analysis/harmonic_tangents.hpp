@@ -84,12 +84,6 @@ class HarmonicTangents {
   void multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
   /// Coefficients of M(t) w(t), in the same way.
   void multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
-  /// Complex Fourier coefficients m = -2 H ... 2 H of K and M at a place.
-  struct Coefficients {
-    Eigen::VectorXcd stiffness;
-    Eigen::VectorXcd mass;
-  };
-  Coefficients coefficients(const Place& place) const;
   /// Couplings of the coefficients of exp(i k Omega t), k = -H ... H, at a place: those of
   /// K + M d/dt + `shift` M. Zero for harmonics that the row or the column does not have.
   Eigen::MatrixXcd coupling(const Place& place, std::complex<double> shift) const;
@@ -143,7 +137,9 @@ class HarmonicTangents {
   std::vector<Place> places_;
   Eigen::MatrixXd values_of_;         ///< samples x width: the harmonics at the samples
   Eigen::MatrixXd projection_;        ///< width x samples: Fourier weights
-  Eigen::MatrixXcd to_coefficients_;  ///< (4 H + 1) x samples: complex Fourier weights
+  /// (2 width) x samples: weights of the real, then of the imaginary parts of the complex Fourier
+  /// coefficients 0 ... 2 H.
+  Eigen::MatrixXd to_series_;
   Eigen::MatrixXd sampled_;           ///< 2 samples x places: K, then M; rows of all blades summed
 };
 
