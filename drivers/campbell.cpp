@@ -1,10 +1,13 @@
 // samara campbell: the modes at the points of a sweep, joined to lines.
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
 #include "samara/base/words.hpp"
 #include "samara/io/operation_table.hpp"
 #include "samara/petsc/session.hpp"
@@ -68,8 +71,82 @@ std::vector<StabilityEdge> refine_together(const CampbellPlan& plan,
                                            analysis::Observer& observer) {
   ranks.share(0, edges);
   ranks.attempt([&] { refine_edges(plan, edges, ranks, observer); });
-  for (std::size_t i = 0; i < edges.size(); ++i) ranks.share(rank_of_edge(i, ranks), edges[i]);
+  for (std::size_t i = 0; i < edges.size(); ++i) ranks.share(rank_of(i, ranks), edges[i]);
   return edges;
+}
+
+/// Relative distance of places in one band.
+constexpr double same_place = 1e-5;
+constexpr int place_digits = 6;
+
+/// Crossings at which bands are searched where --bands is not given, at least, and the number of
+/// points for each of more: a search takes two points or more.
+constexpr int least_crossings = 4;
+constexpr int points_of_crossing = 2;
+
+/// What was searched between the points.
+struct BandSearch {
+  int searched = 0;  ///< crossings
+  int left = 0;      ///< that were not searched
+  std::vector<double> found = {};
+};
+
+/// Number of blades where they are identical at all points; else 1.
+int identical_blades(const Job& job) {
+  const model::BladesDefinition& blades = job.input.turbine.blades;
+  const bool are_swept = std::ranges::any_of(
+      job.sweep.keys(), [](const std::string& key) { return key.starts_with("blades.each"); });
+  return blades.each.empty() && !are_swept ? blades.count : 1;
+}
+
+/// Searches bands between the points of the first rank, at `most` crossings of frequencies, and
+/// adds a point in each band to the plan, and one between two of them: they may be one band.
+BandSearch add_bands(CampbellPlan& plan, const Diagram& diagram, int blades, int most,
+                     const analysis::Ranks& ranks, analysis::Observer& observer) {
+  std::vector<simulation::Resonance> resonances =
+      simulation::find_resonances(diagram.points, diagram.lines, blades);
+  BandSearch search;
+  search.searched = std::min(static_cast<int>(resonances.size()), most);
+  search.left = static_cast<int>(resonances.size()) - search.searched;
+  resonances.resize(static_cast<std::size_t>(search.searched));
+  ranks.share(0, resonances);
+  std::vector<double> found;
+  ranks.attempt([&] { found = search_bands(plan, resonances, ranks, observer); });
+  for (std::size_t i = 0; i < found.size(); ++i) ranks.share(rank_of(i, ranks), found[i]);
+  std::erase_if(found, [](double place) { return std::isnan(place); });
+  std::ranges::sort(found);
+  std::vector<double> places;
+  for (const double place : found) {
+    if (!places.empty()) {
+      const double last = places.back();
+      if (place - last <= same_place * std::abs(place)) continue;
+      if (std::ranges::none_of(plan.places, [&](const simulation::SweepPlace& point) {
+            return last < point.value && point.value < place;
+          }))
+        places.push_back(0.5 * (last + place));
+    }
+    places.push_back(place);
+    search.found.push_back(place);
+  }
+  plan.insert(places);
+  return search;
+}
+
+/// "bands of instability between the points: searched at 3 crossings of frequencies, none found"
+std::string words_of(const BandSearch& search) {
+  if (search.searched + search.left == 0) return "";
+  std::string text = "bands of instability between the points: ";
+  if (search.searched > 0)
+    text += "searched at " + count(search.searched, "crossing") + " of frequencies, " +
+            (search.found.empty() ? "none found" : "found at ");
+  for (std::size_t i = 0; i < search.found.size(); ++i)
+    text += (i > 0 ? ", " : "") + general(search.found[i], place_digits);
+  if (search.left > 0)
+    text += (search.searched > 0 ? "; not searched at " : "not searched at ") +
+            count(search.left, "crossing") +
+            (search.searched > 0 ? " of faster decay or higher frequency" : " of frequencies") +
+            " (hint: --bands " + std::to_string(search.searched + search.left) + ")";
+  return text + "\n";
 }
 
 }  // namespace
@@ -81,8 +158,8 @@ void run_campbell(const Job& job) {
   const std::vector<simulation::ScheduledPoint> table =
       has_table ? io::read_opt_file(setup.table_path) : std::vector<simulation::ScheduledPoint>();
   const bool is_first = petsc::Session::rank() == 0;
-  const CampbellPlan plan = plan_campbell(job, table);
-  const io::CampbellPointFiles files(job.result_path, plan.origins);
+  CampbellPlan plan = plan_campbell(job, table);
+  io::CampbellPointFiles files(job.result_path, plan.origins);
   Progress progress(is_first);
   const Interruption interruption;
   const analysis::Ranks ranks(PETSC_COMM_WORLD);
@@ -92,6 +169,20 @@ void run_campbell(const Job& job) {
   ranks.attempt([&] {
     if (is_first) diagram = read_diagram(plan, files, progress);
   });
+  BandSearch search;
+  if (plan.quantities.size() == 1 && ranks.all(!Interruption::is_asked())) {
+    const std::size_t before = plan.places.size();
+    const int most = job.bands.value_or(
+        std::max(static_cast<int>(before) / points_of_crossing, least_crossings));
+    search = add_bands(plan, diagram, identical_blades(job), most, ranks, progress);
+    if (plan.places.size() > before) {
+      files = io::CampbellPointFiles(job.result_path, plan.origins);
+      ranks.attempt([&] { find_points(plan, files, ranks, progress); });
+      ranks.attempt([&] {
+        if (is_first) diagram = read_diagram(plan, files, progress);
+      });
+    }
+  }
   const std::vector<StabilityEdge> edges =
       refine_together(plan, simulation::find_edges(diagram.points), ranks, progress);
   const bool is_interrupted = !ranks.all(!Interruption::is_asked());
@@ -105,7 +196,7 @@ void run_campbell(const Job& job) {
         title_of(job.input) + "\n\n" +
             campbell_point_table(plan.quantities, diagram.points, diagram.lines) + "\n" +
             campbell_line_table(diagram.points, diagram.lines, edges) +
-            campbell_doubts(diagram.points, diagram.lines),
+            campbell_doubts(diagram.points, diagram.lines) + words_of(search),
         [&](io::ResultFile& file) {
           io::write_campbell(file, plan.quantities, diagram.points, diagram.lines, edges,
                              is_complete);

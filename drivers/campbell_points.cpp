@@ -128,6 +128,9 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
     plan.places = job.sweep.places();
     for (const std::string& text : job.sweep.case_texts())
       plan.origins.push_back(origin_of(text, ""));
+    plan.origin_at = [&job](const SweepPlace& place) {
+      return origin_of(job.sweep.case_at(place).text, "");
+    };
     plan.finder = std::make_unique<SweepFinder>(job.sweep);
   } else {
     plan.quantities = {{"wind.speed", "m/s"}};
@@ -135,9 +138,12 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
     for (const simulation::ScheduledPoint& row : table)
       for (const double value : {row.wind, row.speed, row.pitch})
         rows += general(value, exact_digits) + " ";
+    plan.origin_at = [&job, rows](const SweepPlace& place) {
+      return origin_of(job.input.text, rows + general(place.value, exact_digits));
+    };
     for (const double wind : simulation::operating_winds(job.input, table)) {
       plan.places.push_back({wind});
-      plan.origins.push_back(origin_of(job.input.text, rows + general(wind, exact_digits)));
+      plan.origins.push_back(plan.origin_at(plan.places.back()));
     }
     plan.finder = std::make_unique<OperationFinder>(job.input, table);
   }
@@ -161,10 +167,41 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
   }
 }
 
+void CampbellPlan::insert(const std::vector<double>& values) {
+  for (const double value : values)
+    for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+      const auto [low, high] = std::minmax(places[i].value, places[i + 1].value);
+      if (!(low < value && value < high)) continue;
+      const auto behind = static_cast<std::ptrdiff_t>(i) + 1;
+      places.insert(places.begin() + behind, {value});
+      origins.insert(origins.begin() + behind, origin_at({value}));
+      break;
+    }
+}
+
+std::vector<double> search_bands(const CampbellPlan& plan,
+                                 const std::vector<simulation::Resonance>& resonances,
+                                 const analysis::Ranks& ranks, analysis::Observer& observer) {
+  std::vector<double> places(resonances.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < resonances.size(); ++i) {
+    if (rank_of(i, ranks) != ranks.rank || Interruption::is_asked()) continue;
+    observer.progress("bands of instability", static_cast<long>(i),
+                      static_cast<long>(resonances.size()));
+    const std::optional<double> place = simulation::find_band(resonances[i], [&plan](double value) {
+      if (!Interruption::is_asked()) return plan.finder->find({value});
+      CampbellPoint none;
+      none.failure = "interrupted";
+      return none;
+    });
+    if (place) places[i] = *place;
+  }
+  return places;
+}
+
 void refine_edges(const CampbellPlan& plan, std::vector<StabilityEdge>& edges,
                   const analysis::Ranks& ranks, analysis::Observer& observer) {
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (rank_of_edge(i, ranks) != ranks.rank) continue;
+    if (rank_of(i, ranks) != ranks.rank) continue;
     observer.progress("edges of instability", static_cast<long>(i),
                       static_cast<long>(edges.size()));
     bisect(*plan.finder, edges[i]);

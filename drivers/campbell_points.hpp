@@ -1,6 +1,7 @@
 // The points of a Campbell diagram: found by all ranks, kept in files.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "samara/io/campbell_file.hpp"
 #include "samara/simulation/campbell.hpp"
 #include "samara/simulation/operation.hpp"
+#include "samara/simulation/resonance.hpp"
 
 #include "job.hpp"
 
@@ -38,7 +40,11 @@ struct CampbellPlan {
   std::vector<io::SweptQuantity> quantities;  ///< one, or the two of a map
   std::vector<simulation::SweepPlace> places;
   std::vector<std::string> origins;  ///< of io::CampbellPointFiles
+  std::function<std::string(const simulation::SweepPlace&)> origin_at;
   std::unique_ptr<CampbellPointFinder> finder;
+
+  /// Adds points of a sweep of one quantity where they are between two others.
+  void insert(const std::vector<double>& values);
 };
 
 /// `job` and `table`, the rows of operation.table, must outlive the plan.
@@ -48,14 +54,21 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
 void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
                  const analysis::Ranks& ranks, analysis::Observer& observer);
 
+/// Searches bands of instability at resonances, those of this rank. Stops when the user interrupts
+/// the run.
+/// @returns for each resonance a place in a band; not-a-number where there is none
+std::vector<double> search_bands(const CampbellPlan& plan,
+                                 const std::vector<simulation::Resonance>& resonances,
+                                 const analysis::Ranks& ranks, analysis::Observer& observer);
+
 /// Refines the edges of this rank by bisection to simulation::edge_accuracy relative to the larger
 /// value. Stops when the user interrupts the run.
 void refine_edges(const CampbellPlan& plan, std::vector<simulation::StabilityEdge>& edges,
                   const analysis::Ranks& ranks, analysis::Observer& observer);
 
-/// The rank that refines an edge.
-inline int rank_of_edge(std::size_t edge, const analysis::Ranks& ranks) {
-  return static_cast<int>(edge % static_cast<std::size_t>(ranks.size));
+/// The rank that refines an edge, or searches at a resonance.
+inline int rank_of(std::size_t number, const analysis::Ranks& ranks) {
+  return static_cast<int>(number % static_cast<std::size_t>(ranks.size));
 }
 
 }  // namespace samara::drivers

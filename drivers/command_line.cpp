@@ -114,6 +114,9 @@ class Parser {
     else if (name == "--sweep")
       line_.sweep.push_back(
           value_of(name, "a key and its values, e.g. --sweep shaft.speed_rpm=0:14:0.5", value));
+    else if (name == "--bands")
+      line_.bands =
+          number_of(name, value_of(name, "a number of crossings, e.g. --bands 20", value), 0);
     else if (name == "--csv")
       set_once(line_.csv_path, name, value_of(name, "a path, e.g. --csv modes.csv", value));
     else
@@ -165,7 +168,7 @@ class Parser {
     std::vector<std::string> known{"--set",          "--csv",    "--all",     "--air",
                                    "--first",        "--parked", "--restart", "--mu-order",
                                    "--report",       "--help",   "--version", "--tower-only",
-                                   "--help-options", "--sweep"};
+                                   "--help-options", "--sweep",  "--bands"};
     for (const decks::StatedQuantity& quantity : decks::stated_quantities())
       known.push_back(std::string("--") + quantity.option);
     const std::string suggestion = suggest(name, known);
@@ -182,14 +185,15 @@ class Parser {
     return arguments_[next_++];
   }
 
-  static int number_of(const std::string& name, const std::string& word) {
+  static int number_of(const std::string& name, const std::string& word, int least = 1) {
     constexpr std::size_t most_digits = 6;
     const bool is_count =
         word.size() <= most_digits &&
         std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-    const int number = is_count ? std::stoi(word) : 0;
-    if (number < 1)
-      throw InputError(name + ": expected a whole number from 1 to 999999, got " + quote(word));
+    const int number = is_count && !word.empty() ? std::stoi(word) : -1;
+    if (number < least)
+      throw InputError(name + ": expected a whole number from " + std::to_string(least) +
+                       " to 999999, got " + quote(word));
     return number;
   }
 
@@ -297,6 +301,8 @@ class Parser {
       throw InputError("--restart: samara " + name + " does not use it, samara transient does");
     if (!line_.sweep.empty() && !line_.command->has_sweep)
       throw InputError("--sweep: samara " + name + " has no sweep, samara campbell has one");
+    if (line_.bands && !line_.command->has_sweep)
+      throw InputError("--bands: samara " + name + " does not use it, samara campbell does");
     if (!line_.csv_path.empty() && !line_.command->has_csv)
       throw InputError(
           "--csv: samara " + name + " has no table to write" +
@@ -394,6 +400,8 @@ constexpr char option_lines[] =
   --restart FILE.h5 continues from the last checkpoint of a result (transient)
   --sweep KEY=VALUES the values of a key (campbell): FROM:TO:STEP, or V1,V2,...; given twice, a
                     map over two keys
+  --bands N         searches bands of instability between the points at N crossings of
+                    frequencies at most (campbell; without it at half as many as points)
   --help            this text; samara <command> --help shows an example
   --version         versions of samara and of its libraries
   --help-options    the prefixes of options of PETSc and SLEPc

@@ -1,6 +1,7 @@
 // Parsed command line, and the help texts of the program.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,6 +63,7 @@ struct CommandLine {
   std::string csv_path;            ///< empty: no table
   std::string restart_path;        ///< path of a result to continue; empty: not given
   std::vector<std::string> sweep;  ///< keys and values; empty: not given
+  std::optional<int> bands;        ///< crossings that are searched; none: not given
   std::vector<std::string> petsc_options;
 };
 

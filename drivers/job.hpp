@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct Job {
   std::string sensitivity;             ///< patterns of keys; empty: none
   std::string restart_path;            ///< empty: the run starts at its beginning
   Sweep sweep;                         ///< not given: the operating points of the case
+  std::optional<int> bands;            ///< crossings that a sweep searches; none: not given
   /// Results that the command reads, if any; `input` is the case of the first.
   std::vector<std::string> sources;
   std::vector<std::string> settings;  ///< its own --set arguments, not keys of the case

@@ -266,6 +266,7 @@ Job prepare(const CommandLine& line) {
   job.air_part = line.air_part;
   job.first_modes = line.first_modes;
   job.sensitivity = line.sensitivity;
+  job.bands = line.bands;
   if (job.result_path.empty() && line.command->writes_result)
     job.result_path = std::filesystem::path(line.case_path).stem().string() + ".h5";
   if (Session::launch_rank() != 0) return job;

@@ -2,6 +2,7 @@
 
 import csv
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -167,6 +168,31 @@ class Campbell(ProgramTest):
         self.assertEqual(note.read_bytes(), b"mine")
         self.assertEqual(foreign.read_bytes(), b"something else")
         self.assertEqual(set((self.folder / "c.h5.points").iterdir()), {note, foreign})
+
+    def test_a_band_between_two_stable_points_is_found(self):
+        """The edges are those of an integration of the equations of single blades by Runge-Kutta (docs/examples/two_blades.md)."""
+        case = SOURCE / "inputs/ground_resonance/hammond.yaml"
+        sweep = ["campbell", case, "--set", "blades.count=2", "--set", "blades.hinges.0.damping=100",
+                 "--sweep", "shaft.speed_rpm=200,420", "-o", "c.h5"]
+        text = self.succeed(*sweep).stdout
+        self.assertRegex(text, "grows at +remark")
+        grows = re.search(r"antisymmetric .* ([0-9.]+) to ([0-9.]+)$", text, re.MULTILINE)
+        self.assertAlmostEqual(float(grows[1]), 247.15, delta=0.02)
+        self.assertAlmostEqual(float(grows[2]), 373.00, delta=0.02)
+        self.assertRegex(text, r"searched at \d+ crossings of frequencies, found at 2")
+        found = self.diagram("c.h5")
+        self.assertEqual([found["value"][0], found["value"][-1]], [200, 420])
+        self.assertEqual((numpy.diff(found["value"]) > 0).all(), True)
+        self.succeed(*sweep, ranks=2)
+        other = self.diagram("c.h5")
+        self.assertEqual(found["mode"], other["mode"])
+        for key in ("value", "growth_rate", "edge_value"):
+            numpy.testing.assert_allclose(found[key], other[key], rtol=1e-5, atol=1e-7)
+        text = self.succeed(*sweep, "--bands", "0").stdout
+        self.assertRegex(text, r"not searched at \d crossings of frequencies \(hint: --bands \d\)")
+        self.assertEqual(self.diagram("c.h5")["value"].tolist(), [200, 420])
+        self.refuse(*sweep, "--bands", "-1", words="from 0 to 999999")
+        self.refuse("floquet", case, "--bands", "3", words="samara campbell does")
 
     def test_a_spring_from_nothing(self):
         """A part without stiffness at one point has no energy there, and the others are compared."""
