@@ -54,15 +54,17 @@ constexpr double most_entries = 2e8;
 constexpr double near_solution = 0.05;
 constexpr PetscInt steps_near_solution = 3;
 
-/// Newton's method: line search and number of steps.
+/// Newton's method: line search, number of steps, and steps for which a tangent serves near the
+/// solution.
 struct NewtonLimits {
   const char* line_search = SNESLINESEARCHBT;
   int most_steps = 50;
+  PetscInt steps_of_tangent = steps_near_solution;
 };
 
 /// For `release`. A change of a controller's pitch needs full Newton steps: each of them first
 /// raises the residual of the rotations, and a line search would shorten the step.
-constexpr NewtonLimits full_steps{SNESLINESEARCHBASIC, 15};
+constexpr NewtonLimits full_steps{SNESLINESEARCHBASIC, 15, 1};
 /// Smallest part of the loads on free coordinates that one step removes.
 constexpr double least_release = 1.0 / 64.0;
 
@@ -622,7 +624,7 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
     enough = std::max(enough, tolerance * whole);
     if (at_start > vanished) petsc::check(SNESSetForceIteration(solver.get(), PETSC_TRUE));
     if (at_start < near_solution * whole)
-      petsc::check(SNESSetLagJacobian(solver.get(), steps_near_solution));
+      petsc::check(SNESSetLagJacobian(solver.get(), limits.steps_of_tangent));
   }
   petsc::check(SNESSetTolerances(solver.get(), enough, tolerance, 0.0, limits.most_steps, 10000));
   SNESLineSearch search = nullptr;

@@ -45,11 +45,10 @@ void subtract_product(const Eigen::MatrixXcd& a, const Columns& b, Columns c) {
     c.noalias() -= a * b;
     return;
   }
-  blas::subtract_product(static_cast<blas::Integer>(a.rows()), 1,
-                         static_cast<blas::Integer>(a.cols()), a.data(),
-                         static_cast<blas::Integer>(a.rows()), b.data(),
-                         static_cast<blas::Integer>(b.rows()), c.data(),
-                         static_cast<blas::Integer>(c.rows()));
+  blas::subtract_product(
+      static_cast<blas::Integer>(a.rows()), 1, static_cast<blas::Integer>(a.cols()), a.data(),
+      static_cast<blas::Integer>(a.rows()), b.data(), static_cast<blas::Integer>(b.rows()),
+      c.data(), static_cast<blas::Integer>(c.rows()));
 }
 
 }  // namespace

@@ -135,12 +135,12 @@ class HarmonicTangents {
   std::vector<char> is_border_;
   TangentPattern pattern_;  ///< of K and M together
   std::vector<Place> places_;
-  Eigen::MatrixXd values_of_;         ///< samples x width: the harmonics at the samples
-  Eigen::MatrixXd projection_;        ///< width x samples: Fourier weights
+  Eigen::MatrixXd values_of_;   ///< samples x width: the harmonics at the samples
+  Eigen::MatrixXd projection_;  ///< width x samples: Fourier weights
   /// (2 width) x samples: weights of the real, then of the imaginary parts of the complex Fourier
   /// coefficients 0 ... 2 H.
   Eigen::MatrixXd to_series_;
-  Eigen::MatrixXd sampled_;           ///< 2 samples x places: K, then M; rows of all blades summed
+  Eigen::MatrixXd sampled_;  ///< 2 samples x places: K, then M; rows of all blades summed
 };
 
 }  // namespace samara::analysis

@@ -61,8 +61,11 @@ void add_means(const turbine::TurbineSystem& system, const analysis::Trim& trim,
     point.*means[j].value = values[j] * means[j].factor;
 }
 
-/// Farthest extrapolation, in distances of the points before.
+/// Farthest extrapolation, in distances of the points before; longest change by a secant, and
+/// shortest new secant, in its lengths.
 constexpr double farthest = 2.5;
+constexpr double longest_change = 4.0;
+constexpr double shortest_secant = 0.05;
 
 /// A steady state, and what it belongs to.
 struct Solved {
@@ -104,8 +107,8 @@ class StartPredictor {
             point_->coefficients + share * (point_->coefficients - before_->coefficients);
       }
     }
-    add_change(speed_slope_, speed - start.speed, start.coefficients);
-    add_change(pitch_slope_, pitch - start.pitch, start.coefficients);
+    speed_slope_.add_change(speed - start.speed, start.coefficients);
+    pitch_slope_.add_change(pitch - start.pitch, start.coefficients);
     return std::move(start.coefficients);
   }
 
@@ -113,22 +116,33 @@ class StartPredictor {
   static bool have_one_size(const Solved& a, const Solved& b) {
     return a.coefficients.cols() == b.coefficients.cols();
   }
-  static void add_change(const Eigen::MatrixXd& slope, double change, Eigen::MatrixXd& to) {
-    if (slope.cols() == to.cols()) to += change * slope;
-  }
+  /// Change of the coefficients with speed or pitch, by a secant.
+  struct Slope {
+    Eigen::MatrixXd value;  ///< empty: not known
+    double length = 0.0;    ///< of the secant
+
+    void add_change(double change, Eigen::MatrixXd& to) const {
+      if (value.cols() == to.cols() && std::abs(change) <= longest_change * length)
+        to += change * value;
+    }
+    void take(const Solved& a, const Solved& b, double change) {
+      // A short secant has the errors of the steady states.
+      if (change == 0.0 || std::abs(change) < shortest_secant * length) return;
+      value = (b.coefficients - a.coefficients) / change;
+      length = std::max(0.5 * length, std::abs(change));
+    }
+  };
   void take_slope(const Solved& a, const Solved& b) {
     if (!have_one_size(a, b)) return;
-    if (a.speed != b.speed && a.pitch == b.pitch)
-      speed_slope_ = (b.coefficients - a.coefficients) / (b.speed - a.speed);
-    if (a.pitch != b.pitch && a.speed == b.speed)
-      pitch_slope_ = (b.coefficients - a.coefficients) / (b.pitch - a.pitch);
+    if (a.pitch == b.pitch) speed_slope_.take(a, b, b.speed - a.speed);
+    if (a.speed == b.speed) pitch_slope_.take(a, b, b.pitch - a.pitch);
   }
 
   std::optional<Solved> last_;
   std::optional<Solved> point_;   ///< last operating point
   std::optional<Solved> before_;  ///< the one before
-  Eigen::MatrixXd speed_slope_;   ///< empty: not known
-  Eigen::MatrixXd pitch_slope_;
+  Slope speed_slope_;
+  Slope pitch_slope_;
 };
 
 /// End of a search for the zero of a falling function.
@@ -167,6 +181,8 @@ Root find_zero(const SearchRange& range, const Function& f) {
     if (value > 0.0 && x >= range.highest) return {Found::above_range, range.highest, slope};
     if (value < 0.0 && x <= range.lowest) return {Found::below_range, range.lowest, slope};
     (value > 0.0 ? positive : negative) = x;
+    // A rough value next to zero may have had the wrong sign.
+    if (positive && negative && *positive >= *negative) (value > 0.0 ? negative : positive).reset();
     last = {x, value};
     const double most = 4.0 * range.step;
     double change = slope < 0.0 ? -value / slope : std::copysign(range.step, value);
@@ -197,6 +213,7 @@ class OperatingPointFinder::Search {
   OperatingPoint find_at(double wind, analysis::Observer& observer) {
     const std::string place = "operation at " + general(wind, 6) + " m/s: ";
     try {
+      if (table_.empty()) note_law(observer);
       OperatingPoint point = table_.empty() ? search(wind) : follow_table(wind);
       note_roughness(*last_, observer, place + "trim");
       previous_ = point;
@@ -232,10 +249,10 @@ class OperatingPointFinder::Search {
     analysis::TrimOptions options = trim_options(scenario);
     options.is_draft = is_rough;
     if (is_rough) options.tolerance = std::max(options.tolerance, rough_tolerance);
+    std::optional<analysis::Trim> near = last_;
     if (const auto start = starts_.predict(wind, speed, pitch))
-      last_->solution = analysis::PeriodicSolution(*start, system.period());
-    last_ =
-        solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, last_ ? &*last_ : nullptr);
+      near->solution = analysis::PeriodicSolution(*start, system.period());
+    last_ = solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, near ? &*near : nullptr);
     starts_.add({wind, speed, pitch, last_->solution.coefficients()});
     system_ = std::move(built);
     if (!is_rough) require_wake_range(system, *last_);
@@ -301,17 +318,42 @@ class OperatingPointFinder::Search {
     return y0 + (y1 - y0) * (own - x0) / (x1 - x0);
   }
 
+  /// Whether the law has a larger torque than the rated one at the rated speed.
+  bool is_law_above_rated() const {
+    return law_at(setup_.rated_speed) > rated_torque() * (1.0 + torque_accuracy);
+  }
+
+  void note_law(analysis::Observer& observer) {
+    if (std::exchange(is_law_noted_, true) || !is_law_above_rated()) return;
+    observer.note("operation: the law of the generator has " +
+                  general(law_at(setup_.rated_speed), 4) +
+                  " N m at the rated speed, more than rated_power / rated speed, " +
+                  general(rated_torque(), 4) +
+                  " N m: where it balances the wind at the least pitch, the power may be above the "
+                  "rated one; hint: operation.torque_gain is per generator speed squared");
+  }
+
   OperatingPoint search(double wind) {
-    if (!is_above_rated(wind)) {
+    const bool is_above = is_above_rated(wind);
+    if (!is_above) {
       const OperatingPoint* point = search_speed(wind);
       if (point != nullptr) return *point;
     }
-    return search_pitch(wind);
+    if (const std::optional<OperatingPoint> point = search_pitch(wind)) return *point;
+    // The torque at the least pitch is below the rated one: the rotor stalls.
+    const OperatingPoint* point = is_above ? search_speed(wind) : nullptr;
+    if (point != nullptr) return *point;
+    throw InputError("operation.rated_power is not reached at the least pitch of " +
+                     general(fine_pitch() / degree, 4) + " deg and the rated speed: the torque " +
+                     "there is " + general(present_->torque, 4) + " N m of " +
+                     general(rated_torque(), 4) + " N m");
   }
 
-  /// True where the pitch certainly holds the power, so that no steady state at the least pitch is
-  /// needed: there it may not exist.
+  /// True where the pitch is expected to hold the power, so that the steady state at the least
+  /// pitch is not needed: it may not exist. A law above the rated torque, as that of a rotor that
+  /// is regulated by stall, may have a speed at any wind.
   bool is_above_rated(double wind) {
+    if (is_law_above_rated()) return false;
     if (previous_)
       return previous_->region == OperatingRegion::rated_power && wind >= previous_->wind;
     const std::optional<double> rated = estimate_rated_wind();
@@ -368,7 +410,9 @@ class OperatingPointFinder::Search {
     return &*present_;
   }
 
-  OperatingPoint search_pitch(double wind) {
+  /// The pitch at the rated speed and torque; none where the torque at the least pitch is below the
+  /// rated one.
+  std::optional<OperatingPoint> search_pitch(double wind) {
     const double torque = rated_torque();
     SearchRange range{fine_pitch(), fine_pitch() + pitch_range, start_pitch(wind), 1.0 * degree,
                       extrapolate(
@@ -380,12 +424,7 @@ class OperatingPointFinder::Search {
     if (root.found == Found::above_range)
       throw InputError("no pitch up to " + general((fine_pitch() + pitch_range) / degree, 3) +
                        " deg limits the power to operation.rated_power");
-    if (root.found == Found::below_range)
-      throw InputError("operation.rated_power is not reached at the least pitch of " +
-                       general(fine_pitch() / degree, 4) +
-                       " deg and the rated speed: the torque "
-                       "there is " +
-                       general(present_->torque, 4) + " N m of " + general(torque, 4) + " N m");
+    if (root.found == Found::below_range) return std::nullopt;
     pitched_.push_back({wind, root.x, root.slope});
     return take(OperatingRegion::rated_power);
   }
@@ -412,16 +451,21 @@ class OperatingPointFinder::Search {
   }
 
   /// From a usual schedule, 20 deg (V/V_rated - 1)^0.6, or from the last points: the power 1/0.6 of
-  /// the pitch is nearly linear.
+  /// the pitch is nearly linear. After a single point it grows as that of the usual schedule.
   double start_pitch(double wind) {
     constexpr double exponent = 0.6;
+    constexpr double usual = 20.0 * degree;
     const auto measure = [this](const PitchedPoint& point) {
       return std::pow(std::max(point.pitch - fine_pitch(), 0.0), 1.0 / exponent);
     };
-    if (const std::optional<double> value = extrapolate(wind, measure, 3))
-      return fine_pitch() + std::pow(std::max(*value, 0.0), exponent);
-    const double beyond = wind / *estimate_rated_wind() - 1.0;
-    return fine_pitch() + 20.0 * degree * std::pow(std::max(beyond, 0.02), exponent);
+    const double rated = *estimate_rated_wind();
+    const double growth = std::pow(usual, 1.0 / exponent) / rated;
+    double value = growth * rated * std::max(wind / rated - 1.0, 0.02);
+    if (pitched_.size() == 1)
+      value = measure(pitched_.front()) + growth * (wind - pitched_.front().wind);
+    else if (!pitched_.empty())
+      value = *extrapolate(wind, measure, 3);
+    return fine_pitch() + std::pow(std::max(value, 0.0), exponent);
   }
 
   Scenario scenario_;
@@ -433,6 +477,7 @@ class OperatingPointFinder::Search {
   std::optional<OperatingPoint> present_;           ///< of last_
   std::optional<OperatingPoint> previous_;          ///< of the wind speed before
   bool present_is_rough_ = false;
+  bool is_law_noted_ = false;
   std::vector<PitchedPoint> pitched_;
   double speed_slope_ = 0.0;  ///< of the torque less its law, by the rated torque [s/rad]
   double tip_radius_ = 0.0;
