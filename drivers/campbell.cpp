@@ -206,9 +206,13 @@ void run_campbell(const Job& job) {
         });
   // On all ranks: the signal may have come to any of them.
   if (!is_complete)
-    throw Interrupted("interrupted after " + std::to_string(found) + " of " +
-                      std::to_string(plan.places.size()) +
-                      " points; hint: the same command goes on from here");
+    throw Interrupted(found == static_cast<int>(plan.places.size())
+                          ? "interrupted before the edges of instability were refined; hint: the "
+                            "same command goes "
+                            "on from here"
+                          : "interrupted after " + std::to_string(found) + " of " +
+                                std::to_string(plan.places.size()) +
+                                " points; hint: the same command goes on from here");
   if (!is_first) return;
   files.remove();
   if (diagram.failed > 0)

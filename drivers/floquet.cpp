@@ -17,6 +17,7 @@
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
+#include "interruption.hpp"
 #include "masses.hpp"
 #include "mode_report.hpp"
 #include "progress.hpp"
@@ -42,6 +43,7 @@ std::string headline(const io::Case& input, const analysis::Floquet& floquet, Pe
 
 simulation::ScenarioAt scenarios_of(const Job& job) {
   return [&job](const simulation::Parameter& parameter, double value) {
+    if (Interruption::is_asked()) throw Interrupted("interrupted");
     std::vector<std::string> settings = job.input.settings;
     settings.push_back(parameter.key + "=" + shortest(value));
     try {
@@ -112,14 +114,18 @@ void run_floquet(const Job& job) {
             .set);
   std::optional<Sensitivities> sensitivities;
   std::exception_ptr failure;  // of the sensitivities: the modes are delivered all the same
+  std::optional<Interruption> interruption;  // likewise
   try {
-    if (!groups.empty())
+    if (!groups.empty()) {
+      interruption.emplace();
       sensitivities =
           find_sensitivities(job, std::move(groups), system, trim, floquet.set, progress);
-  } catch (const Interrupted&) {
-    throw;
+    }
   } catch (const std::exception&) {
-    failure = std::current_exception();
+    failure = Interruption::is_asked()
+                  ? std::make_exception_ptr(Interrupted("interrupted before the derivatives were "
+                                                        "found: the modes are complete"))
+                  : std::current_exception();
   }
   progress.finish();
   if (!is_first) {

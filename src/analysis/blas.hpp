@@ -208,7 +208,8 @@ class TriangleInverses {
 
  private:
   static constexpr Integer group = 18;
-  static constexpr Integer columns_at_once = 128;   ///< their values stay in the cache
+  static constexpr Integer columns_at_once =
+      128;  ///< of small blocks, their values stay in the cache
   static constexpr double largest_condition = 1e4;  ///< largest entries, of triangle and inverse
 
   [[nodiscard]] Integer rows_at(Integer first) const { return std::min(group, n_ - first); }

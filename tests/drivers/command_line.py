@@ -102,14 +102,14 @@ class CommandLine(ProgramTest):
     def test_blas_uses_the_vector_instructions_of_the_processor(self):
         """OpenBLAS takes kernels without them on processors that are newer than it."""
         blas = re.search(r"(?m)^OpenBLAS [\d.]+, (\w+)$", self.succeed("--version").stdout)
-        processor = pathlib.Path("/proc/cpuinfo").read_text()
-        flags = re.search(r"(?m)^flags\s*:(.*)$", processor)
-        if blas is None or flags is None or "avx2" not in flags[1].split():
-            self.skipTest("another BLAS or processor")
-        self.assertNotIn(blas[1], ("Prescott", "Core2", "Nehalem", "Sandybridge"))
+        processor = pathlib.Path("/proc/cpuinfo")
+        flags = re.search(r"(?m)^flags\s*:(.*)$", processor.read_text() if processor.exists() else "")
         variables = {**os.environ, "OPENBLAS_CORETYPE": "Nehalem"}
         asked = subprocess.run([PROGRAM, "--version"], env=variables, capture_output=True, text=True)
-        self.assertRegex(asked.stdout, r"(?m)^OpenBLAS [\d.]+, Nehalem$")
+        if blas is None or flags is None or "avx2" not in flags[1].split() or "OPENBLAS_CORETYPE" in os.environ \
+                or ", Nehalem\n" not in asked.stdout:
+            self.skipTest("another BLAS, one for a single processor, or another processor")
+        self.assertNotIn(blas[1], ("Prescott", "Core2", "Nehalem", "Sandybridge"))
 
     def test_own_options_may_stand_anywhere(self):
         self.succeed("-o", "x.h5", "--set=gravity=0", "check", BASELINE)

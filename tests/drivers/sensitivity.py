@@ -1,6 +1,8 @@
 """samara floquet --sensitivity: derivatives in the result, tables, ranks and errors."""
 
 import pathlib
+import signal
+import subprocess
 import sys
 import unittest
 
@@ -8,7 +10,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import SOURCE, ProgramTest  # noqa: E402
+from program import LONGEST_RUN, PROGRAM, SOURCE, ProgramTest  # noqa: E402
 
 # One rigid blade on a flap hinge at the hub radius, of mass 4 kg/m and length 9 m.
 CASE = """samara: 1
@@ -36,6 +38,23 @@ class Sensitivity(ProgramTest):
             group = file["floquet/sensitivity"]
             return (list(group["key"].asstr()[:]), list(group["unit"].asstr()[:]),
                     group["exponent_rate"][:] @ [1, 1j], group["error"][:], file["floquet/exponents"][:] @ [1, 1j])
+
+    def test_an_interrupted_run_keeps_the_modes(self):
+        case = SOURCE / "inputs/lee2002/baseline.yaml"
+        run = subprocess.Popen([PROGRAM, "floquet", case, "--first", "6", "-o", "run.h5", "--sensitivity",
+                                "tower.sections.*.mass,blades.sections.*.mass,shaft.speed,gravity,hub"],
+                               cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        for line in run.stderr:
+            if "sensitivities" in line:
+                break
+        run.send_signal(signal.SIGINT)
+        text, errors = run.communicate(timeout=LONGEST_RUN)
+        self.assertEqual(run.returncode, 130)
+        self.assertIn("interrupted before the derivatives were found: the modes are complete", errors)
+        self.assertIn("tower fore-aft 1", text)
+        with h5py.File(self.folder / "run.h5") as file:
+            self.assertGreater(len(file["floquet/exponents"]), 6)
+            self.assertNotIn("sensitivity", file["floquet"])
 
     def test_a_hinge_has_the_derivatives_of_its_closed_form(self):
         run = self.succeed("floquet", "hinged.yaml", "--sensitivity", "blades.hinges.*.stiffness,shaft.speed,hub",

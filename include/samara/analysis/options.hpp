@@ -17,7 +17,8 @@ struct TrimOptions {
   double auto_tolerance = 1e-6;  ///< of the residual between the samples, relative to the loads
   int steps = 500;               ///< steps per revolution of the shooting method
   /// Next to a known steady state, leaves out the residuals beside the equations that are solved,
-  /// which then are 0: for the steps of a search. Not with `automatic`.
+  /// which then are 0, and with `automatic` the check of the number of harmonics: for the steps of
+  /// a search. Its result needs a trim that is no draft.
   bool is_draft = false;
 };
 

@@ -55,8 +55,8 @@ struct OperatingPoint {
 
 /// Finds operating points of `scenario.operation`. `table`: rows of its table; the speed and pitch
 /// of a wind speed between two rows are linear between them. Without a table the pitch of the case
-/// is the least pitch. Laws of the generator and the controller do not act. Each steady state is
-/// the start of the next one. `scenario` and `table` must outlive the object.
+/// is the least pitch. Laws of the generator and the controller do not act. Each steady state
+/// starts from an extrapolation of those before. `scenario` and `table` must outlive the object.
 class OperatingPointFinder {
  public:
   OperatingPointFinder(const Scenario& scenario, const std::vector<ScheduledPoint>& table);
