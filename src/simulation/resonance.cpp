@@ -139,6 +139,7 @@ std::optional<double> find_band(const Resonance& resonance,
   Resonance left = resonance;  // of which the present interval is a part
   double from = detuning(left, left.one_from, left.other_from, left.speed_from);
   double to = detuning(left, left.one_to, left.other_to, left.speed_to);
+  int kept = 0;  // 1: `to` at the step before, -1: `from`
   for (int i = 0; i < most_points; ++i) {
     const double share = from == to ? 0.5 : from / (from - to);
     const double place = left.from + share * (left.to - left.from);
@@ -162,12 +163,17 @@ std::optional<double> find_band(const Resonance& resonance,
       left.other_from = *other;
       left.speed_from = point.rotor_speed;
       from = here;
+      // The Illinois method: an end that is kept twice counts half.
+      if (kept == 1) to *= 0.5;
+      kept = 1;
     } else {
       left.to = place;
       left.one_to = *one;
       left.other_to = *other;
       left.speed_to = point.rotor_speed;
       to = here;
+      if (kept == -1) from *= 0.5;
+      kept = -1;
     }
   }
   return std::nullopt;
