@@ -175,8 +175,8 @@ inline void interchange_rows(Integer n, Integer m, const Integer* interchanges, 
 template <class Scalar>
 class TriangleInverses {
  public:
-  TriangleInverses(Integer n, const Scalar* factors, const Integer* interchanges)
-      : n_(n), factors_(factors), interchanges_(interchanges) {
+  /// `factors`: n x n, of factor().
+  TriangleInverses(Integer n, const Scalar* factors) : n_(n) {
     for (Integer first = 0; first < n; first += group)
       for (const char part : {'L', 'U'}) {
         inverses_.push_back({});
@@ -184,7 +184,7 @@ class TriangleInverses {
         const Integer rows = rows_at(first);
         for (Integer c = 0; c < rows; ++c)
           for (Integer r = 0; r < rows; ++r)
-            inverse[static_cast<std::size_t>(c * rows + r)] = value(part, first, r, c);
+            inverse[static_cast<std::size_t>(c * rows + r)] = value(factors, part, first, r, c);
         const auto largest = [&] {
           double value = 0.0;
           for (Integer i = 0; i < rows * rows; ++i)
@@ -199,11 +199,18 @@ class TriangleInverses {
 
   bool is_accurate() const { return is_accurate_; }
 
-  /// b: n x m.
-  void solve(Integer m, Scalar* b) {
-    work_.resize(static_cast<std::size_t>(n_ * std::min(m, columns_at_once)));
-    for (Integer first = 0; first < m; first += columns_at_once)
-      solve_some(std::min(columns_at_once, m - first), b + static_cast<std::ptrdiff_t>(first) * n_);
+  /// Solves for the columns of the n x m matrix b with the result of factor(). `work` is any
+  /// vector.
+  void solve(Integer m, const Scalar* factors, const Integer* interchanges, Scalar* b,
+             std::vector<Scalar>& work) const {
+    count_operations<Scalar>(1.0 * n_ * n_ * m);
+    work.resize(static_cast<std::size_t>(n_ * std::min(m, columns_at_once)));
+    for (Integer first = 0; first < m; first += columns_at_once) {
+      const Integer columns = std::min(columns_at_once, m - first);
+      Scalar* some = b + static_cast<std::ptrdiff_t>(first) * n_;
+      interchange_rows(n_, columns, interchanges, some);
+      solve_some(columns, factors, some, work.data());
+    }
   }
 
  private:
@@ -213,51 +220,40 @@ class TriangleInverses {
   static constexpr double largest_condition = 1e4;  ///< largest entries, of triangle and inverse
 
   [[nodiscard]] Integer rows_at(Integer first) const { return std::min(group, n_ - first); }
-  [[nodiscard]] Scalar value(char part, Integer first, Integer r, Integer c) const {
+  Scalar value(const Scalar* factors, char part, Integer first, Integer r, Integer c) const {
     if (part == 'L' && r == c) return 1.0;
-    return (part == 'L') == (r > c) ? factors_[(first + c) * n_ + first + r] : 0.0;
+    return (part == 'L') == (r > c) ? factors[(first + c) * n_ + first + r] : 0.0;
   }
   [[nodiscard]] const Scalar* inverse(char part, Integer first) const {
     return inverses_[static_cast<std::size_t>(2 * (first / group) + (part == 'L' ? 0 : 1))].data();
   }
 
-  void solve_some(Integer m, Scalar* b) {
-    interchange_rows(n_, m, interchanges_, b);
-    Scalar* y = work_.data();
+  void solve_some(Integer m, const Scalar* factors, Scalar* b, Scalar* y) const {
     for (Integer first = 0; first < n_; first += group) {
       const Integer rows = rows_at(first);
       const Integer next = first + rows;
       multiply(rows, m, rows, 1.0, inverse('L', first), rows, b + first, n_, 0.0, y + first, n_);
       if (next < n_)
-        multiply(n_ - next, m, rows, -1.0, factors_ + first * n_ + next, n_, y + first, n_, 1.0,
+        multiply(n_ - next, m, rows, -1.0, factors + first * n_ + next, n_, y + first, n_, 1.0,
                  b + next, n_);
     }
     for (Integer first = (n_ - 1) / group * group; first >= 0; first -= group) {
       const Integer rows = rows_at(first);
       multiply(rows, m, rows, 1.0, inverse('U', first), rows, y + first, n_, 0.0, b + first, n_);
       if (first > 0)
-        multiply(first, m, rows, -1.0, factors_ + first * n_, n_, b + first, n_, 1.0, y, n_);
+        multiply(first, m, rows, -1.0, factors + first * n_, n_, b + first, n_, 1.0, y, n_);
     }
   }
 
   Integer n_;
-  const Scalar* factors_;
-  const Integer* interchanges_;
   std::vector<std::array<Scalar, group * group>> inverses_;  ///< 'L', 'U' of each group
-  std::vector<Scalar> work_;
   bool is_accurate_ = true;
 };
-
-/// From here on, the inverses of triangles cost less than they save.
-constexpr Integer many_columns = 64;
 
 /// Solves for the columns of the n x m matrix b with the result of factor().
 template <class Scalar>
 void solve(Integer n, Integer m, const Scalar* factors, const Integer* interchanges, Scalar* b) {
   count_operations<Scalar>(1.0 * n * n * m);
-  if (m >= many_columns)
-    if (TriangleInverses<Scalar> inverses(n, factors, interchanges); inverses.is_accurate())
-      return inverses.solve(m, b);
   if (m != 1) return solve_columns(n, m, factors, interchanges, b);
   for (Integer i = 0; i < n; ++i)
     if (const Integer other = interchanges[i] - 1; other != i) std::swap(b[i], b[other]);

@@ -9,10 +9,11 @@
 
 #include "samara/petsc/handle.hpp"
 
-#include "blas.hpp"
-
 namespace samara::analysis {
 namespace {
+
+/// From here on, the inverses of triangles save time.
+constexpr blas::Integer many_columns = 64;
 
 /// Largest real or imaginary part, without the square roots of the absolute values.
 template <class Scalar>
@@ -96,6 +97,7 @@ template <class Scalar>
 bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix, double least_pivot) {
   const Index area = size_ * size_;
   std::fill(values_.begin(), values_.end(), Scalar(0.0));
+  inverses_.clear();
   std::vector<Index> place(static_cast<std::size_t>(rows_), -1);
   for (Index i = 0; i < rows_; ++i) {
     const Index first = begin_[static_cast<std::size_t>(i)];
@@ -147,8 +149,23 @@ void BlockFactors<Scalar>::substitute(Index i) {
   for (Index entry = diagonal + 1; entry < begin_[static_cast<std::size_t>(i) + 1]; ++entry)
     subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
                      right_sides_);
-  blas::solve(static_cast<blas::Integer>(size_), static_cast<blas::Integer>(right_sides_),
-              block(diagonal), interchanges(i), rows_of(i));
+  solve_diagonal(i);
+}
+
+/// Row i of D^-1.
+template <class Scalar>
+void BlockFactors<Scalar>::solve_diagonal(Index i) {
+  const Scalar* factors = block(diagonal_[static_cast<std::size_t>(i)]);
+  const auto size = static_cast<blas::Integer>(size_);
+  const auto columns = static_cast<blas::Integer>(right_sides_);
+  if (columns >= many_columns) {
+    inverses_.resize(static_cast<std::size_t>(rows_));
+    auto& inverses = inverses_[static_cast<std::size_t>(i)];
+    if (!inverses) inverses.emplace(size, factors);
+    if (inverses->is_accurate())
+      return inverses->solve(columns, factors, interchanges(i), rows_of(i), work_);
+  }
+  blas::solve(size, columns, factors, interchanges(i), rows_of(i));
 }
 
 template <class Scalar>
@@ -228,8 +245,7 @@ void BlockFactors<Scalar>::solve_part(Matrix& right, const std::vector<Index>& f
       if (const Index k = columns_[static_cast<std::size_t>(entry)];
           is_found[static_cast<std::size_t>(k)])
         subtract_product(entry, rows_of(k), rows_of(i), right_sides_);
-    blas::solve(static_cast<blas::Integer>(size_), static_cast<blas::Integer>(right_sides_),
-                block(diagonal_[at]), interchanges(i), rows_of(i));
+    solve_diagonal(i);
     right.middleRows(i * size_, size_) = rows;
   }
 }

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 #include <petscsys.h>
+
+#include "blas.hpp"
 
 namespace samara::analysis {
 
@@ -56,7 +59,7 @@ class BlockFactors {
                   const std::vector<Index>& wanted);
 
   /// Frees the memory of right-hand sides.
-  void release() { packed_ = {}; }
+  void release() { packed_ = work_ = {}; }
 
   /// Logarithm of the determinant, up to multiples of 2 pi i.
   std::complex<double> log_determinant() const;
@@ -75,6 +78,7 @@ class BlockFactors {
   void resize(Index right_sides);
   void eliminate(Index i);
   void substitute(Index i);
+  void solve_diagonal(Index i);
 
   Index size_ = 1;  ///< rows of a block
   Index rows_ = 0;  ///< block rows
@@ -87,6 +91,9 @@ class BlockFactors {
   std::vector<std::pair<Index, Index>> filled_rows_;
   std::vector<Scalar> packed_;              ///< right-hand sides, block row by block row
   std::vector<PetscBLASInt> interchanges_;  ///< of the rows of the diagonal blocks, from 1
+  /// Of the diagonal blocks, for many right-hand sides; empty: not needed yet.
+  std::vector<std::optional<blas::TriangleInverses<Scalar>>> inverses_;
+  std::vector<Scalar> work_;
 };
 
 extern template class BlockFactors<double>;

@@ -31,10 +31,10 @@ petsc::Handle<Mat> to_petsc(const Eigen::MatrixXd& values) {
 
 /// Chains of blocks with a border at the end, and with a closed loop, which causes fill-in.
 struct Chains {
-  static constexpr PetscInt size = 5;
   static constexpr PetscInt rows = 12;
 
-  explicit Chains(unsigned seed) : values(Eigen::MatrixXd::Zero(size * rows, size * rows)) {
+  explicit Chains(unsigned seed, PetscInt of_block = 5)
+      : size(of_block), values(Eigen::MatrixXd::Zero(size * rows, size * rows)) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> entry(-1.0, 1.0);
     for (PetscInt i = 0; i < rows; ++i)
@@ -43,7 +43,7 @@ struct Chains {
         for (PetscInt r = 0; r < size; ++r)
           for (PetscInt c = 0; c < size; ++c) values(i * size + r, j * size + c) = entry(random);
       }
-    values.diagonal().array() += 8.0;
+    values.diagonal().array() += 1.6 * size;
   }
 
   static bool is_block(PetscInt i, PetscInt j) {
@@ -66,16 +66,17 @@ struct Chains {
     return matrix;
   }
 
-  /// Largest error of solutions for 7 random columns.
-  double error_of(analysis::DirectSolver& solver) const {
+  /// Largest error of solutions for random columns.
+  double error_of(analysis::DirectSolver& solver, Eigen::Index columns = 7) const {
     const petsc::Handle<Mat> held = matrix();
-    const Eigen::MatrixXd exact = Eigen::MatrixXd::Random(values.rows(), 7);
+    const Eigen::MatrixXd exact = Eigen::MatrixXd::Random(values.rows(), columns);
     Eigen::MatrixXd right = values * exact;
     solver.factor(held.get());
     solver.solve(right);
     return (right - exact).cwiseAbs().maxCoeff();
   }
 
+  PetscInt size;  ///< of a block
   Eigen::MatrixXd values;
 };
 
@@ -155,11 +156,25 @@ BOOST_AUTO_TEST_CASE(block_matrices_are_solved_with_fill_in) {
   for (const unsigned seed : {1U, 2U, 3U}) BOOST_TEST(Chains(seed).error_of(solver) < 1e-13);
 }
 
+/// From 64 columns on, triangles of 18 rows are inverted where they are well conditioned: whole and
+/// broken groups of rows and of columns, and a block with a small pivot.
+BOOST_AUTO_TEST_CASE(many_columns_are_solved_as_few) {
+  for (const PetscInt size : {1, 17, 18, 19, 37, 54}) {
+    analysis::DirectSolver solver("test_", analysis::equilibrate);
+    Chains chains(4, size);
+    for (const Eigen::Index columns : {63, 64, 128, 129, 300})
+      BOOST_TEST(chains.error_of(solver, columns) < 1e-12);
+    auto second = chains.values.block(size, size, size, size);
+    second.row(size - 1) = second.row(0) + 1e-6 * second.row(size - 1);
+    BOOST_TEST(chains.error_of(solver, 129) < 1e-7);
+  }
+}
+
 // Rows are interchanged within diagonal blocks only. A matrix whose solution needs more is solved
 // by another solver: a diagonal block that is zero, or singular but for 1e-9, or alone singular
 // after the elimination of the blocks before it.
 BOOST_AUTO_TEST_CASE(block_matrices_with_singular_diagonal_blocks_are_solved) {
-  constexpr PetscInt n = Chains::size;
+  constexpr PetscInt n = 5;
   for (const double left : {0.0, 1e-9}) {
     Chains chains(4);
     chains.values.block(3 * n, 3 * n, n, n) = left * Eigen::MatrixXd::Identity(n, n);
