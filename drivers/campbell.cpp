@@ -32,19 +32,18 @@ struct Diagram {
   std::vector<CampbellLine> lines;
   std::string failures;  ///< whole lines
   int failed = 0;
+  std::map<std::string, std::vector<std::string>> notes;  ///< places of each
 };
 
-Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& files,
-                     analysis::Observer& observer) {
+Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& files) {
   Diagram diagram;
   analysis::ModeTracker tracker;
-  std::map<std::string, std::vector<std::string>> notes;  // places of each
   for (std::size_t i = 0; i < plan.places.size(); ++i) {
     std::optional<CampbellPoint> read = files.read(i);
     if (!read) continue;
     CampbellPoint& point = *read;
     const std::string place = words_of(plan.quantities, point.place);
-    for (const std::string& note : point.notes) notes[note].push_back(place);
+    for (const std::string& note : point.notes) diagram.notes[note].push_back(place);
     if (point.failure.empty()) {
       tracker.add(diagram.points.size(), std::move(point.signatures));
     } else {
@@ -54,14 +53,17 @@ Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& fil
     point.signatures = {};
     diagram.points.push_back(std::move(point));
   }
-  for (const auto& [note, places] : notes)
+  diagram.lines = simulation::name_lines(diagram.points, tracker.lines());
+  return diagram;
+}
+
+void report_notes(const Diagram& diagram, analysis::Observer& observer) {
+  for (const auto& [note, places] : diagram.notes)
     observer.note(places.front() +
                   (places.size() > 1
                        ? " and " + count(static_cast<int>(places.size()) - 1, "other point")
                        : "") +
                   ": " + note);
-  diagram.lines = simulation::name_lines(diagram.points, tracker.lines());
-  return diagram;
 }
 
 /// The edges of the first rank, refined by all ranks; the result is on all of them.
@@ -91,20 +93,12 @@ struct BandSearch {
   std::vector<double> found = {};
 };
 
-/// Number of blades where they are identical at all points; else 1.
-int identical_blades(const Job& job) {
-  const model::BladesDefinition& blades = job.input.turbine.blades;
-  const bool are_swept = std::ranges::any_of(
-      job.sweep.keys(), [](const std::string& key) { return key.starts_with("blades.each"); });
-  return blades.each.empty() && !are_swept ? blades.count : 1;
-}
-
 /// Searches bands between the points of the first rank, at `most` crossings of frequencies, and
 /// adds a point in each band to the plan, and one between two of them: they may be one band.
-BandSearch add_bands(CampbellPlan& plan, const Diagram& diagram, int blades, int most,
+BandSearch add_bands(CampbellPlan& plan, const Diagram& diagram, int most,
                      const analysis::Ranks& ranks, analysis::Observer& observer) {
   std::vector<simulation::Resonance> resonances =
-      simulation::find_resonances(diagram.points, diagram.lines, blades);
+      simulation::find_resonances(diagram.points, diagram.lines);
   BandSearch search;
   search.searched = std::min(static_cast<int>(resonances.size()), most);
   search.left = static_cast<int>(resonances.size()) - search.searched;
@@ -167,22 +161,23 @@ void run_campbell(const Job& job) {
   ranks.attempt([&] { find_points(plan, files, ranks, progress); });
   Diagram diagram;
   ranks.attempt([&] {
-    if (is_first) diagram = read_diagram(plan, files, progress);
+    if (is_first) diagram = read_diagram(plan, files);
   });
   BandSearch search;
   if (plan.quantities.size() == 1 && ranks.all(!Interruption::is_asked())) {
     const std::size_t before = plan.places.size();
     const int most = job.bands.value_or(
         std::max(static_cast<int>(before) / points_of_crossing, least_crossings));
-    search = add_bands(plan, diagram, identical_blades(job), most, ranks, progress);
+    search = add_bands(plan, diagram, most, ranks, progress);
     if (plan.places.size() > before) {
       files = io::CampbellPointFiles(job.result_path, plan.origins);
       ranks.attempt([&] { find_points(plan, files, ranks, progress); });
       ranks.attempt([&] {
-        if (is_first) diagram = read_diagram(plan, files, progress);
+        if (is_first) diagram = read_diagram(plan, files);
       });
     }
   }
+  report_notes(diagram, progress);
   const std::vector<StabilityEdge> edges =
       refine_together(plan, simulation::find_edges(diagram.points), ranks, progress);
   const bool is_interrupted = !ranks.all(!Interruption::is_asked());
@@ -208,8 +203,7 @@ void run_campbell(const Job& job) {
   if (!is_complete)
     throw Interrupted(found == static_cast<int>(plan.places.size())
                           ? "interrupted before the edges of instability were refined; hint: the "
-                            "same command goes "
-                            "on from here"
+                            "same command goes on from here"
                           : "interrupted after " + std::to_string(found) + " of " +
                                 std::to_string(plan.places.size()) +
                                 " points; hint: the same command goes on from here");

@@ -53,6 +53,17 @@ void count_operations(double pairs) {
   PetscLogFlops(in_reals * pairs);
 }
 
+/// C = `a_factor` A B + `c_factor` C; A: m x k, B: k x n.
+inline void multiply(Integer m, Integer n, Integer k, double a_factor, const double* a, Integer lda,
+                     const double* b, Integer ldb, double c_factor, double* c, Integer ldc) {
+  BLASgemm_("N", "N", &m, &n, &k, &a_factor, a, &lda, b, &ldb, &c_factor, c, &ldc);
+}
+inline void multiply(Integer m, Integer n, Integer k, Complex a_factor, const Complex* a,
+                     Integer lda, const Complex* b, Integer ldb, Complex c_factor, Complex* c,
+                     Integer ldc) {
+  zgemm_("N", "N", &m, &n, &k, &a_factor, a, &lda, b, &ldb, &c_factor, c, &ldc);
+}
+
 // Products with one column, and solves for one, do not pay for the copies that those with many
 // make.
 
@@ -66,7 +77,7 @@ inline void subtract_product(Integer m, Integer n, Integer k, const double* a, I
   if (n == 1)
     BLASgemv_("N", &m, &k, &minus, a, &lda, b, &step, &one, c, &step);
   else
-    BLASgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
+    multiply(m, n, k, minus, a, lda, b, ldb, one, c, ldc);
 }
 inline void subtract_product(Integer m, Integer n, Integer k, const Complex* a, Integer lda,
                              const Complex* b, Integer ldb, Complex* c, Integer ldc) {
@@ -77,7 +88,7 @@ inline void subtract_product(Integer m, Integer n, Integer k, const Complex* a, 
   if (n == 1)
     zgemv_("N", &m, &k, &minus, a, &lda, b, &step, &one, c, &step);
   else
-    zgemm_("N", "N", &m, &n, &k, &minus, a, &lda, b, &ldb, &one, c, &ldc);
+    multiply(m, n, k, minus, a, lda, b, ldb, one, c, ldc);
 }
 
 /// B = B T^-1 with the upper (`part` 'U') or the unit lower ('L') triangle T of `a`; all n x n.
@@ -136,17 +147,6 @@ inline void solve_columns(Integer n, Integer m, const Complex* factors, const In
                           Complex* b) {
   Integer status = 0;
   zgetrs_("N", &n, &m, factors, &n, interchanges, b, &n, &status);
-}
-
-/// C = `a_factor` A B + `c_factor` C; A: m x k, B: k x n.
-inline void multiply(Integer m, Integer n, Integer k, double a_factor, const double* a, Integer lda,
-                     const double* b, Integer ldb, double c_factor, double* c, Integer ldc) {
-  BLASgemm_("N", "N", &m, &n, &k, &a_factor, a, &lda, b, &ldb, &c_factor, c, &ldc);
-}
-inline void multiply(Integer m, Integer n, Integer k, Complex a_factor, const Complex* a,
-                     Integer lda, const Complex* b, Integer ldb, Complex c_factor, Complex* c,
-                     Integer ldc) {
-  zgemm_("N", "N", &m, &n, &k, &a_factor, a, &lda, b, &ldb, &c_factor, c, &ldc);
 }
 
 /// The inverse of the upper (`part` 'U') or unit lower ('L') triangle of `a`, in its place.
@@ -215,8 +215,8 @@ class TriangleInverses {
 
  private:
   static constexpr Integer group = 18;
-  static constexpr Integer columns_at_once =
-      128;  ///< of small blocks, their values stay in the cache
+  /// The values of so many columns of small blocks stay in the cache.
+  static constexpr Integer columns_at_once = 128;
   static constexpr double largest_condition = 1e4;  ///< largest entries, of triangle and inverse
 
   [[nodiscard]] Integer rows_at(Integer first) const { return std::min(group, n_ - first); }

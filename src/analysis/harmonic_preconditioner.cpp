@@ -39,16 +39,12 @@ Eigen::MatrixXcd to_series(const Eigen::Ref<const Eigen::MatrixXd>& coefficients
 
 using Columns = Eigen::Map<Eigen::MatrixXcd, Eigen::Unaligned, Eigen::OuterStride<>>;
 
-/// c = c - a b. Products with one column do not pay for the preparation of those with many.
+/// c = c - a b.
 void subtract_product(const Eigen::MatrixXcd& a, const Columns& b, Columns c) {
-  if (b.cols() != 1) {
-    c.noalias() -= a * b;
-    return;
-  }
-  blas::subtract_product(
-      static_cast<blas::Integer>(a.rows()), 1, static_cast<blas::Integer>(a.cols()), a.data(),
-      static_cast<blas::Integer>(a.rows()), b.data(), static_cast<blas::Integer>(b.rows()),
-      c.data(), static_cast<blas::Integer>(c.rows()));
+  const auto integer = [](Eigen::Index value) { return static_cast<blas::Integer>(value); };
+  blas::subtract_product(integer(a.rows()), integer(b.cols()), integer(a.cols()), a.data(),
+                         integer(a.rows()), b.data(), integer(b.outerStride()), c.data(),
+                         integer(c.outerStride()));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ constexpr char mode_names_name[] = "/point/mode_names";
 constexpr char participation_name[] = "/point/participation";
 constexpr char signals_name[] = "/point/signals";
 
-constexpr std::size_t point_values = 6;
+constexpr std::size_t point_values = 7;
 constexpr std::size_t mode_values = 7;
 
 Meaning plain(const std::vector<std::string>& axes) { return {"1", "none", "internal", axes}; }
@@ -167,9 +167,13 @@ void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) 
   file.write(origin_name, origins_[point], plain({}));
   file.write(failure_name, content.failure + "\n", plain({}));
   file.write(notes_name, lines_of(content.notes) + "\n", plain({}));
-  const std::array<double, point_values> values{
-      content.place.value, content.place.second, content.rotor_speed,
-      content.wind_speed,  content.pitch,        static_cast<double>(content.stability)};
+  const std::array<double, point_values> values{content.place.value,
+                                                content.place.second,
+                                                content.rotor_speed,
+                                                content.wind_speed,
+                                                content.pitch,
+                                                static_cast<double>(content.stability),
+                                                static_cast<double>(content.sectors)};
   file.write(values_name, values, {values.size()}, plain({"entry"}));
   const std::size_t count = content.modes.size();
   if (count > 0) {
@@ -214,6 +218,7 @@ std::optional<CampbellPoint> CampbellPointFiles::read(std::size_t point) const {
   content.wind_speed = values[3];
   content.pitch = values[4];
   content.stability = static_cast<Stability>(static_cast<int>(values[5]));
+  content.sectors = static_cast<int>(values[6]);
   content.failure = file.text(failure_name);
   while (content.failure.ends_with('\n')) content.failure.pop_back();
   for (const std::string& note : texts_of(file.text(notes_name)))

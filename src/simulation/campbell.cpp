@@ -81,6 +81,7 @@ CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const an
   CampbellPoint point;
   point.rotor_speed = turbine.speed;
   point.pitch = turbine.pitch;
+  point.sectors = system.symmetry().sectors;
   point.stability = assessment.stability;
   point.signatures = analysis::find_signatures(system, set);
   for (std::size_t& m : point.signatures.modes) {
@@ -101,17 +102,28 @@ int count_growing(const CampbellPoint& point) {
   return static_cast<int>(std::ranges::count_if(point.modes, is_growing));
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> find_neighbours(
+    const std::vector<CampbellPoint>& points) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  std::optional<std::size_t> last;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (!points[p].failure.empty()) continue;
+    if (last && are_in_a_row(points[*last].place, points[p].place) &&
+        points[*last].rotor_speed > 0.0 && points[p].rotor_speed > 0.0)
+      pairs.emplace_back(*last, p);
+    last = p;
+  }
+  return pairs;
+}
+
 std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points) {
   std::vector<StabilityEdge> edges;
-  const CampbellPoint* last = nullptr;
-  for (const CampbellPoint& point : points) {
-    if (!point.failure.empty()) continue;
-    const bool turns = last != nullptr && are_in_a_row(last->place, point.place) &&
-                       last->rotor_speed > 0.0 && point.rotor_speed > 0.0;
-    if (turns && count_growing(*last) != count_growing(point))
-      edges.push_back({last->place.value, point.place.value, point.place.second,
-                       count_growing(*last), count_growing(point)});
-    last = &point;
+  for (const auto& [first, second] : find_neighbours(points)) {
+    const CampbellPoint& a = points[first];
+    const CampbellPoint& b = points[second];
+    if (count_growing(a) != count_growing(b))
+      edges.push_back(
+          {a.place.value, b.place.value, b.place.second, count_growing(a), count_growing(b)});
   }
   return edges;
 }

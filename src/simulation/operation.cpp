@@ -13,6 +13,8 @@
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_channels.hpp"
 
+#include "start_predictor.hpp"
+
 namespace samara::simulation {
 namespace {
 
@@ -60,90 +62,6 @@ void add_means(const turbine::TurbineSystem& system, const analysis::Trim& trim,
   for (std::size_t j = 0; j < means.size(); ++j)
     point.*means[j].value = values[j] * means[j].factor;
 }
-
-/// Farthest extrapolation, in distances of the points before; longest change by a secant, and
-/// shortest new secant, in its lengths.
-constexpr double farthest = 2.5;
-constexpr double longest_change = 4.0;
-constexpr double shortest_secant = 0.05;
-
-/// A steady state, and what it belongs to.
-struct Solved {
-  double wind = 0.0;
-  double speed = 0.0;
-  double pitch = 0.0;
-  Eigen::MatrixXd coefficients;
-};
-
-/// Starts of steady states from those before: the change with the wind speed continues that of the
-/// last two operating points, the change with speed or pitch is that of the last two steady states
-/// at one wind speed.
-class StartPredictor {
- public:
-  /// Takes a steady state of the present search.
-  void add(Solved solved) {
-    if (last_ && last_->wind == solved.wind) take_slope(*last_, solved);
-    last_ = std::move(solved);
-  }
-
-  /// The last steady state is that of an operating point.
-  void finish_point() {
-    if (!last_) return;
-    before_ = std::move(point_);
-    point_ = last_;
-  }
-
-  /// Coefficients of a start; empty before the first steady state.
-  std::optional<Eigen::MatrixXd> predict(double wind, double speed, double pitch) const {
-    if (!last_) return std::nullopt;
-    Solved start = *last_;
-    if (wind != last_->wind && point_ && before_ && have_one_size(*point_, *before_) &&
-        point_->wind != before_->wind) {
-      const double share = (wind - point_->wind) / (point_->wind - before_->wind);
-      if (std::abs(share) <= farthest) {
-        start.speed = point_->speed + share * (point_->speed - before_->speed);
-        start.pitch = point_->pitch + share * (point_->pitch - before_->pitch);
-        start.coefficients =
-            point_->coefficients + share * (point_->coefficients - before_->coefficients);
-      }
-    }
-    speed_slope_.add_change(speed - start.speed, start.coefficients);
-    pitch_slope_.add_change(pitch - start.pitch, start.coefficients);
-    return std::move(start.coefficients);
-  }
-
- private:
-  static bool have_one_size(const Solved& a, const Solved& b) {
-    return a.coefficients.cols() == b.coefficients.cols();
-  }
-  /// Change of the coefficients with speed or pitch, by a secant.
-  struct Slope {
-    Eigen::MatrixXd value;  ///< empty: not known
-    double length = 0.0;    ///< of the secant
-
-    void add_change(double change, Eigen::MatrixXd& to) const {
-      if (value.cols() == to.cols() && std::abs(change) <= longest_change * length)
-        to += change * value;
-    }
-    void take(const Solved& a, const Solved& b, double change) {
-      // A short secant has the errors of the steady states.
-      if (change == 0.0 || std::abs(change) < shortest_secant * length) return;
-      value = (b.coefficients - a.coefficients) / change;
-      length = std::max(0.5 * length, std::abs(change));
-    }
-  };
-  void take_slope(const Solved& a, const Solved& b) {
-    if (!have_one_size(a, b)) return;
-    if (a.pitch == b.pitch) speed_slope_.take(a, b, b.speed - a.speed);
-    if (a.speed == b.speed) pitch_slope_.take(a, b, b.pitch - a.pitch);
-  }
-
-  std::optional<Solved> last_;
-  std::optional<Solved> point_;   ///< last operating point
-  std::optional<Solved> before_;  ///< the one before
-  Slope speed_slope_;
-  Slope pitch_slope_;
-};
 
 /// End of a search for the zero of a falling function.
 enum class Found { zero, above_range, below_range };

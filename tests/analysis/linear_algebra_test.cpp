@@ -32,8 +32,9 @@ petsc::Handle<Mat> to_petsc(const Eigen::MatrixXd& values) {
 /// Chains of blocks with a border at the end, and with a closed loop, which causes fill-in.
 struct Chains {
   static constexpr PetscInt rows = 12;
+  static constexpr PetscInt usual_size = 5;
 
-  explicit Chains(unsigned seed, PetscInt of_block = 5)
+  explicit Chains(unsigned seed, PetscInt of_block = usual_size)
       : size(of_block), values(Eigen::MatrixXd::Zero(size * rows, size * rows)) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> entry(-1.0, 1.0);
@@ -174,7 +175,7 @@ BOOST_AUTO_TEST_CASE(many_columns_are_solved_as_few) {
 // by another solver: a diagonal block that is zero, or singular but for 1e-9, or alone singular
 // after the elimination of the blocks before it.
 BOOST_AUTO_TEST_CASE(block_matrices_with_singular_diagonal_blocks_are_solved) {
-  constexpr PetscInt n = 5;
+  constexpr PetscInt n = Chains::usual_size;
   for (const double left : {0.0, 1e-9}) {
     Chains chains(4);
     chains.values.block(3 * n, 3 * n, n, n) = left * Eigen::MatrixXd::Identity(n, n);

@@ -64,6 +64,13 @@ def open_browser(*more, pictures=True):
     return browser
 
 
+def wait_for_frame(browser):
+    """Until the picture shows every change made so far: two frames of the browser, and no motion left to draw."""
+    browser.execute_async_script("""const done = arguments[0];
+        const look = () => requestAnimationFrame(() => samara.view?.isMoved ? look() : done());
+        requestAnimationFrame(look);""")
+
+
 @functools.cache
 def make_results():
     """A folder with results and pages, and what the program printed."""
@@ -143,6 +150,10 @@ class Page(Results):
         """Rows of the table of modes: texts by the keys of the columns."""
         return self.js("""return [...document.querySelectorAll('.modes tbody tr')].map(row =>
             Object.fromEntries([...row.cells].map(cell => [cell.dataset.key, cell.textContent])))""")
+
+    def wait_for_frame(self):
+        """Until the picture shows every change made so far."""
+        wait_for_frame(self.browser)
 
     def wait_for_picture(self):
         """A turbine that is out of sight does not move."""
@@ -334,13 +345,13 @@ class Page(Results):
         self.assertNotEqual(canvas.screenshot_as_png, picture)
         play.send_keys(Keys.SPACE)
         self.assertEqual(play.text, "Play")
-        time.sleep(0.2)
+        self.wait_for_frame()
         still, picture = self.positions(), canvas.screenshot_as_png
         time.sleep(0.5)
         numpy.testing.assert_array_equal(self.positions(), still)
         self.assertEqual(canvas.screenshot_as_png, picture)
         canvas.send_keys(Keys.ARROW_LEFT)
-        time.sleep(0.5)
+        self.wait_for_frame()
         self.assertNotEqual(canvas.screenshot_as_png, picture)
         canvas.send_keys(" ")
         self.assertEqual(play.text, "Pause")
@@ -395,9 +406,7 @@ class Page(Results):
         slider = self.control("Azimuth")
         self.assertTrue(slider.is_displayed())
         self.js("arguments[0].value = 90; arguments[0].dispatchEvent(new Event('input'))", slider)
-        frames = self.js("return samara.view.frames")
-        self.wait(f"samara.view.frames >= {frames}")
-        time.sleep(0.3)
+        self.wait_for_frame()
         with h5py.File(self.folder / "lee.h5") as file:
             tip = [n for n, part in enumerate(file["geometry/part"].asstr()[:]) if part == "blade 1"][-1]
             start = file["geometry/azimuth"][0]
@@ -680,7 +689,7 @@ class OtherBrowsers(Results):
         browser.execute_script("document.getElementById('view').scrollIntoView()")
         WebDriverWait(browser, LONGEST_WAIT).until(lambda b: b.execute_script("return samara.view.frames > 0"))
         self.assertEqual(browser.find_element(By.CSS_SELECTOR, ".controls button.main").text, "Play")
-        time.sleep(0.3)
+        wait_for_frame(browser)
         frames = browser.execute_script("return samara.view.frames")
         time.sleep(0.6)
         self.assertEqual(browser.execute_script("return samara.view.frames"), frames)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "samara/analysis/mode_tracking.hpp"
@@ -50,6 +51,7 @@ struct CampbellPoint {
   double rotor_speed = 0.0;                                      ///< [rad/s]
   double wind_speed = std::numeric_limits<double>::quiet_NaN();  ///< [m/s]; none without air
   double pitch = 0.0;                                            ///< [rad]
+  int sectors = 1;  ///< identical ones of the rotor (system::RotorSymmetry)
   std::string failure;
   Stability stability = Stability::unknown;
   std::vector<std::string> notes;
@@ -87,8 +89,12 @@ struct StabilityEdge {
 /// Distance of the sides of a refined edge, relative to the larger value of the points beside it.
 inline constexpr double edge_accuracy = 2e-5;
 
-/// One edge between each two neighbouring points of a row with different numbers; points that
-/// failed, or are at rest (where the modes change at once), are left out.
+/// Indices of neighbouring points of a row. Points that failed are left out, and pairs with a point
+/// at rest, where the modes change at once.
+std::vector<std::pair<std::size_t, std::size_t>> find_neighbours(
+    const std::vector<CampbellPoint>& points);
+
+/// One edge between each two neighbouring points with different numbers.
 std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points);
 
 /// A range in which the mode of a line grows.

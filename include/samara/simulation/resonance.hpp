@@ -3,7 +3,6 @@
 #pragma once
 
 #include <complex>
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -12,17 +11,19 @@
 
 namespace samara::simulation {
 
-/// Two modes at a place between two neighbouring points where the sum or the difference of their
+/// Two modes at a point of a sweep.
+struct ModePair {
+  double place = 0.0;  ///< value of the swept quantity
+  double rotor_speed = 0.0;
+  /// Exponents of the copies that the lines follow, or with the frequencies in the fixed frame.
+  std::complex<double> one, other;
+};
+
+/// Two modes at two neighbouring points, between which the sum or the difference of their
 /// frequencies is a multiple of the rotor speed: their multipliers meet there, and a band of
-/// instability may begin. Both may be the same mode.
+/// instability may begin. Both modes may be the same.
 struct Resonance {
-  double from = 0.0;  ///< values of the swept quantity at the points
-  double to = 0.0;
-  /// Exponents at both points, and the rotor speeds [rad/s]: of the copies that the lines follow,
-  /// or with the frequencies in the fixed frame.
-  std::complex<double> one_from, one_to, other_from, other_to;
-  double speed_from = 0.0;
-  double speed_to = 0.0;
+  ModePair from, to;
   bool is_fixed_frame = false;
   int sign = 1;           ///< 1: sum of the frequencies, -1: difference
   int multiple = 0;       ///< of the rotor speed
@@ -35,12 +36,11 @@ struct Resonance {
 inline constexpr double largest_decay_of_band = 0.05;
 
 /// The resonances between neighbouring points of a sweep of one quantity at which equally many
-/// modes grow, the most likely ones first: those of slow decays and low frequencies. `blades`: the
-/// number of identical blades; from three on, multipliers meet only where the frequencies in the
-/// fixed frame fit a multiple of `blades` times the rotor speed. 1: no symmetry of the rotor is
-/// known.
+/// modes grow, the most likely ones first: those of slow decays and low frequencies. With three or
+/// more identical sectors of the rotor, multipliers meet only where the frequencies in the fixed
+/// frame fit a multiple of that number times the rotor speed.
 std::vector<Resonance> find_resonances(const std::vector<CampbellPoint>& points,
-                                       const std::vector<CampbellLine>& lines, int blades);
+                                       const std::vector<CampbellLine>& lines);
 
 /// Finds the place where the frequencies of a resonance fit, by secants within the points, and
 /// looks for more growing modes on the way.
