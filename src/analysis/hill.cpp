@@ -70,9 +70,14 @@ constexpr double least_decay = 0.1;
 constexpr double part_of_slowest = 0.6;
 constexpr double most_of_slowest = 3.0;
 /// Relative residual of eigenpairs in their truncated series: with the first number of harmonics,
-/// which may not be the last, and the one that is wanted.
-constexpr double first_tolerance = 1e-7;
-constexpr double last_tolerance = 1e-10;
+/// which may not be the last, and the one that is wanted. With a medium, the change from one number
+/// of harmonics to the next is much larger.
+struct Tolerance {
+  double first;
+  double last;
+};
+constexpr Tolerance of_series{1e-7, 1e-10};
+constexpr Tolerance of_series_with_medium{1e-7, 1e-8};
 /// Correlation of the largest harmonics of an eigenpair and of its copy.
 constexpr double same_shape = 0.7;
 /// Correlation of the series of one motion that was found twice.
@@ -199,14 +204,15 @@ class Analysis {
     ranks_.share(0, expected_);
     ranks_.share(0, needed_decay_);
     ranks_.share(0, decays_);
-    region_is_counted_ = is_complete(pencil, region_);
+    HillSearch search(pencil);
+    region_is_counted_ = is_complete(search, region_);
     if (!has_medium_) return;
     // Next to exponents of the medium, the preconditioner may not serve.
     const double first = region_.decay;
     for (int i = 0; i < most_edges && !region_is_counted_; ++i) {
       const double width = (beyond_decays - 1.0) * needed_decay_ / most_edges;
       region_.decay = middle_of_gap(needed_decay_ + i * width, needed_decay_ + (i + 1) * width);
-      region_is_counted_ = is_complete(pencil, region_);
+      region_is_counted_ = is_complete(search, region_);
     }
     if (!region_is_counted_) region_.decay = first;
     // Modes of strong damping may not be told from those of the medium. A missing mode of weaker
@@ -215,7 +221,7 @@ class Analysis {
     for (int i = 0; i < most_narrower; ++i) {
       part.decay = middle_of_gap(narrowest * part.decay, narrower * part.decay);
       if (part.decay < least_decay * speed_) return;
-      if (!is_complete(pencil, part)) continue;
+      if (!is_complete(search, part)) continue;
       if (!region_is_counted_) region_.decay = part.decay;
       region_is_counted_ = true;
       return;
@@ -223,9 +229,8 @@ class Analysis {
     region_is_counted_ = false;
   }
 
-  bool is_complete(HillPencil& pencil, const HillRegion& region) const {
-    const HillSearch::Missing missing =
-        HillSearch(pencil).count_missing(region, all_found_, ranks_);
+  bool is_complete(HillSearch& search, const HillRegion& region) const {
+    const HillSearch::Missing missing = search.count_missing(region, all_found_, ranks_);
     return missing.eigenvalues == 0 && missing.contraction < 1.0;
   }
 
@@ -349,7 +354,7 @@ class Analysis {
         throw ConvergenceError("floquet: Hill's method does not find as many modes in " +
                                std::to_string(most_regions) +
                                " ranges of frequencies; hint: fewer, or all modes");
-      const HillRegion region = search.find(frequency, count);
+      const HillRegion region = search.find(frequency, count, region_.high);
       if (region.low > region_.high || region.decay <= 0.0) {
         if (region.low > region_.high) frequency = 0.5 * (frequency + region_.high);
         count += least_pairs / 2;
@@ -577,14 +582,15 @@ class Analysis {
     harmonics_ = has_medium_ ? std::max(least_harmonics, 2 * search_harmonics_)
                              : std::max(least_harmonics, solution_.harmonics());
     int added = 0;  // harmonics, since the attempt before
-    double tolerance = first_tolerance;
+    const Tolerance& tolerances = has_medium_ ? of_series_with_medium : of_series;
+    double tolerance = tolerances.first;
     while (!groups.empty()) {
       HillPencil pencil(system_, solution_, harmonics_);
       samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
       HillGroups all(system_, solution_, pencil, ranks_);
       all.refine(groups, tolerance);
-      if (tolerance > last_tolerance) all.refine_further(groups, last_tolerance);
-      tolerance = last_tolerance;
+      if (tolerance > tolerances.last) all.refine_further(groups, tolerances.last);
+      tolerance = tolerances.last;
       std::vector<std::vector<Candidate>> members;
       std::vector<char> is_done;
       for (HillGroup& group : groups) {

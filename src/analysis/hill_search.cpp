@@ -43,11 +43,13 @@ struct ShiftInvert {
   std::exception_ptr error = {};
 };
 
-/// The lower end of an edge, relative to the rotor speed. Parts of a side are first as long as half
-/// the width beside it, not less than the rotor speed, and not more than this factor of it or this
-/// part of the side. Change of a phase [rad] in a part, and difference of its halves, at most.
+/// The lower end of an edge, relative to the rotor speed. Parts of a side are first as long as this
+/// factor of half the width beside it, not less than the rotor speed, and not more than the second
+/// factor of it or this part of the side: one exponent changes the phase by less than pi along a
+/// straight line. Change of a phase [rad] in a part, and difference of its halves, at most.
 constexpr double beside_real_axis = 1e-6;
-constexpr double widest = 4.0;
+constexpr double of_half_width = 3.0;
+constexpr double widest = 12.0;
 constexpr double part_of_side = 0.02;
 constexpr double most_change = 1.5;
 constexpr double most_difference = 0.3;
@@ -118,7 +120,7 @@ double half_width(double omega, double rho, double y) {
   return c > 0.0 ? 0.0 : std::sqrt(std::max(0.0, -b + std::sqrt(b * b - c)));
 }
 
-/// A point on the edge of a region, and the phase of a determinant there.
+/// A point on the edge of a region, and the phase there of a determinant without known zeros.
 struct EdgePoint {
   Complex s;
   double phase;
@@ -136,8 +138,8 @@ ComplexSolver solver_at(HillPencil& pencil, Complex shift) {
           "hill_"};
 }
 
-HillRegion HillSearch::find(double frequency, int count) {
-  return pencil_.has_medium() ? HillWithoutMedium(pencil_).find(frequency, count)
+HillRegion HillSearch::find(double frequency, int count, double known) {
+  return pencil_.has_medium() ? HillWithoutMedium(pencil_).find(frequency, count, known)
                               : find_all(frequency, count);
 }
 
@@ -223,16 +225,25 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   return region;
 }
 
-/// Phase of the determinant of the preconditioner, the zeros `found` divided out; not a number
-/// where it is singular.
-double HillSearch::phase_at(Complex s, const std::vector<Complex>& found) {
-  if (!pencil_.set_shift(s)) return std::numeric_limits<double>::quiet_NaN();
-  double phase = pencil_.log_determinant().imag();
-  for (const Complex exponent : found) {
-    phase -= std::arg(s - exponent);
-    if (exponent.imag() > 0.0) phase -= std::arg(s - std::conj(exponent));
-  }
-  return phase;
+/// Phases of the determinant of the preconditioner; not a number where it is singular. The ranks
+/// share the points that are new.
+std::vector<double> HillSearch::phases_at(const std::vector<Complex>& points, const Ranks& ranks) {
+  const auto key = [](Complex s) { return std::pair(s.real(), s.imag()); };
+  std::vector<Complex> missing;
+  for (const Complex s : points)
+    if (!phases_.contains(key(s))) missing.push_back(s);
+  std::vector<double> values(missing.size(), 0.0);
+  ranks.attempt([&] {
+    for (std::size_t i = 0; i < missing.size(); ++i)
+      if (static_cast<int>(i) % ranks.size == ranks.rank)
+        values[i] = pencil_.set_shift(missing[i]) ? pencil_.log_determinant().imag()
+                                                  : std::numeric_limits<double>::quiet_NaN();
+  });
+  ranks.sum(values.data(), static_cast<Index>(values.size()));
+  for (std::size_t i = 0; i < missing.size(); ++i) phases_.emplace(key(missing[i]), values[i]);
+  std::vector<double> phases;
+  for (const Complex s : points) phases.push_back(phases_.at(key(s)));
+  return phases;
 }
 
 /// By Arnoldi's method from a vector of all harmonics, with the factors at s.
@@ -282,14 +293,17 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
   const bool is_closed = region.low > 0.0;
   if (is_closed) corners.push_back(corners.front());
   const auto add_phases = [&](std::vector<EdgePoint>& points) {
-    std::vector<double> phases(points.size(), 0.0);
-    ranks.attempt([&] {
-      for (std::size_t i = 0; i < points.size(); ++i)
-        if (static_cast<int>(i) % ranks.size == ranks.rank)
-          phases[i] = phase_at(points[i].s, found);
-    });
-    ranks.sum(phases.data(), static_cast<Index>(phases.size()));
-    for (std::size_t i = 0; i < points.size(); ++i) points[i].phase = phases[i];
+    std::vector<Complex> places;
+    for (const EdgePoint& point : points) places.push_back(point.s);
+    const std::vector<double> phases = phases_at(places, ranks);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Complex s = points[i].s;
+      points[i].phase = phases[i];
+      for (const Complex exponent : found) {
+        points[i].phase -= std::arg(s - exponent);
+        if (exponent.imag() > 0.0) points[i].phase -= std::arg(s - std::conj(exponent));
+      }
+    }
     result.points += static_cast<int>(points.size());
   };
   std::vector<EdgePoint> edge;
@@ -298,7 +312,7 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
     const std::array<double, 4> widths{region.growth, std::min(region.growth, region.decay),
                                        region.decay, std::min(region.growth, region.decay)};
     const double most = std::max(widest * pencil_.speed(), part_of_side * std::abs(length));
-    const double longest = std::max(pencil_.speed(), std::min(widths[side], most));
+    const double longest = std::max(pencil_.speed(), std::min(of_half_width * widths[side], most));
     const auto parts = static_cast<int>(std::ceil(std::abs(length) / longest));
     for (int part = 0; part < parts; ++part)
       edge.push_back({corners[side] + length * (static_cast<double>(part) / parts), 0.0});

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <complex>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -57,31 +59,34 @@ class HillSearch {
   explicit HillSearch(HillPencil& pencil) : pencil_(pencil) {}
 
   /// At least `count` pairs next to i `frequency` [rad/s] > 0, and the rectangle in which they are
-  /// all that the eigensolver has found.
+  /// all that the eigensolver has found. Pairs below i `known` [rad/s] may be left out.
   /// @throws ConvergenceError
-  HillRegion find(double frequency, int count);
+  HillRegion find(double frequency, int count, double known = 0.0);
 
   /// Number of eigenvalues in a region, and below the real axis in the mirror image of one that
   /// starts there, less those of `found`. By the argument principle for the determinant of the
   /// preconditioner. The pencil has the same number where `contraction` is less than one on the
   /// edge: on the way from one matrix to the other, none is singular there. Empty where the
   /// phase of the determinant is not followed by `most_points` points. Every rank calls it with the
-  /// same arguments, takes some of the points and gets the same result.
+  /// same arguments, takes some of the points and gets the same result. Regions may share points.
   struct Missing {
     std::optional<int> eigenvalues;
     /// Largest estimated |1 - eigenvalue| of the preconditioned pencil, where none is missing.
     double contraction = 0.0;
-    int points = 0;  ///< of the edge, with one factorization each
+    int points = 0;  ///< of the edge
   };
   Missing count_missing(const HillRegion& region, const std::vector<std::complex<double>>& found,
                         const Ranks& ranks);
 
  private:
   HillRegion find_all(double frequency, int count);
-  double phase_at(std::complex<double> s, const std::vector<std::complex<double>>& found);
+  std::vector<double> phases_at(const std::vector<std::complex<double>>& points,
+                                const Ranks& ranks);
   double contraction_at(std::complex<double> s);
 
   HillPencil& pencil_;
+  /// Of the determinant, by real and imaginary part of a point.
+  std::map<std::pair<double, double>, double> phases_;
 };
 
 }  // namespace samara::analysis

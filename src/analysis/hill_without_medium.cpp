@@ -123,14 +123,17 @@ Vector random_vector(const HillPencil& pencil) {
 
 }  // namespace
 
-HillRegion HillWithoutMedium::find(double frequency, int count) {
+HillRegion HillWithoutMedium::find(double frequency, int count, double known) {
   std::vector<Approximation> pairs;
   HillRegion region = find_linear(frequency, count, pairs);
   const double outside = part_outside * (region.high - region.low);
+  // Those next to it may have copies above it, or become a pair above it.
+  const double lowest =
+      std::max(region.low, known - static_cast<double>(pencil_.sectors()) * pencil_.speed());
   std::erase_if(pairs, [&](const Approximation& pair) {
     const double height = std::abs(pair.exponent.imag());
     return std::abs(pair.exponent.real()) > region.decay + outside ||
-           height > region.high + outside || height < region.low - outside;
+           height > region.high + outside || height < lowest - outside;
   });
   // Neighbours share factors.
   std::ranges::sort(pairs, {}, [](const Approximation& pair) { return pair.exponent.imag(); });

@@ -25,7 +25,7 @@ class HillWithoutMedium {
   /// About `count` pairs next to i `frequency` [rad/s] > 0, and the rectangle in which they are all
   /// that Arnoldi's method has found.
   /// @throws ConvergenceError
-  HillRegion find(double frequency, int count);
+  HillRegion find(double frequency, int count, double known);
 
   /// The eigenpair that one with other harmonics becomes; none where it cannot be followed.
   std::optional<HillPair> follow(const HillPair& pair);

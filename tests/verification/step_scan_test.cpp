@@ -112,7 +112,7 @@ void require_same(const analysis::Floquet& found, const analysis::Floquet& fine)
 
 BOOST_AUTO_TEST_CASE(modes_are_the_same_at_every_time_step) {
   for (const ScanCase& scan : scan_cases()) {
-    const analysis::Floquet fine = run(scan, 1500);
+    const analysis::Floquet fine = run(scan, 1200);
     for (const int steps : scanned_steps())
       BOOST_TEST_CONTEXT(scan.name << ", " << steps << " steps") {
         require_same(run(scan, steps), fine);
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(modes_are_the_same_at_two_time_steps_with_any_damping) {
     for (const std::string& damping : scanned_damping())
       BOOST_TEST_CONTEXT(scan.name << ", mu " << damping) {
         const std::string setting = "blades.damping=" + damping;
-        require_same(run(scan, 300, {setting}), run(scan, 800, {setting}));
+        require_same(run(scan, 250, {setting}), run(scan, 600, {setting}));
       }
 }
 
