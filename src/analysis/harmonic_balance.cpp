@@ -80,9 +80,10 @@ struct RowLoad {
 class Balance {
  public:
   /// `given`: additional constant loads.
-  Balance(const MeshPartition& partition, const Coordinates& held,
+  Balance(const MeshPartition& partition, const HarmonicTangents& tangents, const Coordinates& held,
           const std::vector<RowLoad>& given, int harmonics)
       : partition_(partition),
+        tangents_(tangents),
         system_(partition.system()),
         held_(held),
         given_(given),
@@ -95,15 +96,14 @@ class Balance {
         r_(system_.make_state()) {}
 
   Eigen::Index width() const { return width_; }
+  /// On all ranks.
+  Eigen::Index unknowns() const { return partition_.is_distributed() ? system_.size() : size_; }
   const MeshPartition& partition() const { return partition_; }
 
   /// Zero where another rank has the unknown.
   PeriodicSolution own_solution(const PetscScalar* h) const {
-    const Eigen::Map<const Eigen::MatrixXd> own(h, width_, size_);
-    Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(system_.size(), width_);
-    for (Eigen::Index i = 0; i < size_; ++i)
-      coefficients.row(partition_.kept()[static_cast<std::size_t>(i)]) = own.col(i).transpose();
-    return without_held(std::move(coefficients));
+    return without_held(
+        partition_.own(Eigen::Map<const Eigen::MatrixXd>(h, width_, size_)).transpose());
   }
 
   /// The same on all ranks.
@@ -119,18 +119,48 @@ class Balance {
     return loads;
   }
 
-  /// The rows of the border are complete on each rank.
+  /// The rows of the border are complete on each rank. Those that the tangents defer have their own
+  /// unknown only.
   void residual(const PetscScalar* h, PetscScalar* out) {
+    complete_residual(h, out);
+    const Eigen::Map<const Eigen::MatrixXd> unknowns(h, width_, size_);
+    Eigen::Map<Eigen::MatrixXd> result(out, width_, size_);
+    for (const HarmonicTangents::Deferred& deferred : tangents_.deferred())
+      result.col(deferred.number) = unknowns.col(deferred.number);
+  }
+
+  /// Sets the unknowns of these rows to zero.
+  void drop_deferred(PetscScalar* h) const {
+    Eigen::Map<Eigen::MatrixXd> unknowns(h, width_, size_);
+    for (const HarmonicTangents::Deferred& deferred : tangents_.deferred())
+      unknowns.col(deferred.number).setZero();
+  }
+
+  /// Sets them to the solutions of the rows.
+  void solve_deferred(PetscScalar* h) {
+    if (tangents_.deferred().empty()) return;
+    drop_deferred(h);
+    Eigen::MatrixXd rows(width_, size_);
+    complete_residual(h, rows.data());
+    Eigen::Map<Eigen::MatrixXd> unknowns(h, width_, size_);
+    for (const HarmonicTangents::Deferred& deferred : tangents_.deferred())
+      unknowns.col(deferred.number) = -rows.col(deferred.number) / deferred.factor;
+  }
+
+ private:
+  void complete_residual(const PetscScalar* h, PetscScalar* out) {
     Eigen::Map<Eigen::MatrixXd> result(out, width_, size_);
     result.setZero();
     partition_.ranks().attempt([&] { add_samples(own_solution(h), result); });
     partition_.sum_border(result);
+    tangents_.drop_absent(result);
     const std::vector<double> held = loads(h);
     for (std::size_t n = 0; n < held_.size(); ++n)
       result(0, partition_.number_of(held_[n].row)) += held[n];
     for (const RowLoad& given : given_) result(0, partition_.number_of(given.row)) += given.load;
   }
 
+ public:
   /// Largest coefficient of a balance row.
   double largest_load(const PetscScalar* h) {
     Eigen::MatrixXd rows(width_, size_);
@@ -170,6 +200,7 @@ class Balance {
   }
 
   const MeshPartition& partition_;
+  const HarmonicTangents& tangents_;      ///< know the harmonics of the unknowns, once sampled
   const system::PeriodicSystem& system_;  ///< part of this rank
   const Coordinates& held_;
   const std::vector<RowLoad>& given_;
@@ -538,14 +569,16 @@ void choose_linear_solver(SNES solver, SolverContext& context) {
   petsc::check(PCShellSetApply(preconditioner, apply_preconditioner));
 }
 
-std::string words_of_ranks(const MeshPartition& partition) {
-  return partition.is_distributed()
-             ? ", mesh on " + std::to_string(partition.ranks().size) + " ranks"
-             : "";
+/// What a rank has of the mesh.
+std::string words_of(const MeshPartition& partition) {
+  if (partition.is_distributed())
+    return ", mesh on " + std::to_string(partition.ranks().size) + " ranks";
+  const int blades = partition.sector().sectors;
+  return blades > 1 ? ", one of " + std::to_string(blades) + " blades in the place of all" : "";
 }
 
 /// The linear solver that was used, for the report.
-std::string words_of_solver(SNES solver, const SolverContext& context, PetscInt size) {
+std::string words_of_solver(SNES solver, const SolverContext& context) {
   KSP linear = nullptr;
   PC preconditioner = nullptr;
   KSPType type = nullptr;
@@ -561,17 +594,19 @@ std::string words_of_solver(SNES solver, const SolverContext& context, PetscInt 
       std::string(type) + ", " + std::to_string(iterations) + " iterations, preconditioned by ";
   if (context.preconditioner != nullptr)
     return words + "harmonics with a border of " +
-           std::to_string(context.preconditioner->border_size()) + " of " + std::to_string(size) +
-           " unknowns" + words_of_ranks(context.balance->partition());
+           std::to_string(context.preconditioner->border_size()) + " of " +
+           std::to_string(context.balance->unknowns()) + " unknowns" +
+           words_of(context.balance->partition());
   petsc::check(PCFactorGetMatSolverType(preconditioner, &package));
   const std::string name =
       std::string(kind) + (package == nullptr ? "" : std::string(" (") + package + ")");
   return std::string(type) == KSPPREONLY ? name : words + name;
 }
 
-petsc::Handle<Mat> make_shell(MPI_Comm comm, PetscInt own, PetscInt all, SolverContext& context) {
+petsc::Handle<Mat> make_shell(MPI_Comm comm, PetscInt own, SolverContext& context) {
   petsc::Handle<Mat> matrix;
-  petsc::check(MatCreateShell(comm, own, own, all, all, &context, matrix.fill()));
+  petsc::check(
+      MatCreateShell(comm, own, own, PETSC_DETERMINE, PETSC_DETERMINE, &context, matrix.fill()));
   petsc::check(MatShellSetOperation(matrix.get(), MATOP_MULT,
                                     reinterpret_cast<void (*)()>(multiply_tangents)));
   return matrix;
@@ -583,31 +618,35 @@ petsc::Handle<Mat> make_shell(MPI_Comm comm, PetscInt own, PetscInt all, SolverC
 Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const Coordinates& held,
               const std::vector<RowLoad>& given, int harmonics, double tolerance,
               const PeriodicSolution* start, const NewtonLimits& limits, MPI_Comm comm) {
-  const MeshPartition partition(system, held, tries_harmonics ? comm : PETSC_COMM_SELF);
+  const MeshPartition partition(system, held, tries_harmonics && given.empty(),
+                                tries_harmonics ? comm : PETSC_COMM_SELF);
   const Ranks& ranks = partition.ranks();
-  Balance balance(partition, held, given, harmonics);
   HarmonicTangents tangents(partition, held, harmonics);
+  Balance balance(partition, tangents, held, given, harmonics);
   HarmonicPreconditioner preconditioner(tangents);
   const auto local_start = [&](const PeriodicSolution* from) -> Eigen::VectorXd {
     return partition.local(start_coefficients(system, harmonics, from)).reshaped();
   };
   Eigen::VectorXd h = local_start(start);
   ranks.attempt([&] { tangents.sample(balance.own_solution(h.data())); });
+  tangents.drop_absent(h.reshaped(balance.width(), partition.size()));
+  balance.drop_deferred(h.data());
   SolverContext context;
   context.balance = &balance;
   context.tangents = &tangents;
   if (tries_harmonics && preconditioner.is_useful()) context.preconditioner = &preconditioner;
+  if (context.preconditioner == nullptr && partition.sector().sectors > 1)
+    throw LinearFailure("trim: the preconditioner of the harmonics does not serve");
   context.start = &h;
   const Eigen::VectorXd undeformed = local_start(nullptr);
   tangents.scale(balance.largest_load(undeformed.data()), context.rows, context.columns);
   const auto width = static_cast<PetscInt>(balance.width());
-  const PetscInt all = width * system.size();
   const PetscInt own = width * static_cast<PetscInt>(partition.counted().size());
   const petsc::Handle<Mat> matrix = context.preconditioner != nullptr
-                                        ? make_shell(ranks.comm, own, all, context)
+                                        ? make_shell(ranks.comm, own, context)
                                         : tangents.make_matrix();
-  const petsc::Handle<Vec> x = petsc::make_vector(ranks.comm, own, all);
-  const petsc::Handle<Vec> f = petsc::make_vector(ranks.comm, own, all);
+  const petsc::Handle<Vec> x = petsc::make_vector(ranks.comm, own, PETSC_DETERMINE);
+  const petsc::Handle<Vec> f = petsc::make_vector(ranks.comm, own, PETSC_DETERMINE);
   context.scale(h, x.get());
 
   petsc::Handle<SNES> solver;
@@ -647,7 +686,9 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
   petsc::check(SNESGetFunctionNorm(solver.get(), &left));
   if (reason == SNES_CONVERGED_FNORM_ABS && left > vanished) reason = SNES_CONVERGED_FNORM_RELATIVE;
 
-  const PetscScalar* solution = context.unscale(x.get());
+  context.unscale(x.get());
+  balance.solve_deferred(context.unscaled.data());
+  const PetscScalar* solution = context.unscaled.data();
   Trim trim{balance.whole_solution(solution),
             TrimMethod::harmonic_balance,
             0,
@@ -660,7 +701,7 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
   PetscInt steps = 0;
   petsc::check(SNESGetIterationNumber(solver.get(), &steps));
   trim.newton_steps = static_cast<int>(steps);
-  trim.linear_solver = words_of_solver(solver.get(), context, system.size());
+  trim.linear_solver = words_of_solver(solver.get(), context);
   const std::vector<double> loads = balance.loads(solution);
   for (std::size_t n = 0; n < loads.size(); ++n)
     trim.held.push_back({held[n].name, held[n].unit, loads[n], held[n].unknown});

@@ -1,6 +1,7 @@
 #include "harmonic_tangents.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <numbers>
 #include <numeric>
@@ -15,11 +16,9 @@ namespace samara::analysis {
 namespace {
 
 constexpr int samples_at_once = 8;
-/// Place of an entry of rows or unknowns that are not in the map.
-constexpr PetscInt left_out = -2;
-
-/// Whether an unknown has no meaning but to fill up a block.
-bool fills_up(const system::Unknown& unknown) { return unknown.quantity.empty(); }
+/// Difference of tangents that a rotation by a sector maps to each other, relative to the largest
+/// entry of the row.
+constexpr double same_tangent = 1e-6;
 
 }  // namespace
 
@@ -41,14 +40,10 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, int har
     : system_(system),
       harmonics_(harmonics),
       width_(2 * harmonics + 1),
-      size_(static_cast<Eigen::Index>(system.size())),
-      block_size_(block_size_of(system)) {
-  kept_.resize(static_cast<std::size_t>(size_));
-  std::iota(kept_.begin(), kept_.end(), 0);
-  number_ = kept_;
-  remainder_.assign(kept_.size(), every);
+      block_size_(block_size_of(system)),
+      sector_(static_cast<PetscInt>(system.size())) {
   TangentPattern whole = find_pattern(system, {});
-  if (by_sector) find_sectors(whole);
+  if (by_sector) sector_ = RotorSector(system, whole, block_size_);
   mark_border(find_border(whole, block_size_, {}));
   make_map(whole);
 }
@@ -60,10 +55,10 @@ HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordin
       harmonics_(harmonics),
       width_(2 * harmonics + 1),
       block_size_(partition.block_size()),
-      kept_(partition.kept()) {
-  remainder_.assign(kept_.size(), every);
-  for (PetscInt i = 0; i < static_cast<PetscInt>(system_.size()); ++i)
-    number_.push_back(partition.number_of(i));
+      sector_(partition.sector()),
+      repeats_(sector_.sectors > 1) {
+  for (PetscInt i = 0; i < static_cast<PetscInt>(sector_.kept.size()); ++i)
+    is_moved_.push_back(sector_.is_moved(i) ? 1 : 0);
   TangentPattern whole = find_pattern(system_, held);
   mark_border(partition.is_distributed() ? partition.border()
                                          : find_border(whole, block_size_, held));
@@ -78,14 +73,15 @@ HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordin
 /// Takes the places of the unknowns that are kept from the pattern of all, which has no meaning
 /// afterwards.
 void HarmonicTangents::make_map(TangentPattern& whole) {
-  size_ = static_cast<Eigen::Index>(kept_.size());
+  size_ = static_cast<Eigen::Index>(sector_.kept.size());
   if (size_ == whole.rows()) {
     pattern_.swap(whole);
   } else {
     std::vector<Eigen::Triplet<double, PetscInt>> places;
-    for (PetscInt i = 0; i < static_cast<PetscInt>(kept_.size()); ++i)
-      for (TangentPattern::InnerIterator it(whole, kept_[static_cast<std::size_t>(i)]); it; ++it)
-        if (const PetscInt j = number_[static_cast<std::size_t>(it.col())]; j >= 0)
+    for (PetscInt i = 0; i < static_cast<PetscInt>(sector_.kept.size()); ++i)
+      for (TangentPattern::InnerIterator it(whole, sector_.kept[static_cast<std::size_t>(i)]); it;
+           ++it)
+        if (const PetscInt j = sector_.number[static_cast<std::size_t>(it.col())]; j >= 0)
           places.emplace_back(i, j, 1.0);
     pattern_.resize(size_, size_);
     pattern_.setFromTriplets(places.begin(), places.end());
@@ -110,106 +106,23 @@ void HarmonicTangents::make_map(TangentPattern& whole) {
       places_.push_back({i, pattern_.innerIndexPtr()[e], e});
 }
 
-/// Keeps the unknowns of the first blade and those that P does not move. All blades stay in the map
-/// where a row of the first blade refers to another blade.
-void HarmonicTangents::find_sectors(const TangentPattern& whole) {
-  const system::RotorSymmetry& symmetry = system_.symmetry();
-  if (symmetry.sectors < 2) return;
-  const auto size = static_cast<PetscInt>(symmetry.source.size());
-  std::vector<PetscInt> leader(symmetry.source.size());  // the same unknown of the first blade
-  std::vector<char> is_moved(symmetry.source.size(), 0);
-  for (PetscInt i = 0; i < size; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    int length = 1;
-    double sign = symmetry.sign[at];
-    leader[at] = i;
-    for (PetscInt j = symmetry.source[at]; j != i;
-         j = symmetry.source[static_cast<std::size_t>(j)]) {
-      ++length;
-      leader[at] = std::min(leader[at], j);
-      sign *= symmetry.sign[static_cast<std::size_t>(j)];
-    }
-    const bool is_known =
-        length == symmetry.sectors || (length == 1 && (sign == 1.0 || symmetry.sectors % 2 == 0));
-    if (!is_known || (length > 1 && sign != 1.0)) return;
-    is_moved[at] = length > 1 ? 1 : 0;
-  }
-  // What fills up the blocks of a blade goes with them.
-  for (PetscInt first = 0; first < size; first += block_size_) {
-    int moved = 0;
-    int kept = 0;
-    int filling = 0;
-    for (PetscInt i = first; i < first + block_size_; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      moved += is_moved[at];
-      kept += is_moved[at] && leader[at] == i ? 1 : 0;
-      filling += fills_up(system_.unknowns()[at]) ? 1 : 0;
-    }
-    if (moved + filling != block_size_ || (kept != 0 && kept != moved)) continue;
-    for (PetscInt i = first; i < first + block_size_; ++i)
-      if (const auto at = static_cast<std::size_t>(i); !is_moved[at]) {
-        is_moved[at] = 1;
-        leader[at] = kept > 0 ? i : -1;
-      }
-  }
-  std::vector<PetscInt> kept;
-  std::vector<PetscInt> number(symmetry.source.size(), -1);
-  std::vector<int> remainder;
-  for (PetscInt i = 0; i < size; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (leader[at] != i) continue;
-    number[at] = static_cast<PetscInt>(kept.size());
-    kept.push_back(i);
-    remainder.push_back(is_moved[at] ? every
-                                     : (symmetry.sign[at] > 0.0 ? 0 : symmetry.sectors / 2));
-  }
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    for (TangentPattern::InnerIterator it(whole, kept[i]); it && remainder[i] == every; ++it)
-      if (number[static_cast<std::size_t>(it.col())] < 0 &&
-          kept[i] / block_size_ != it.col() / block_size_)
-        return;
-  sectors_ = symmetry.sectors;
-  kept_ = std::move(kept);
-  number_ = std::move(number);
-  remainder_ = std::move(remainder);
-}
-
 /// `blocks`: whether each block of the system belongs to the border. A block of which a part is
 /// left out belongs to it as well.
 void HarmonicTangents::mark_border(const std::vector<char>& blocks) {
   const PetscInt block = block_size_;
-  for (const PetscInt i : kept_) {
+  for (const PetscInt i : sector_.kept) {
     const auto own = static_cast<std::size_t>(i / block);
-    const auto first = number_.begin() + static_cast<std::ptrdiff_t>(own) * block;
+    const auto first = sector_.number.begin() + static_cast<std::ptrdiff_t>(own) * block;
     is_border_.push_back(blocks[own] != 0 || std::count(first, first + block, -1) > 0 ? 1 : 0);
   }
 }
 
-/// P Z_k = exp(-2 pi i k / Q) Z_k, where (P y)_i = sign_i y_source(i).
 Eigen::MatrixXcd HarmonicTangents::whole(const Eigen::MatrixXcd& series) const {
-  if (sectors_ == 1) return series;
-  const system::RotorSymmetry& symmetry = system_.symmetry();
-  Eigen::MatrixXcd all =
-      Eigen::MatrixXcd::Zero(series.rows(), static_cast<Eigen::Index>(number_.size()));
-  Eigen::ArrayXcd turn(series.rows());
-  const Eigen::Index harmonics = (series.rows() - 1) / 2;
-  for (Eigen::Index k = -harmonics; k <= harmonics; ++k)
-    turn(k + harmonics) =
-        std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k % sectors_) / sectors_);
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const PetscInt first = kept_[i];
-    all.col(first) = series.col(static_cast<Eigen::Index>(i));
-    for (PetscInt j = first; symmetry.source[static_cast<std::size_t>(j)] != first;) {
-      const PetscInt next = symmetry.source[static_cast<std::size_t>(j)];
-      all.col(next) = symmetry.sign[static_cast<std::size_t>(j)] * turn * all.col(j).array();
-      j = next;
-    }
-  }
-  return all;
+  return sector_.sectors == 1 ? series : sector_.whole(system_.symmetry(), series);
 }
 
 Eigen::MatrixXcd HarmonicTangents::part(const Eigen::MatrixXcd& whole) const {
-  return whole(Eigen::all, kept_);
+  return whole(Eigen::all, sector_.kept);
 }
 
 bool HarmonicTangents::is_held(PetscInt unknown) const {
@@ -225,89 +138,203 @@ bool HarmonicTangents::holds(PetscInt row, PetscInt unknown) const {
 }
 
 void HarmonicTangents::sample(const PeriodicSolution& solution) {
+  if (!repeats_) {
+    sample_all(solution, 1);
+    return;
+  }
+  const std::vector<PetscInt> unlike = sample_all(solution, sector_.sectors);
+  if (!defer(unlike)) {
+    repeats_ = false;
+    deferred_.clear();
+    sample_all(solution, 1);
+  }
+}
+
+/// With several turns, all blades at the instants of a sector are the first blade at the instants
+/// of a revolution. @returns rows for which one instant shows that they are not
+std::vector<PetscInt> HarmonicTangents::sample_all(const PeriodicSolution& solution, int turns) {
   const petsc::Handle<Vec> z = system_.make_state();
   const petsc::Handle<Vec> z_dot = system_.make_state();
   const petsc::Handle<Mat> jacobian = system_.make_jacobian();
   const petsc::Handle<Mat> mass = system_.make_mass();
   const int samples = sample_count(system_, harmonics_);
-  std::vector<PetscInt> jacobian_places;
-  std::vector<PetscInt> mass_places;
+  const int evaluated = samples / turns;
+  const auto evaluate = [&](int sample) {
+    const double t = system_.period() * sample / samples;
+    solution.evaluate(t, z.get(), z_dot.get());
+    system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+  };
   // The samples of a place are next to each other in memory: some at a time are written.
-  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(pattern_.nonZeros(), samples_at_once);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(pattern_.nonZeros(), turns * samples_at_once);
   Eigen::MatrixXd M = K;
-  for (int first = 0; first < samples; first += samples_at_once) {
-    const int count = std::min(samples_at_once, samples - first);
+  std::vector<PetscInt> unlike;
+  for (int first = 0; first < evaluated; first += samples_at_once) {
+    const int count = std::min(samples_at_once, evaluated - first);
     for (int n = 0; n < count; ++n) {
-      const double t = system_.period() * (first + n) / samples;
-      solution.evaluate(t, z.get(), z_dot.get());
-      system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-      if (jacobian_places.empty()) {
-        jacobian_places = places_of(jacobian.get());
-        mass_places = places_of(mass.get());
-      }
-      take_entries(jacobian.get(), jacobian_places, K.col(n));
-      take_entries(mass.get(), mass_places, M.col(n));
-    }
-    if (sectors_ > 1)
-      for (const Place& place : places_)
-        if (!is_moved(place.row) && is_moved(place.column)) {
-          K.row(place.number) *= sectors_;
-          M.row(place.number) *= sectors_;
+      evaluate(first + n);
+      for (int turn = 0; turn < turns; ++turn) {
+        const auto at = static_cast<std::size_t>(turn);
+        if (at == of_jacobian_.size()) {
+          of_jacobian_.push_back(places_of(jacobian.get(), turn));
+          of_mass_.push_back(places_of(mass.get(), turn));
         }
-    sampled_.middleRows(first, count) = K.leftCols(count).transpose();
-    sampled_.middleRows(samples + first, count) = M.leftCols(count).transpose();
+        take_entries(jacobian.get(), of_jacobian_[at], K.col(turn * samples_at_once + n));
+        take_entries(mass.get(), of_mass_[at], M.col(turn * samples_at_once + n));
+      }
+      require_pattern(jacobian.get(), of_jacobian_.front());
+      require_pattern(mass.get(), of_mass_.front());
+    }
+    if (turns > 1 && first == 0) {
+      evaluate(evaluated);
+      unlike = unlike_rows(jacobian.get(), of_jacobian_, K.col(samples_at_once));
+      const std::vector<PetscInt> of_rates =
+          unlike_rows(mass.get(), of_mass_, M.col(samples_at_once));
+      unlike.insert(unlike.end(), of_rates.begin(), of_rates.end());
+    }
+    if (sector_.sectors > 1)
+      for (const Place& place : places_)
+        if (!sector_.is_moved(place.row) && sector_.is_moved(place.column)) {
+          K.row(place.number) *= sector_.sectors;
+          M.row(place.number) *= sector_.sectors;
+        }
+    for (int turn = 0; turn < turns; ++turn) {
+      const int begin = turn * evaluated + first;
+      const int from = turn * samples_at_once;
+      sampled_.middleRows(begin, count) = K.middleCols(from, count).transpose();
+      sampled_.middleRows(samples + begin, count) = M.middleCols(from, count).transpose();
+    }
   }
-  if (sectors_ > 1) find_followers();
+  if (sector_.sectors > 1) find_followers();
+  return unlike;
 }
 
 /// An unknown that is not moved and that no other row refers to, such as the component of a
 /// velocity in axes of the rotor, only follows the others. It has all harmonics if its row has no
 /// blade, and not its own rate.
 void HarmonicTangents::find_followers() {
-  std::vector<char> is_used(kept_.size(), 0);
+  std::vector<char> is_used(sector_.kept.size(), 0);
   for (const Place& place : places_) {
     const auto sampled = sampled_.col(place.number);
     if (sampled.isZero(0.0)) continue;
     if (place.row != place.column || !sampled.tail(sampled.size() / 2).isZero(0.0))
       is_used[static_cast<std::size_t>(place.column)] = 1;
-    if (is_moved(place.column)) is_used[static_cast<std::size_t>(place.row)] = 1;
+    if (sector_.is_moved(place.column)) is_used[static_cast<std::size_t>(place.row)] = 1;
   }
   for (std::size_t i = 0; i < is_used.size(); ++i)
-    if (!is_used[i]) remainder_[i] = every;
+    if (!is_used[i]) sector_.remainder[i] = RotorSector::every;
 }
 
-std::vector<PetscInt> HarmonicTangents::places_of(Mat tangent) const {
-  std::vector<PetscInt> places;
-  MatrixEntries(tangent).for_each([&](PetscInt i, PetscInt j, PetscScalar&) {
-    const PetscInt row = number_[static_cast<std::size_t>(i)];
-    const PetscInt column = number_[static_cast<std::size_t>(j)];
-    if (row < 0 || column < 0) {
-      places.push_back(left_out);
-      return;
+/// P K(t + T/Q) P^-1 = K(t), so that the entry (i, j) at t is that of their images under P at
+/// t + T/Q, times their signs.
+HarmonicTangents::EntryPlaces HarmonicTangents::places_of(Mat tangent, int turn) const {
+  const system::RotorSymmetry& symmetry = system_.symmetry();
+  std::vector<PetscInt> image(sector_.number.size());
+  std::iota(image.begin(), image.end(), 0);
+  std::vector<double> sign(image.size(), 1.0);
+  for (int k = 0; k < turn; ++k)
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      const auto at = static_cast<std::size_t>(image[i]);
+      sign[i] *= symmetry.sign[at];
+      image[i] = symmetry.source[at];
     }
+  for (PetscInt& i : image) i = sector_.number[static_cast<std::size_t>(i)];
+  EntryPlaces places;
+  PetscInt entry = -1;
+  MatrixEntries(tangent).for_each([&](PetscInt i, PetscInt j, PetscScalar&) {
+    ++entry;
+    const PetscInt row = image[static_cast<std::size_t>(i)];
+    const PetscInt column = image[static_cast<std::size_t>(j)];
+    if (row < 0 || column < 0) return;
     const PetscInt* first = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[row];
     const PetscInt* last = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[row + 1];
     const PetscInt* found = std::lower_bound(first, last, column);
-    const bool is_there = found != last && *found == column;
-    places.push_back(is_there ? static_cast<PetscInt>(found - pattern_.innerIndexPtr()) : -1);
+    if (found == last || *found != column) {
+      places.outside.push_back({entry, row, unknown(column).scale});
+      return;
+    }
+    const double factor = sign[static_cast<std::size_t>(i)] * sign[static_cast<std::size_t>(j)];
+    places.inside.push_back(
+        {entry, static_cast<PetscInt>(found - pattern_.innerIndexPtr()), factor});
   });
   return places;
 }
 
-void HarmonicTangents::take_entries(Mat tangent, const std::vector<PetscInt>& places,
+void HarmonicTangents::take_entries(Mat tangent, const EntryPlaces& places,
                                     Eigen::Ref<Eigen::VectorXd> sample) const {
   MatrixEntries entries(tangent);
   const PetscScalar* values = entries.values();
-  for (std::size_t n = 0; n < places.size(); ++n)
-    if (places[n] >= 0)
-      sample(places[n]) = values[n];
-    else if (places[n] != left_out && values[n] != 0.0)
+  for (const EntryPlaces::Inside& one : places.inside)
+    sample(one.place) = one.factor * values[one.entry];
+}
+
+/// @throws InternalError if an entry outside the pattern is not zero
+void HarmonicTangents::require_pattern(Mat tangent, const EntryPlaces& places) const {
+  MatrixEntries entries(tangent);
+  const PetscScalar* values = entries.values();
+  for (const EntryPlaces::Outside& one : places.outside)
+    if (values[one.entry] != 0.0)
       entries.for_each([&](PetscInt i, PetscInt j, PetscScalar& value) {
-        if (&value == values + n)
+        if (&value == values + one.entry)
           throw InternalError("row " + std::to_string(i) +
                               " of the tangents has an entry in column " + std::to_string(j) +
                               ", outside their pattern");
       });
+}
+
+/// Rows of a tangent that differ from the turned entries of a sector before, beyond round-off and
+/// the error of the solution.
+std::vector<PetscInt> HarmonicTangents::unlike_rows(
+    Mat tangent, const std::vector<EntryPlaces>& places,
+    const Eigen::Ref<const Eigen::VectorXd>& turned) const {
+  Eigen::VectorXd direct = Eigen::VectorXd::Zero(turned.size());
+  take_entries(tangent, places.front(), direct);
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(size_);
+  Eigen::VectorXd difference = largest;
+  for (const Place& place : places_) {
+    const double scale = unknown(place.column).scale;
+    const auto number = static_cast<Eigen::Index>(place.number);
+    double& most = largest(place.row);
+    double& change = difference(place.row);
+    most = std::max(most, scale * std::abs(direct(number)));
+    change = std::max(change, scale * std::abs(direct(number) - turned(number)));
+  }
+  // Entries of other blades whose images the pattern of the first one does not have.
+  const MatrixEntries entries(tangent);
+  for (const EntryPlaces& turn : places)
+    for (const EntryPlaces::Outside& one : turn.outside)
+      difference(one.row) =
+          std::max(difference(one.row), one.scale * std::abs(entries.values()[one.entry]));
+  std::vector<PetscInt> unlike;
+  for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i)
+    if (!(difference(i) <= same_tangent * largest(i))) unlike.push_back(i);
+  return unlike;
+}
+
+/// Takes rows that only give their own unknown, which no other row contains, out of the map: as the
+/// moment in a hinge that turns with the rotor, for which a blade is not a turned one.
+/// @returns false where a row is not of this kind
+bool HarmonicTangents::defer(const std::vector<PetscInt>& rows) {
+  const Eigen::Index samples = values_of_.rows();
+  for (const PetscInt row : rows)
+    if (std::ranges::none_of(deferred_, [row](const Deferred& one) { return one.number == row; }))
+      deferred_.push_back({row, 0.0});
+  for (Deferred& deferred : deferred_) {
+    const PetscInt row = deferred.number;
+    if (is_moved_[static_cast<std::size_t>(row)] != 0 || !sector_.is_moved(row)) return false;
+    for (PetscInt e = pattern_.outerIndexPtr()[row]; e < pattern_.outerIndexPtr()[row + 1]; ++e) {
+      auto sampled = sampled_.col(e);
+      if (pattern_.innerIndexPtr()[e] == row) {
+        const double mean = sampled.head(samples).mean();
+        const double change = (sampled.head(samples).array() - mean).abs().maxCoeff();
+        if (mean == 0.0 || change > same_tangent * std::abs(mean)) return false;
+        deferred.factor = mean;
+        sampled.head(samples).setOnes();
+      } else {
+        sampled.setZero();
+      }
+    }
+  }
+  return true;
 }
 
 void HarmonicTangents::multiply(const double* x, double* y) const {
@@ -342,7 +369,7 @@ void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd&
   }
   y.noalias() = projection_ * sums;
   count_operations(2, x.cols());
-  drop_absent(y);
+  sector_.drop_absent(y);
 }
 
 void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
@@ -356,7 +383,7 @@ void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& 
   }
   y.noalias() = projection_ * sums;
   count_operations(1, w.cols());
-  drop_absent(y);
+  sector_.drop_absent(y);
 }
 
 /// Of products with K and M (2 parts) or M alone, for so many columns of coefficients.
@@ -365,16 +392,6 @@ void HarmonicTangents::count_operations(int parts, Eigen::Index columns) const {
   const auto entries = static_cast<double>(places_.size()) / static_cast<double>(size_);
   PetscLogFlops(2.0 * samples * static_cast<double>(columns) *
                 (parts * (entries + width_) + width_));
-}
-
-void HarmonicTangents::drop_absent(Eigen::MatrixXd& rows) const {
-  if (sectors_ == 1) return;
-  for (Eigen::Index at = 0; at < rows.cols(); ++at) {
-    const Eigen::Index i = at % size_;
-    if (!has(i, 0)) rows(0, at) = 0.0;
-    for (int k = 1; k <= harmonics_; ++k)
-      if (!has(i, k) && !has(i, -k)) rows.col(at).segment(2 * k - 1, 2).setZero();
-  }
 }
 
 Eigen::MatrixXcd HarmonicTangents::coupling(const Place& place, std::complex<double> shift) const {
@@ -423,12 +440,13 @@ void HarmonicTangents::scale(double loads, Eigen::VectorXd& rows, Eigen::VectorX
     const auto sampled = sampled_.col(place.number);
     double entry = sampled.head(samples).lpNorm<Eigen::Infinity>() +
                    rate * sampled.tail(samples).lpNorm<Eigen::Infinity>();
-    PetscInt row = kept_[static_cast<std::size_t>(place.row)];
-    PetscInt column = kept_[static_cast<std::size_t>(place.column)];
-    if (sectors_ > 1 && !is_moved(place.row) && is_moved(place.column)) entry /= sectors_;
-    for (int q = 0; q < sectors_; ++q) {
+    PetscInt row = sector_.kept[static_cast<std::size_t>(place.row)];
+    PetscInt column = sector_.kept[static_cast<std::size_t>(place.column)];
+    if (sector_.sectors > 1 && !sector_.is_moved(place.row) && sector_.is_moved(place.column))
+      entry /= sector_.sectors;
+    for (int q = 0; q < sector_.sectors; ++q) {
       entries.emplace_back(row, column, entry);
-      if (sectors_ == 1) break;
+      if (sector_.sectors == 1) break;
       row = source[static_cast<std::size_t>(row)];
       column = source[static_cast<std::size_t>(column)];
     }
@@ -443,7 +461,7 @@ void HarmonicTangents::scale(double loads, Eigen::VectorXd& rows, Eigen::VectorX
   rows.resize(size_ * width_);
   columns.resize(size_ * width_);
   for (Eigen::Index i = 0; i < size_; ++i) {
-    const PetscInt unknown = kept_[static_cast<std::size_t>(i)];
+    const PetscInt unknown = sector_.kept[static_cast<std::size_t>(i)];
     rows.segment(i * width_, width_).setConstant(row_factors[unknown]);
     columns.segment(i * width_, width_).setConstant(column_factors[unknown]);
   }

@@ -11,6 +11,7 @@
 #include "samara/system/periodic_system.hpp"
 
 #include "mesh_partition.hpp"
+#include "rotor_sector.hpp"
 
 namespace samara::analysis {
 
@@ -27,10 +28,8 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t, int samp
 /// holds a coordinate is in the place of the coordinate's mean.
 ///
 /// Among Q identical blades, every Floquet motion z(t) = exp(lambda t) Z(t) has an exponent with
-/// P Z(t + T/Q) = Z(t), P of system::RotorSymmetry: each blade has the motion of the first one, T/Q
-/// later or earlier, and unknowns that P does not move have the harmonics k = 0, Q, -Q, ... only
-/// (k = Q/2, -Q/2, ... where P changes their sign). The map of such motions has the unknowns of the
-/// first blade and those that P does not move; in rows of the latter, each blade contributes as
+/// P Z(t + T/Q) = Z(t), which RotorSector describes. The map of such motions has the unknowns of
+/// the first blade and those that P does not move; in rows of the latter, each blade contributes as
 /// much as the first one. (The fast Floquet theory of docs/theory.md, section 5.4, for series.)
 class HarmonicTangents {
  public:
@@ -40,18 +39,32 @@ class HarmonicTangents {
   /// ranks are those of the whole system.
   HarmonicTangents(const MeshPartition& partition, const Coordinates& held, int harmonics);
 
-  /// Evaluates K and M along `solution`.
+  /// Evaluates K and M along `solution`. Of a sector in a MeshPartition, all blades are evaluated
+  /// at the instants of one sector where the solution repeats from blade to blade.
   void sample(const PeriodicSolution& solution);
 
-  Eigen::Index size() const { return size_; }  ///< unknowns of the map
-  int sectors() const { return sectors_; }     ///< Q; 1: all blades are in the map
+  /// A row that has only its own unknown in the map, with the factor 1. (It has others in the
+  /// system, which has its unknown in no other row.)
+  struct Deferred {
+    PetscInt number = 0;
+    double factor = 1.0;  ///< of the unknown in the row of the system
+  };
+  /// Of the last samples.
+  const std::vector<Deferred>& deferred() const { return deferred_; }
+
+  Eigen::Index size() const { return size_; }      ///< unknowns of the map
+  int sectors() const { return sector_.sectors; }  ///< Q; 1: all blades are in the map
   const system::Unknown& unknown(Eigen::Index number) const {
-    return system_.unknowns()[static_cast<std::size_t>(kept_[static_cast<std::size_t>(number)])];
+    return system_
+        .unknowns()[static_cast<std::size_t>(sector_.kept[static_cast<std::size_t>(number)])];
   }
   /// Whether an unknown has a harmonic k.
   bool has(Eigen::Index unknown, int harmonic) const {
-    const int remainder = remainder_[static_cast<std::size_t>(unknown)];
-    return remainder == every || (harmonic - remainder) % sectors_ == 0;
+    return sector_.has(static_cast<PetscInt>(unknown), harmonic);
+  }
+  /// Sets the coefficients of harmonics that an unknown does not have to zero.
+  void drop_absent(Eigen::Ref<Eigen::MatrixXd> coefficients) const {
+    sector_.drop_absent(coefficients);
   }
   /// From a series of the map's unknowns, k = -H ... H by row, to all unknowns of the system; and
   /// back.
@@ -104,34 +117,48 @@ class HarmonicTangents {
 
  private:
   double period() const { return system_.period() > 0.0 ? system_.period() : 1.0; }
-  bool is_moved(PetscInt unknown) const {
-    return remainder_[static_cast<std::size_t>(unknown)] == every;
-  }
   void make_map(TangentPattern& whole);
-  void find_sectors(const TangentPattern& whole);
   void mark_border(const std::vector<char>& blocks);
   void find_followers();
   void count_operations(int parts, Eigen::Index columns) const;
-  /// Sets the coefficients of harmonics that an unknown's row does not have to zero.
-  void drop_absent(Eigen::MatrixXd& rows) const;
-  /// Places of the entries of a tangent, in the order of MatrixEntries.
-  std::vector<PetscInt> places_of(Mat tangent) const;
-  void take_entries(Mat tangent, const std::vector<PetscInt>& places,
+  /// Of the entries of a tangent, by their numbers in the order of MatrixEntries, after some turns
+  /// by a sector. Others are in no row or column of the map.
+  struct EntryPlaces {
+    struct Inside {
+      PetscInt entry;
+      PetscInt place;  ///< in the pattern of the map
+      double factor;   ///< 1 or -1
+    };
+    struct Outside {
+      PetscInt entry;
+      PetscInt row;
+      double scale;  ///< of the unknown
+    };
+    std::vector<Inside> inside;
+    std::vector<Outside> outside;  ///< the pattern of the map
+  };
+  EntryPlaces places_of(Mat tangent, int turn) const;
+  void take_entries(Mat tangent, const EntryPlaces& places,
                     Eigen::Ref<Eigen::VectorXd> sample) const;
+  void require_pattern(Mat tangent, const EntryPlaces& places) const;
+  std::vector<PetscInt> sample_all(const PeriodicSolution& solution, int turns);
+  std::vector<PetscInt> unlike_rows(Mat tangent, const std::vector<EntryPlaces>& places,
+                                    const Eigen::Ref<const Eigen::VectorXd>& turned) const;
+  bool defer(const std::vector<PetscInt>& rows);
 
   const system::PeriodicSystem& system_;
   const MeshPartition* partition_ = nullptr;
   Coordinates held_;  ///< with numbers of the map
   int harmonics_;
   int width_;
-  Eigen::Index size_;
+  Eigen::Index size_ = 0;
   PetscInt block_size_ = 1;
-  int sectors_ = 1;
-  std::vector<PetscInt> kept_;    ///< unknowns of the system that are in the map
-  std::vector<PetscInt> number_;  ///< of each unknown of the system in the map; -1: none
-  static constexpr int every = -1;
-  /// k mod Q of the harmonics of each unknown of the map that P does not move; `every` for others.
-  std::vector<int> remainder_;
+  RotorSector sector_;          ///< the unknowns of the map
+  std::vector<char> is_moved_;  ///< by P, of the unknowns of the map
+  bool repeats_ = false;        ///< all blades at one instant are the first blade at several ones
+  std::vector<Deferred> deferred_;
+  std::vector<EntryPlaces> of_jacobian_;  ///< one for each turn
+  std::vector<EntryPlaces> of_mass_;
   std::vector<char> is_border_;
   TangentPattern pattern_;  ///< of K and M together
   std::vector<Place> places_;

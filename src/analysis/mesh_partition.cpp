@@ -2,19 +2,10 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
 
 namespace samara::analysis {
 namespace {
 
-/// A block belongs to the border if more blocks than this refer to it, and some of them are far. (A
-/// node of a chain has two neighbours, and is in the rows of joints and reactions. The blocks of an
-/// element of a high order, with the air at its points, are many neighbours, but all of them are
-/// near.)
-constexpr std::size_t most_neighbours = 8;
-/// Largest distance of near blocks, and the same as a part of all blocks.
-constexpr PetscInt near = 40;
-constexpr PetscInt near_part = 3;
 /// Smallest piece of a chain, in blocks.
 constexpr Eigen::Index least_piece = 100;
 /// Largest border that a distribution may have, as a part of all blocks.
@@ -43,72 +34,38 @@ std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pie
 
 }  // namespace
 
-TangentPattern find_pattern(const system::PeriodicSystem& system, const Coordinates& held) {
-  std::vector<std::vector<PetscInt>> rows = system.pattern();
-  if (rows.empty()) {  // the system does not declare a pattern
-    std::vector<PetscInt> all(static_cast<std::size_t>(system.size()));
-    std::iota(all.begin(), all.end(), PetscInt{0});
-    rows.assign(all.size(), all);
-  }
-  for (const system::UnconstrainedCoordinate& coordinate : held) {
-    std::vector<PetscInt>& row = rows[static_cast<std::size_t>(coordinate.row)];
-    const auto place = std::lower_bound(row.begin(), row.end(), coordinate.unknown);
-    if (place == row.end() || *place != coordinate.unknown) row.insert(place, coordinate.unknown);
-  }
-  TangentPattern pattern(system.size(), system.size());
-  Eigen::VectorXi lengths(system.size());
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    lengths(static_cast<Eigen::Index>(i)) = static_cast<int>(rows[i].size());
-  pattern.reserve(lengths);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (const PetscInt j : rows[i]) pattern.insert(static_cast<Eigen::Index>(i), j) = 1.0;
-  pattern.makeCompressed();
-  return pattern;
-}
-
-PetscInt block_size_of(const system::PeriodicSystem& system) {
-  const petsc::Handle<Mat> matrix = system.make_jacobian();
-  PetscBool is_blocked = PETSC_FALSE;
-  PetscInt size = 1;
-  petsc::check(
-      PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix.get()), MATSEQBAIJ, &is_blocked));
-  if (is_blocked != PETSC_FALSE) petsc::check(MatGetBlockSize(matrix.get(), &size));
-  return size;
-}
-
-std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size,
-                              const Coordinates& held) {
-  std::vector<std::set<PetscInt>> users(static_cast<std::size_t>(pattern.cols() / block_size));
-  for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i)
-    for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
-      users[static_cast<std::size_t>(it.col() / block_size)].insert(i / block_size);
-    }
-  const PetscInt most = std::min(near, static_cast<PetscInt>(users.size()) / near_part);
-  std::vector<char> border;
-  for (std::size_t b = 0; b < users.size(); ++b) {
-    const std::set<PetscInt>& own = users[b];
-    const auto place = static_cast<PetscInt>(b);
-    const bool is_border = own.size() > most_neighbours &&
-                           std::max(place - *own.begin(), *own.rbegin() - place) > most;
-    border.push_back(is_border ? 1 : 0);
-  }
-  for (const system::UnconstrainedCoordinate& coordinate : held)
-    for (const PetscInt i : {coordinate.unknown, coordinate.row})
-      border[static_cast<std::size_t>(i / block_size)] = 1;
-  return border;
-}
-
 MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordinates& held,
-                             MPI_Comm comm)
-    : whole_(system), ranks_(comm), block_size_(block_size_of(system)) {
-  if (!distribute(held)) keep_all();
+                             bool by_sector, MPI_Comm comm)
+    : whole_(system),
+      ranks_(comm),
+      block_size_(block_size_of(system)),
+      sector_(static_cast<PetscInt>(system.size())) {
+  const TangentPattern pattern = find_pattern(system, held);
+  const int sectors = system.symmetry().sectors;
+  const bool may_be_sector = by_sector && sectors > 1 && system.period() > 0.0;
+  if (may_be_sector && ranks_.size < sectors && keep_sector(pattern, held)) return;
+  if (distribute(pattern, held)) return;
+  if (may_be_sector && keep_sector(pattern, held)) return;
+  work_alone(RotorSector(static_cast<PetscInt>(system.size())));
+}
+
+/// @returns false where a sector does not stand for the whole
+bool MeshPartition::keep_sector(const TangentPattern& pattern, const Coordinates& held) {
+  RotorSector sector(whole_, pattern, block_size_);
+  if (sector.sectors == 1) return false;
+  for (const system::UnconstrainedCoordinate& coordinate : held)
+    for (const PetscInt i : {coordinate.unknown, coordinate.row}) {
+      const PetscInt number = sector.number[static_cast<std::size_t>(i)];
+      if (number < 0 || sector.is_moved(number) || !sector.has(number, 0)) return false;
+    }
+  work_alone(std::move(sector));
+  return true;
 }
 
 /// @returns false where every rank has to keep the whole mesh
-bool MeshPartition::distribute(const Coordinates& held) {
+bool MeshPartition::distribute(const TangentPattern& pattern, const Coordinates& held) {
   if (ranks_.size == 1 || block_size_ == 1 || whole_.size() < 2 * least_piece * block_size_)
     return false;
-  const TangentPattern pattern = find_pattern(whole_, held);
   std::vector<char> border = find_border(pattern, block_size_, held);
   for (const PetscInt i : whole_.common_unknowns())
     border[static_cast<std::size_t>(i / block_size_)] = 1;
@@ -125,24 +82,27 @@ bool MeshPartition::distribute(const Coordinates& held) {
   part_ = whole_.part_of(ranks_.rank, of_unknowns);
   if (!part_) return false;
   is_border_ = std::move(border);
-  number_.assign(of_unknowns.size(), -1);
+  std::vector<PetscInt> kept;
+  sector_.number.assign(of_unknowns.size(), -1);
   for (std::size_t i = 0; i < of_unknowns.size(); ++i) {
     const bool is_shared = of_unknowns[i] == system::PeriodicSystem::shared;
     if (!is_shared && of_unknowns[i] != ranks_.rank) continue;
-    number_[i] = static_cast<PetscInt>(kept_.size());
-    if (is_shared) border_.push_back(number_[i]);
-    if (!is_shared || is_first()) counted_.push_back(number_[i]);
-    kept_.push_back(static_cast<PetscInt>(i));
+    const auto number = static_cast<PetscInt>(kept.size());
+    sector_.number[i] = number;
+    if (is_shared) border_.push_back(number);
+    if (!is_shared || is_first()) counted_.push_back(number);
+    kept.push_back(static_cast<PetscInt>(i));
   }
+  sector_.kept = std::move(kept);
+  sector_.remainder.resize(sector_.kept.size());
   return true;
 }
 
-void MeshPartition::keep_all() {
+void MeshPartition::work_alone(RotorSector sector) {
   ranks_ = Ranks(MPI_COMM_SELF);
-  kept_.resize(static_cast<std::size_t>(whole_.size()));
-  std::iota(kept_.begin(), kept_.end(), 0);
-  number_ = kept_;
-  counted_ = kept_;
+  sector_ = std::move(sector);
+  counted_.resize(sector_.kept.size());
+  std::iota(counted_.begin(), counted_.end(), 0);
 }
 
 void MeshPartition::sum_border(Eigen::Ref<Eigen::MatrixXd> values) const {
@@ -152,15 +112,21 @@ void MeshPartition::sum_border(Eigen::Ref<Eigen::MatrixXd> values) const {
   values(Eigen::all, border_) = border;
 }
 
-Eigen::MatrixXd MeshPartition::whole(const Eigen::Ref<const Eigen::MatrixXd>& values) const {
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(values.rows(), whole_.size());
-  for (const PetscInt i : counted_) all.col(kept_[static_cast<std::size_t>(i)]) = values.col(i);
+Eigen::MatrixXd MeshPartition::own(const Eigen::Ref<const Eigen::MatrixXd>& coefficients) const {
+  return sector_.whole(whole_.symmetry(), coefficients);
+}
+
+Eigen::MatrixXd MeshPartition::whole(const Eigen::Ref<const Eigen::MatrixXd>& coefficients) const {
+  if (!is_distributed()) return own(coefficients);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(coefficients.rows(), whole_.size());
+  for (const PetscInt i : counted_)
+    all.col(sector_.kept[static_cast<std::size_t>(i)]) = coefficients.col(i);
   ranks_.sum(all);
   return all;
 }
 
 Eigen::MatrixXd MeshPartition::local(const Eigen::Ref<const Eigen::MatrixXd>& values) const {
-  return values(Eigen::all, kept_);
+  return values(Eigen::all, sector_.kept);
 }
 
 void MeshPartition::spread(const double* counted, Eigen::Ref<Eigen::MatrixXd> values) const {

@@ -5,27 +5,14 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 
 #include "samara/analysis/ranks.hpp"
 #include "samara/system/periodic_system.hpp"
 
+#include "rotor_sector.hpp"
+#include "tangent_pattern.hpp"
+
 namespace samara::analysis {
-
-/// Places where K or M may have an entry; its values have no meaning.
-using TangentPattern = Eigen::SparseMatrix<double, Eigen::RowMajor, PetscInt>;
-using Coordinates = std::vector<system::UnconstrainedCoordinate>;
-
-/// Pattern of the tangents. The load that holds a coordinate stands in the place of its mean.
-TangentPattern find_pattern(const system::PeriodicSystem& system, const Coordinates& held);
-
-/// Rows of a block of the system's tangents; 1: no blocks.
-PetscInt block_size_of(const system::PeriodicSystem& system);
-
-/// For each node block, whether it belongs to the border of the chains of beam nodes: many other
-/// blocks refer to it, or it has a coordinate that is held.
-std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size,
-                              const Coordinates& held);
 
 /// Node blocks of a mesh by ranks. The chains between the border are cut into pieces of equal
 /// lengths, one for each rank; the block behind a cut joins the border. Every rank has its own
@@ -36,8 +23,11 @@ std::vector<char> find_border(const TangentPattern& pattern, PetscInt block_size
 class MeshPartition {
  public:
   /// With one rank, or where the mesh is too small to be worth a distribution or cannot be divided,
-  /// every rank has the whole mesh and works for itself.
-  MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, MPI_Comm comm);
+  /// every rank works for itself: with the whole mesh, or with a sector of the rotor where
+  /// `by_sector` holds and all held coordinates have a mean in it. With fewer ranks than sectors,
+  /// this is the smaller part of the mesh.
+  MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, bool by_sector,
+                MPI_Comm comm);
 
   bool is_distributed() const { return ranks_.size > 1; }
   /// Of one rank, if the mesh is not distributed.
@@ -46,12 +36,17 @@ class MeshPartition {
   /// What this rank evaluates.
   const system::PeriodicSystem& system() const { return part_ ? *part_ : whole_; }
 
+  /// Unknowns of one of identical blades that stand for all; else the unknowns on this rank.
+  const RotorSector& sector() const { return sector_; }
+
   PetscInt block_size() const { return block_size_; }  ///< see block_size_of
   /// Unknowns of the system on this rank, ascending.
-  const std::vector<PetscInt>& kept() const { return kept_; }
-  Eigen::Index size() const { return static_cast<Eigen::Index>(kept_.size()); }
+  const std::vector<PetscInt>& kept() const { return sector_.kept; }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(sector_.kept.size()); }
   /// Number of an unknown of the system among those on this rank; -1: another rank has it.
-  PetscInt number_of(PetscInt unknown) const { return number_[static_cast<std::size_t>(unknown)]; }
+  PetscInt number_of(PetscInt unknown) const {
+    return sector_.number[static_cast<std::size_t>(unknown)];
+  }
   /// Numbers of the unknowns that this rank counts.
   const std::vector<PetscInt>& counted() const { return counted_; }
   /// Of a distributed mesh: whether each block of the system belongs to the border.
@@ -60,7 +55,10 @@ class MeshPartition {
   /// Adds up the columns of the border, each rank having a part of them. One column for each
   /// unknown on this rank.
   void sum_border(Eigen::Ref<Eigen::MatrixXd> values) const;
-  /// From the unknowns on the ranks to those of the whole system, one column for each unknown.
+  /// From the coefficients of the unknowns on this rank, mean, cosine and sine of each harmonic by
+  /// row, to those of the whole system; zero where another rank has the unknown.
+  Eigen::MatrixXd own(const Eigen::Ref<const Eigen::MatrixXd>& coefficients) const;
+  /// The same with the unknowns of all ranks.
   Eigen::MatrixXd whole(const Eigen::Ref<const Eigen::MatrixXd>& values) const;
   /// From the columns of the whole system to those on this rank.
   Eigen::MatrixXd local(const Eigen::Ref<const Eigen::MatrixXd>& values) const;
@@ -70,16 +68,16 @@ class MeshPartition {
   void collect(const Eigen::Ref<const Eigen::MatrixXd>& values, double* counted) const;
 
  private:
-  bool distribute(const Coordinates& held);
-  void keep_all();
+  bool distribute(const TangentPattern& pattern, const Coordinates& held);
+  bool keep_sector(const TangentPattern& pattern, const Coordinates& held);
+  void work_alone(RotorSector sector);
 
   const system::PeriodicSystem& whole_;
   Ranks ranks_;
   PetscInt block_size_;
   std::unique_ptr<system::PeriodicSystem> part_;
   std::vector<char> is_border_;
-  std::vector<PetscInt> kept_;
-  std::vector<PetscInt> number_;
+  RotorSector sector_;  ///< its numbers are those of the unknowns on this rank
   std::vector<PetscInt> counted_;
   std::vector<PetscInt> border_;  ///< numbers of its unknowns
 };
