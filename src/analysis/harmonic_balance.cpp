@@ -153,7 +153,7 @@ class Balance {
     result.setZero();
     partition_.ranks().attempt([&] { add_samples(own_solution(h), result); });
     partition_.sum_border(result);
-    tangents_.drop_absent(result);
+    tangents_.sector().drop_absent(result);
     const std::vector<double> held = loads(h);
     for (std::size_t n = 0; n < held_.size(); ++n)
       result(0, partition_.number_of(held_[n].row)) += held[n];
@@ -629,7 +629,7 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
   };
   Eigen::VectorXd h = local_start(start);
   ranks.attempt([&] { tangents.sample(balance.own_solution(h.data())); });
-  tangents.drop_absent(h.reshaped(balance.width(), partition.size()));
+  tangents.sector().drop_absent(h.reshaped(balance.width(), partition.size()));
   balance.drop_deferred(h.data());
   SolverContext context;
   context.balance = &balance;

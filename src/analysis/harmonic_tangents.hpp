@@ -62,10 +62,8 @@ class HarmonicTangents {
   bool has(Eigen::Index unknown, int harmonic) const {
     return sector_.has(static_cast<PetscInt>(unknown), harmonic);
   }
-  /// Sets the coefficients of harmonics that an unknown does not have to zero.
-  void drop_absent(Eigen::Ref<Eigen::MatrixXd> coefficients) const {
-    sector_.drop_absent(coefficients);
-  }
+  /// The unknowns of the map and their harmonics, those of followers once sampled.
+  const RotorSector& sector() const { return sector_; }
   /// From a series of the map's unknowns, k = -H ... H by row, to all unknowns of the system; and
   /// back.
   Eigen::MatrixXcd whole(const Eigen::MatrixXcd& series) const;
