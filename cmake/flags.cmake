@@ -15,7 +15,7 @@ add_link_options(-Wl,--as-needed)
 # A build that finds errors of memory and undefined behaviour (scripts/test --sanitize).
 if(SAMARA_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all
-                      -fno-omit-frame-pointer -g1)
+                      -fno-omit-frame-pointer -g1 -O1)
   add_link_options(-fsanitize=address,undefined)
 endif()
 

@@ -573,8 +573,8 @@ void choose_linear_solver(SNES solver, SolverContext& context) {
 std::string words_of(const MeshPartition& partition) {
   if (partition.is_distributed())
     return ", mesh on " + std::to_string(partition.ranks().size) + " ranks";
-  const int blades = partition.sector().sectors;
-  return blades > 1 ? ", one of " + std::to_string(blades) + " blades in the place of all" : "";
+  const int sectors = partition.sector().sectors;
+  return sectors > 1 ? ", one of " + std::to_string(sectors) + " blades in the place of all" : "";
 }
 
 /// The linear solver that was used, for the report.
