@@ -147,20 +147,6 @@ class Balance {
       unknowns.col(deferred.number) = -rows.col(deferred.number) / deferred.factor;
   }
 
- private:
-  void complete_residual(const PetscScalar* h, PetscScalar* out) {
-    Eigen::Map<Eigen::MatrixXd> result(out, width_, size_);
-    result.setZero();
-    partition_.ranks().attempt([&] { add_samples(own_solution(h), result); });
-    partition_.sum_border(result);
-    tangents_.sector().drop_absent(result);
-    const std::vector<double> held = loads(h);
-    for (std::size_t n = 0; n < held_.size(); ++n)
-      result(0, partition_.number_of(held_[n].row)) += held[n];
-    for (const RowLoad& given : given_) result(0, partition_.number_of(given.row)) += given.load;
-  }
-
- public:
   /// Largest coefficient of a balance row.
   double largest_load(const PetscScalar* h) {
     Eigen::MatrixXd rows(width_, size_);
@@ -175,6 +161,18 @@ class Balance {
   }
 
  private:
+  void complete_residual(const PetscScalar* h, PetscScalar* out) {
+    Eigen::Map<Eigen::MatrixXd> result(out, width_, size_);
+    result.setZero();
+    partition_.ranks().attempt([&] { add_samples(own_solution(h), result); });
+    partition_.sum_border(result);
+    tangents_.sector().drop_absent(result);
+    const std::vector<double> held = loads(h);
+    for (std::size_t n = 0; n < held_.size(); ++n)
+      result(0, partition_.number_of(held_[n].row)) += held[n];
+    for (const RowLoad& given : given_) result(0, partition_.number_of(given.row)) += given.load;
+  }
+
   PeriodicSolution without_held(Eigen::MatrixXd coefficients) const {
     for (const system::UnconstrainedCoordinate& coordinate : held_)
       coefficients(coordinate.unknown, 0) = 0.0;

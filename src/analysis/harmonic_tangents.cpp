@@ -57,8 +57,6 @@ HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordin
       block_size_(partition.block_size()),
       sector_(partition.sector()),
       repeats_(sector_.sectors > 1) {
-  for (PetscInt i = 0; i < static_cast<PetscInt>(sector_.kept.size()); ++i)
-    is_moved_.push_back(sector_.is_moved(i) ? 1 : 0);
   TangentPattern whole = find_pattern(system_, held);
   mark_border(partition.is_distributed() ? partition.border()
                                          : find_border(whole, block_size_, held));
@@ -220,8 +218,12 @@ void HarmonicTangents::find_followers() {
       is_used[static_cast<std::size_t>(place.column)] = 1;
     if (sector_.is_moved(place.column)) is_used[static_cast<std::size_t>(place.row)] = 1;
   }
-  for (std::size_t i = 0; i < is_used.size(); ++i)
-    if (!is_used[i]) sector_.remainder[i] = RotorSector::every;
+  is_follower_.resize(is_used.size(), 0);
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (is_used[i] || sector_.is_moved(static_cast<PetscInt>(i))) continue;
+    is_follower_[i] = 1;
+    sector_.remainder[i] = RotorSector::every;
+  }
 }
 
 /// P K(t + T/Q) P^-1 = K(t), so that the entry (i, j) at t is that of their images under P at
@@ -310,9 +312,9 @@ std::vector<PetscInt> HarmonicTangents::unlike_rows(
   return unlike;
 }
 
-/// Takes rows that only give their own unknown, which no other row contains, out of the map: as the
-/// moment in a hinge that turns with the rotor, for which a blade is not a turned one.
-/// @returns false where a row is not of this kind
+/// Takes the rows of followers out of the map, so that these have no other unknowns: as that of the
+/// component of a velocity in axes of the rotor, which the axes of a sector before do not have.
+/// @returns false where a row is not that of a follower with a constant factor
 bool HarmonicTangents::defer(const std::vector<PetscInt>& rows) {
   const Eigen::Index samples = values_of_.rows();
   for (const PetscInt row : rows)
@@ -320,7 +322,7 @@ bool HarmonicTangents::defer(const std::vector<PetscInt>& rows) {
       deferred_.push_back({row, 0.0});
   for (Deferred& deferred : deferred_) {
     const PetscInt row = deferred.number;
-    if (is_moved_[static_cast<std::size_t>(row)] != 0 || !sector_.is_moved(row)) return false;
+    if (is_follower_[static_cast<std::size_t>(row)] == 0) return false;
     for (PetscInt e = pattern_.outerIndexPtr()[row]; e < pattern_.outerIndexPtr()[row + 1]; ++e) {
       auto sampled = sampled_.col(e);
       if (pattern_.innerIndexPtr()[e] == row) {

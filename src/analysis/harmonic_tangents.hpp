@@ -43,8 +43,8 @@ class HarmonicTangents {
   /// at the instants of one sector where the solution repeats from blade to blade.
   void sample(const PeriodicSolution& solution);
 
-  /// A row that has only its own unknown in the map, with the factor 1. (It has others in the
-  /// system, which has its unknown in no other row.)
+  /// The row of a follower that has only its own unknown in the map, with the factor 1. (In the
+  /// system it has others.)
   struct Deferred {
     PetscInt number = 0;
     double factor = 1.0;  ///< of the unknown in the row of the system
@@ -72,7 +72,7 @@ class HarmonicTangents {
   bool is_border(Eigen::Index unknown) const {
     return is_border_[static_cast<std::size_t>(unknown)] != 0;
   }
-  /// Null: one rank has the whole mesh.
+  /// Null: the mesh is not distributed.
   const MeshPartition* partition() const { return partition_; }
   int width() const { return width_; }  ///< coefficients of an unknown, 2 H + 1
   int harmonics() const { return harmonics_; }
@@ -151,9 +151,9 @@ class HarmonicTangents {
   int width_;
   Eigen::Index size_ = 0;
   PetscInt block_size_ = 1;
-  RotorSector sector_;          ///< the unknowns of the map
-  std::vector<char> is_moved_;  ///< by P, of the unknowns of the map
-  bool repeats_ = false;        ///< all blades at one instant are the first blade at several ones
+  RotorSector sector_;    ///< the unknowns of the map
+  bool repeats_ = false;  ///< all blades at one instant are the first blade at several ones
+  std::vector<char> is_follower_;  ///< of the unknowns of the map; empty: all blades are in it
   std::vector<Deferred> deferred_;
   std::vector<EntryPlaces> of_jacobian_;  ///< one for each turn
   std::vector<EntryPlaces> of_mass_;

@@ -40,32 +40,33 @@ MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordin
       ranks_(comm),
       block_size_(block_size_of(system)),
       sector_(static_cast<PetscInt>(system.size())) {
-  const TangentPattern pattern = find_pattern(system, held);
-  const int sectors = system.symmetry().sectors;
-  const bool may_be_sector = by_sector && sectors > 1 && system.period() > 0.0;
-  if (may_be_sector && ranks_.size < sectors && keep_sector(pattern, held)) return;
-  if (distribute(pattern, held)) return;
-  if (may_be_sector && keep_sector(pattern, held)) return;
-  work_alone(RotorSector(static_cast<PetscInt>(system.size())));
+  RotorSector sector = sector_;
+  const bool may_be_sector = by_sector && system.symmetry().sectors > 1 && system.period() > 0.0;
+  const bool may_be_distributed =
+      ranks_.size > 1 && block_size_ > 1 && system.size() >= 2 * least_piece * block_size_;
+  if (may_be_sector || may_be_distributed) {
+    const TangentPattern pattern = find_pattern(system, held);
+    if (may_be_sector) sector = find_sector(pattern, held);
+    const bool is_less = ranks_.size < sector.sectors;  // than a part on a rank
+    if (may_be_distributed && !is_less && distribute(pattern, held)) return;
+  }
+  work_alone(std::move(sector));
 }
 
-/// @returns false where a sector does not stand for the whole
-bool MeshPartition::keep_sector(const TangentPattern& pattern, const Coordinates& held) {
+/// All unknowns where a held coordinate has no mean in a sector.
+RotorSector MeshPartition::find_sector(const TangentPattern& pattern,
+                                       const Coordinates& held) const {
   RotorSector sector(whole_, pattern, block_size_);
-  if (sector.sectors == 1) return false;
   for (const system::UnconstrainedCoordinate& coordinate : held)
     for (const PetscInt i : {coordinate.unknown, coordinate.row}) {
       const PetscInt number = sector.number[static_cast<std::size_t>(i)];
-      if (number < 0 || sector.is_moved(number) || !sector.has(number, 0)) return false;
+      if (number < 0 || sector.is_moved(number) || !sector.has(number, 0)) return sector_;
     }
-  work_alone(std::move(sector));
-  return true;
+  return sector;
 }
 
 /// @returns false where every rank has to keep the whole mesh
 bool MeshPartition::distribute(const TangentPattern& pattern, const Coordinates& held) {
-  if (ranks_.size == 1 || block_size_ == 1 || whole_.size() < 2 * least_piece * block_size_)
-    return false;
   std::vector<char> border = find_border(pattern, block_size_, held);
   for (const PetscInt i : whole_.common_unknowns())
     border[static_cast<std::size_t>(i / block_size_)] = 1;

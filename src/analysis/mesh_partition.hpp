@@ -69,7 +69,7 @@ class MeshPartition {
 
  private:
   bool distribute(const TangentPattern& pattern, const Coordinates& held);
-  bool keep_sector(const TangentPattern& pattern, const Coordinates& held);
+  RotorSector find_sector(const TangentPattern& pattern, const Coordinates& held) const;
   void work_alone(RotorSector sector);
 
   const system::PeriodicSystem& whole_;

@@ -95,8 +95,8 @@ struct Steady {
   int blades;  ///< that one stands for; 0: all are in the equations
 };
 
-/// Gravity, tilt, a free and a turned yaw, teeter, locked hinges that turn with the rotor, hinges
-/// of blades, a free generator, cyclic pitch, unequal blades, a constant state, wind from the side.
+/// Gravity, tilt, a free and a turned yaw, teeter, a velocity in axes of the rotor, hinges of
+/// blades, a free generator, cyclic pitch, unequal blades, a constant state, wind from the side.
 std::vector<Steady> steady_states() {
   return {
       {"nrel5mw/land", {"aero=none", "shaft.generator.joint=free"}, 4, 3},
