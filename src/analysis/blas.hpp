@@ -29,8 +29,6 @@ void zgetrf_(const Integer*, const Integer*, Complex*, const Integer*, Integer*,
 void zgemv_(const char*, const Integer*, const Integer*, const Complex*, const Complex*,
             const Integer*, const Complex*, const Integer*, const Complex*, Complex*,
             const Integer*);
-void ztrsv_(const char*, const char*, const char*, const Integer*, const Complex*, const Integer*,
-            Complex*, const Integer*);
 void dtrsv_(const char*, const char*, const char*, const Integer*, const double*, const Integer*,
             double*, const Integer*);
 void zgetrs_(const char*, const Integer*, const Integer*, const Complex*, const Integer*,
@@ -91,18 +89,19 @@ inline void subtract_product(Integer m, Integer n, Integer k, const Complex* a, 
     multiply(m, n, k, minus, a, lda, b, ldb, one, c, ldc);
 }
 
-/// B = B T^-1 with the upper (`part` 'U') or the unit lower ('L') triangle T of `a`; all n x n.
-inline void divide_by_triangle(char part, Integer n, const double* a, double* b) {
-  count_operations<double>(0.5 * n * n * n);
+/// B = B T^-1 with the upper (`part` 'U') or the unit lower ('L') triangle T of the n x n matrix
+/// `a`; `count` rows of B, which is stored with n rows.
+inline void divide_by_triangle(char part, Integer n, const double* a, Integer count, double* b) {
+  count_operations<double>(0.5 * n * n * count);
   const double one = 1.0;
   const char* diagonal = part == 'L' ? "U" : "N";
-  BLAStrsm_("R", &part, "N", diagonal, &n, &n, &one, a, &n, b, &n);
+  BLAStrsm_("R", &part, "N", diagonal, &count, &n, &one, a, &n, b, &n);
 }
-inline void divide_by_triangle(char part, Integer n, const Complex* a, Complex* b) {
-  count_operations<Complex>(0.5 * n * n * n);
+inline void divide_by_triangle(char part, Integer n, const Complex* a, Integer count, Complex* b) {
+  count_operations<Complex>(0.5 * n * n * count);
   const Complex one = 1.0;
   const char* diagonal = part == 'L' ? "U" : "N";
-  ztrsm_("R", &part, "N", diagonal, &n, &n, &one, a, &n, b, &n);
+  ztrsm_("R", &part, "N", diagonal, &count, &n, &one, a, &n, b, &n);
 }
 
 /// Factors an n x n matrix. @returns 0 unless a pivot is zero
@@ -133,9 +132,23 @@ inline void solve_triangle(char part, Integer n, const double* a, double* b) {
   const Integer step = 1;
   dtrsv_(&part, "N", part == 'L' ? "U" : "N", &n, a, &n, b, &step);
 }
+/// With loops over real numbers: zaxpy, by which ztrsv solves, costs more than its operations here.
 inline void solve_triangle(char part, Integer n, const Complex* a, Complex* b) {
-  const Integer step = 1;
-  ztrsv_(&part, "N", part == 'L' ? "U" : "N", &n, a, &n, b, &step);
+  auto* x = reinterpret_cast<double*>(b);
+  const bool is_lower = part == 'L';
+  for (Integer k = 0; k < n; ++k) {
+    const Integer j = is_lower ? k : n - 1 - k;
+    const Complex* column = a + static_cast<std::ptrdiff_t>(j) * n;
+    if (!is_lower) b[j] /= column[j];
+    const double re = x[2 * j];
+    const double im = x[2 * j + 1];
+    const auto* values = reinterpret_cast<const double*>(column);
+    const Integer end = 2 * (is_lower ? n : j);
+    for (Integer i = is_lower ? 2 * (j + 1) : 0; i < end; i += 2) {
+      x[i] -= values[i] * re - values[i + 1] * im;
+      x[i + 1] -= values[i] * im + values[i + 1] * re;
+    }
+  }
 }
 inline void solve_columns(Integer n, Integer m, const double* factors, const Integer* interchanges,
                           double* b) {

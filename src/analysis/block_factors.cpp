@@ -47,17 +47,24 @@ BlockFactors<Scalar>::BlockFactors(const BlockMatrix<Scalar>& pattern)
   values_.resize(columns_.size() * static_cast<std::size_t>(size_ * size_));
   interchanges_.resize(static_cast<std::size_t>(rows_ * size_));
   filled_rows_.resize(columns_.size());
+  filled_columns_.resize(columns_.size());
 }
 
-/// Finds the rows of a block that are not zero throughout: elimination adds none to them.
+/// Finds the rows and columns of a block that are not zero throughout: elimination adds none to
+/// the rows.
 template <class Scalar>
-void BlockFactors<Scalar>::find_rows(Index entry) {
+void BlockFactors<Scalar>::find_filled(Index entry) {
   const Eigen::Map<const Matrix> values(block(entry), size_, size_);
-  Index first = 0;
-  Index end = size_;
-  while (first < end && (values.row(first).array() == Scalar(0.0)).all()) ++first;
-  while (first < end && (values.row(end - 1).array() == Scalar(0.0)).all()) --end;
-  filled_rows_[static_cast<std::size_t>(entry)] = {first, end};
+  const auto range_of = [this](const auto& is_zero) {
+    Range range{0, size_};
+    while (range.first < range.end && is_zero(range.first)) ++range.first;
+    while (range.first < range.end && is_zero(range.end - 1)) --range.end;
+    return range;
+  };
+  filled_rows_[static_cast<std::size_t>(entry)] =
+      range_of([&](Index i) { return (values.row(i).array() == Scalar(0.0)).all(); });
+  filled_columns_[static_cast<std::size_t>(entry)] =
+      range_of([&](Index i) { return (values.col(i).array() == Scalar(0.0)).all(); });
 }
 
 /// C = C - A B with the block A of an entry; B and C of size x columns.
@@ -72,6 +79,22 @@ void BlockFactors<Scalar>::subtract_product(Index entry, const Scalar* b, Scalar
                          size, c + first, size);
 }
 
+/// The same with the block B of an entry of U, without its rows and columns of zeros.
+template <class Scalar>
+void BlockFactors<Scalar>::subtract_product(Index entry, Index upper, Scalar* c) const {
+  const Range rows = filled_rows_[static_cast<std::size_t>(entry)];
+  const Range between = filled_rows_[static_cast<std::size_t>(upper)];
+  const Range columns = filled_columns_[static_cast<std::size_t>(upper)];
+  if (rows.count() == 0 || between.count() == 0 || columns.count() == 0) return;
+  const auto size = static_cast<blas::Integer>(size_);
+  const Index first = columns.first * size_;
+  blas::subtract_product(static_cast<blas::Integer>(rows.count()),
+                         static_cast<blas::Integer>(columns.count()),
+                         static_cast<blas::Integer>(between.count()),
+                         block(entry) + between.first * size_ + rows.first, size,
+                         block(upper) + first + between.first, size, c + first + rows.first, size);
+}
+
 template <class Scalar>
 bool BlockFactors<Scalar>::factor_diagonal(Index i, double least) {
   Scalar* values = block(diagonal_[static_cast<std::size_t>(i)]);
@@ -81,13 +104,17 @@ bool BlockFactors<Scalar>::factor_diagonal(Index i, double least) {
   return true;
 }
 
-/// A becomes A D^-1 with the diagonal block D = P^T L U of row k.
+/// The block A of an entry becomes A D^-1 with the diagonal block D = P^T L U of row k.
 template <class Scalar>
-void BlockFactors<Scalar>::divide(Scalar* a, Index k) const {
+void BlockFactors<Scalar>::divide(Index entry, Index k) {
+  const Range rows = filled_rows_[static_cast<std::size_t>(entry)];
+  if (rows.count() == 0) return;
+  Scalar* a = block(entry);
   const auto n = static_cast<blas::Integer>(size_);
+  const auto count = static_cast<blas::Integer>(rows.count());
   const Scalar* factors = block(diagonal_[static_cast<std::size_t>(k)]);
-  blas::divide_by_triangle('U', n, factors, a);
-  blas::divide_by_triangle('L', n, factors, a);
+  blas::divide_by_triangle('U', n, factors, count, a + rows.first);
+  blas::divide_by_triangle('L', n, factors, count, a + rows.first);
   for (Index c = size_ - 1; c >= 0; --c)
     if (const Index other = interchanges(k)[c] - 1; other != c)
       std::swap_ranges(a + c * size_, a + (c + 1) * size_, a + other * size_);
@@ -112,16 +139,15 @@ bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix, double leas
     }
     for (Index entry = first; entry < diagonal_[static_cast<std::size_t>(i)]; ++entry) {
       const auto k = static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)]);
-      divide(block(entry), columns_[static_cast<std::size_t>(entry)]);
-      find_rows(entry);
+      find_filled(entry);
+      divide(entry, columns_[static_cast<std::size_t>(entry)]);
       for (Index other = diagonal_[k] + 1; other < begin_[k + 1]; ++other)
         subtract_product(
-            entry, block(other),
-            block(place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(other)])]),
-            size_);
+            entry, other,
+            block(place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(other)])]));
     }
     for (Index entry = diagonal_[static_cast<std::size_t>(i)] + 1; entry < last; ++entry)
-      find_rows(entry);
+      find_filled(entry);
     if (!factor_diagonal(i, least_pivot * largest)) return false;
   }
   return true;

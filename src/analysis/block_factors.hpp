@@ -71,10 +71,11 @@ class BlockFactors {
   const Scalar* rows_of(Index i) const { return packed_.data() + i * size_ * right_sides_; }
   PetscBLASInt* interchanges(Index i) { return interchanges_.data() + i * size_; }
   const PetscBLASInt* interchanges(Index i) const { return interchanges_.data() + i * size_; }
-  void find_rows(Index entry);
+  void find_filled(Index entry);
   void subtract_product(Index entry, const Scalar* b, Scalar* c, Index columns) const;
+  void subtract_product(Index entry, Index upper, Scalar* c) const;
   bool factor_diagonal(Index i, double least);
-  void divide(Scalar* a, Index k) const;
+  void divide(Index entry, Index k);
   void resize(Index right_sides);
   void eliminate(Index i);
   void substitute(Index i);
@@ -87,8 +88,14 @@ class BlockFactors {
   std::vector<Index> diagonal_;  ///< entry of the diagonal block of each row
   std::vector<Index> columns_;   ///< ascending in each row
   std::vector<Scalar> values_;   ///< L, factors of D, U; blocks column by column
-  /// First row of each block off the diagonal that is not zero, and the row behind the last one.
-  std::vector<std::pair<Index, Index>> filled_rows_;
+  /// The first row or column of a block that is not zero, and the one behind the last.
+  struct Range {
+    Index first = 0;
+    Index end = 0;
+    Index count() const { return end - first; }
+  };
+  std::vector<Range> filled_rows_;  ///< of each block off the diagonal
+  std::vector<Range> filled_columns_;
   std::vector<Scalar> packed_;              ///< right-hand sides, block row by block row
   std::vector<PetscBLASInt> interchanges_;  ///< of the rows of the diagonal blocks, from 1
   /// Of the diagonal blocks, for many right-hand sides; empty: not needed yet.

@@ -37,15 +37,7 @@ Eigen::MatrixXcd to_series(const Eigen::Ref<const Eigen::MatrixXd>& coefficients
   return series;
 }
 
-using Columns = Eigen::Map<Eigen::MatrixXcd, Eigen::Unaligned, Eigen::OuterStride<>>;
-
-/// c = c - a b.
-void subtract_product(const Eigen::MatrixXcd& a, const Columns& b, Columns c) {
-  const auto integer = [](Eigen::Index value) { return static_cast<blas::Integer>(value); };
-  blas::subtract_product(integer(a.rows()), integer(b.cols()), integer(a.cols()), a.data(),
-                         integer(a.rows()), b.data(), integer(b.outerStride()), c.data(),
-                         integer(c.outerStride()));
-}
+blas::Integer integer(Eigen::Index value) { return static_cast<blas::Integer>(value); }
 
 }  // namespace
 
@@ -73,21 +65,29 @@ void HarmonicPreconditioner::find_border() {
 }
 
 void HarmonicPreconditioner::list_places() {
+  rows_of_border_.resize(border_.size());
   columns_of_border_.resize(border_.size());
+  const auto add = [](Couplings& couplings, const Place& place, Index interior) {
+    couplings.places.push_back(place);
+    couplings.interior.push_back(interior);
+  };
   for (const Place& place : tangents_.places()) {
     const bool is_row_border = tangents_.is_border(place.row);
     const bool is_column_border = tangents_.is_border(place.column);
-    if (is_row_border && is_column_border) {
+    const Index row = number_[static_cast<std::size_t>(place.row)];
+    const Index column = number_[static_cast<std::size_t>(place.column)];
+    if (is_row_border && is_column_border)
       corner_.push_back(place);
-    } else if (is_row_border) {
-      rows_of_border_.push_back(place);
-    } else if (is_column_border) {
-      const Index number = number_[static_cast<std::size_t>(place.column)];
-      columns_of_border_[static_cast<std::size_t>(number)].push_back(place);
-    } else {
+    else if (is_row_border)
+      add(rows_of_border_[static_cast<std::size_t>(row)], place, column);
+    else if (is_column_border)
+      add(columns_of_border_[static_cast<std::size_t>(column)], place, row);
+    else
       inner_.push_back(place);
-    }
   }
+  for (Couplings& row : rows_of_border_) row.blocks.resize(width_, row.count() * width_);
+  for (Couplings& column : columns_of_border_)
+    column.blocks.resize(column.count() * width_, width_);
 }
 
 /// For harmonics with this remainder. A block is absent if all its unknowns are.
@@ -128,8 +128,9 @@ void HarmonicPreconditioner::find_chains(int remainder) {
             ? rows[static_cast<std::size_t>(local_of(place.row))].at(local_of(place.column))
             : -1);
   std::set<Index> coupled;
-  for (const Place& place : rows_of_border_)
-    if (const Index block = local_of(place.column); block >= 0) coupled.insert(block);
+  for (const Couplings& row : rows_of_border_)
+    for (const Place& place : row.places)
+      if (const Index block = local_of(place.column); block >= 0) coupled.insert(block);
   chains.coupled.assign(coupled.begin(), coupled.end());
   chains_.push_back(std::move(chains));
 }
@@ -139,27 +140,71 @@ const HarmonicPreconditioner::Chains& HarmonicPreconditioner::chains_of(int harm
   return chains_[static_cast<std::size_t>((harmonic % sectors + sectors) % sectors)];
 }
 
+/// The border's coefficients that there are.
+void HarmonicPreconditioner::find_present() {
+  present_.clear();
+  position_.assign(static_cast<std::size_t>(border_size() * width_), -1);
+  for (Index j = 0; j < border_size(); ++j)
+    for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k) {
+      if (!tangents_.has(border_[static_cast<std::size_t>(j)], k)) continue;
+      const Index at = j * width_ + k + tangents_.harmonics();
+      position_[static_cast<std::size_t>(at)] = static_cast<Index>(present_.size());
+      present_.push_back(at);
+    }
+}
+
 /// Rows and columns: coefficients of exp(i k Omega t), k = -H ... H.
-Eigen::MatrixXcd HarmonicPreconditioner::scaled_block(const Place& place) const {
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the block
+void HarmonicPreconditioner::write_block(const Place& place,
+                                         Eigen::Ref<Eigen::MatrixXcd> block) const {
   const int harmonics = tangents_.harmonics();
-  Eigen::MatrixXcd block = (*row_factors_)(place.row * width_) *
-                           (*column_factors_)(place.column * width_ + width_ - 1) *
-                           tangents_.coupling(place, shift_);
+  tangents_.coupling(place, shift_, block);
+  block *=
+      (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_ + width_ - 1);
   if (tangents_.is_held(place.column)) {
     block.col(harmonics).setZero();
     if (tangents_.holds(place.row, place.column))
       block(harmonics, harmonics) =
           (*row_factors_)(place.row * width_) * (*column_factors_)(place.column * width_);
   }
-  return block;
+}
+
+/// The rows and columns of the border, and its corner in the place of the complement.
+void HarmonicPreconditioner::write_border() {
+  for (Couplings& row : rows_of_border_)
+    for (std::size_t i = 0; i < row.places.size(); ++i)
+      write_block(row.places[i], row.blocks.middleCols(static_cast<Index>(i) * width_, width_));
+  for (Couplings& column : columns_of_border_)
+    for (std::size_t i = 0; i < column.places.size(); ++i)
+      write_block(column.places[i],
+                  column.blocks.middleRows(static_cast<Index>(i) * width_, width_));
+  const auto size = static_cast<Index>(present_.size());
+  schur_.setZero(size, size);
+  Eigen::MatrixXcd block(width_, width_);
+  for (const Place& place : corner_) {
+    write_block(place, block);
+    const Index row = number_[static_cast<std::size_t>(place.row)];
+    const Index column = number_[static_cast<std::size_t>(place.column)];
+    for (Index c = 0; c < width_; ++c) add_to_complement(row, column * width_ + c, block.col(c));
+  }
+}
+
+/// Adds values in the coefficients of a border unknown, in one column of all coefficients.
+void HarmonicPreconditioner::add_to_complement(Index border, Index column,
+                                               const Eigen::Ref<const Eigen::VectorXcd>& values) {
+  const Index to = position_[static_cast<std::size_t>(column)];
+  if (to < 0) return;
+  for (Index c = 0; c < width_; ++c)
+    if (const Index row = position_[static_cast<std::size_t>(border * width_ + c)]; row >= 0)
+      schur_(row, to) += values(c);
 }
 
 BlockFactors<HarmonicPreconditioner::Complex>& HarmonicPreconditioner::factors_of(int harmonic) {
   return factors_[static_cast<std::size_t>(harmonic - first_harmonic())];
 }
 
-/// `means`: of K and M at all places.
-bool HarmonicPreconditioner::factor_harmonic(int harmonic, const Eigen::MatrixXd& means) {
+bool HarmonicPreconditioner::factor_harmonic(int harmonic) {
+  const Eigen::MatrixXd& means = tangents_.means();
   const Index area = block_ * block_;
   const Chains& chains = chains_of(harmonic);
   Eigen::VectorXcd values =
@@ -219,66 +264,121 @@ void HarmonicPreconditioner::solve_interior(Eigen::MatrixXcd& coefficients, bool
   }
 }
 
+/// Row of an unknown of the interior among those that have a harmonic; -1: absent.
+HarmonicPreconditioner::Index HarmonicPreconditioner::row_in(const Chains& chains,
+                                                             Index interior) const {
+  const Index at = chains.local[static_cast<std::size_t>(interior / block_)];
+  return at < 0 ? at : at * block_ + interior % block_;
+}
+
 /// Subtracts R C^-1 B from the border's corner: C the chains, R and B the rows and columns that
 /// couple them to the border.
-void HarmonicPreconditioner::eliminate_chains(Eigen::MatrixXcd& schur) {
+void HarmonicPreconditioner::eliminate_chains() {
   const int harmonics = tangents_.harmonics();
-  std::map<Index, std::vector<const Coupling*>> of_border;
-  std::map<Index, double> least;
-  for (const Coupling& coupling : couplings_back_) {
-    of_border[coupling.border].push_back(&coupling);
-    double& limit = least[coupling.border];
-    limit = std::max(limit, least_coupling * std::sqrt(coupling.block.cwiseAbs2().maxCoeff()));
+  // The largest |coefficient|^2 of each border column in each harmonic, and its limit.
+  std::vector<Eigen::MatrixXd> largest;
+  std::vector<double> limits;
+  for (const Couplings& column : columns_of_border_) {
+    largest.emplace_back(Eigen::MatrixXd::Zero(width_, width_));
+    for (Index i = 0; i < column.count(); ++i)
+      largest.back() =
+          largest.back().cwiseMax(column.blocks.middleRows(i * width_, width_).cwiseAbs2());
+    limits.push_back(least_coupling * least_coupling * largest.back().maxCoeff());
   }
   Eigen::MatrixXcd right;
   for (int k = first_harmonic(); k <= harmonics; ++k) {
     const Chains& chains = chains_of(k);
-    const auto row_of = [&](Index interior) {  // -1: absent
-      const Index at = chains.local[static_cast<std::size_t>(interior / block_)];
-      return at < 0 ? at : at * block_ + interior % block_;
-    };
-    std::vector<std::pair<Index, Index>> kept;  // border and harmonic's number
+    std::vector<BorderColumn> kept;
     std::set<Index> filled;
-    for (const auto& [border, couplings] : of_border) {
-      const double limit = least[border] * least[border];
+    for (Index border = 0; border < border_size(); ++border) {
+      const Couplings& couplings = columns_of_border_[static_cast<std::size_t>(border)];
+      const std::size_t known = kept.size();
       for (Index c = 0; c < width_; ++c)
-        if (std::any_of(couplings.begin(), couplings.end(), [&](const Coupling* coupling) {
-              return std::norm(coupling->block(k + harmonics, c)) > limit;
-            }))
-          kept.emplace_back(border, c);
-      if (!kept.empty() && kept.back().first == border)
-        for (const Coupling* coupling : couplings)
-          if (const Index row = row_of(coupling->interior); row >= 0) filled.insert(row / block_);
+        if (largest[static_cast<std::size_t>(border)](k + harmonics, c) >
+            limits[static_cast<std::size_t>(border)])
+          kept.push_back({border, c});
+      if (kept.size() > known)
+        for (const Index interior : couplings.interior)
+          if (const Index row = row_in(chains, interior); row >= 0) filled.insert(row / block_);
     }
     if (filled.empty()) continue;
     const std::vector<Index> filled_rows(filled.begin(), filled.end());
     for (std::size_t first = 0; first < kept.size(); first += columns_at_once) {
-      const std::size_t count = std::min(columns_at_once, kept.size() - first);
-      right.resize(static_cast<Index>(chains.blocks.size()) * block_, static_cast<Index>(count));
+      const std::vector<BorderColumn> some(
+          kept.begin() + static_cast<std::ptrdiff_t>(first),
+          kept.begin() +
+              static_cast<std::ptrdiff_t>(std::min(first + columns_at_once, kept.size())));
+      right.resize(static_cast<Index>(chains.blocks.size()) * block_,
+                   static_cast<Index>(some.size()));
       for (const Index i : filled_rows) right.middleRows(i * block_, block_).setZero();
-      for (std::size_t n = 0; n < count; ++n)
-        for (const Coupling* coupling : of_border[kept[first + n].first])
-          if (const Index row = row_of(coupling->interior); row >= 0)
+      for (std::size_t n = 0; n < some.size(); ++n) {
+        const Couplings& couplings = columns_of_border_[static_cast<std::size_t>(some[n].border)];
+        for (Index i = 0; i < couplings.count(); ++i)
+          if (const Index row = row_in(chains, couplings.interior[static_cast<std::size_t>(i)]);
+              row >= 0)
             right(row, static_cast<Index>(n)) +=
-                coupling->block(k + harmonics, kept[first + n].second);
-      factors_of(k).solve_part(right, filled_rows, chains.coupled);
-      for (const Coupling& coupling : couplings_) {
-        const Index row = row_of(coupling.interior);
-        if (row < 0) continue;
-        for (std::size_t n = 0; n < count; ++n) {
-          const Complex value = right(row, static_cast<Index>(n));
-          if (value == 0.0) continue;
-          const auto& [border, number] = kept[first + n];
-          schur.block(coupling.border * width_, border * width_ + number, width_, 1) -=
-              value * coupling.block.col(k + harmonics);
-          if (is_real() && k > 0)
-            schur.block(coupling.border * width_, border * width_ + width_ - 1 - number, width_,
-                        1) -= std::conj(value) * coupling.block.col(harmonics - k);
-        }
+                couplings.blocks(i * width_ + k + harmonics, some[n].number);
       }
+      factors_of(k).solve_part(right, filled_rows, chains.coupled);
+      subtract_rows(k, some, right);
     }
     factors_of(k).release();
   }
+}
+
+/// Subtracts the products of the border's rows in a harmonic and `solved`, its columns after the
+/// solution with the chains.
+void HarmonicPreconditioner::subtract_rows(int k, const std::vector<BorderColumn>& columns,
+                                           const Eigen::MatrixXcd& solved) {
+  const int harmonics = tangents_.harmonics();
+  const Chains& chains = chains_of(k);
+  const Index count = solved.cols();
+  Eigen::MatrixXcd values;
+  Eigen::MatrixXcd product(width_, count);
+  for (Index border = 0; border < border_size(); ++border) {
+    const Couplings& couplings = rows_of_border_[static_cast<std::size_t>(border)];
+    if (couplings.count() == 0) continue;
+    values.setZero(couplings.count(), count);
+    for (Index i = 0; i < couplings.count(); ++i)
+      if (const Index row = row_in(chains, couplings.interior[static_cast<std::size_t>(i)]);
+          row >= 0)
+        values.row(i) = solved.row(row);
+    const auto multiply = [&](int harmonic) {  // one column of each block
+      blas::multiply(integer(width_), integer(count), integer(couplings.count()), -1.0,
+                     couplings.blocks.data() + (harmonic + harmonics) * width_,
+                     integer(width_ * width_), values.data(), integer(couplings.count()), 0.0,
+                     product.data(), integer(width_));
+      blas::count_operations<Complex>(static_cast<double>(width_ * count * couplings.count()));
+    };
+    multiply(k);
+    for (Index n = 0; n < count; ++n) {
+      const BorderColumn& column = columns[static_cast<std::size_t>(n)];
+      add_to_complement(border, column.border * width_ + column.number, product.col(n));
+    }
+    if (!is_real() || k == 0) continue;
+    values = values.conjugate().eval();
+    multiply(-k);
+    for (Index n = 0; n < count; ++n) {
+      const BorderColumn& column = columns[static_cast<std::size_t>(n)];
+      add_to_complement(border, column.border * width_ + width_ - 1 - column.number,
+                        product.col(n));
+    }
+  }
+}
+
+/// Factors the complement. @returns false where it is singular to working precision
+bool HarmonicPreconditioner::factor_complement() {
+  // Entries of about one, so that small pivots mean that the matrix is singular.
+  const auto inverse = [](double square) { return square > 0.0 ? 1.0 / std::sqrt(square) : 1.0; };
+  schur_rows_ = schur_.cwiseAbs2().rowwise().maxCoeff().unaryExpr(inverse);
+  schur_ = (schur_rows_.asDiagonal() * schur_).eval();
+  schur_columns_ = schur_.cwiseAbs2().colwise().maxCoeff().transpose().unaryExpr(inverse);
+  schur_ = (schur_ * schur_columns_.asDiagonal()).eval();
+  schur_interchanges_.resize(static_cast<std::size_t>(schur_.rows()));
+  if (blas::factor(integer(schur_.rows()), schur_.data(), schur_interchanges_.data()) != 0)
+    return false;
+  const auto pivots = schur_.diagonal().cwiseAbs();
+  return pivots.minCoeff() > least_pivot * pivots.maxCoeff();
 }
 
 bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns,
@@ -288,52 +388,21 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   if ((shift.imag() == 0.0) != is_real()) factors_.clear();
   shift_ = shift;
   // Samples say which harmonics the unknowns have; they come after the construction.
-  if (chains_.empty())
+  if (chains_.empty()) {
     for (int remainder = 0; remainder < tangents_.sectors(); ++remainder) find_chains(remainder);
-  const Eigen::MatrixXd means = tangents_.means();
+    find_present();
+  }
   bool is_regular = true;
   for (int k = first_harmonic(); k <= tangents_.harmonics(); ++k)
-    is_regular = is_regular && factor_harmonic(k, means);
+    is_regular = is_regular && factor_harmonic(k);
   const MeshPartition* partition = tangents_.partition();
   if (partition != nullptr) is_regular = partition->ranks().all(is_regular);
   if (!is_regular) return false;
-  couplings_.clear();
-  for (const Place& place : rows_of_border_)
-    couplings_.push_back({number_[static_cast<std::size_t>(place.row)],
-                          number_[static_cast<std::size_t>(place.column)], scaled_block(place)});
-  couplings_back_.clear();
-  for (std::size_t j = 0; j < columns_of_border_.size(); ++j)
-    for (const Place& place : columns_of_border_[j])
-      couplings_back_.push_back({static_cast<Index>(j),
-                                 number_[static_cast<std::size_t>(place.row)],
-                                 scaled_block(place)});
-  present_.clear();
-  for (Index j = 0; j < border_size(); ++j)
-    for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k)
-      if (tangents_.has(border_[static_cast<std::size_t>(j)], k))
-        present_.push_back(j * width_ + k + tangents_.harmonics());
-  const auto size = static_cast<Index>(present_.size());
-  if (size == 0) return true;
-  Eigen::MatrixXcd all = Eigen::MatrixXcd::Zero(border_size() * width_, border_size() * width_);
-  for (const Place& place : corner_)
-    all.block(number_[static_cast<std::size_t>(place.row)] * width_,
-              number_[static_cast<std::size_t>(place.column)] * width_, width_, width_) =
-        scaled_block(place);
-  eliminate_chains(all);
-  if (partition != nullptr) partition->ranks().sum(all);
-  Eigen::MatrixXcd schur = all(present_, present_);
-  // Entries of about one, so that small pivots mean that the matrix is singular.
-  const auto inverse = [](double largest) { return largest > 0.0 ? 1.0 / largest : 1.0; };
-  schur_rows_ = schur.cwiseAbs().rowwise().maxCoeff().unaryExpr(inverse);
-  schur = schur_rows_.asDiagonal() * schur;
-  schur_columns_ = schur.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(inverse);
-  schur_ = schur * schur_columns_.asDiagonal();
-  schur_interchanges_.resize(static_cast<std::size_t>(size));
-  if (blas::factor(static_cast<blas::Integer>(size), schur_.data(), schur_interchanges_.data()) !=
-      0)
-    return false;
-  const auto pivots = schur_.diagonal().cwiseAbs();
-  return pivots.minCoeff() > least_pivot * pivots.maxCoeff();
+  write_border();
+  if (present_.empty()) return true;
+  eliminate_chains();
+  if (partition != nullptr) partition->ranks().sum(schur_);
+  return factor_complement();
 }
 
 void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& right,
@@ -346,18 +415,26 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
     between.middleCols(c * interior, interior) =
         right.middleCols(c * unknowns, unknowns)(Eigen::all, interior_);
   if (border_size() > 0) {
-    const auto of_unknown = [&](Eigen::MatrixXcd& from, Index number, Index all) {
-      return Columns(from.col(number).data(), width_, columns, Eigen::OuterStride<>(all * width_));
-    };
     Eigen::MatrixXcd border = Eigen::MatrixXcd::Zero(width_, border_size() * columns);
     Eigen::MatrixXcd given = between;
     solve_interior(between, true);
     if (is_real())
       for (int k = 1; k <= tangents_.harmonics(); ++k)
         between.row(tangents_.harmonics() - k) = between.row(tangents_.harmonics() + k).conjugate();
-    for (const Coupling& coupling : couplings_)
-      subtract_product(coupling.block, of_unknown(between, coupling.interior, interior),
-                       of_unknown(border, coupling.border, border_size()));
+    Eigen::MatrixXcd part;
+    for (Index j = 0; j < border_size(); ++j) {
+      const Couplings& row = rows_of_border_[static_cast<std::size_t>(j)];
+      if (row.count() == 0) continue;
+      part.resize(width_, row.count() * columns);
+      for (Index c = 0; c < columns; ++c)
+        for (Index i = 0; i < row.count(); ++i)
+          part.col(c * row.count() + i) =
+              between.col(c * interior + row.interior[static_cast<std::size_t>(i)]);
+      blas::subtract_product(integer(width_), integer(columns), integer(row.count() * width_),
+                             row.blocks.data(), integer(width_), part.data(),
+                             integer(row.count() * width_), border.col(j).data(),
+                             integer(border_size() * width_));
+    }
     if (tangents_.partition() != nullptr) tangents_.partition()->ranks().sum(border);
     for (Index c = 0; c < columns; ++c)
       border.middleCols(c * border_size(), border_size()) +=
@@ -365,14 +442,24 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
     Eigen::MatrixXcd of_border = border.reshaped(border_size() * width_, columns);
     Eigen::MatrixXcd unknown = schur_rows_.asDiagonal() * of_border(present_, Eigen::all);
     if (unknown.rows() > 0)
-      blas::solve(static_cast<blas::Integer>(unknown.rows()), static_cast<blas::Integer>(columns),
-                  schur_.data(), schur_interchanges_.data(), unknown.data());
+      blas::solve(integer(unknown.rows()), integer(columns), schur_.data(),
+                  schur_interchanges_.data(), unknown.data());
     of_border.setZero();
     of_border(present_, Eigen::all) = schur_columns_.asDiagonal() * unknown;
     border = of_border.reshaped(width_, border_size() * columns);
-    for (const Coupling& coupling : couplings_back_)
-      subtract_product(coupling.block, of_unknown(border, coupling.border, border_size()),
-                       of_unknown(given, coupling.interior, interior));
+    for (Index j = 0; j < border_size(); ++j) {
+      const Couplings& column = columns_of_border_[static_cast<std::size_t>(j)];
+      if (column.count() == 0) continue;
+      part.setZero(width_, column.count() * columns);
+      blas::subtract_product(integer(column.count() * width_), integer(columns), integer(width_),
+                             column.blocks.data(), integer(column.count() * width_),
+                             border.col(j).data(), integer(border_size() * width_), part.data(),
+                             integer(column.count() * width_));
+      for (Index c = 0; c < columns; ++c)
+        for (Index i = 0; i < column.count(); ++i)
+          given.col(c * interior + column.interior[static_cast<std::size_t>(i)]) +=
+              part.col(c * column.count() + i);
+    }
     for (Index c = 0; c < columns; ++c)
       solution.middleCols(c * unknowns, unknowns)(Eigen::all, border_) =
           border.middleCols(c * border_size(), border_size());

@@ -47,11 +47,13 @@ class HarmonicPreconditioner {
  private:
   using Index = Eigen::Index;
   using Place = HarmonicTangents::Place;
-  /// A block of coefficients in a border row and a column between the borders.
-  struct Coupling {
-    Index border = 0;    ///< number in the border
-    Index interior = 0;  ///< number in the interior
-    Eigen::MatrixXcd block;
+  /// Places of one border unknown with the interior, and their blocks of coefficients: in the row
+  /// of the unknown next to each other, in its column below each other.
+  struct Couplings {
+    std::vector<Place> places;
+    std::vector<Index> interior;  ///< numbers in the interior
+    Eigen::MatrixXcd blocks;
+    Index count() const { return static_cast<Index>(interior.size()); }
   };
 
   /// Node blocks of the interior that have a harmonic.
@@ -72,29 +74,41 @@ class HarmonicPreconditioner {
   BlockFactors<Complex>& factors_of(int harmonic);
   void find_chains(int remainder);
   const Chains& chains_of(int harmonic) const;
-  bool factor_harmonic(int harmonic, const Eigen::MatrixXd& means);
-  Eigen::MatrixXcd scaled_block(const Place& place) const;
-  void eliminate_chains(Eigen::MatrixXcd& schur);
+  bool factor_harmonic(int harmonic);
+  void find_present();
+  void write_block(const Place& place, Eigen::Ref<Eigen::MatrixXcd> block) const;
+  void write_border();
+  void add_to_complement(Index border, Index column,
+                         const Eigen::Ref<const Eigen::VectorXcd>& values);
+  Index row_in(const Chains& chains, Index interior) const;
+  /// A coefficient of an unknown of the border.
+  struct BorderColumn {
+    Index border;
+    Index number;
+  };
+  void eliminate_chains();
+  void subtract_rows(int k, const std::vector<BorderColumn>& columns,
+                     const Eigen::MatrixXcd& solved);
+  bool factor_complement();
   void solve_interior(Eigen::MatrixXcd& coefficients, bool only_coupled);
 
   const HarmonicTangents& tangents_;
   Index width_;
-  Index block_;                     ///< unknowns of a node
-  std::vector<Index> number_;       ///< of each unknown, in the border or between
-  std::vector<PetscInt> border_;    ///< unknowns
-  std::vector<PetscInt> interior_;  ///< unknowns, whole blocks in the order of the system
-  std::vector<Chains> chains_;      ///< for the remainders of the harmonics by the sectors
-  std::vector<Place> inner_;        ///< interior rows and columns
-  std::vector<std::vector<Place>> columns_of_border_;  ///< interior rows, for each border unknown
-  std::vector<Place> rows_of_border_;                  ///< interior columns
-  std::vector<Place> corner_;                          ///< border rows and columns
+  Index block_;                            ///< unknowns of a node
+  std::vector<Index> number_;              ///< of each unknown, in the border or between
+  std::vector<PetscInt> border_;           ///< unknowns
+  std::vector<PetscInt> interior_;         ///< unknowns, whole blocks in the order of the system
+  std::vector<Chains> chains_;             ///< for the remainders of the harmonics by the sectors
+  std::vector<Place> inner_;               ///< interior rows and columns
+  std::vector<Couplings> rows_of_border_;  ///< interior columns, for each border unknown
+  std::vector<Couplings> columns_of_border_;  ///< interior rows
+  std::vector<Place> corner_;                 ///< border rows and columns
   const Eigen::VectorXd* row_factors_ = nullptr;
   const Eigen::VectorXd* column_factors_ = nullptr;
   Complex shift_;
   std::vector<BlockFactors<Complex>> factors_;  ///< of each harmonic from first_harmonic()
-  std::vector<Coupling> couplings_;             ///< border rows, interior columns
-  std::vector<Coupling> couplings_back_;        ///< interior rows, border columns
   std::vector<Index> present_;                  ///< coefficients that the border's unknowns have
+  std::vector<Index> position_;                 ///< of all coefficients among these; -1: absent
   Eigen::VectorXd schur_rows_;                  ///< factors of the border's complement
   Eigen::VectorXd schur_columns_;
   Eigen::MatrixXcd schur_;  ///< its factors

@@ -1,10 +1,12 @@
 #include "harmonic_tangents.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <string>
 
 #include "samara/analysis/linear_algebra.hpp"
@@ -19,6 +21,26 @@ constexpr int samples_at_once = 8;
 /// Difference of tangents that a rotation by a sector maps to each other, relative to the largest
 /// entry of the row.
 constexpr double same_tangent = 1e-6;
+
+/// Adds the products of entries of a row, at neighbouring samples, with vectors that are `distance`
+/// apart in memory. `sampled`: of a place, `stride` numbers after that of the one before.
+template <int samples, int vectors>
+void add_row(const double* sampled, Eigen::Index stride, std::span<const PetscInt> numbers,
+             const PetscInt* columns, const double* values, Eigen::Index all_samples,
+             Eigen::Index distance, double* sums) {
+  using Block = Eigen::Array<double, samples, 1>;
+  std::array<Block, vectors> total;
+  total.fill(Block::Zero());
+  for (std::size_t e = 0; e < numbers.size(); ++e) {
+    const Block own = Eigen::Map<const Block>(sampled + numbers[e] * stride);
+    const double* of_column = values + columns[e] * all_samples;
+    for (std::size_t v = 0; v < vectors; ++v)
+      total[v] +=
+          own * Eigen::Map<const Block>(of_column + static_cast<Eigen::Index>(v) * distance);
+  }
+  for (std::size_t v = 0; v < vectors; ++v)
+    Eigen::Map<Block>(sums + static_cast<Eigen::Index>(v) * distance) += total[v];
+}
 
 }  // namespace
 
@@ -138,14 +160,62 @@ bool HarmonicTangents::holds(PetscInt row, PetscInt unknown) const {
 void HarmonicTangents::sample(const PeriodicSolution& solution) {
   if (!repeats_) {
     sample_all(solution, 1);
-    return;
-  }
-  const std::vector<PetscInt> unlike = sample_all(solution, sector_.sectors);
-  if (!defer(unlike)) {
+  } else if (!defer(sample_all(solution, sector_.sectors))) {
     repeats_ = false;
     deferred_.clear();
     sample_all(solution, 1);
   }
+  list_entries();
+}
+
+/// From the samples: the entries that are not zero, the means, and the series of the border.
+void HarmonicTangents::list_entries() {
+  const Eigen::Index samples = values_of_.rows();
+  for (Entries* entries : {&of_stiffness_, &of_inertia_}) *entries = {{0}, {}, {}};
+  for (const Place& place : places_) {
+    const auto sampled = sampled_.col(place.number);
+    const auto add = [&](Entries& entries, const auto& values) {
+      entries.begin.resize(static_cast<std::size_t>(place.row) + 1, entries.count());
+      if (values.isZero(0.0)) return;
+      entries.columns.push_back(place.column);
+      entries.numbers.push_back(place.number);
+    };
+    add(of_stiffness_, sampled.head(samples));
+    add(of_inertia_, sampled.tail(samples));
+  }
+  for (Entries* entries : {&of_stiffness_, &of_inertia_})
+    entries->begin.resize(static_cast<std::size_t>(size_) + 1, entries->count());
+  means_.resize(2, sampled_.cols());
+  means_.row(0) = sampled_.topRows(samples).colwise().mean();
+  means_.row(1) = sampled_.bottomRows(samples).colwise().mean();
+  series_of_.assign(places_.size(), -1);
+  std::vector<Place> of_border;
+  for (const Place& place : places_)
+    if (is_border(place.row) || is_border(place.column)) of_border.push_back(place);
+  series_.resize(2 * width_ - 1, 2 * static_cast<Eigen::Index>(of_border.size()));
+  Eigen::Index next = 0;
+  for (const Place& place : of_border) {
+    series_.middleCols<2>(next) = find_series(place);
+    series_of_[static_cast<std::size_t>(place.number)] = next;
+    next += 2;
+  }
+}
+
+/// Coefficients of exp(i m Omega t), m = -2 H ... 2 H, of K and of M at a place.
+HarmonicTangents::Series HarmonicTangents::find_series(const Place& place) const {
+  const Eigen::Index samples = values_of_.rows();
+  const auto sampled = sampled_.col(place.number);
+  Series series = Series::Zero(2 * width_ - 1, 2);
+  for (const Eigen::Index part : {Eigen::Index{0}, Eigen::Index{1}}) {
+    const auto values = sampled.segment(part * samples, samples);
+    if (values.isZero(0.0)) continue;
+    const Eigen::VectorXd coefficients = to_series_ * values;
+    auto upper = series.col(part).tail(width_);
+    upper.real() = coefficients.head(width_);
+    upper.imag() = coefficients.tail(width_);
+    series.col(part).head(width_) = upper.reverse().conjugate().eval();
+  }
+  return series;
 }
 
 /// With several turns, all blades at the instants of a sector are the first blade at the instants
@@ -356,78 +426,79 @@ void HarmonicTangents::multiply(const double* x, double* y) const {
   Eigen::Map<Eigen::MatrixXd>(y, width_, size_) = result;
 }
 
+/// Adds the products of K (`part` 0) or M (1) with values at the samples.
+void HarmonicTangents::add_products(const Entries& entries, int part, const Eigen::MatrixXd& values,
+                                    Eigen::MatrixXd& sums) const {
+  const Eigen::Index samples = values_of_.rows();
+  const Eigen::Index vectors = values.cols() / size_;
+  const Eigen::Index distance = size_ * samples;
+  const auto add = [&]<int rows, int together>(Eigen::Index row, Eigen::Index sample,
+                                               Eigen::Index vector) {
+    const auto first = static_cast<std::size_t>(entries.begin[static_cast<std::size_t>(row)]);
+    const auto last = static_cast<std::size_t>(entries.begin[static_cast<std::size_t>(row) + 1]);
+    const Eigen::Index at = vector * distance + sample;
+    add_row<rows, together>(sampled_.data() + part * samples + sample, sampled_.rows(),
+                            std::span(entries.numbers).subspan(first, last - first),
+                            entries.columns.data() + first, values.data() + at, samples, distance,
+                            sums.data() + at + row * samples);
+  };
+  const auto add_samples = [&]<int together>(Eigen::Index row, Eigen::Index vector) {
+    Eigen::Index sample = 0;
+    for (; sample + 8 <= samples; sample += 8) add.operator()<8, together>(row, sample, vector);
+    for (; sample + 2 <= samples; sample += 2) add.operator()<2, together>(row, sample, vector);
+    if (sample < samples) add.operator()<1, together>(row, sample, vector);
+  };
+  for (Eigen::Index row = 0; row < size_; ++row) {
+    Eigen::Index vector = 0;
+    for (; vector + 2 <= vectors; vector += 2) add_samples.operator()<2>(row, vector);
+    if (vector < vectors) add_samples.operator()<1>(row, vector);
+  }
+  const auto count = static_cast<double>(entries.count()) + static_cast<double>(size_ * width_);
+  PetscLogFlops(2.0 * static_cast<double>(samples * vectors) * count);
+}
+
+/// Coefficients of sums at the samples.
+void HarmonicTangents::project(const Eigen::MatrixXd& sums, Eigen::MatrixXd& y) const {
+  y.noalias() = projection_ * sums;
+  PetscLogFlops(2.0 * static_cast<double>(projection_.size()) * static_cast<double>(sums.cols()));
+  sector_.drop_absent(y);
+}
+
 void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
                                 Eigen::MatrixXd& y) const {
-  const Eigen::Index samples = values_of_.rows();
-  const Eigen::MatrixXd values = values_of_ * x;
-  const Eigen::MatrixXd rates = values_of_ * w;
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, x.cols());
-  for (const Place& place : places_) {
-    const auto sampled = sampled_.col(place.number).array();
-    for (Eigen::Index first = 0; first < x.cols(); first += size_)
-      sums.col(first + place.row).array() +=
-          sampled.head(samples) * values.col(first + place.column).array() +
-          sampled.tail(samples) * rates.col(first + place.column).array();
-  }
-  y.noalias() = projection_ * sums;
-  count_operations(2, x.cols());
-  sector_.drop_absent(y);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
+  add_products(of_stiffness_, 0, values_of_ * x, sums);
+  add_products(of_inertia_, 1, values_of_ * w, sums);
+  project(sums, y);
 }
 
 void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
-  const Eigen::Index samples = values_of_.rows();
-  const Eigen::MatrixXd rates = values_of_ * w;
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples, w.cols());
-  for (const Place& place : places_) {
-    const auto sampled = sampled_.col(place.number).tail(samples).array();
-    for (Eigen::Index first = 0; first < w.cols(); first += size_)
-      sums.col(first + place.row).array() += sampled * rates.col(first + place.column).array();
-  }
-  y.noalias() = projection_ * sums;
-  count_operations(1, w.cols());
-  sector_.drop_absent(y);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), w.cols());
+  add_products(of_inertia_, 1, values_of_ * w, sums);
+  project(sums, y);
 }
 
-/// Of products with K and M (2 parts) or M alone, for so many columns of coefficients.
-void HarmonicTangents::count_operations(int parts, Eigen::Index columns) const {
-  const auto samples = static_cast<double>(values_of_.rows());
-  const auto entries = static_cast<double>(places_.size()) / static_cast<double>(size_);
-  PetscLogFlops(2.0 * samples * static_cast<double>(columns) *
-                (parts * (entries + width_) + width_));
-}
-
-Eigen::MatrixXcd HarmonicTangents::coupling(const Place& place, std::complex<double> shift) const {
-  const Eigen::Index samples = values_of_.rows();
-  // Fourier coefficients m = 0 ... 2 H of K and M; those of -m are conjugate to those of m.
-  const Eigen::MatrixXd half =
-      to_series_ * Eigen::Map<const Eigen::MatrixXd>(sampled_.col(place.number).data(), samples, 2);
-  Eigen::VectorXcd stiffness(2 * width_ - 1);
-  Eigen::VectorXcd mass(2 * width_ - 1);
-  for (int m = 0; m < width_; ++m) {
-    stiffness(width_ - 1 + m) = {half(m, 0), half(width_ + m, 0)};
-    stiffness(width_ - 1 - m) = {half(m, 0), -half(width_ + m, 0)};
-    mass(width_ - 1 + m) = {half(m, 1), half(width_ + m, 1)};
-    mass(width_ - 1 - m) = {half(m, 1), -half(width_ + m, 1)};
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the block
+void HarmonicTangents::coupling(const Place& place, std::complex<double> shift,
+                                Eigen::Ref<Eigen::MatrixXcd> block) const {
+  const Eigen::Index known = series_of_[static_cast<std::size_t>(place.number)];
+  const Series series = known >= 0 ? Series(series_.middleCols<2>(known)) : find_series(place);
+  const bool has_mass = !series.col(1).isZero(0.0);
+  for (int column = 0; column < width_; ++column) {
+    const int k = column - harmonics_;
+    auto of_column = block.col(column);
+    if (!has(place.column, k)) {
+      of_column.setZero();
+      continue;
+    }
+    const Eigen::Index first = width_ - 1 - column;
+    of_column = series.col(0).segment(first, width_);
+    if (has_mass)
+      of_column +=
+          (shift + std::complex<double>(0.0, k * rate())) * series.col(1).segment(first, width_);
   }
-  Eigen::MatrixXcd block(width_, width_);
-  for (int k = -harmonics_; k <= harmonics_; ++k) {
-    const std::complex<double> rate = shift + std::complex<double>(0.0, k * this->rate());
-    block.col(k + harmonics_) =
-        stiffness.segment(harmonics_ - k, width_) + rate * mass.segment(harmonics_ - k, width_);
-  }
-  for (int k = -harmonics_; k <= harmonics_; ++k) {
+  for (int k = -harmonics_; k <= harmonics_; ++k)
     if (!has(place.row, k)) block.row(k + harmonics_).setZero();
-    if (!has(place.column, k)) block.col(k + harmonics_).setZero();
-  }
-  return block;
-}
-
-Eigen::MatrixXd HarmonicTangents::means() const {
-  const Eigen::Index samples = values_of_.rows();
-  Eigen::MatrixXd means(2, sampled_.cols());
-  means.row(0) = sampled_.topRows(samples).colwise().mean();
-  means.row(1) = sampled_.bottomRows(samples).colwise().mean();
-  return means;
 }
 
 double HarmonicTangents::rate() const { return 2.0 * std::numbers::pi / period(); }

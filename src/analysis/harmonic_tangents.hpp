@@ -1,6 +1,7 @@
 // Tangents of harmonic balance, kept as samples over a period (docs/theory.md, section 4.2).
 #pragma once
 
+#include <complex>
 #include <vector>
 
 #include <Eigen/Core>
@@ -97,9 +98,10 @@ class HarmonicTangents {
   void multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
   /// Couplings of the coefficients of exp(i k Omega t), k = -H ... H, at a place: those of
   /// K + M d/dt + `shift` M. Zero for harmonics that the row or the column does not have.
-  Eigen::MatrixXcd coupling(const Place& place, std::complex<double> shift) const;
+  void coupling(const Place& place, std::complex<double> shift,
+                Eigen::Ref<Eigen::MatrixXcd> block) const;
   /// Means of K and M over the period, 2 x places.
-  Eigen::MatrixXd means() const;
+  const Eigen::MatrixXd& means() const { return means_; }
   /// The base frequency [rad/s]; without a period 2 pi.
   double rate() const;
 
@@ -118,7 +120,19 @@ class HarmonicTangents {
   void make_map(TangentPattern& whole);
   void mark_border(const std::vector<char>& blocks);
   void find_followers();
-  void count_operations(int parts, Eigen::Index columns) const;
+  void list_entries();
+  using Series = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 2>;
+  Series find_series(const Place& place) const;
+  /// Entries by row that are not zero at all samples.
+  struct Entries {
+    std::vector<PetscInt> begin;  ///< the first one of each row, and their number
+    std::vector<PetscInt> columns;
+    std::vector<PetscInt> numbers;  ///< in the pattern
+    PetscInt count() const { return static_cast<PetscInt>(columns.size()); }
+  };
+  void add_products(const Entries& entries, int part, const Eigen::MatrixXd& values,
+                    Eigen::MatrixXd& sums) const;
+  void project(const Eigen::MatrixXd& sums, Eigen::MatrixXd& y) const;
   /// Of the entries of a tangent, by their numbers in the order of MatrixEntries, after some turns
   /// by a sector. Others are in no row or column of the map.
   struct EntryPlaces {
@@ -166,6 +180,11 @@ class HarmonicTangents {
   /// coefficients 0 ... 2 H.
   Eigen::MatrixXd to_series_;
   Eigen::MatrixXd sampled_;  ///< 2 samples x places: K, then M; rows of all blades summed
+  Entries of_stiffness_;     ///< of K
+  Entries of_inertia_;       ///< of M
+  Eigen::MatrixXd means_;    ///< 2 x places
+  Eigen::MatrixXcd series_;  ///< width x 2, as find_series() has them, for each border place
+  std::vector<Eigen::Index> series_of_;  ///< their first column, for each place; -1: none
 };
 
 }  // namespace samara::analysis

@@ -54,46 +54,64 @@ HillMedium::HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& 
     place_in_group_[static_cast<std::size_t>(i)] = static_cast<Index>(group.unknowns.size());
     group.unknowns.push_back(i);
   }
-  for (const HarmonicTangents::Place& place : tangents.places())
-    if (is_of_medium(place.row) && is_of_medium(place.column))
-      groups_[static_cast<std::size_t>(group_of[static_cast<std::size_t>(place.row)])]
-          .places.push_back(place);
+  for (const HarmonicTangents::Place& place : tangents.places()) {
+    if (!is_of_medium(place.row) || !is_of_medium(place.column)) continue;
+    Group& group = groups_[static_cast<std::size_t>(group_of[static_cast<std::size_t>(place.row)])];
+    group.places.push_back(place);
+    group.is_of_chains = group.is_of_chains && is_of_chains(place);
+  }
 }
 
-void HillMedium::take_means() {
-  if (!is_empty()) means_ = tangents_.means();
+/// Adds mean tangents in the harmonic k to a square block, whose rows and columns are `stride`
+/// apart.
+void HillMedium::add_means(const HarmonicTangents::Place& place, Complex s, int k, Index first,
+                           Index stride, Matrix& block) const {
+  if (!tangents_.has(place.row, k) || !tangents_.has(place.column, k)) return;
+  const Eigen::MatrixXd& means = tangents_.means();
+  block(place_in_group_[static_cast<std::size_t>(place.row)] * stride + first,
+        place_in_group_[static_cast<std::size_t>(place.column)] * stride + first) =
+      rows_(place.row * tangents_.width()) * columns_(place.column * tangents_.width()) *
+      (means(0, place.number) + (s + Complex(0.0, k * tangents_.rate())) * means(1, place.number));
 }
 
-/// The mean tangents in each harmonic.
-HillMedium::Matrix HillMedium::mean_coupling(const HarmonicTangents::Place& place,
-                                             Complex s) const {
-  const int harmonics = tangents_.harmonics();
-  Matrix block = Matrix::Zero(tangents_.width(), tangents_.width());
-  for (int k = -harmonics; k <= harmonics; ++k)
-    if (tangents_.has(place.row, k) && tangents_.has(place.column, k))
-      block(k + harmonics, k + harmonics) =
-          means_(0, place.number) +
-          (s + Complex(0.0, k * tangents_.rate())) * means_(1, place.number);
-  return block;
+bool HillMedium::is_of_chains(const HarmonicTangents::Place& place) const {
+  return !tangents_.is_border(place.row) && !tangents_.is_border(place.column);
 }
 
+/// All harmonics; `only_means`: those of chains are not coupled.
 HillMedium::Matrix HillMedium::block_of(const Group& group, Complex s, bool only_means) const {
   const Index width = tangents_.width();
+  const int harmonics = tangents_.harmonics();
   const auto size = static_cast<Index>(group.unknowns.size()) * width;
   Matrix block = Matrix::Zero(size, size);
   for (const HarmonicTangents::Place& place : group.places) {
-    const bool is_of_chain = !tangents_.is_border(place.row) && !tangents_.is_border(place.column);
-    block.block(place_in_group_[static_cast<std::size_t>(place.row)] * width,
-                place_in_group_[static_cast<std::size_t>(place.column)] * width, width, width) =
-        rows_(place.row * width) * columns_(place.column * width) *
-        (only_means && is_of_chain ? mean_coupling(place, s) : tangents_.coupling(place, s));
+    if (only_means && is_of_chains(place)) {
+      for (int k = -harmonics; k <= harmonics; ++k)
+        add_means(place, s, k, k + harmonics, width, block);
+      continue;
+    }
+    auto part =
+        block.block(place_in_group_[static_cast<std::size_t>(place.row)] * width,
+                    place_in_group_[static_cast<std::size_t>(place.column)] * width, width, width);
+    tangents_.coupling(place, s, part);
+    part *= rows_(place.row * width) * columns_(place.column * width);
   }
   for (std::size_t i = 0; i < group.unknowns.size(); ++i)
     for (Index k = 0; k < width; ++k)
-      if (!tangents_.has(group.unknowns[i], static_cast<int>(k) - tangents_.harmonics())) {
+      if (!tangents_.has(group.unknowns[i], static_cast<int>(k) - harmonics)) {
         const Index at = static_cast<Index>(i) * width + k;
         block(at, at) = 1.0;
       }
+  return block;
+}
+
+/// Of a group in the chains, in one harmonic.
+HillMedium::Matrix HillMedium::block_of_means(const Group& group, Complex s, int k) const {
+  const auto size = static_cast<Index>(group.unknowns.size());
+  Matrix block = Matrix::Zero(size, size);
+  for (const HarmonicTangents::Place& place : group.places) add_means(place, s, k, 0, 1, block);
+  for (Index i = 0; i < size; ++i)
+    if (!tangents_.has(group.unknowns[static_cast<std::size_t>(i)], k)) block(i, i) = 1.0;
   return block;
 }
 
@@ -128,10 +146,18 @@ void HillMedium::drop(Eigen::Ref<Matrix> x) const {
 
 HillMedium::Complex HillMedium::log_determinant_of_means(Complex s) const {
   Complex sum = 0.0;
-  for (const Group& group : groups_) {
-    const Eigen::PartialPivLU<Matrix> factors(block_of(group, s, true));
+  const auto add = [&sum](const Matrix& block) {
+    const Eigen::PartialPivLU<Matrix> factors(block);
     sum += factors.matrixLU().diagonal().array().log().sum() +
            std::log(Complex(static_cast<double>(factors.permutationP().determinant())));
+  };
+  for (const Group& group : groups_) {
+    if (!group.is_of_chains) {
+      add(block_of(group, s, true));
+      continue;
+    }
+    for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k)
+      add(block_of_means(group, s, k));
   }
   return sum;
 }
@@ -147,8 +173,8 @@ std::vector<HillMedium::Complex> HillMedium::exponents() const {
     for (const HarmonicTangents::Place& place : group.places) {
       const Index row = place_in_group_[static_cast<std::size_t>(place.row)];
       const Index column = place_in_group_[static_cast<std::size_t>(place.column)];
-      stiffness(row, column) = means_(0, place.number);
-      mass(row, column) = means_(1, place.number);
+      stiffness(row, column) = tangents_.means()(0, place.number);
+      mass(row, column) = tangents_.means()(1, place.number);
     }
     // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
     const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);

@@ -25,8 +25,6 @@ class HillMedium {
              const Eigen::VectorXd& columns);
 
   bool is_empty() const { return groups_.empty(); }
-  /// Takes the means of the tangents, which have samples now.
-  void take_means();
   /// Numbers of the states among the unknowns of the tangents.
   const std::vector<Eigen::Index>& states() const { return states_; }
 
@@ -48,11 +46,15 @@ class HillMedium {
   struct Group {
     std::vector<Index> unknowns;
     std::vector<HarmonicTangents::Place> places;
+    bool is_of_chains = true;  ///< none of its unknowns is in the border
     Eigen::PartialPivLU<Matrix> factors;
   };
 
+  bool is_of_chains(const HarmonicTangents::Place& place) const;
+  void add_means(const HarmonicTangents::Place& place, Complex s, int k, Index first, Index stride,
+                 Matrix& block) const;
   Matrix block_of(const Group& group, Complex s, bool only_means) const;
-  Matrix mean_coupling(const HarmonicTangents::Place& place, Complex s) const;
+  Matrix block_of_means(const Group& group, Complex s, int k) const;
 
   const HarmonicTangents& tangents_;
   const Eigen::VectorXd& rows_;
@@ -60,7 +62,6 @@ class HillMedium {
   std::vector<Index> states_;
   std::vector<Group> groups_;
   std::vector<Index> place_in_group_;  ///< of each unknown; -1: not of the medium
-  Eigen::MatrixXd means_;              ///< of K and M, 2 x places
 };
 
 }  // namespace samara::analysis

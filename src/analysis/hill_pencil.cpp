@@ -13,7 +13,6 @@ HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolut
       medium_(tangents_, rows_, columns_) {
   tangents_.sample(solution);
   tangents_.scale(0.0, rows_, columns_);
-  medium_.take_means();
 }
 
 /// exp(i k Omega t) = cos + i sin: the coefficient of cos is z_k + z_-k, that of sin i (z_k -

@@ -26,8 +26,9 @@ using Complex = std::complex<double>;
 using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
-/// Relative tolerance of the eigensolver.
+/// Relative tolerances of the eigensolver and of its linear solves.
 constexpr double eigenvalue_tolerance = 1e-6;
+constexpr double linear_tolerance = 1e-7;
 
 /// Real part of the shifts, relative to the rotor speed. Undamped motions, whose exponents are
 /// imaginary, have real eigenvalues for an imaginary shift, equal to those of their conjugates.
@@ -56,8 +57,11 @@ constexpr double most_difference = 0.3;
 /// Difference of numbers of eigenvalues that are the same.
 constexpr double same_number = 0.1;
 constexpr int most_points = 1000;
-/// Vectors by which the contraction is estimated, and a norm of round-off.
+/// Vectors by which the contraction is estimated, at most and at least; the estimate, with its
+/// residual, below which the least number is enough; and a norm of round-off.
 constexpr int contraction_steps = 8;
+constexpr int least_contraction_steps = 3;
+constexpr double small_contraction = 0.5;
 constexpr double least_change = 1e-14;
 
 /// Real vectors of the eigensolver: mean, then sqrt(2) times real and negative imaginary part of
@@ -120,6 +124,14 @@ double half_width(double omega, double rho, double y) {
   return c > 0.0 ? 0.0 : std::sqrt(std::max(0.0, -b + std::sqrt(b * b - c)));
 }
 
+/// The largest modulus of an eigenvalue of a map on a Krylov space, and the residual.
+double largest_with_residual(const Arnoldi& space) {
+  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(space.projected());
+  Index at = 0;
+  const double modulus = solver.eigenvalues().cwiseAbs().maxCoeff(&at);
+  return modulus + space.residual(solver.eigenvectors().col(at).normalized());
+}
+
 /// A point on the edge of a region, and the phase there of a determinant without known zeros.
 struct EdgePoint {
   Complex s;
@@ -128,14 +140,13 @@ struct EdgePoint {
 
 }  // namespace
 
-ComplexSolver solver_at(HillPencil& pencil, Complex shift) {
+ComplexSolver solver_at(HillPencil& pencil, Complex shift, double tolerance) {
   if (!pencil.set_shift(shift))
     throw ConvergenceError("floquet: Hill's method has no factors at " +
                            std::to_string(shift.imag()) + " rad/s");
   return {pencil.size(),
           [&pencil, shift](const Vector& x, Vector& y) { pencil.multiply(x, shift * x, y); },
-          [&pencil](const Vector& x, Vector& y) { pencil.precondition(x, y); }, linear_tolerance,
-          "hill_"};
+          [&pencil](const Vector& x, Vector& y) { pencil.precondition(x, y); }, tolerance, "hill_"};
 }
 
 HillRegion HillSearch::find(double frequency, int count, double known) {
@@ -148,7 +159,7 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   const auto n = static_cast<PetscInt>(size);
   const double beside = real_part_of_shift * pencil_.speed();
   const Complex shift(beside, frequency);
-  ComplexSolver linear = solver_at(pencil_, shift);
+  ComplexSolver linear = solver_at(pencil_, shift, linear_tolerance);
   ShiftInvert context{pencil_, linear};
   petsc::Handle<Mat> inverse;
   petsc::check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &context, inverse.fill()));
@@ -246,8 +257,14 @@ std::vector<double> HillSearch::phases_at(const std::vector<Complex>& points, co
   return phases;
 }
 
-/// By Arnoldi's method from a vector of all harmonics, with the factors at s.
 double HillSearch::contraction_at(Complex s) {
+  const auto [known, is_new] = contractions_.try_emplace({s.real(), s.imag()}, 0.0);
+  if (is_new) known->second = find_contraction(s);
+  return known->second;
+}
+
+/// By Arnoldi's method from a vector of all harmonics, with the factors at s.
+double HillSearch::find_contraction(Complex s) {
   const bool eliminates = pencil_.has_medium();
   if (!pencil_.set_shift(s) || (eliminates && !pencil_.prepare_elimination()))
     return std::numeric_limits<double>::infinity();
@@ -271,13 +288,16 @@ double HillSearch::contraction_at(Complex s) {
   if (!start.allFinite()) return std::numeric_limits<double>::infinity();
   if (!(start.norm() > 0.0)) return 0.0;
   Arnoldi space(start, contraction_steps);
-  bool is_larger = true;
-  while (is_larger && space.size() < contraction_steps) {
+  double largest = 0.0;
+  bool is_last = false;
+  while (!is_last) {
     const Vector image = change_of(space.last());
     if (!image.allFinite()) return std::numeric_limits<double>::infinity();
-    is_larger = space.extend(image, least_change);
+    is_last = !space.extend(image, least_change) || space.size() == contraction_steps;
+    largest = largest_with_residual(space);
+    is_last = is_last || (space.size() >= least_contraction_steps && largest < small_contraction);
   }
-  return space.projected().eigenvalues().cwiseAbs().maxCoeff();
+  return largest;
 }
 
 HillSearch::Missing HillSearch::count_missing(const HillRegion& region,

@@ -41,13 +41,10 @@ struct HillRegion {
   std::vector<HillPair> pairs;
 };
 
-/// Relative tolerance of the linear solves of a search.
-constexpr double linear_tolerance = 1e-7;
-
 /// Solves (A + sigma B) y = x with the shift sigma, which the pencil keeps (options prefix
-/// `hill_`).
+/// `hill_`). `tolerance`: relative residual.
 /// @throws ConvergenceError where there are no factors
-ComplexSolver solver_at(HillPencil& pencil, std::complex<double> shift);
+ComplexSolver solver_at(HillPencil& pencil, std::complex<double> shift, double tolerance);
 
 /// Finds eigenpairs next to shifts on the imaginary axis by Krylov-Schur with shift and invert
 /// (SLEPc, options prefix `hill_`). Real vectors serve a complex shift sigma: the imaginary part of
@@ -71,7 +68,8 @@ class HillSearch {
   /// same arguments, takes some of the points and gets the same result. Regions may share points.
   struct Missing {
     std::optional<int> eigenvalues;
-    /// Largest estimated |1 - eigenvalue| of the preconditioned pencil, where none is missing.
+    /// Largest |1 - eigenvalue| of the preconditioned pencil, where none is missing: estimates and
+    /// their residuals.
     double contraction = 0.0;
     int points = 0;  ///< of the edge
   };
@@ -83,10 +81,13 @@ class HillSearch {
   std::vector<double> phases_at(const std::vector<std::complex<double>>& points,
                                 const Ranks& ranks);
   double contraction_at(std::complex<double> s);
+  double find_contraction(std::complex<double> s);
 
   HillPencil& pencil_;
-  /// Of the determinant, by real and imaginary part of a point.
-  std::map<std::pair<double, double>, double> phases_;
+  /// By real and imaginary part of a point.
+  using Values = std::map<std::pair<double, double>, double>;
+  Values phases_;        ///< of the determinant
+  Values contractions_;  ///< at the points of this rank
 };
 
 }  // namespace samara::analysis

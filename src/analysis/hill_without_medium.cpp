@@ -20,8 +20,10 @@ using Complex = std::complex<double>;
 using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
-/// Relative tolerances of the eigenpairs of the linear problem and of corrected ones.
+/// Relative tolerances of the eigenpairs of the linear problem, of its linear solves and of
+/// corrected eigenpairs.
 constexpr double eigenpair_tolerance = 1e-4;
+constexpr double linear_tolerance = 1e-5;
 constexpr double corrected_tolerance = 1e-5;
 /// Real part of the shift, relative to the rotor speed: there are no factors at an exponent.
 constexpr double beside_axis = 0.05;
@@ -59,7 +61,7 @@ class KrylovSpace {
   KrylovSpace(HillPencil& pencil, Complex shift, const Vector& start, Index most)
       : pencil_(pencil),
         shift_(shift),
-        linear_(solver_at(pencil, shift)),
+        linear_(solver_at(pencil, shift, linear_tolerance)),
         right_(pencil.size()),
         space_(image_of(start), most) {}  // without infinite exponents
 
