@@ -73,7 +73,8 @@ std::vector<StabilityEdge> refine_together(const CampbellPlan& plan,
                                            analysis::Observer& observer) {
   ranks.share(0, edges);
   ranks.attempt([&] { refine_edges(plan, edges, ranks, observer); });
-  for (std::size_t i = 0; i < edges.size(); ++i) ranks.share(rank_of(i, ranks), edges[i]);
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    ranks.share(rank_of(i, edges.size(), ranks), edges[i]);
   return edges;
 }
 
@@ -106,7 +107,8 @@ BandSearch add_bands(CampbellPlan& plan, const Diagram& diagram, int most,
   ranks.share(0, resonances);
   std::vector<double> found;
   ranks.attempt([&] { found = search_bands(plan, resonances, ranks, observer); });
-  for (std::size_t i = 0; i < found.size(); ++i) ranks.share(rank_of(i, ranks), found[i]);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    ranks.share(rank_of(i, found.size(), ranks), found[i]);
   std::erase_if(found, [](double place) { return std::isnan(place); });
   std::ranges::sort(found);
   std::vector<double> places;

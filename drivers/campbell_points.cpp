@@ -23,6 +23,8 @@ using simulation::StabilityEdge;
 using simulation::SweepPlace;
 
 constexpr int exact_digits = 17;
+/// Groups of neighbouring points of a rank: points cost unlike time at the ends of a sweep.
+constexpr std::size_t groups_of_rank = 4;
 
 /// Keeps notes.
 class Notes final : public analysis::Observer {
@@ -35,17 +37,22 @@ class Notes final : public analysis::Observer {
 class SweepFinder final : public CampbellPointFinder {
  public:
   explicit SweepFinder(const Sweep& sweep) : sweep_(sweep) {}
+  void forget() override { last_.reset(); }
 
  private:
-  CampbellPoint find_modes(const SweepPlace& place, analysis::Observer& observer) override {
+  CampbellPoint find_modes(const SweepPlace& place, const analysis::Ranks& ranks,
+                           analysis::Observer& observer) override {
     const io::Case input = sweep_.case_at(place);
     const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
-    const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
-    last_ = simulation::solve_trim(input, system, simulation::trim_options(input), observer,
-                                   PETSC_COMM_SELF, is_near ? &*last_ : nullptr);
-    simulation::require_wake_range(system, *last_);
-    simulation::note_roughness(*last_, observer);
-    CampbellPoint result = simulation::find_campbell_point(system, *last_, input.floquet, observer);
+    ranks.attempt([&] {
+      const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
+      last_ = simulation::solve_trim(input, system, simulation::trim_options(input), observer,
+                                     PETSC_COMM_SELF, is_near ? &*last_ : nullptr);
+      simulation::require_wake_range(system, *last_);
+      simulation::note_roughness(*last_, observer);
+    });
+    CampbellPoint result =
+        simulation::find_campbell_point(system, *last_, input.floquet, ranks.comm, observer);
     if (input.turbine.wind && input.turbine.aero) result.wind_speed = input.turbine.wind->speed;
     return result;
   }
@@ -58,19 +65,24 @@ class SweepFinder final : public CampbellPointFinder {
 class OperationFinder final : public CampbellPointFinder {
  public:
   OperationFinder(const io::Case& input, const std::vector<simulation::ScheduledPoint>& table)
-      : input_(input), finder_(input, table) {}
+      : input_(input), table_(table) {
+    finder_.emplace(input_, table_);
+  }
+  void forget() override { finder_.emplace(input_, table_); }
 
  private:
-  CampbellPoint find_modes(const SweepPlace& place, analysis::Observer& observer) override {
-    finder_.find_at(place.value, observer);
-    CampbellPoint result =
-        simulation::find_campbell_point(finder_.system(), finder_.trim(), input_.floquet, observer);
+  CampbellPoint find_modes(const SweepPlace& place, const analysis::Ranks& ranks,
+                           analysis::Observer& observer) override {
+    ranks.attempt([&] { finder_->find_at(place.value, observer); });
+    CampbellPoint result = simulation::find_campbell_point(finder_->system(), finder_->trim(),
+                                                           input_.floquet, ranks.comm, observer);
     result.wind_speed = place.value;
     return result;
   }
 
   const io::Case& input_;
-  simulation::OperatingPointFinder finder_;
+  const std::vector<simulation::ScheduledPoint>& table_;
+  std::optional<simulation::OperatingPointFinder> finder_;
 };
 
 std::string origin_of(const std::string& case_text, const std::string& value) {
@@ -79,12 +91,12 @@ std::string origin_of(const std::string& case_text, const std::string& value) {
 }
 
 /// Halves the place of an edge until it is accurate, a point has no modes, or the user interrupts.
-void bisect(CampbellPointFinder& finder, StabilityEdge& edge) {
+void bisect(CampbellPointFinder& finder, StabilityEdge& edge, const analysis::Ranks& ranks) {
   const double accuracy =
       simulation::edge_accuracy * std::max(std::abs(edge.to), std::abs(edge.from));
-  while (std::abs(edge.to - edge.from) > accuracy && !Interruption::is_asked()) {
+  while (std::abs(edge.to - edge.from) > accuracy && ranks.all(!Interruption::is_asked())) {
     const double middle = 0.5 * (edge.from + edge.to);
-    const CampbellPoint point = finder.find({middle, edge.second});
+    const CampbellPoint point = finder.find({middle, edge.second}, ranks);
     if (!point.failure.empty()) return;
     const int growing = simulation::count_growing(point);
     if (growing == edge.growing_from) {
@@ -96,9 +108,51 @@ void bisect(CampbellPointFinder& finder, StabilityEdge& edge) {
   }
 }
 
+/// Deals tasks to the ranks: some to each, or one task to several ranks.
+class Tasks {
+ public:
+  Tasks(std::size_t count, const analysis::Ranks& ranks)
+      : groups_(std::min(count, static_cast<std::size_t>(ranks.size))), comm_(split(ranks)) {}
+  Tasks(const Tasks&) = delete;
+  Tasks& operator=(const Tasks&) = delete;
+  ~Tasks() { MPI_Comm_free(&comm_); }
+
+  bool has(std::size_t task) const { return task % groups_ == own_; }
+  analysis::Ranks ranks() const { return analysis::Ranks(comm_); }
+
+ private:
+  MPI_Comm split(const analysis::Ranks& ranks) {
+    own_ = static_cast<std::size_t>(ranks.rank) % groups_;
+    MPI_Comm comm = MPI_COMM_NULL;
+    MPI_Comm_split(ranks.comm, static_cast<int>(own_), ranks.rank, &comm);
+    return comm;
+  }
+
+  std::size_t groups_;
+  std::size_t own_ = 0;
+  MPI_Comm comm_;
+};
+
+/// Calls `call(task, ranks)` for the tasks of this rank. Ranks that share a task have the same
+/// steady states. Stops when the user interrupts the run.
+template <class Call>
+void deal(CampbellPointFinder& finder, std::size_t count, const analysis::Ranks& all,
+          const std::string& what, analysis::Observer& observer, const Call& call) {
+  if (count == 0) return;
+  const Tasks tasks(count, all);
+  const analysis::Ranks ranks = tasks.ranks();
+  if (ranks.size > 1) finder.forget();
+  for (std::size_t task = 0; task < count; ++task) {
+    if (!tasks.has(task)) continue;
+    if (!ranks.all(!Interruption::is_asked())) return;
+    observer.progress(what, static_cast<long>(task), static_cast<long>(count));
+    call(task, ranks);
+  }
+}
+
 }  // namespace
 
-CampbellPoint CampbellPointFinder::find(const SweepPlace& place) {
+CampbellPoint CampbellPointFinder::find(const SweepPlace& place, const analysis::Ranks& ranks) {
   Notes notes;
   CampbellPoint result;
   const auto fail = [&](const std::exception& error) {
@@ -107,7 +161,7 @@ CampbellPoint CampbellPointFinder::find(const SweepPlace& place) {
     result.rotor_speed = result.pitch = std::numeric_limits<double>::quiet_NaN();
   };
   try {
-    result = find_modes(place, notes);
+    result = find_modes(place, ranks, notes);
   } catch (const InputError& error) {
     fail(error);
   } catch (const ConvergenceError& error) {
@@ -159,11 +213,15 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
     if (!files.has(point)) missing.push_back(point);
   // No rank writes before all have looked.
   MPI_Barrier(ranks.comm);
-  const std::size_t first = missing.size() * rank / size;
-  const std::size_t end = missing.size() * (rank + 1) / size;
-  for (std::size_t i = first; i < end && !Interruption::is_asked(); ++i) {
-    observer.progress("points", static_cast<long>(i - first), static_cast<long>(end - first));
-    files.write(missing[i], plan.finder->find(plan.places[missing[i]]));
+  const std::size_t groups = groups_of_rank * size;
+  const std::size_t in_group = std::max<std::size_t>(1, (missing.size() + groups - 1) / groups);
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    if (i / in_group % size == rank) own.push_back(missing[i]);
+  const analysis::Ranks alone(PETSC_COMM_SELF);
+  for (std::size_t i = 0; i < own.size() && !Interruption::is_asked(); ++i) {
+    observer.progress("points", static_cast<long>(i), static_cast<long>(own.size()));
+    files.write(own[i], plan.finder->find(plan.places[own[i]], alone));
   }
 }
 
@@ -183,29 +241,27 @@ std::vector<double> search_bands(const CampbellPlan& plan,
                                  const std::vector<simulation::Resonance>& resonances,
                                  const analysis::Ranks& ranks, analysis::Observer& observer) {
   std::vector<double> places(resonances.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < resonances.size(); ++i) {
-    if (rank_of(i, ranks) != ranks.rank || Interruption::is_asked()) continue;
-    observer.progress("bands of instability", static_cast<long>(i),
-                      static_cast<long>(resonances.size()));
-    const std::optional<double> place = simulation::find_band(resonances[i], [&plan](double value) {
-      if (!Interruption::is_asked()) return plan.finder->find({value});
-      CampbellPoint none;
-      none.failure = "interrupted";
-      return none;
-    });
-    if (place) places[i] = *place;
-  }
+  deal(*plan.finder, resonances.size(), ranks, "bands of instability", observer,
+       [&](std::size_t i, const analysis::Ranks& sharing) {
+         const std::optional<double> place =
+             simulation::find_band(resonances[i], [&](double value) {
+               if (sharing.all(!Interruption::is_asked()))
+                 return plan.finder->find({value}, sharing);
+               CampbellPoint none;
+               none.failure = "interrupted";
+               return none;
+             });
+         if (place) places[i] = *place;
+       });
   return places;
 }
 
 void refine_edges(const CampbellPlan& plan, std::vector<StabilityEdge>& edges,
                   const analysis::Ranks& ranks, analysis::Observer& observer) {
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (rank_of(i, ranks) != ranks.rank) continue;
-    observer.progress("edges of instability", static_cast<long>(i),
-                      static_cast<long>(edges.size()));
-    bisect(*plan.finder, edges[i]);
-  }
+  deal(*plan.finder, edges.size(), ranks, "edges of instability", observer,
+       [&](std::size_t i, const analysis::Ranks& sharing) {
+         bisect(*plan.finder, edges[i], sharing);
+       });
 }
 
 }  // namespace samara::drivers

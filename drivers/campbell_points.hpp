@@ -1,6 +1,7 @@
 // The points of a Campbell diagram: found by all ranks, kept in files.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -26,12 +27,15 @@ class CampbellPointFinder {
   virtual ~CampbellPointFinder() = default;
 
   /// The point at a place. Where it has no steady state, or its modes are not found, it has the
-  /// reason.
-  simulation::CampbellPoint find(const simulation::SweepPlace& place);
+  /// reason. `ranks`: that share the work; each of them finds the steady state.
+  simulation::CampbellPoint find(const simulation::SweepPlace& place, const analysis::Ranks& ranks);
+  /// The next steady state does not start from the one before.
+  virtual void forget() = 0;
 
  private:
-  /// @throws InputError, ConvergenceError, DomainError
+  /// @throws InputError, ConvergenceError, DomainError on all ranks
   virtual simulation::CampbellPoint find_modes(const simulation::SweepPlace& place,
+                                               const analysis::Ranks& ranks,
                                                analysis::Observer& observer) = 0;
 };
 
@@ -50,25 +54,26 @@ struct CampbellPlan {
 /// `job` and `table`, the rows of operation.table, must outlive the plan.
 CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::ScheduledPoint>& table);
 
-/// Finds the points that no file has, those of this rank. Stops when the user interrupts the run.
+/// Finds the points that no file has, those of this rank. Ranks take neighbouring points in turn.
+/// Stops when the user interrupts the run.
 void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
                  const analysis::Ranks& ranks, analysis::Observer& observer);
 
-/// Searches bands of instability at resonances, those of this rank. Stops when the user interrupts
-/// the run.
-/// @returns for each resonance a place in a band; not-a-number where there is none
+/// Searches bands of instability at resonances. Stops when the user interrupts the run.
+/// @returns for each resonance of this rank a place in a band; not-a-number where there is none
 std::vector<double> search_bands(const CampbellPlan& plan,
                                  const std::vector<simulation::Resonance>& resonances,
                                  const analysis::Ranks& ranks, analysis::Observer& observer);
 
-/// Refines the edges of this rank by bisection to simulation::edge_accuracy relative to the larger
-/// value. Stops when the user interrupts the run.
+/// Refines edges by bisection to simulation::edge_accuracy relative to the larger value; those of
+/// this rank are refined. Stops when the user interrupts the run.
 void refine_edges(const CampbellPlan& plan, std::vector<simulation::StabilityEdge>& edges,
                   const analysis::Ranks& ranks, analysis::Observer& observer);
 
-/// The rank that refines an edge, or searches at a resonance.
-inline int rank_of(std::size_t number, const analysis::Ranks& ranks) {
-  return static_cast<int>(number % static_cast<std::size_t>(ranks.size));
+/// The rank that has the result of an edge or a resonance, of so many. Where there are fewer than
+/// ranks, several share one of them.
+inline int rank_of(std::size_t number, std::size_t count, const analysis::Ranks& ranks) {
+  return static_cast<int>(number % std::min(count, static_cast<std::size_t>(ranks.size)));
 }
 
 }  // namespace samara::drivers

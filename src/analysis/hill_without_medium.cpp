@@ -21,9 +21,10 @@ using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
 /// Relative tolerances of the eigenpairs of the linear problem, of its linear solves and of
-/// corrected eigenpairs.
+/// corrected eigenpairs. The image of a vector is much larger than 1 / (sigma - lambda) of pairs at
+/// the edge of the disc: with 1e-5, modes of the 5 MW turbine at 25 m/s are lost.
 constexpr double eigenpair_tolerance = 1e-4;
-constexpr double linear_tolerance = 1e-5;
+constexpr double linear_tolerance = 1e-7;
 constexpr double corrected_tolerance = 1e-5;
 /// Real part of the shift, relative to the rotor speed: there are no factors at an exponent.
 constexpr double beside_axis = 0.05;

@@ -8,6 +8,7 @@
 
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/analysis/floquet.hpp"
+#include "samara/analysis/ranks.hpp"
 #include "samara/simulation/held_air.hpp"
 
 namespace samara::simulation {
@@ -34,6 +35,43 @@ std::vector<double> participation_of(const ModeSet& set, std::size_t m) {
 
 const CampbellMode& mode_of(const std::vector<CampbellPoint>& points, const TrackedMode& tracked) {
   return points[tracked.point].modes[tracked.mode];
+}
+
+/// The shapes of `set` are on the first rank.
+void take_modes(const turbine::TurbineSystem& system, const ModeSet& set, CampbellPoint& point) {
+  const StabilityAssessment assessment = assess_stability(set);
+  point.stability = assessment.stability;
+  point.signatures = analysis::find_signatures(system, set);
+  for (std::size_t& m : point.signatures.modes) {
+    const Mode& mode = set.modes[m];
+    point.modes.push_back({mode.exponent, mode.fixed_frame_frequency, total_error(mode),
+                           mode.growth_error, assessment.motions[m], is_rough(mode), mode.name,
+                           participation_of(set, m)});
+    m = point.modes.size() - 1;
+  }
+}
+
+void share_modes(const analysis::Ranks& ranks, CampbellPoint& point) {
+  struct Part {
+    std::complex<double> exponent;
+    double fixed_frame_frequency;
+    Motion motion;
+    bool is_rough;
+  };
+  std::vector<Part> parts;
+  for (const CampbellMode& mode : point.modes)
+    parts.push_back({mode.exponent, mode.fixed_frame_frequency, mode.motion, mode.is_rough});
+  ranks.share(0, point.stability);
+  ranks.share(0, parts);
+  if (ranks.rank == 0) return;
+  for (const Part& part : parts) {
+    CampbellMode mode;
+    mode.exponent = part.exponent;
+    mode.fixed_frame_frequency = part.fixed_frame_frequency;
+    mode.motion = part.motion;
+    mode.is_rough = part.is_rough;
+    point.modes.push_back(mode);
+  }
 }
 
 /// The refined edge between two points, if the numbers of growing modes beside it are those of the
@@ -67,30 +105,24 @@ bool are_in_a_row(const SweepPlace& a, const SweepPlace& b) {
 }
 
 CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const analysis::Trim& trim,
-                                  const analysis::FloquetOptions& options,
+                                  const analysis::FloquetOptions& options, MPI_Comm comm,
                                   analysis::Observer& observer) {
   const model::Turbine& turbine = system.turbine();
   const auto held = hold_wake(system);
   const turbine::TurbineSystem& small = held ? *held : system;
   const ModeSet set =
       turbine.speed > 0.0
-          ? analysis::find_floquet_modes(small, trim.solution, options, PETSC_COMM_SELF, observer)
-                .set
+          ? analysis::find_floquet_modes(small, trim.solution, options, comm, observer).set
           : analysis::find_constant_modes(small, trim.solution);
-  const StabilityAssessment assessment = assess_stability(set);
   CampbellPoint point;
   point.rotor_speed = turbine.speed;
   point.pitch = turbine.pitch;
   point.sectors = system.symmetry().sectors;
-  point.stability = assessment.stability;
-  point.signatures = analysis::find_signatures(system, set);
-  for (std::size_t& m : point.signatures.modes) {
-    const Mode& mode = set.modes[m];
-    point.modes.push_back({mode.exponent, mode.fixed_frame_frequency, total_error(mode),
-                           mode.growth_error, assessment.motions[m], is_rough(mode), mode.name,
-                           participation_of(set, m)});
-    m = point.modes.size() - 1;
-  }
+  const analysis::Ranks ranks(comm);
+  ranks.attempt([&] {
+    if (ranks.rank == 0) take_modes(system, set, point);
+  });
+  share_modes(ranks, point);
   return point;
 }
 

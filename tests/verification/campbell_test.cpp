@@ -41,7 +41,7 @@ Diagram sweep(const std::string& name, const std::vector<std::string>& settings,
     if (rpm == 0.0) options.harmonics = 0;
     const analysis::Trim trim = analysis::find_trim(system, options, observer);
     diagram.points.push_back(
-        simulation::find_campbell_point(system, trim, input.floquet, observer));
+        simulation::find_campbell_point(system, trim, input.floquet, PETSC_COMM_SELF, observer));
     diagram.points.back().place.value = rpm;
     tracker.add(diagram.points.size() - 1, diagram.points.back().signatures);
   }

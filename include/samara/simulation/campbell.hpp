@@ -60,10 +60,12 @@ struct CampbellPoint {
 };
 
 /// The modes about a steady state: all of them or as many as `options` want; at rest all. Sets
-/// everything but `place`, `wind_speed` and `notes`. Serial.
+/// everything but `place`, `wind_speed` and `notes`. The ranks of `comm`, each with the whole
+/// `system` and the same `trim`, share the work. The first one gets the point, others get its modes
+/// without names, errors, shares of harmonics and signatures.
 /// @throws ConvergenceError, DomainError, InputError from the analyses
 CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const analysis::Trim& trim,
-                                  const analysis::FloquetOptions& options,
+                                  const analysis::FloquetOptions& options, MPI_Comm comm,
                                   analysis::Observer& observer);
 
 /// A mode over the points of a sweep.
