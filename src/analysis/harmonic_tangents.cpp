@@ -171,27 +171,32 @@ void HarmonicTangents::sample(const PeriodicSolution& solution) {
 /// From the samples: the entries that are not zero, the means, and the series of the border.
 void HarmonicTangents::list_entries() {
   const Eigen::Index samples = values_of_.rows();
-  for (Entries* entries : {&of_stiffness_, &of_inertia_}) *entries = {{0}, {}, {}};
+  for (EntriesOfBoth* both : {&all_, &of_border_}) both->fill({{0}, {}, {}});
+  interior_.clear();
+  std::vector<Place> of_border;
   for (const Place& place : places_) {
-    const auto sampled = sampled_.col(place.number);
-    const auto add = [&](Entries& entries, const auto& values) {
-      entries.begin.resize(static_cast<std::size_t>(place.row) + 1, entries.count());
-      if (values.isZero(0.0)) return;
-      entries.columns.push_back(place.column);
-      entries.numbers.push_back(place.number);
-    };
-    add(of_stiffness_, sampled.head(samples));
-    add(of_inertia_, sampled.tail(samples));
+    const bool is_of_border = is_border(place.row) || is_border(place.column);
+    bool has_values = false;
+    for (const std::size_t part : {0, 1}) {
+      const bool is_zero = sampled_.col(place.number)
+                               .segment(static_cast<Eigen::Index>(part) * samples, samples)
+                               .isZero(0.0);
+      has_values = has_values || !is_zero;
+      all_[part].add(place, !is_zero);
+      of_border_[part].add(place, !is_zero && is_of_border);
+    }
+    if (is_of_border)
+      of_border.push_back(place);
+    else if (has_values)
+      interior_.push_back(place);
   }
-  for (Entries* entries : {&of_stiffness_, &of_inertia_})
-    entries->begin.resize(static_cast<std::size_t>(size_) + 1, entries->count());
+  for (EntriesOfBoth* both : {&all_, &of_border_})
+    for (Entries& entries : *both)
+      entries.begin.resize(static_cast<std::size_t>(size_) + 1, entries.count());
   means_.resize(2, sampled_.cols());
   means_.row(0) = sampled_.topRows(samples).colwise().mean();
   means_.row(1) = sampled_.bottomRows(samples).colwise().mean();
   series_of_.assign(places_.size(), -1);
-  std::vector<Place> of_border;
-  for (const Place& place : places_)
-    if (is_border(place.row) || is_border(place.column)) of_border.push_back(place);
   series_.resize(2 * width_ - 1, 2 * static_cast<Eigen::Index>(of_border.size()));
   Eigen::Index next = 0;
   for (const Place& place : of_border) {
@@ -427,8 +432,9 @@ void HarmonicTangents::multiply(const double* x, double* y) const {
 }
 
 /// Adds the products of K (`part` 0) or M (1) with values at the samples.
-void HarmonicTangents::add_products(const Entries& entries, int part, const Eigen::MatrixXd& values,
-                                    Eigen::MatrixXd& sums) const {
+void HarmonicTangents::add_products(const EntriesOfBoth& both, int part,
+                                    const Eigen::MatrixXd& values, Eigen::MatrixXd& sums) const {
+  const Entries& entries = both[static_cast<std::size_t>(part)];
   const Eigen::Index samples = values_of_.rows();
   const Eigen::Index vectors = values.cols() / size_;
   const Eigen::Index distance = size_ * samples;
@@ -457,25 +463,39 @@ void HarmonicTangents::add_products(const Entries& entries, int part, const Eige
   PetscLogFlops(2.0 * static_cast<double>(samples * vectors) * count);
 }
 
-/// Coefficients of sums at the samples.
-void HarmonicTangents::project(const Eigen::MatrixXd& sums, Eigen::MatrixXd& y) const {
-  y.noalias() = projection_ * sums;
-  PetscLogFlops(2.0 * static_cast<double>(projection_.size()) * static_cast<double>(sums.cols()));
+/// Coefficients that an unknown does not have are zero.
+void HarmonicTangents::finish(Eigen::MatrixXd& y) const {
+  PetscLogFlops(2.0 * static_cast<double>(values_of_.rows()) * static_cast<double>(y.size()));
   sector_.drop_absent(y);
 }
 
 void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
                                 Eigen::MatrixXd& y) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
-  add_products(of_stiffness_, 0, values_of_ * x, sums);
-  add_products(of_inertia_, 1, values_of_ * w, sums);
-  project(sums, y);
+  add_products(all_, 0, values_of_ * x, sums);
+  add_products(all_, 1, values_of_ * w, sums);
+  y.noalias() = projection_ * sums;
+  finish(y);
 }
 
 void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), w.cols());
-  add_products(of_inertia_, 1, values_of_ * w, sums);
-  project(sums, y);
+  add_products(all_, 1, values_of_ * w, sums);
+  y.noalias() = projection_ * sums;
+  finish(y);
+}
+
+void HarmonicTangents::multiply_uncoupled(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
+                                          Eigen::MatrixXd& y) const {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
+  add_products(of_border_, 0, values_of_ * x, sums);
+  add_products(of_border_, 1, values_of_ * w, sums);
+  y.noalias() = projection_ * sums;
+  for (const Place& place : interior_)
+    for (Eigen::Index first = 0; first < x.cols(); first += size_)
+      y.col(first + place.row) += means_(0, place.number) * x.col(first + place.column) +
+                                  means_(1, place.number) * w.col(first + place.column);
+  finish(y);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the block

@@ -1,6 +1,7 @@
 // Tangents of harmonic balance, kept as samples over a period (docs/theory.md, section 4.2).
 #pragma once
 
+#include <array>
 #include <complex>
 #include <vector>
 
@@ -96,6 +97,10 @@ class HarmonicTangents {
   void multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
   /// Coefficients of M(t) w(t), in the same way.
   void multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const;
+  /// The first of these with the map that HarmonicPreconditioner factors: harmonics are coupled in
+  /// rows and columns of the border only; others have the mean tangents in each harmonic.
+  void multiply_uncoupled(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
+                          Eigen::MatrixXd& y) const;
   /// Couplings of the coefficients of exp(i k Omega t), k = -H ... H, at a place: those of
   /// K + M d/dt + `shift` M. Zero for harmonics that the row or the column does not have.
   void coupling(const Place& place, std::complex<double> shift,
@@ -129,10 +134,18 @@ class HarmonicTangents {
     std::vector<PetscInt> columns;
     std::vector<PetscInt> numbers;  ///< in the pattern
     PetscInt count() const { return static_cast<PetscInt>(columns.size()); }
+    /// The places come by row. Rows without entries have places as well.
+    void add(const Place& place, bool has_values) {
+      begin.resize(static_cast<std::size_t>(place.row) + 1, count());
+      if (!has_values) return;
+      columns.push_back(place.column);
+      numbers.push_back(place.number);
+    }
   };
-  void add_products(const Entries& entries, int part, const Eigen::MatrixXd& values,
+  using EntriesOfBoth = std::array<Entries, 2>;  ///< of K and of M
+  void add_products(const EntriesOfBoth& both, int part, const Eigen::MatrixXd& values,
                     Eigen::MatrixXd& sums) const;
-  void project(const Eigen::MatrixXd& sums, Eigen::MatrixXd& y) const;
+  void finish(Eigen::MatrixXd& y) const;
   /// Of the entries of a tangent, by their numbers in the order of MatrixEntries, after some turns
   /// by a sector. Others are in no row or column of the map.
   struct EntryPlaces {
@@ -180,10 +193,11 @@ class HarmonicTangents {
   /// coefficients 0 ... 2 H.
   Eigen::MatrixXd to_series_;
   Eigen::MatrixXd sampled_;  ///< 2 samples x places: K, then M; rows of all blades summed
-  Entries of_stiffness_;     ///< of K
-  Entries of_inertia_;       ///< of M
-  Eigen::MatrixXd means_;    ///< 2 x places
-  Eigen::MatrixXcd series_;  ///< width x 2, as find_series() has them, for each border place
+  EntriesOfBoth all_;
+  EntriesOfBoth of_border_;
+  std::vector<Place> interior_;  ///< places of others that are not zero
+  Eigen::MatrixXd means_;        ///< 2 x places
+  Eigen::MatrixXcd series_;      ///< width x 2, as find_series() has them, for each border place
   std::vector<Eigen::Index> series_of_;  ///< their first column, for each place; -1: none
 };
 

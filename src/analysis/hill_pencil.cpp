@@ -63,14 +63,32 @@ void HillPencil::to_series(const Eigen::MatrixXd& coefficients, Output y) const 
   }
 }
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
-void HillPencil::multiply(Input x, Input w, Output y) {
+/// Those of x, and of its rate d/dt x plus w.
+void HillPencil::take_coefficients(Input x, Input w) {
   values_.setZero(width(), 2 * x.cols() * unknowns());
   rates_.setZero(values_.rows(), values_.cols());
   to_coefficients(x, false, values_);
   to_coefficients(x, true, rates_);
   to_coefficients(w, false, rates_);
+}
+
+/// Sets the evolution rows of the medium's states to zero.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::drop_states(Output y) const {
+  for (const Index state : medium_.states()) y.middleRows(state * width(), width()).setZero();
+}
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::multiply(Input x, Input w, Output y) {
+  take_coefficients(x, w);
   tangents_.multiply(values_, rates_, products_);
+  to_series(products_, y);
+}
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::multiply_uncoupled(Input x, Input w, Output y) {
+  take_coefficients(x, w);
+  tangents_.multiply_uncoupled(values_, rates_, products_);
   to_series(products_, y);
 }
 
@@ -85,7 +103,17 @@ void HillPencil::multiply_mass(Input w, Output y) {
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply_mass_of_others(Input w, Output y) {
   multiply_mass(w, y);
-  for (const Index state : medium_.states()) y.middleRows(state * width(), width()).setZero();
+  drop_states(y);
+}
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::multiply_uncoupled_mass_of_others(Input w, Output y) {
+  values_.setZero(width(), 2 * w.cols() * unknowns());
+  rates_.setZero(values_.rows(), values_.cols());
+  to_coefficients(w, false, rates_);
+  tangents_.multiply_uncoupled(values_, rates_, products_);
+  to_series(products_, y);
+  drop_states(y);
 }
 
 void HillPencil::multiply_eliminated(const Vector& x, Vector& y) {

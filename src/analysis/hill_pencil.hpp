@@ -50,11 +50,15 @@ class HillPencil {
   void multiply(Input x, Input w, Output y);
   /// y = B w.
   void multiply_mass(Input w, Output y);
+  /// The same for the pencil A' + s B' that precondition() solves for exactly: in the chains,
+  /// harmonics are not coupled.
+  void multiply_uncoupled(Input x, Input w, Output y);
   /// Whether there is a medium, and y = B w without the evolution rows of its states. With it in
   /// the place of B, and A + s B in that of A, the medium answers motions of all exponents as
   /// those of the exponent s, and has no exponents of its own.
   bool has_medium() const { return !medium_.is_empty(); }
   void multiply_mass_of_others(Input w, Output y);
+  void multiply_uncoupled_mass_of_others(Input w, Output y);
   /// The map of the unknowns that are not the medium's, whose unknowns follow from their own rows,
   /// times the inverse of that of the preconditioner: both at the shift. x has zeros for the
   /// medium. @returns false where the medium's rows are singular
@@ -92,6 +96,8 @@ class HillPencil {
   /// those of `to`.
   void to_coefficients(Input x, bool is_rate, Eigen::MatrixXd& to) const;
   void to_series(const Eigen::MatrixXd& coefficients, Output y) const;
+  void take_coefficients(Input x, Input w);
+  void drop_states(Output y) const;
 
   HarmonicTangents tangents_;
   HarmonicPreconditioner preconditioner_;

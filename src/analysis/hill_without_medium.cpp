@@ -21,10 +21,10 @@ using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
 /// Relative tolerances of the eigenpairs of the linear problem, of its linear solves and of
-/// corrected eigenpairs. The image of a vector is much larger than 1 / (sigma - lambda) of pairs at
-/// the edge of the disc: with 1e-5, modes of the 5 MW turbine at 25 m/s are lost.
+/// corrected eigenpairs, and a relative norm of round-off.
 constexpr double eigenpair_tolerance = 1e-4;
 constexpr double linear_tolerance = 1e-7;
+constexpr double round_off = 1e-12;
 constexpr double corrected_tolerance = 1e-5;
 /// Real part of the shift, relative to the rotor speed: there are no factors at an exponent.
 constexpr double beside_axis = 0.05;
@@ -58,19 +58,22 @@ double correlation(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
 /// eigenvalues are 1 / (sigma - lambda).
 class KrylovSpace {
  public:
-  /// The pencil keeps the shift sigma.
-  KrylovSpace(HillPencil& pencil, Complex shift, const Vector& start, Index most)
+  /// The pencil keeps the shift sigma. `is_coupled`: A and B are those of the pencil, else those
+  /// that the preconditioner solves for: each vector takes one solve then, and has no error.
+  KrylovSpace(HillPencil& pencil, Complex shift, const Vector& start, Index most, bool is_coupled)
       : pencil_(pencil),
         shift_(shift),
         linear_(solver_at(pencil, shift, linear_tolerance)),
+        is_coupled_(is_coupled),
         right_(pencil.size()),
+        image_(pencil.size()),
         space_(image_of(start), most) {}  // without infinite exponents
 
   Index size() const { return space_.size(); }
   /// Adds a vector. @returns false where it is in the space
   bool extend() {
     const Vector& image = image_of(space_.last());
-    return space_.extend(image, 10.0 * linear_tolerance * image.norm());
+    return space_.extend(image, (is_coupled_ ? 10.0 * linear_tolerance : round_off) * image.norm());
   }
 
   struct Pair {
@@ -95,22 +98,35 @@ class KrylovSpace {
   /// Whether a vector belongs to an infinite exponent: it does not fulfil the linear problem.
   bool is_infinite(const Pair& pair, const Vector& vector) {
     Vector product(vector.size());
-    pencil_.multiply(vector, shift_ * vector, product);
-    pencil_.multiply_mass_of_others(vector, right_);
+    if (is_coupled_)
+      pencil_.multiply(vector, shift_ * vector, product);
+    else
+      pencil_.multiply_uncoupled(vector, shift_ * vector, product);
+    multiply_mass(vector);
     const Complex distance = right_.dot(product) / right_.squaredNorm();
     return std::abs(distance * pair.value - 1.0) > 0.5;
   }
 
  private:
+  void multiply_mass(const Vector& x) {
+    if (is_coupled_)
+      pencil_.multiply_mass_of_others(x, right_);
+    else
+      pencil_.multiply_uncoupled_mass_of_others(x, right_);
+  }
   const Vector& image_of(const Vector& x) {
-    pencil_.multiply_mass_of_others(x, right_);
-    linear_.solve(right_, image_);
+    multiply_mass(x);
+    if (is_coupled_)
+      linear_.solve(right_, image_);
+    else
+      pencil_.precondition(right_, image_);
     return image_;
   }
 
   HillPencil& pencil_;
   Complex shift_;
   ComplexSolver linear_;
+  bool is_coupled_;
   Vector right_, image_;
   Arnoldi space_;
 };
@@ -174,13 +190,14 @@ void HillWithoutMedium::add_copies(HillRegion& region) {
     }
 }
 
-/// The eigenpairs of the linear problem, and the rectangle.
+/// The eigenpairs of the linear problem, and the rectangle. The harmonics are not coupled in the
+/// chains: their coupling changes exponents by its square.
 HillRegion HillWithoutMedium::find_linear(double frequency, int count,
                                           std::vector<Approximation>& pairs) {
   const Index most =
       std::min<Index>(pencil_.size(), vectors_of_pair * static_cast<Index>(count) + more_vectors);
   KrylovSpace space(pencil_, {beside_axis * pencil_.speed(), frequency}, random_vector(pencil_),
-                    most);
+                    most, false);
   std::vector<KrylovSpace::Pair> converged;
   HillRegion region;
   while (!region.is_whole && static_cast<int>(converged.size()) < count && space.size() < most) {
@@ -246,7 +263,8 @@ bool HillWithoutMedium::approach(Approximation& pair) {
     const double beside = beside_exponent * pencil_.speed();
     Approximation next;
     try {
-      KrylovSpace space(pencil_, pair.exponent + Complex(beside, beside), pair.vector, few_vectors);
+      KrylovSpace space(pencil_, pair.exponent + Complex(beside, beside), pair.vector, few_vectors,
+                        true);
       while (space.size() < few_vectors && space.extend()) {
       }
       double largest = 0.0;

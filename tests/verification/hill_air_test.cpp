@@ -4,6 +4,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -172,4 +173,28 @@ BOOST_AUTO_TEST_CASE(count_in_wind_notices_a_missing_exponent) {
   for (std::size_t i = 0; i < count.found.size(); i += 2)
     if (count.leave_out(i, 1) > 0) ++checked;
   BOOST_TEST(checked >= 3);
+}
+
+/// In the complement of the border, couplings of less than 1e-4 of the largest one are left out.
+BOOST_AUTO_TEST_CASE(the_preconditioner_solves_for_the_map_without_coupled_harmonics) {
+  Steady turbine(io::read_case(input_path("nrel5mw/land"), coarse));
+  std::mt19937 generator(7);
+  std::normal_distribution<double> normal;
+  for (const int harmonics : {1, 3})
+    for (const bool by_sector : {true, false}) {
+      analysis::HillPencil pencil(turbine.system, turbine.trim.solution, harmonics, by_sector);
+      const Complex shift = pencil.speed() * Complex(0.3, 2.4);
+      BOOST_REQUIRE(pencil.set_shift(shift));
+      Eigen::MatrixXcd x = Eigen::MatrixXcd::NullaryExpr(
+          pencil.size(), 2, [&] { return Complex(normal(generator), normal(generator)); });
+      pencil.drop_absent(x);
+      Eigen::MatrixXcd y(x.rows(), x.cols());
+      pencil.multiply_uncoupled(x, shift * x, y);
+      Eigen::MatrixXcd solved(x.rows(), x.cols());
+      pencil.precondition(y, solved);
+      BOOST_TEST((solved - x).norm() <= (harmonics == 1 ? 1e-10 : 5e-3) * x.norm());
+      Eigen::MatrixXcd coupled(x.rows(), x.cols());
+      pencil.multiply(x, shift * x, coupled);
+      BOOST_TEST((coupled - y).norm() > 1e-4 * y.norm());
+    }
 }
