@@ -139,7 +139,7 @@ inline void solve_triangle(char part, Integer n, const Complex* a, Complex* b) {
   for (Integer k = 0; k < n; ++k) {
     const Integer j = is_lower ? k : n - 1 - k;
     const Complex* column = a + static_cast<std::ptrdiff_t>(j) * n;
-    if (!is_lower) b[j] /= column[j];
+    if (!is_lower) b[j] *= std::conj(column[j]) / std::norm(column[j]);
     const double re = x[2 * j];
     const double im = x[2 * j + 1];
     const auto* values = reinterpret_cast<const double*>(column);

@@ -54,29 +54,28 @@ BlockFactors<Scalar>::BlockFactors(const BlockMatrix<Scalar>& pattern)
 /// the rows.
 template <class Scalar>
 void BlockFactors<Scalar>::find_filled(Index entry) {
-  const Eigen::Map<const Matrix> values(block(entry), size_, size_);
-  const auto range_of = [this](const auto& is_zero) {
-    Range range{0, size_};
-    while (range.first < range.end && is_zero(range.first)) ++range.first;
-    while (range.first < range.end && is_zero(range.end - 1)) --range.end;
-    return range;
-  };
-  filled_rows_[static_cast<std::size_t>(entry)] =
-      range_of([&](Index i) { return (values.row(i).array() == Scalar(0.0)).all(); });
-  filled_columns_[static_cast<std::size_t>(entry)] =
-      range_of([&](Index i) { return (values.col(i).array() == Scalar(0.0)).all(); });
+  const Scalar* value = block(entry);
+  Range& rows = filled_rows_[static_cast<std::size_t>(entry)];
+  Range& columns = filled_columns_[static_cast<std::size_t>(entry)];
+  rows = columns = {size_, 0};
+  for (Index c = 0; c < size_; ++c)
+    for (Index r = 0; r < size_; ++r, ++value) {
+      if (*value == Scalar(0.0)) continue;
+      rows = {std::min(rows.first, r), std::max(rows.end, r + 1)};
+      columns = {std::min(columns.first, c), c + 1};
+    }
 }
 
 /// C = C - A B with the block A of an entry; B and C of size x columns.
 template <class Scalar>
 void BlockFactors<Scalar>::subtract_product(Index entry, const Scalar* b, Scalar* c,
                                             Index columns) const {
-  const auto [first, end] = filled_rows_[static_cast<std::size_t>(entry)];
-  if (first == end) return;
+  const Range rows = filled_rows_[static_cast<std::size_t>(entry)];
+  if (rows.is_empty()) return;
   const auto size = static_cast<blas::Integer>(size_);
-  blas::subtract_product(static_cast<blas::Integer>(end - first),
-                         static_cast<blas::Integer>(columns), size, block(entry) + first, size, b,
-                         size, c + first, size);
+  blas::subtract_product(static_cast<blas::Integer>(rows.count()),
+                         static_cast<blas::Integer>(columns), size, block(entry) + rows.first, size,
+                         b, size, c + rows.first, size);
 }
 
 /// The same with the block B of an entry of U, without its rows and columns of zeros.
@@ -85,7 +84,7 @@ void BlockFactors<Scalar>::subtract_product(Index entry, Index upper, Scalar* c)
   const Range rows = filled_rows_[static_cast<std::size_t>(entry)];
   const Range between = filled_rows_[static_cast<std::size_t>(upper)];
   const Range columns = filled_columns_[static_cast<std::size_t>(upper)];
-  if (rows.count() == 0 || between.count() == 0 || columns.count() == 0) return;
+  if (rows.is_empty() || columns.is_empty()) return;
   const auto size = static_cast<blas::Integer>(size_);
   const Index first = columns.first * size_;
   blas::subtract_product(static_cast<blas::Integer>(rows.count()),
@@ -108,7 +107,7 @@ bool BlockFactors<Scalar>::factor_diagonal(Index i, double least) {
 template <class Scalar>
 void BlockFactors<Scalar>::divide(Index entry, Index k) {
   const Range rows = filled_rows_[static_cast<std::size_t>(entry)];
-  if (rows.count() == 0) return;
+  if (rows.is_empty()) return;
   Scalar* a = block(entry);
   const auto n = static_cast<blas::Integer>(size_);
   const auto count = static_cast<blas::Integer>(rows.count());

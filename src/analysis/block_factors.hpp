@@ -92,6 +92,7 @@ class BlockFactors {
   struct Range {
     Index first = 0;
     Index end = 0;
+    bool is_empty() const { return end <= first; }
     Index count() const { return end - first; }
   };
   std::vector<Range> filled_rows_;  ///< of each block off the diagonal

@@ -32,6 +32,8 @@ constexpr double beside_axis = 0.05;
 constexpr int vectors_of_pair = 4;
 constexpr int more_vectors = 60;
 constexpr int check_interval = 8;
+/// Largest change of a vector by a coupling of harmonics that is left out.
+constexpr double most_coupling = 0.2;
 /// Half the height of the rectangle, relative to the radius of the disc in which all pairs were
 /// found.
 constexpr double part_of_radius = 0.8;
@@ -95,6 +97,12 @@ class KrylovSpace {
   }
   Complex exponent_of(const Pair& pair) const { return shift_ - 1.0 / pair.value; }
   Vector vector_of(const Pair& pair) const { return space_.vector_of(pair.in_basis).normalized(); }
+  /// Relative change of a vector by the coupling of the harmonics in the chains, next to the shift.
+  double coupling_of(const Vector& vector) {
+    pencil_.multiply(vector, shift_ * vector, right_);
+    pencil_.precondition(right_, image_);
+    return (image_ - vector).norm() / vector.norm();
+  }
   /// Whether a vector belongs to an infinite exponent: it does not fulfil the linear problem.
   bool is_infinite(const Pair& pair, const Vector& vector) {
     Vector product(vector.size());
@@ -144,7 +152,11 @@ Vector random_vector(const HillPencil& pencil) {
 
 HillRegion HillWithoutMedium::find(double frequency, int count, double known) {
   std::vector<Approximation> pairs;
-  HillRegion region = find_linear(frequency, count, pairs);
+  // The coupling of the harmonics in the chains is left out where it changes pairs by little.
+  std::optional<HillRegion> found = find_linear(frequency, count, false, pairs);
+  if (!found) found = find_linear(frequency, count, true, pairs);
+  if (!found) throw ConvergenceError("floquet: Hill's method finds no modes");
+  HillRegion& region = *found;
   const double outside = part_outside * (region.high - region.low);
   // Those next to it may have copies above it, or become a pair above it.
   const double lowest =
@@ -190,14 +202,16 @@ void HillWithoutMedium::add_copies(HillRegion& region) {
     }
 }
 
-/// The eigenpairs of the linear problem, and the rectangle. The harmonics are not coupled in the
-/// chains: their coupling changes exponents by its square.
-HillRegion HillWithoutMedium::find_linear(double frequency, int count,
-                                          std::vector<Approximation>& pairs) {
+/// The eigenpairs of the linear problem, and the rectangle; none where there are no pairs, or where
+/// harmonics that are not coupled should be.
+std::optional<HillRegion> HillWithoutMedium::find_linear(double frequency, int count,
+                                                         bool is_coupled,
+                                                         std::vector<Approximation>& pairs) {
+  pairs.clear();
   const Index most =
       std::min<Index>(pencil_.size(), vectors_of_pair * static_cast<Index>(count) + more_vectors);
   KrylovSpace space(pencil_, {beside_axis * pencil_.speed(), frequency}, random_vector(pencil_),
-                    most, false);
+                    most, is_coupled);
   std::vector<KrylovSpace::Pair> converged;
   HillRegion region;
   while (!region.is_whole && static_cast<int>(converged.size()) < count && space.size() < most) {
@@ -210,7 +224,7 @@ HillRegion HillWithoutMedium::find_linear(double frequency, int count,
                                          }),
                     converged.end());
   }
-  if (converged.empty()) throw ConvergenceError("floquet: Hill's method finds no modes");
+  if (converged.empty()) return std::nullopt;
   double radius = 0.0;
   for (const KrylovSpace::Pair& pair : converged) {
     Vector vector = space.vector_of(pair);
@@ -218,6 +232,7 @@ HillRegion HillWithoutMedium::find_linear(double frequency, int count,
       region.is_whole = true;
       break;
     }
+    if (!is_coupled && space.coupling_of(vector) > most_coupling) return std::nullopt;
     radius = std::abs(1.0 / pair.value);
     Complex exponent = space.exponent_of(pair);
     if (std::abs(exponent.imag()) < beside_axis * pencil_.speed()) exponent.imag(0.0);

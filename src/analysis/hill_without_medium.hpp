@@ -39,7 +39,8 @@ class HillWithoutMedium {
     Vector vector;
   };
 
-  HillRegion find_linear(double frequency, int count, std::vector<Approximation>& pairs);
+  std::optional<HillRegion> find_linear(double frequency, int count, bool is_coupled,
+                                        std::vector<Approximation>& pairs);
   void add(HillPair pair, HillRegion& region) const;
   void add_copies(HillRegion& region);
   std::optional<HillPair> corrected(const Approximation& pair);
