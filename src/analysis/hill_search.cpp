@@ -132,10 +132,49 @@ double largest_with_residual(const Arnoldi& space) {
   return modulus + space.residual(solver.eigenvectors().col(at).normalized());
 }
 
-/// A point on the edge of a region, and the phase there of a determinant without known zeros.
+/// A point on the edge of a region, and the logarithm there of a determinant without known zeros.
 struct EdgePoint {
   Complex s;
-  double phase;
+  Complex log;
+};
+
+/// What exponents far away add to the logarithm of a determinant: a polynomial with real
+/// coefficients. Its imaginary part does not change along a closed curve, or between two points of
+/// the real axis.
+class Background {
+ public:
+  /// The real parts at some points are known, the imaginary parts up to multiples of 2 pi.
+  explicit Background(const std::vector<EdgePoint>& points) {
+    std::vector<const EdgePoint*> known;
+    for (const EdgePoint& point : points) {
+      unit_ = std::max(unit_, std::abs(point.s));
+      if (std::isfinite(point.log.real())) known.push_back(&point);
+    }
+    const auto rows = static_cast<Index>(known.size());
+    const Index terms = std::min(most_terms, rows / points_of_term);
+    if (terms == 0) return;
+    Eigen::MatrixXd powers(rows, terms);
+    Eigen::VectorXd values(rows);
+    for (Index i = 0; i < rows; ++i) {
+      const EdgePoint& point = *known[static_cast<std::size_t>(i)];
+      Complex power = 1.0;
+      for (Index k = 0; k < terms; ++k, power *= point.s / unit_) powers(i, k) = power.real();
+      values(i) = point.log.real();
+    }
+    coefficients_ = powers.colPivHouseholderQr().solve(values);
+  }
+
+  double phase(Complex s) const {
+    Complex sum = 0.0;
+    for (Index k = coefficients_.size() - 1; k >= 0; --k) sum = sum * s / unit_ + coefficients_(k);
+    return sum.imag();
+  }
+
+ private:
+  static constexpr Index most_terms = 7;
+  static constexpr Index points_of_term = 3;
+  double unit_ = 0.0;
+  Eigen::VectorXd coefficients_;
 };
 
 }  // namespace
@@ -236,25 +275,27 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   return region;
 }
 
-/// Phases of the determinant of the preconditioner; not a number where it is singular. The ranks
-/// share the points that are new.
-std::vector<double> HillSearch::phases_at(const std::vector<Complex>& points, const Ranks& ranks) {
+/// Logarithms of the determinant of the preconditioner; not a number where it is singular. The
+/// ranks share the points that are new.
+std::vector<Complex> HillSearch::logs_at(const std::vector<Complex>& points, const Ranks& ranks) {
   const auto key = [](Complex s) { return std::pair(s.real(), s.imag()); };
   std::vector<Complex> missing;
   for (const Complex s : points)
-    if (!phases_.contains(key(s))) missing.push_back(s);
-  std::vector<double> values(missing.size(), 0.0);
+    if (!logs_.contains(key(s))) missing.push_back(s);
+  Eigen::MatrixXcd values = Eigen::MatrixXcd::Zero(static_cast<Index>(missing.size()), 1);
   ranks.attempt([&] {
     for (std::size_t i = 0; i < missing.size(); ++i)
       if (static_cast<int>(i) % ranks.size == ranks.rank)
-        values[i] = pencil_.set_shift(missing[i]) ? pencil_.log_determinant().imag()
-                                                  : std::numeric_limits<double>::quiet_NaN();
+        values(static_cast<Index>(i)) =
+            pencil_.set_shift(missing[i]) ? pencil_.log_determinant()
+                                          : Complex(std::numeric_limits<double>::quiet_NaN(), 0.0);
   });
-  ranks.sum(values.data(), static_cast<Index>(values.size()));
-  for (std::size_t i = 0; i < missing.size(); ++i) phases_.emplace(key(missing[i]), values[i]);
-  std::vector<double> phases;
-  for (const Complex s : points) phases.push_back(phases_.at(key(s)));
-  return phases;
+  ranks.sum(values);
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    logs_.emplace(key(missing[i]), values(static_cast<Index>(i)));
+  std::vector<Complex> logs;
+  for (const Complex s : points) logs.push_back(logs_.at(key(s)));
+  return logs;
 }
 
 double HillSearch::contraction_at(Complex s) {
@@ -312,58 +353,65 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
                                {-region.decay, low}};
   const bool is_closed = region.low > 0.0;
   if (is_closed) corners.push_back(corners.front());
-  const auto add_phases = [&](std::vector<EdgePoint>& points) {
+  const auto evaluate = [&](std::vector<EdgePoint>& points) {
     std::vector<Complex> places;
     for (const EdgePoint& point : points) places.push_back(point.s);
-    const std::vector<double> phases = phases_at(places, ranks);
+    const std::vector<Complex> logs = logs_at(places, ranks);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Complex s = points[i].s;
-      points[i].phase = phases[i];
+      points[i].log = logs[i];
       for (const Complex exponent : found) {
-        points[i].phase -= std::arg(s - exponent);
-        if (exponent.imag() > 0.0) points[i].phase -= std::arg(s - std::conj(exponent));
+        points[i].log -= std::log(points[i].s - exponent);
+        if (exponent.imag() > 0.0) points[i].log -= std::log(points[i].s - std::conj(exponent));
       }
     }
     result.points += static_cast<int>(points.size());
   };
-  std::vector<EdgePoint> edge;
+  std::vector<EdgePoint> edge;  // ends and middles of parts
   for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
     const Complex length = corners[side + 1] - corners[side];
     const std::array<double, 4> widths{region.growth, std::min(region.growth, region.decay),
                                        region.decay, std::min(region.growth, region.decay)};
     const double most = std::max(widest * pencil_.speed(), part_of_side * std::abs(length));
     const double longest = std::max(pencil_.speed(), std::min(of_half_width * widths[side], most));
-    const auto parts = static_cast<int>(std::ceil(std::abs(length) / longest));
-    for (int part = 0; part < parts; ++part)
-      edge.push_back({corners[side] + length * (static_cast<double>(part) / parts), 0.0});
+    const auto halves = 2 * static_cast<int>(std::ceil(std::abs(length) / longest));
+    for (int half = 0; half < halves; ++half)
+      edge.push_back({corners[side] + length * (static_cast<double>(half) / halves), 0.0});
   }
   edge.push_back({corners.back(), 0.0});
-  add_phases(edge);
-  std::vector<std::pair<EdgePoint, EdgePoint>> parts;
-  for (std::size_t i = 1; i < edge.size(); ++i) parts.emplace_back(edge[i - 1], edge[i]);
-  const auto change = [](const EdgePoint& from, const EdgePoint& to) {
-    return std::remainder(to.phase - from.phase, 2.0 * std::numbers::pi);
+  evaluate(edge);
+  const Background background(edge);
+  const auto change = [&background](const EdgePoint& from, const EdgePoint& to) {
+    return std::remainder(
+        to.log.imag() - background.phase(to.s) - from.log.imag() + background.phase(from.s),
+        2.0 * std::numbers::pi);
   };
+  struct Part {
+    EdgePoint begin, middle, end;
+  };
+  std::vector<Part> parts;
+  for (std::size_t i = 2; i < edge.size(); i += 2)
+    parts.push_back({edge[i - 2], edge[i - 1], edge[i]});
   // Parts are halved until the phase changes little, and as much in one half as in the other.
   double sum = 0.0;
-  while (!parts.empty() && result.points <= most_points) {
-    std::vector<EdgePoint> middles;
-    for (const auto& [begin, end] : parts) middles.push_back({0.5 * (begin.s + end.s), 0.0});
-    add_phases(middles);
-    std::vector<std::pair<EdgePoint, EdgePoint>> left;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const auto& [begin, end] = parts[i];
-      const double first = change(begin, middles[i]);
-      const double second = change(middles[i], end);
+  while (!parts.empty()) {
+    std::vector<Part> left;
+    for (const Part& part : parts) {
+      const double first = change(part.begin, part.middle);
+      const double second = change(part.middle, part.end);
       if (std::abs(first) + std::abs(second) < most_change &&
           std::abs(first - second) < most_difference) {
         sum += first + second;
         continue;
       }
-      left.emplace_back(begin, middles[i]);
-      left.emplace_back(middles[i], end);
+      left.push_back({part.begin, {}, part.middle});
+      left.push_back({part.middle, {}, part.end});
     }
     parts = std::move(left);
+    if (result.points > most_points) break;
+    std::vector<EdgePoint> middles;
+    for (const Part& part : parts) middles.push_back({0.5 * (part.begin.s + part.end.s), 0.0});
+    evaluate(middles);
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i].middle = middles[i];
   }
   // The part below the real axis has the same change of the phase.
   const double number = sum / (is_closed ? 2.0 * std::numbers::pi : std::numbers::pi);

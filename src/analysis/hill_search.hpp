@@ -78,16 +78,17 @@ class HillSearch {
 
  private:
   HillRegion find_all(double frequency, int count);
-  std::vector<double> phases_at(const std::vector<std::complex<double>>& points,
-                                const Ranks& ranks);
+  std::vector<std::complex<double>> logs_at(const std::vector<std::complex<double>>& points,
+                                            const Ranks& ranks);
   double contraction_at(std::complex<double> s);
   double find_contraction(std::complex<double> s);
 
   HillPencil& pencil_;
   /// By real and imaginary part of a point.
-  using Values = std::map<std::pair<double, double>, double>;
-  Values phases_;        ///< of the determinant
-  Values contractions_;  ///< at the points of this rank
+  template <class Value>
+  using Values = std::map<std::pair<double, double>, Value>;
+  Values<std::complex<double>> logs_;  ///< of the determinant
+  Values<double> contractions_;        ///< at the points of this rank
 };
 
 }  // namespace samara::analysis
