@@ -66,16 +66,20 @@ void BlockFactors<Scalar>::find_filled(Index entry) {
     }
 }
 
-/// C = C - A B with the block A of an entry; B and C of size x columns.
+/// C = C - A B with the block A of an entry, without its rows and columns of zeros; B and C of size
+/// x columns.
 template <class Scalar>
 void BlockFactors<Scalar>::subtract_product(Index entry, const Scalar* b, Scalar* c,
                                             Index columns) const {
   const Range rows = filled_rows_[static_cast<std::size_t>(entry)];
+  const Range between = filled_columns_[static_cast<std::size_t>(entry)];
   if (rows.is_empty()) return;
   const auto size = static_cast<blas::Integer>(size_);
   blas::subtract_product(static_cast<blas::Integer>(rows.count()),
-                         static_cast<blas::Integer>(columns), size, block(entry) + rows.first, size,
-                         b, size, c + rows.first, size);
+                         static_cast<blas::Integer>(columns),
+                         static_cast<blas::Integer>(between.count()),
+                         block(entry) + between.first * size_ + rows.first, size, b + between.first,
+                         size, c + rows.first, size);
 }
 
 /// The same with the block B of an entry of U, without its rows and columns of zeros.
@@ -114,6 +118,7 @@ void BlockFactors<Scalar>::divide(Index entry, Index k) {
   const Scalar* factors = block(diagonal_[static_cast<std::size_t>(k)]);
   blas::divide_by_triangle('U', n, factors, count, a + rows.first);
   blas::divide_by_triangle('L', n, factors, count, a + rows.first);
+  filled_columns_[static_cast<std::size_t>(entry)] = {0, size_};
   for (Index c = size_ - 1; c >= 0; --c)
     if (const Index other = interchanges(k)[c] - 1; other != c)
       std::swap_ranges(a + c * size_, a + (c + 1) * size_, a + other * size_);
