@@ -42,17 +42,21 @@ class SweepFinder final : public CampbellPointFinder {
  private:
   CampbellPoint find_modes(const SweepPlace& place, const analysis::Ranks& ranks,
                            analysis::Observer& observer) override {
-    const io::Case input = sweep_.case_at(place);
-    const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+    std::optional<io::Case> read;
+    std::optional<turbine::TurbineSystem> built;
     ranks.attempt([&] {
+      const io::Case& own = read.emplace(sweep_.case_at(place));
+      const turbine::TurbineSystem& system =
+          built.emplace(model::build_turbine(own.turbine), PETSC_COMM_SELF);
       const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
-      last_ = simulation::solve_trim(input, system, simulation::trim_options(input), observer,
+      last_ = simulation::solve_trim(own, system, simulation::trim_options(own), observer,
                                      PETSC_COMM_SELF, is_near ? &*last_ : nullptr);
       simulation::require_wake_range(system, *last_);
       simulation::note_roughness(*last_, observer);
     });
+    const io::Case& input = *read;
     CampbellPoint result =
-        simulation::find_campbell_point(system, *last_, input.floquet, ranks.comm, observer);
+        simulation::find_campbell_point(*built, *last_, input.floquet, ranks.comm, observer);
     if (input.turbine.wind && input.turbine.aero) result.wind_speed = input.turbine.wind->speed;
     return result;
   }

@@ -50,8 +50,8 @@ BlockFactors<Scalar>::BlockFactors(const BlockMatrix<Scalar>& pattern)
   filled_columns_.resize(columns_.size());
 }
 
-/// Finds the rows and columns of a block that are not zero throughout: elimination adds none to
-/// the rows.
+/// Finds the rows and columns of a block that are not zero throughout. The division by a diagonal
+/// block fills columns, but no rows.
 template <class Scalar>
 void BlockFactors<Scalar>::find_filled(Index entry) {
   const Scalar* value = block(entry);

@@ -3,7 +3,6 @@
 
 #include <complex>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>

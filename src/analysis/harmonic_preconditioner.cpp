@@ -189,7 +189,8 @@ void HarmonicPreconditioner::write_border() {
   }
 }
 
-/// Adds values in the coefficients of a border unknown, in one column of all coefficients.
+/// Adds the coefficients of one unknown of the border in a column of its complement. `column`
+/// counts all coefficients; absent ones are left out.
 void HarmonicPreconditioner::add_to_complement(Index border, Index column,
                                                const Eigen::Ref<const Eigen::VectorXcd>& values) {
   const Index to = position_[static_cast<std::size_t>(column)];
@@ -387,8 +388,11 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   column_factors_ = &columns;
   if ((shift.imag() == 0.0) != is_real()) factors_.clear();
   shift_ = shift;
-  // Samples say which harmonics the unknowns have; they come after the construction.
-  if (chains_.empty()) {
+  // Samples say which harmonics the unknowns have.
+  if (chains_.empty() || remainders_ != tangents_.sector().remainder) {
+    remainders_ = tangents_.sector().remainder;
+    chains_.clear();
+    factors_.clear();
     for (int remainder = 0; remainder < tangents_.sectors(); ++remainder) find_chains(remainder);
     find_present();
   }

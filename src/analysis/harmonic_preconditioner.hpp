@@ -99,6 +99,7 @@ class HarmonicPreconditioner {
   std::vector<PetscInt> border_;           ///< unknowns
   std::vector<PetscInt> interior_;         ///< unknowns, whole blocks in the order of the system
   std::vector<Chains> chains_;             ///< for the remainders of the harmonics by the sectors
+  std::vector<int> remainders_;            ///< of the unknowns' harmonics, for which the chains are
   std::vector<Place> inner_;               ///< interior rows and columns
   std::vector<Couplings> rows_of_border_;  ///< interior columns, for each border unknown
   std::vector<Couplings> columns_of_border_;  ///< interior rows

@@ -185,9 +185,9 @@ void HarmonicTangents::list_entries() {
       all_[part].add(place, !is_zero);
       of_border_[part].add(place, !is_zero && is_of_border);
     }
-    if (is_of_border)
+    if (is_of_border && block_size_ > 1)
       of_border.push_back(place);
-    else if (has_values)
+    else if (!is_of_border && has_values)
       interior_.push_back(place);
   }
   for (EntriesOfBoth* both : {&all_, &of_border_})

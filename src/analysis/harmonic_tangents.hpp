@@ -198,7 +198,7 @@ class HarmonicTangents {
   std::vector<Place> interior_;  ///< places of others that are not zero
   Eigen::MatrixXd means_;        ///< 2 x places
   Eigen::MatrixXcd series_;      ///< width x 2, as find_series() has them, for each border place
-  std::vector<Eigen::Index> series_of_;  ///< their first column, for each place; -1: none
+  std::vector<Eigen::Index> series_of_;  ///< their first column, for each place; -1: not kept
 };
 
 }  // namespace samara::analysis

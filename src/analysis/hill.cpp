@@ -96,7 +96,7 @@ constexpr int most_regions = 200;
 /// Ranges in a row without a pair, above which no others are expected. Each is about as high as all
 /// before it.
 constexpr int most_empty = 3;
-/// The search ends at this factor of the highest frequency then.
+/// The search ends at this factor of the largest exponent then, with its copies.
 constexpr double above_last = 2.0;
 /// Relative to the rotor speed: slack of the edges of the region, and distance of a copy in the
 /// search from where it should be, and of refined exponents that are the same.
@@ -373,10 +373,10 @@ class Analysis {
       if (empty > 0) count = least_pairs;
       frequency = region_.high + 0.4 * length;
     }
-    if (empty < most_empty) return;
-    double highest = 0.0;
-    for (const Complex exponent : all_found_) highest = std::max(highest, exponent.imag());
-    region_.high = std::min(region_.high, above_last * highest);
+    if (empty < most_empty || all_found_.empty()) return;
+    double largest = 0.0;
+    for (const Complex exponent : all_found_) largest = std::max(largest, std::abs(exponent));
+    region_.high = std::min(region_.high, above_last * (largest + margin()));
   }
 
   void search_near(HillSearch& search, double frequency) {

@@ -50,8 +50,8 @@ class HillPencil {
   void multiply(Input x, Input w, Output y);
   /// y = B w.
   void multiply_mass(Input w, Output y);
-  /// The same for the pencil A' + s B' that precondition() solves for exactly: in the chains,
-  /// harmonics are not coupled.
+  /// The same for the pencil A' + s B' that precondition() solves for, but for the smallest
+  /// couplings of the border: in the chains, harmonics are not coupled.
   void multiply_uncoupled(Input x, Input w, Output y);
   /// Whether there is a medium, and y = B w without the evolution rows of its states. With it in
   /// the place of B, and A + s B in that of A, the medium answers motions of all exponents as

@@ -286,9 +286,10 @@ std::vector<Complex> HillSearch::logs_at(const std::vector<Complex>& points, con
   ranks.attempt([&] {
     for (std::size_t i = 0; i < missing.size(); ++i)
       if (static_cast<int>(i) % ranks.size == ranks.rank)
-        values(static_cast<Index>(i)) =
-            pencil_.set_shift(missing[i]) ? pencil_.log_determinant()
-                                          : Complex(std::numeric_limits<double>::quiet_NaN(), 0.0);
+        values(static_cast<Index>(i)) = pencil_.set_shift(missing[i])
+                                            ? pencil_.log_determinant()
+                                            : Complex(std::numeric_limits<double>::quiet_NaN(),
+                                                      std::numeric_limits<double>::quiet_NaN());
   });
   ranks.sum(values);
   for (std::size_t i = 0; i < missing.size(); ++i)
@@ -299,9 +300,10 @@ std::vector<Complex> HillSearch::logs_at(const std::vector<Complex>& points, con
 }
 
 double HillSearch::contraction_at(Complex s) {
-  const auto [known, is_new] = contractions_.try_emplace({s.real(), s.imag()}, 0.0);
-  if (is_new) known->second = find_contraction(s);
-  return known->second;
+  const std::pair key(s.real(), s.imag());
+  if (const auto known = contractions_.find(key); known != contractions_.end())
+    return known->second;
+  return contractions_.emplace(key, find_contraction(s)).first->second;
 }
 
 /// By Arnoldi's method from a vector of all harmonics, with the factors at s.

@@ -21,10 +21,10 @@ using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
 /// Relative tolerances of the eigenpairs of the linear problem, of its linear solves and of
-/// corrected eigenpairs, and a relative norm of round-off.
+/// corrected eigenpairs, and the relative norm of a new vector that is round-off.
 constexpr double eigenpair_tolerance = 1e-4;
 constexpr double linear_tolerance = 1e-7;
-constexpr double round_off = 1e-12;
+constexpr double round_off = 1e-9;
 constexpr double corrected_tolerance = 1e-5;
 /// Real part of the shift, relative to the rotor speed: there are no factors at an exponent.
 constexpr double beside_axis = 0.05;
@@ -61,7 +61,7 @@ double correlation(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
 class KrylovSpace {
  public:
   /// The pencil keeps the shift sigma. `is_coupled`: A and B are those of the pencil, else those
-  /// that the preconditioner solves for: each vector takes one solve then, and has no error.
+  /// that the preconditioner solves for: each vector takes one solve then.
   KrylovSpace(HillPencil& pencil, Complex shift, const Vector& start, Index most, bool is_coupled)
       : pencil_(pencil),
         shift_(shift),
@@ -171,7 +171,7 @@ HillRegion HillWithoutMedium::find(double frequency, int count, double known) {
   for (const Approximation& pair : pairs)
     if (std::optional<HillPair> result = corrected(pair)) add(std::move(*result), region);
   add_copies(region);
-  return region;
+  return std::move(*found);
 }
 
 /// Adds a pair or its conjugate, if it is not known.

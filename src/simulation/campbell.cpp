@@ -61,6 +61,8 @@ void share_modes(const analysis::Ranks& ranks, CampbellPoint& point) {
   std::vector<Part> parts;
   for (const CampbellMode& mode : point.modes)
     parts.push_back({mode.exponent, mode.fixed_frame_frequency, mode.motion, mode.is_rough});
+  ranks.share(0, point.rotor_speed);
+  ranks.share(0, point.pitch);
   ranks.share(0, point.stability);
   ranks.share(0, parts);
   if (ranks.rank == 0) return;
