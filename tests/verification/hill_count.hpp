@@ -20,6 +20,7 @@ struct HillCount {
     BOOST_REQUIRE(none.eigenvalues);
     BOOST_TEST(*none.eigenvalues == 0);
     BOOST_TEST(none.contraction < contraction);
+    points = none.points;
   }
 
   /// The count misses `count` exponents in a row, from a number on, where they are in the region.
@@ -42,6 +43,7 @@ struct HillCount {
   analysis::HillSearch search;
   analysis::HillRegion region;
   std::vector<std::complex<double>> found;
+  int points = 0;  ///< of the count with all exponents
 };
 
 }  // namespace samara::test

@@ -253,6 +253,17 @@ BOOST_AUTO_TEST_CASE(count_notices_a_missing_exponent) {
   }
 }
 
+/// Exponents far away add 2 rad to the phase for each rad/s along an edge.
+BOOST_AUTO_TEST_CASE(count_on_a_fine_mesh_takes_few_points) {
+  std::string lengths = "blades.element_lengths=[1";
+  for (int i = 1; i < 60; ++i) lengths += ", 1";
+  Turning turbine("nrel5mw/land", {"blades.elements=60", lengths + "]"});
+  analysis::HillPencil pencil(turbine.system, turbine.trim.solution, 1);
+  HillCount count(pencil, 20.0 * pencil.speed(), 0.2);
+  BOOST_TEST(count.points < 100);
+  count.leave_out(0, 1);
+}
+
 BOOST_AUTO_TEST_CASE(verdict_of_a_search_needs_its_count) {
   Turning turbine("nrel5mw/land", coarse);
   analysis::ModeSet set = turbine.by_hill(6).set;
