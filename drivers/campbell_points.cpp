@@ -69,9 +69,7 @@ class SweepFinder final : public CampbellPointFinder {
 class OperationFinder final : public CampbellPointFinder {
  public:
   OperationFinder(const io::Case& input, const std::vector<simulation::ScheduledPoint>& table)
-      : input_(input), table_(table) {
-    finder_.emplace(input_, table_);
-  }
+      : input_(input), table_(table), finder_(std::in_place, input, table) {}
   void forget() override { finder_.emplace(input_, table_); }
 
  private:
@@ -116,25 +114,23 @@ void bisect(CampbellPointFinder& finder, StabilityEdge& edge, const analysis::Ra
 class Tasks {
  public:
   Tasks(std::size_t count, const analysis::Ranks& ranks)
-      : groups_(std::min(count, static_cast<std::size_t>(ranks.size))), comm_(split(ranks)) {}
+      : count_(count),
+        all_(ranks),
+        own_(rank_of(static_cast<std::size_t>(all_.rank), count_, all_)) {
+    MPI_Comm_split(all_.comm, own_, all_.rank, &comm_);
+  }
   Tasks(const Tasks&) = delete;
   Tasks& operator=(const Tasks&) = delete;
   ~Tasks() { MPI_Comm_free(&comm_); }
 
-  bool has(std::size_t task) const { return task % groups_ == own_; }
+  bool has(std::size_t task) const { return rank_of(task, count_, all_) == own_; }
   analysis::Ranks ranks() const { return analysis::Ranks(comm_); }
 
  private:
-  MPI_Comm split(const analysis::Ranks& ranks) {
-    own_ = static_cast<std::size_t>(ranks.rank) % groups_;
-    MPI_Comm comm = MPI_COMM_NULL;
-    MPI_Comm_split(ranks.comm, static_cast<int>(own_), ranks.rank, &comm);
-    return comm;
-  }
-
-  std::size_t groups_;
-  std::size_t own_ = 0;
-  MPI_Comm comm_;
+  std::size_t count_;
+  analysis::Ranks all_;
+  int own_;  ///< the first one of the ranks that share the tasks of this one
+  MPI_Comm comm_ = MPI_COMM_NULL;
 };
 
 /// Calls `call(task, ranks)` for the tasks of this rank. Ranks that share a task have the same

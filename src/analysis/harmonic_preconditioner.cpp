@@ -344,26 +344,23 @@ void HarmonicPreconditioner::subtract_rows(int k, const std::vector<BorderColumn
       if (const Index row = row_in(chains, couplings.interior[static_cast<std::size_t>(i)]);
           row >= 0)
         values.row(i) = solved.row(row);
-    const auto multiply = [&](int harmonic) {  // one column of each block
+    // One column of each block. `is_turned`: conjugate columns have the harmonics in reverse order.
+    const auto subtract = [&](int harmonic, bool is_turned) {
       blas::multiply(integer(width_), integer(count), integer(couplings.count()), -1.0,
                      couplings.blocks.data() + (harmonic + harmonics) * width_,
                      integer(width_ * width_), values.data(), integer(couplings.count()), 0.0,
                      product.data(), integer(width_));
       blas::count_operations<Complex>(static_cast<double>(width_ * count * couplings.count()));
+      for (Index n = 0; n < count; ++n) {
+        const auto& [of, number] = columns[static_cast<std::size_t>(n)];
+        add_to_complement(border, of * width_ + (is_turned ? width_ - 1 - number : number),
+                          product.col(n));
+      }
     };
-    multiply(k);
-    for (Index n = 0; n < count; ++n) {
-      const BorderColumn& column = columns[static_cast<std::size_t>(n)];
-      add_to_complement(border, column.border * width_ + column.number, product.col(n));
-    }
+    subtract(k, false);
     if (!is_real() || k == 0) continue;
     values = values.conjugate().eval();
-    multiply(-k);
-    for (Index n = 0; n < count; ++n) {
-      const BorderColumn& column = columns[static_cast<std::size_t>(n)];
-      add_to_complement(border, column.border * width_ + width_ - 1 - column.number,
-                        product.col(n));
-    }
+    subtract(-k, true);
   }
 }
 

@@ -463,39 +463,42 @@ void HarmonicTangents::add_products(const EntriesOfBoth& both, int part,
   PetscLogFlops(2.0 * static_cast<double>(samples * vectors) * count);
 }
 
-/// Coefficients that an unknown does not have are zero.
-void HarmonicTangents::finish(Eigen::MatrixXd& y) const {
-  PetscLogFlops(2.0 * static_cast<double>(values_of_.rows()) * static_cast<double>(y.size()));
-  sector_.drop_absent(y);
+/// Coefficients of values at the samples.
+void HarmonicTangents::project(const Eigen::MatrixXd& values, Eigen::MatrixXd& y) const {
+  y.noalias() = projection_ * values;
+  PetscLogFlops(2.0 * static_cast<double>(values.rows()) * static_cast<double>(y.size()));
+}
+
+/// Coefficients of the products of some entries with x and w.
+void HarmonicTangents::multiply(const EntriesOfBoth& entries, const Eigen::MatrixXd& x,
+                                const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
+  add_products(entries, 0, values_of_ * x, sums);
+  add_products(entries, 1, values_of_ * w, sums);
+  project(sums, y);
 }
 
 void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
                                 Eigen::MatrixXd& y) const {
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
-  add_products(all_, 0, values_of_ * x, sums);
-  add_products(all_, 1, values_of_ * w, sums);
-  y.noalias() = projection_ * sums;
-  finish(y);
+  multiply(all_, x, w, y);
+  sector_.drop_absent(y);
 }
 
 void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), w.cols());
   add_products(all_, 1, values_of_ * w, sums);
-  y.noalias() = projection_ * sums;
-  finish(y);
+  project(sums, y);
+  sector_.drop_absent(y);
 }
 
 void HarmonicTangents::multiply_uncoupled(const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
                                           Eigen::MatrixXd& y) const {
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
-  add_products(of_border_, 0, values_of_ * x, sums);
-  add_products(of_border_, 1, values_of_ * w, sums);
-  y.noalias() = projection_ * sums;
+  multiply(of_border_, x, w, y);
   for (const Place& place : interior_)
     for (Eigen::Index first = 0; first < x.cols(); first += size_)
       y.col(first + place.row) += means_(0, place.number) * x.col(first + place.column) +
                                   means_(1, place.number) * w.col(first + place.column);
-  finish(y);
+  sector_.drop_absent(y);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the block

@@ -145,7 +145,9 @@ class HarmonicTangents {
   using EntriesOfBoth = std::array<Entries, 2>;  ///< of K and of M
   void add_products(const EntriesOfBoth& both, int part, const Eigen::MatrixXd& values,
                     Eigen::MatrixXd& sums) const;
-  void finish(Eigen::MatrixXd& y) const;
+  void project(const Eigen::MatrixXd& values, Eigen::MatrixXd& y) const;
+  void multiply(const EntriesOfBoth& entries, const Eigen::MatrixXd& x, const Eigen::MatrixXd& w,
+                Eigen::MatrixXd& y) const;
   /// Of the entries of a tangent, by their numbers in the order of MatrixEntries, after some turns
   /// by a sector. Others are in no row or column of the map.
   struct EntryPlaces {
@@ -197,7 +199,7 @@ class HarmonicTangents {
   EntriesOfBoth of_border_;
   std::vector<Place> interior_;  ///< places of others that are not zero
   Eigen::MatrixXd means_;        ///< 2 x places
-  Eigen::MatrixXcd series_;      ///< width x 2, as find_series() has them, for each border place
+  Eigen::MatrixXcd series_;      ///< (2 width - 1) x 2 for each border place, by find_series()
   std::vector<Eigen::Index> series_of_;  ///< their first column, for each place; -1: not kept
 };
 

@@ -108,11 +108,7 @@ void HillPencil::multiply_mass_of_others(Input w, Output y) {
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply_uncoupled_mass_of_others(Input w, Output y) {
-  values_.setZero(width(), 2 * w.cols() * unknowns());
-  rates_.setZero(values_.rows(), values_.cols());
-  to_coefficients(w, false, rates_);
-  tangents_.multiply_uncoupled(values_, rates_, products_);
-  to_series(products_, y);
+  multiply_uncoupled(Matrix::Zero(w.rows(), w.cols()), w, y);
   drop_states(y);
 }
 
