@@ -570,6 +570,7 @@ class AirReader {
         section.airfoil = mixed_airfoil(set_at(rows, section.at * length), own);
       import_.turbine.blades.aero_sections.push_back(section);
     }
+    set_air_mesh(import_.turbine.blades.beam);
     if (by_thickness && is_beyond)
       import_.warn(path, "note: sections thinner or thicker than all polars (" +
                              rounded(100.0 * least) + " to " + rounded(100.0 * most) +

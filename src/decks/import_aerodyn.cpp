@@ -587,6 +587,7 @@ class AerodynImporter {
       if (std::ranges::find(table.names, unused) != table.names.end())
         say(unused, Fate::ignored, "buoyancy");
     import_.note("blades.aero_sections", "blade file of AeroDyn");
+    set_air_mesh(blades.beam);
   }
 
   /// A case has one set of constants: that of the airfoil at three quarters of the blade.

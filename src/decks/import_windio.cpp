@@ -1255,6 +1255,7 @@ class Importer {
         if (std::abs(component) <= no_distance * turbine_.blades.beam.length) component = 0.0;
       turbine_.blades.aero_sections.push_back(section);
     }
+    set_air_mesh(turbine_.blades.beam);
     say(chord_path, Fate::taken, "chord of blades.aero_sections");
     say(twist_path, is_first_ ? Fate::derived : Fate::taken, "twist_deg of blades.aero_sections");
     say(offset_path, Fate::derived,
