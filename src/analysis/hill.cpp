@@ -122,6 +122,8 @@ constexpr int most_steps_of_decays = 240;
 constexpr int most_attempts = 8;
 /// Relative to the rotor speed: distance of exponents of a motion by the steps and by refinement.
 constexpr double same_motion = 0.2;
+/// Beyond their errors, exponents that differ by more belong to different modes.
+constexpr double clear_difference = 1e-3;
 
 /// An eigenpair with its identification.
 struct Candidate {
@@ -302,8 +304,8 @@ class Analysis {
           return std::abs(exponent - principal(other)) < same_motion * speed_;
         });
       });
-    region_is_counted_ =
-        (region_is_counted_ || !has_medium_) && static_cast<int>(modes_.size()) >= expected_;
+    region_is_counted_ = (region_is_counted_ || !has_medium_) &&
+                         static_cast<int>(modes_.size()) + left_out_ >= expected_;
     if (has_medium_)  // the set of those above is not complete
       std::erase_if(modes_, [this](const Candidate& mode) {
         return modulus_of(mode) >= region_.high - margin();
@@ -624,6 +626,7 @@ class Analysis {
         }
       }
       groups = std::move(left);
+      if (has_medium_ && options_.least_damped > 0) leave_stronger_decays(groups);
       // The residual falls by the same factor with each harmonic.
       if (!groups.empty()) {
         const double factor =
@@ -641,6 +644,58 @@ class Analysis {
     for (Candidate& candidate : doubtful)
       if (!candidate.is_found || (is_centred(candidate) && !is_copy(candidate)))
         modes_.push_back(std::move(candidate));
+  }
+
+  /// Takes out groups that decay faster than the wanted modes, also if each exponent is wrong by
+  /// its change since fewer harmonics.
+  void leave_stronger_decays(std::vector<HillGroup>& groups) {
+    struct Decay {
+      double largest;  ///< with its error
+      Complex exponent;
+      double error;
+    };
+    const auto error_of = [this](Complex exponent, double residual) {
+      return residual * unit_of_change(exponent, speed_);
+    };
+    std::vector<Decay> decays;
+    const auto add = [&](Complex exponent, double residual) {
+      const double error = error_of(exponent, residual);
+      decays.push_back({error - exponent.real(), principal(exponent), error});
+    };
+    for (const Candidate& mode : modes_) add(mode.pair.exponent, mode.residual);
+    for (const HillGroup& group : groups)
+      for (std::size_t i = 0; i < group.pairs.size(); ++i)
+        add(group.pairs[i].exponent, group.residuals[i]);
+    std::ranges::sort(decays, {}, &Decay::largest);
+    // A mode counts once with its copies, and with other modes of nearly the same exponent.
+    std::vector<Decay> slowest;
+    for (const Decay& decay : decays)
+      if (std::ranges::none_of(slowest, [&](const Decay& other) {
+            return std::abs(decay.exponent - other.exponent) <
+                   decay.error + other.error + clear_difference * speed_;
+          }))
+        slowest.push_back(decay);
+    const auto wanted = static_cast<std::size_t>(options_.least_damped);
+    if (slowest.size() < wanted) return;
+    const double limit = std::max(slowest[wanted - 1].largest, 0.0) + clear_difference * speed_;
+    std::vector<char> is_left;
+    for (const HillGroup& group : groups) {
+      bool is_stronger = true;
+      for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+        const Complex exponent = group.pairs[i].exponent;
+        if (-exponent.real() - error_of(exponent, group.residuals[i]) <= limit) is_stronger = false;
+      }
+      is_left.push_back(is_stronger ? 1 : 0);
+    }
+    ranks_.share(0, is_left);
+    std::vector<HillGroup> others;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (is_left[g] != 0)
+        left_out_ += static_cast<int>(groups[g].pairs.size());
+      else
+        others.push_back(std::move(groups[g]));
+    }
+    groups = std::move(others);
   }
 
   /// Identifies the eigenpairs of a group, and takes them from it.
@@ -956,6 +1011,7 @@ class Analysis {
   std::vector<double> decays_;  ///< of exponents by the search and of the medium alone, ascending
   bool region_is_counted_ = false;
   int expected_ = 0;                ///< modes, by the search, not next to the edge of the region
+  int left_out_ = 0;                ///< eigenpairs of decays that are not wanted
   std::vector<Complex> sought_;     ///< exponents of the slowest decays
   std::vector<Complex> all_found_;  ///< exponents by the search, also outside the region
   ModeSet set_;
