@@ -88,8 +88,8 @@ class OperationFinder final : public CampbellPointFinder {
 };
 
 std::string origin_of(const std::string& case_text, const std::string& value) {
-  return std::string("samara ") + version + "\n" + petsc::Session::options() + "\n" + value + "\n" +
-         case_text;
+  return std::string("samara ") + version + ", points with numbers of modes\n" +
+         petsc::Session::options() + "\n" + value + "\n" + case_text;
 }
 
 /// Halves the place of an edge until it is accurate, a point has no modes, or the user interrupts.

@@ -29,18 +29,18 @@ SETTINGS = ["floquet.steps=800", "blades.elements=2", "blades.order=6", "tower.e
 
 # Number of the figure, its title and frequency per revolution in the article, label in Samara.
 MODES = [
-    (3, "First symmetric flapping mode", 0.320, "blade flap symmetric 1"),
-    (4, "Second symmetric flapping mode", 4.710, "blade flap symmetric 2"),
-    (5, "First antisymmetric flapping mode", 2.624, "blade flap antisymmetric 1"),
-    (6, "Second antisymmetric flapping mode", 9.583, "blade flap antisymmetric 2"),
-    (7, "First symmetric torsion mode", 13.936, "blade torsion symmetric 1"),
-    (8, "Second symmetric torsion mode", 41.610, "blade torsion symmetric 2"),
-    (9, "First antisymmetric torsion mode", 13.935, "blade torsion antisymmetric 1"),
-    (10, "Second antisymmetric torsion mode", 41.662, "blade torsion antisymmetric 2"),
-    (11, "First symmetric lead-lag mode", 0.491, "blade lead-lag symmetric 1"),
-    (12, "Second symmetric lead-lag mode", 4.465, "blade lead-lag symmetric 2"),
-    (13, "First antisymmetric lead-lag mode", 0.655, "blade lead-lag antisymmetric 1"),
-    (14, "Second antisymmetric lead-lag mode", 5.345, "blade lead-lag antisymmetric 2"),
+    (3, "First symmetric flapping mode", 0.320, "1st blade flap symmetric"),
+    (4, "Second symmetric flapping mode", 4.710, "2nd blade flap symmetric"),
+    (5, "First antisymmetric flapping mode", 2.624, "1st blade flap antisymmetric"),
+    (6, "Second antisymmetric flapping mode", 9.583, "2nd blade flap antisymmetric"),
+    (7, "First symmetric torsion mode", 13.936, "1st blade torsion symmetric"),
+    (8, "Second symmetric torsion mode", 41.610, "2nd blade torsion symmetric"),
+    (9, "First antisymmetric torsion mode", 13.935, "1st blade torsion antisymmetric"),
+    (10, "Second antisymmetric torsion mode", 41.662, "2nd blade torsion antisymmetric"),
+    (11, "First symmetric lead-lag mode", 0.491, "1st blade lead-lag symmetric"),
+    (12, "Second symmetric lead-lag mode", 4.465, "2nd blade lead-lag symmetric"),
+    (13, "First antisymmetric lead-lag mode", 0.655, "1st blade lead-lag antisymmetric"),
+    (14, "Second antisymmetric lead-lag mode", 5.345, "2nd blade lead-lag antisymmetric"),
 ]
 HEADS = ["Figure", "mode", "article", "Samara", "blade tip", "tower fore-aft [m]", "tower side-side [m]", "yaw [deg]",
          "teeter [deg]", "yaw at +1, -1 [deg]"]

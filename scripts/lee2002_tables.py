@@ -25,24 +25,24 @@ FINE = {"steps": 2400, "order": 6, "elements": 2}  # relative errors of frequenc
 # Mode of the paper, label of Samara, printed values: Table II (2, 3, 4 elements), Table III (10, 100,
 # 1000, rigid). The modes yaw and teeter do not oscillate here; the text of the page describes them.
 PRINT = [
-    ("1st tower side-side", "tower side-side 1", (0.282, 0.291, 0.292), (0.219, 0.292, 0.760, None)),
-    ("2nd tower side-side", "tower side-side 2", (14.711, 8.711, 8.377), (3.164, 8.377, 22.225, None)),
-    ("1st tower fore-aft", "tower fore-aft 1", (0.930, 0.938, 0.938), (0.920, 0.938, 1.494, None)),
-    ("2nd tower fore-aft", "tower fore-aft 2", (11.785, 8.052, 7.615), (4.584, 7.615, 23.985, None)),
-    ("1st tower torsion", "tower torsion 1", (56.940, 56.824, 56.431), (21.460, 56.431, 148.091, None)),
-    ("2nd tower torsion", "tower torsion 2", (99.990, 98.128, 97.049), (79.450, 97.049, 235.723, None)),
-    ("1st symm. flap", "blade flap symmetric 1", (0.315, 0.317, 0.320), (0.217, 0.320, 0.667, 0.802)),
-    ("1st antisymm. flap", "blade flap antisymmetric 1", (3.410, 2.935, 2.624), (2.624, 2.624, 2.624, 2.624)),
-    ("2nd symm. flap", "blade flap symmetric 2", (8.365, 5.937, 4.710), (4.660, 4.710, 4.737, 5.495)),
-    ("2nd antisymm. flap", "blade flap antisymmetric 2", (23.748, 12.500, 9.583), (9.578, 9.583, 9.583, 9.583)),
-    ("1st symm. torsion", "blade torsion symmetric 1", (15.482, 14.078, 13.936), (13.937, 13.936, 13.937, 13.937)),
-    ("1st antisymm. torsion", "blade torsion antisymmetric 1", (14.822, 14.123, 13.935), (14.093, 13.935, 13.947, 13.972)),
-    ("2nd symm. torsion", "blade torsion symmetric 2", (46.212, 43.471, 41.610), (41.610, 41.610, 41.610, 41.610)),
-    ("2nd antisymm. torsion", "blade torsion antisymmetric 2", (46.233, 43.459, 41.662), (41.724, 41.662, 41.610, 41.620)),
-    ("1st symm. lead-lag", "blade lead-lag symmetric 1", (0.498, 0.490, 0.491), (0.467, 0.491, 0.494, 0.496)),
-    ("1st antisymm. lead-lag", "blade lead-lag antisymmetric 1", (0.662, 0.654, 0.655), (0.477, 0.655, 0.633, 0.639)),
-    ("2nd symm. lead-lag", "blade lead-lag symmetric 2", (7.408, 5.399, 4.465), (4.223, 4.465, 5.300, 5.356)),
-    ("2nd antisymm. lead-lag", "blade lead-lag antisymmetric 2", (7.589, 5.550, 5.345), (4.660, 5.345, 5.647, 5.588)),
+    ("1st tower side-side", "1st tower side-side", (0.282, 0.291, 0.292), (0.219, 0.292, 0.760, None)),
+    ("2nd tower side-side", "2nd tower side-side", (14.711, 8.711, 8.377), (3.164, 8.377, 22.225, None)),
+    ("1st tower fore-aft", "1st tower fore-aft", (0.930, 0.938, 0.938), (0.920, 0.938, 1.494, None)),
+    ("2nd tower fore-aft", "2nd tower fore-aft", (11.785, 8.052, 7.615), (4.584, 7.615, 23.985, None)),
+    ("1st tower torsion", "1st tower torsion", (56.940, 56.824, 56.431), (21.460, 56.431, 148.091, None)),
+    ("2nd tower torsion", "2nd tower torsion", (99.990, 98.128, 97.049), (79.450, 97.049, 235.723, None)),
+    ("1st symm. flap", "1st blade flap symmetric", (0.315, 0.317, 0.320), (0.217, 0.320, 0.667, 0.802)),
+    ("1st antisymm. flap", "1st blade flap antisymmetric", (3.410, 2.935, 2.624), (2.624, 2.624, 2.624, 2.624)),
+    ("2nd symm. flap", "2nd blade flap symmetric", (8.365, 5.937, 4.710), (4.660, 4.710, 4.737, 5.495)),
+    ("2nd antisymm. flap", "2nd blade flap antisymmetric", (23.748, 12.500, 9.583), (9.578, 9.583, 9.583, 9.583)),
+    ("1st symm. torsion", "1st blade torsion symmetric", (15.482, 14.078, 13.936), (13.937, 13.936, 13.937, 13.937)),
+    ("1st antisymm. torsion", "1st blade torsion antisymmetric", (14.822, 14.123, 13.935), (14.093, 13.935, 13.947, 13.972)),
+    ("2nd symm. torsion", "2nd blade torsion symmetric", (46.212, 43.471, 41.610), (41.610, 41.610, 41.610, 41.610)),
+    ("2nd antisymm. torsion", "2nd blade torsion antisymmetric", (46.233, 43.459, 41.662), (41.724, 41.662, 41.610, 41.620)),
+    ("1st symm. lead-lag", "1st blade lead-lag symmetric", (0.498, 0.490, 0.491), (0.467, 0.491, 0.494, 0.496)),
+    ("1st antisymm. lead-lag", "1st blade lead-lag antisymmetric", (0.662, 0.654, 0.655), (0.477, 0.655, 0.633, 0.639)),
+    ("2nd symm. lead-lag", "2nd blade lead-lag symmetric", (7.408, 5.399, 4.465), (4.223, 4.465, 5.300, 5.356)),
+    ("2nd antisymm. lead-lag", "2nd blade lead-lag antisymmetric", (7.589, 5.550, 5.345), (4.660, 5.345, 5.647, 5.588)),
 ]
 
 # Modes whose label differs from the paper's row, by run: chosen by shape, and marked in the tables.
@@ -51,27 +51,27 @@ PRINT = [
 # the blades.
 BY_SHAPE = {
     "2 elements": {
-        "tower side-side 1": "blade lead-lag antisymmetric 1",
-        "tower side-side 2": "tower side-side",
-        "blade lead-lag antisymmetric 1": "blade lead-lag antisymmetric 2",
-        "blade lead-lag antisymmetric 2": "blade lead-lag",
+        "1st tower side-side": "1st blade lead-lag antisymmetric",
+        "2nd tower side-side": "tower side-side",
+        "1st blade lead-lag antisymmetric": "2nd blade lead-lag antisymmetric",
+        "2nd blade lead-lag antisymmetric": "blade lead-lag",
     },
     "ratio 10": {
-        "blade lead-lag symmetric 1": "tower side-side 2",
-        "tower side-side 2": "tower side-side 3",
-        "blade lead-lag symmetric 2": "tower side-side 4",
+        "1st blade lead-lag symmetric": "2nd tower side-side",
+        "2nd tower side-side": "3rd tower side-side",
+        "2nd blade lead-lag symmetric": "4th tower side-side",
     },
     "ratio 10, fine": {
-        "blade lead-lag symmetric 1": "tower side-side 2",
-        "tower side-side 2": "tower side-side 3",
-        "blade lead-lag symmetric 2": "tower side-side 4",
-        "blade lead-lag antisymmetric 2": "tower fore-aft 4",
+        "1st blade lead-lag symmetric": "2nd tower side-side",
+        "2nd tower side-side": "3rd tower side-side",
+        "2nd blade lead-lag symmetric": "4th tower side-side",
+        "2nd blade lead-lag antisymmetric": "4th tower fore-aft",
     },
 }
 
 # Frequencies of these modes are those of the tower, in the fixed frame. In the rotating frame they are
 # higher by this number per revolution.
-IN_ROTOR = {("ratio 10, fine", "tower fore-aft 4"): 1.0}
+IN_ROTOR = {("ratio 10, fine", "4th tower fore-aft"): 1.0}
 
 
 def fold_distance(a, b):

@@ -28,12 +28,12 @@ BLADE_AXES = {1: np.column_stack((N3, N1, N2)), 2: np.column_stack((-N3, -N1, N2
 
 # Label, title, horizontal direction of the view.
 PANELS = [
-    ("tower fore-aft 1", "tower fore-aft", N2),
-    ("blade flap symmetric 1", "flap, symmetric", N2),
-    ("blade flap antisymmetric 1", "flap, antisymmetric", N2),
-    ("tower side-side 1", "tower side-side", N1),
-    ("blade lead-lag symmetric 1", "lead-lag, symmetric", N1),
-    ("blade lead-lag antisymmetric 1", "lead-lag, antisymmetric", N1),
+    ("1st tower fore-aft", "tower fore-aft", N2),
+    ("1st blade flap symmetric", "flap, symmetric", N2),
+    ("1st blade flap antisymmetric", "flap, antisymmetric", N2),
+    ("1st tower side-side", "tower side-side", N1),
+    ("1st blade lead-lag symmetric", "lead-lag, symmetric", N1),
+    ("1st blade lead-lag antisymmetric", "lead-lag, antisymmetric", N1),
 ]
 TOWER_COLOR, BLADE_COLOR = "#b04a00", "#1f5f9e"
 

@@ -323,7 +323,7 @@ def main(arguments=None):
     parser = _Parser(prog="samara export", description="Writes an animation for ParaView: NAME.pvd and its frames in "
                      "NAME/. Without --mode, --label and --steady: the first mode that oscillates; of samara trim the "
                      "periodic steady state, of samara static its states, of samara transient its rows.",
-                     epilog="example: samara export lee.h5 -o flap.pvd --label \"blade flap symmetric 1\" --held")
+                     epilog="example: samara export lee.h5 -o flap.pvd --label \"1st blade flap symmetric\" --held")
     parser.add_argument("result", metavar="RESULT.h5")
     parser.add_argument("-o", dest="output", required=True, metavar="NAME.pvd")
     what = parser.add_mutually_exclusive_group()

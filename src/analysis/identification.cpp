@@ -13,6 +13,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "samara/base/format.hpp"
+
 #include "strain_energy.hpp"
 
 namespace samara::analysis {
@@ -30,6 +32,9 @@ constexpr double same_size = 1e-6;
 /// `many_errors` times their errors by round-off.
 constexpr double degenerate = 1e-7;
 constexpr double many_errors = 4.0;
+/// Part of the largest strain energy of a place along a part, below which the sign of the load
+/// there has no meaning.
+constexpr double least_energy = 0.02;
 
 /// Groups of two or more exponents that are the same, each group a chain of neighbours; zeros are
 /// left out. `apart`: for each exponent, the largest relative difference from one that is the same.
@@ -100,11 +105,58 @@ system::Motion strained_motion(const system::PeriodicSystem& system, const Eigen
   return {{system::PartKind::body, "mode"}};
 }
 
-const char* word_of(int n, int instances) {
+const char* word_of(const LeadingMotion& leading, int instances) {
+  if (leading.cyclic != CyclicMotion::none)
+    return leading.cyclic == CyclicMotion::cosine ? " cosine-cyclic" : " sine-cyclic";
+  const int n = leading.component;
+  if (n < 0) return "";
   if (instances == 2) return n == 0 ? " symmetric" : " antisymmetric";
   if (n == 0) return " collective";
   if (n == 1) return " regressive";
   return n == instances - 1 ? " progressive" : " reactionless";
+}
+
+/// Number of a mode of a part that deforms, by its shape: the load that its motion restores changes
+/// its sign (number - 1) times along the part. Thus the number is known where other modes of the
+/// motion are not. 0: the part has too few places, or the motion no such load.
+int shape_number(const system::PeriodicSystem& system, const system::Motion& motion,
+                 const Eigen::MatrixXcd& shape) {
+  struct Place {
+    Eigen::Index load;
+    double energy;
+  };
+  using Load = std::pair<int, std::string>;  // instance of the part, quantity
+  std::map<Load, std::vector<Place>> loads;  // from the root of the part to its tip
+  std::map<Load, double> energies;
+  for (const EnergyGroup& group : system.energy_groups()) {
+    if (group.kind != EnergyGroup::Kind::strain || group.unknowns.size() != 1 ||
+        group.owner.kind != motion.owner.kind || motion_name(group) != motion.name())
+      continue;
+    const Eigen::Index load = group.unknowns.front();
+    const double energy = group.weight.front() * shape.row(load).squaredNorm();
+    const Load key{group.owner.instance,
+                   system.unknowns()[static_cast<std::size_t>(load)].quantity};
+    loads[key].push_back({load, energy});
+    energies[key] += energy;
+  }
+  if (energies.empty()) return 0;
+  const std::vector<Place>& places =
+      loads[std::ranges::max_element(energies, {}, [](const auto& one) {
+              return one.second;
+            })->first];
+  const Place& largest = *std::ranges::max_element(places, {}, &Place::energy);
+  if (!(largest.energy > 0.0)) return 0;
+  int number = 1;
+  bool is_positive = true;
+  bool is_first = true;
+  for (const Place& place : places) {
+    if (place.energy < least_energy * largest.energy) continue;
+    const bool sign = shape.row(largest.load).dot(shape.row(place.load)).real() > 0.0;
+    if (!is_first && sign != is_positive) ++number;
+    is_positive = sign;
+    is_first = false;
+  }
+  return 2 * number <= static_cast<int>(places.size()) ? number : 0;
 }
 
 /// Name of a mode, in two parts.
@@ -290,14 +342,21 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
                        ""});
       continue;
     }
-    const int component = leading[m].component;
-    names.push_back({leading[m].motion, component < 0 ? "" : word_of(component, set.instances)});
+    names.push_back({leading[m].motion, word_of(leading[m], set.instances)});
   }
   const bool canonical = has_canonical_shapes(system) && set.shape_times.size() == 1;
   unite_degenerate(set, sectors, canonical, names);
   for (std::size_t m = 0; m < names.size(); ++m) {
     Mode& mode = set.modes[m];
     mode.name = names[m].text();
+    const system::Motion& motion = names[m].motion;
+    const bool is_mixture = leading.empty() || motion.direction != leading[m].motion.direction;
+    const bool has_pattern =
+        !names[m].together.empty() && (leading.empty() || leading[m].cyclic == CyclicMotion::none);
+    mode.shares_number =
+        is_mixture || (set.instances > 1 && motion.owner.instance > 0 && !has_pattern);
+    mode.shape_number =
+        shape_number(system, leading.empty() ? motion : leading[m].motion, set.shapes[m]);
     const double frequency = mode.exponent.imag();
     const bool is_rotating = names[m].motion.owner.instance > 0;
     const bool is_clear = leading.empty() || mode.state || leading[m].is_clear;
@@ -355,11 +414,23 @@ void arrange_modes(ModeSet& set) {
   for (const Mode& mode : set.modes)
     if (mode.resolved) ++alike[mode.name];
   std::map<std::string, int> number;
+  std::map<std::string, int> same;
   for (Mode& mode : set.modes) {
-    const int own = ++number[mode.name];
-    const bool has_number = !mode.name.empty() && (alike[mode.name] > 1 || own > 1);
-    mode.label = mode.name + (has_number ? " " + std::to_string(own) : "");
+    int& last = number[mode.name];
+    const bool is_shared = mode.shares_number && mode.shape_number > 0;
+    const int own = is_shared ? mode.shape_number : std::max(last + 1, mode.shape_number);
+    last = std::max(last, own);
+    const bool has_number =
+        !mode.name.empty() && (alike[mode.name] > 1 || own > 1 || mode.shape_number > 0);
+    mode.number = has_number ? own : 0;
+    mode.label = has_number ? ordinal(own) + " " + mode.name : mode.name;
+    if (is_shared) ++same[mode.label];
   }
+  // Blades that move without a common pattern have several modes of one number.
+  std::map<std::string, int> place;
+  for (Mode& mode : set.modes)
+    if (const auto all = same.find(mode.label); all != same.end() && all->second > 1)
+      mode.label += " (" + std::to_string(++place[all->first]) + ")";
 }
 
 }  // namespace samara::analysis

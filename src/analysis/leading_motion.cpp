@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include <Eigen/QR>
@@ -246,6 +247,35 @@ Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, in
   return total > 0.0 ? Eigen::VectorXd(shares / total) : Eigen::VectorXd();
 }
 
+/// How three or more blades at rest move against each other; `none` where they move alike for the
+/// most part, or in patterns of higher order.
+CyclicMotion cyclic_motion(const std::vector<system::Motion>& motions, int count,
+                           const system::Motion& one, const Eigen::MatrixXcd& shape) {
+  std::vector<const system::Motion*> alike;
+  for (const system::Motion& motion : motions)
+    if (motion.is_alike(one)) alike.push_back(&motion);
+  if (static_cast<int>(alike.size()) != count) return CyclicMotion::none;
+  double cosine = 0.0;
+  double sine = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i) {
+    const double weight = alike.front()->weight[i];
+    Eigen::RowVectorXcd of_cosine = Eigen::RowVectorXcd::Zero(shape.cols());
+    Eigen::RowVectorXcd of_sine = of_cosine;
+    for (int k = 0; k < count; ++k) {
+      const auto row = shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
+      const double angle = 2.0 * std::numbers::pi * k / count;
+      of_cosine += std::sqrt(2.0 / count) * std::cos(angle) * row;
+      of_sine += std::sqrt(2.0 / count) * std::sin(angle) * row;
+      all += weight * row.squaredNorm();
+    }
+    cosine += weight * of_cosine.squaredNorm();
+    sine += weight * of_sine.squaredNorm();
+  }
+  if (!(cosine + sine > clear_share * all)) return CyclicMotion::none;
+  return cosine > sine ? CyclicMotion::cosine : CyclicMotion::sine;
+}
+
 /// The states of `one` and of the identical parts, as motions.
 std::vector<system::Motion> motions_of_states(const system::PeriodicSystem& system,
                                               const system::Owner& one) {
@@ -309,6 +339,11 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
       // opposite order.
       if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
         one.component = count - one.component;
+    }
+    if (motion.owner.instance > 0 && count > 2 && set.rotor_speed == 0.0) {
+      const Eigen::VectorXd shares = multiblade_shares(motions, count, motion, set.shapes[m]);
+      if (shares.size() > 0 && shares(0) > clear_share) one.component = 0;
+      one.cyclic = cyclic_motion(motions, count, motion, set.shapes[m]);
     }
     leading.push_back(one);
   }

@@ -28,6 +28,16 @@ std::string count(int number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
+std::string ordinal(int number) {
+  const int last = number % 10;
+  const bool is_teen = number / 10 % 10 == 1;
+  const char* ending = is_teen || last == 0 || last > 3 ? "th"
+                       : last == 1                      ? "st"
+                       : last == 2                      ? "nd"
+                                                        : "rd";
+  return std::to_string(number) + ending;
+}
+
 std::string shortest(double value) {
   constexpr double most_exact = 1e15;
   std::array<char, 32> text{};

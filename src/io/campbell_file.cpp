@@ -45,7 +45,7 @@ constexpr char participation_name[] = "/point/participation";
 constexpr char signals_name[] = "/point/signals";
 
 constexpr std::size_t point_values = 7;
-constexpr std::size_t mode_values = 7;
+constexpr std::size_t mode_values = 8;
 
 Meaning plain(const std::vector<std::string>& axes) { return {"1", "none", "internal", axes}; }
 
@@ -181,9 +181,10 @@ void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) 
     std::vector<double> shares;
     std::vector<std::string> names;
     for (const CampbellMode& mode : content.modes) {
-      numbers.insert(numbers.end(), {mode.exponent.real(), mode.exponent.imag(),
-                                     mode.fixed_frame_frequency, mode.error, mode.growth_error,
-                                     static_cast<double>(mode.motion), mode.is_rough ? 1.0 : 0.0});
+      numbers.insert(numbers.end(),
+                     {mode.exponent.real(), mode.exponent.imag(), mode.fixed_frame_frequency,
+                      mode.error, mode.growth_error, static_cast<double>(mode.motion),
+                      mode.is_rough ? 1.0 : 0.0, static_cast<double>(mode.number)});
       shares.insert(shares.end(), mode.participation.begin(), mode.participation.end());
       names.push_back(mode.name);
     }
@@ -246,6 +247,7 @@ std::optional<CampbellPoint> CampbellPointFiles::read(std::size_t point) const {
     mode.growth_error = own[4];
     mode.motion = static_cast<simulation::Motion>(static_cast<int>(own[5]));
     mode.is_rough = own[6] != 0.0;
+    mode.number = static_cast<int>(own[7]);
     mode.name = names[m];
     mode.participation.assign(shares.begin() + static_cast<long>(m * harmonics),
                               shares.begin() + static_cast<long>((m + 1) * harmonics));

@@ -9,6 +9,7 @@
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/analysis/floquet.hpp"
 #include "samara/analysis/ranks.hpp"
+#include "samara/base/format.hpp"
 #include "samara/simulation/held_air.hpp"
 
 namespace samara::simulation {
@@ -46,7 +47,7 @@ void take_modes(const turbine::TurbineSystem& system, const ModeSet& set, Campbe
     const Mode& mode = set.modes[m];
     point.modes.push_back({mode.exponent, mode.fixed_frame_frequency, total_error(mode),
                            mode.growth_error, assessment.motions[m], is_rough(mode), mode.name,
-                           participation_of(set, m)});
+                           mode.number, participation_of(set, m)});
     m = point.modes.size() - 1;
   }
 }
@@ -90,14 +91,28 @@ std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& 
   return std::nullopt;
 }
 
-std::string most_frequent_name(const std::vector<CampbellPoint>& points,
-                               const std::vector<TrackedMode>& line) {
-  std::map<std::string, int> turning;
-  std::map<std::string, int> at_rest;
-  for (const TrackedMode& tracked : line)
-    ++(points[tracked.point].rotor_speed > 0.0 ? turning : at_rest)[mode_of(points, tracked).name];
-  const std::map<std::string, int>& names = turning.empty() ? at_rest : turning;
-  return std::ranges::max_element(names, {}, [](const auto& name) { return name.second; })->first;
+/// Name of a line, and its number among the lines of this name; 0: none.
+struct LineName {
+  std::string name;
+  int number = 0;
+};
+
+LineName most_frequent_name(const std::vector<CampbellPoint>& points,
+                            const std::vector<TrackedMode>& line) {
+  std::map<std::string, std::map<int, int>> turning;  // how often each number of a name
+  std::map<std::string, std::map<int, int>> at_rest;
+  for (const TrackedMode& tracked : line) {
+    const CampbellMode& mode = mode_of(points, tracked);
+    ++(points[tracked.point].rotor_speed > 0.0 ? turning : at_rest)[mode.name][mode.number];
+  }
+  const auto& names = turning.empty() ? at_rest : turning;
+  const auto& [name, numbers] = *std::ranges::max_element(names, {}, [](const auto& one) {
+    int count = 0;
+    for (const auto& [number, times] : one.second) count += times;
+    return count;
+  });
+  return {name,
+          std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first};
 }
 
 }  // namespace
@@ -186,22 +201,30 @@ std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
 
 std::vector<CampbellLine> name_lines(const std::vector<CampbellPoint>& points,
                                      const std::vector<std::vector<TrackedMode>>& lines) {
-  std::vector<std::pair<double, CampbellLine>> sorted;
+  struct Named {
+    double frequency;
+    LineName name;
+    const std::vector<TrackedMode>* modes;
+  };
+  std::vector<Named> sorted;
   for (const std::vector<TrackedMode>& line : lines) {
     const TrackedMode& middle = line[line.size() / 2];
-    sorted.emplace_back(std::abs(tracked_exponent(mode_of(points, middle).exponent, middle,
-                                                  points[middle.point].rotor_speed)
-                                     .imag()),
-                        CampbellLine{most_frequent_name(points, line), line});
+    sorted.push_back({std::abs(tracked_exponent(mode_of(points, middle).exponent, middle,
+                                                points[middle.point].rotor_speed)
+                                   .imag()),
+                      most_frequent_name(points, line), &line});
   }
-  std::ranges::stable_sort(sorted, {}, [](const auto& line) { return line.first; });
+  std::ranges::stable_sort(sorted, {}, &Named::frequency);
   std::map<std::string, int> alike;
-  for (const auto& [frequency, line] : sorted) ++alike[line.name];
-  std::map<std::string, int> number;
+  for (const Named& line : sorted) ++alike[line.name.name];
+  std::map<std::string, int> numbers;
   std::vector<CampbellLine> result;
-  for (auto& [frequency, line] : sorted) {
-    if (alike[line.name] > 1) line.name += " " + std::to_string(++number[line.name]);
-    result.push_back(std::move(line));
+  for (const Named& line : sorted) {
+    const auto& [name, number] = line.name;
+    int& last = numbers[name];
+    last = std::max(last + 1, number);
+    const bool has_number = number > 0 || alike[name] > 1;
+    result.push_back({has_number ? ordinal(last) + " " + name : name, *line.modes});
   }
   return result;
 }

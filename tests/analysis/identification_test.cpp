@@ -255,14 +255,14 @@ BOOST_AUTO_TEST_CASE(a_system_that_does_not_know_its_motions_is_named_by_its_str
   const analysis::PeriodicSolution rest(Eigen::MatrixXd::Zero(16, 1), 1.0);
   name_modes(system, find_leading_motions(system, rest, set), set);
   arrange_modes(set);
-  const std::vector<std::string> wanted{"yaw 1",
-                                        "blade flap 1",
-                                        "blade flap 2",
-                                        "blade lead-lag 1",
-                                        "blade lead-lag 2",
+  const std::vector<std::string> wanted{"1st yaw",
+                                        "1st blade flap",
+                                        "2nd blade flap",
+                                        "1st blade lead-lag",
+                                        "2nd blade lead-lag",
                                         "tower fore-aft",
-                                        "blade flap 3",
-                                        "yaw 2",
+                                        "3rd blade flap",
+                                        "2nd yaw",
                                         "teeter"};
   for (std::size_t i = 0; i < wanted.size(); ++i) BOOST_TEST(set.modes[i].label == wanted[i]);
 }
@@ -293,17 +293,17 @@ BOOST_AUTO_TEST_CASE(the_order_of_modes_is_that_of_their_exponents_whatever_the_
                                            mode_of("blade lead-lag", Complex(0.0, 5.0)),
                                            mode_of("blade lead-lag", Complex(-3.0, 4.0)),
                                            mode_of("tower side-side", Complex(0.0, 0.1), false)};
-  const std::vector<std::string> names{"yaw 1",
-                                       "yaw 2",
+  const std::vector<std::string> names{"1st yaw",
+                                       "2nd yaw",
                                        "rotor rotation",
-                                       "teeter 1",
-                                       "teeter 2",
+                                       "1st teeter",
+                                       "2nd teeter",
                                        "tower side-side",
                                        "blade flap",
                                        "tower fore-aft",
-                                       "blade lead-lag 1",
-                                       "blade lead-lag 2",
-                                       "tower side-side 2"};
+                                       "1st blade lead-lag",
+                                       "2nd blade lead-lag",
+                                       "2nd tower side-side"};
   std::minstd_rand random(1);
   std::uniform_real_distribution<double> round_off(-1e-10, 1e-10);
   for (int trial = 0; trial < 50; ++trial) {

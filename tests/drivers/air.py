@@ -49,7 +49,7 @@ class Commands(ProgramTest):
             work = group["air_work"][:]
             self.assertEqual(work.shape, (len(labels), 3, 6))
             whole = (work * group["air_length"][:]).sum(axis=(1, 2))
-            for mode in ("blade flap collective 1", "tower fore-aft 1"):
+            for mode in ("1st blade flap collective", "1st tower fore-aft"):
                 i = labels.index(mode)
                 self.assertLess(held[i], 0.5 * group["damping_ratio"][i], mode)
                 self.assertLess(whole[i], 0, mode)  # the air takes energy out

@@ -249,7 +249,7 @@ class Campbell(ProgramTest):
             numpy.testing.assert_allclose(found["rotor_speed"], file["operation/rotor_speed"][:],
                                           rtol=1e-6)
         numpy.testing.assert_array_equal(found["wind_speed"], found["value"])
-        line = found["mode"].index("blade flap collective 1")
+        line = found["mode"].index("1st blade flap collective")
         self.assertTrue((found["damping_ratio"][line] > 0.2).all())  # by the air
 
 

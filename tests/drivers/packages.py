@@ -190,7 +190,7 @@ class Packages(unittest.TestCase):
                        "PYTHONPATH": str(self.prefix / "lib/python3/dist-packages")}
         unpacked = run(program, "floquet", self.prefix / BASELINE, "-o", "r.h5", cwd=place, env=environment)
         built = run(PROGRAM, "floquet", SOURCE / "inputs/lee2002/baseline.yaml", "-o", "b.h5", cwd=place, env=environment)
-        self.assertIn("tower fore-aft 1", unpacked)
+        self.assertIn("1st tower fore-aft", unpacked)
         self.assertEqual(unpacked.replace("r.h5", "b.h5"), built)
         run(program, "new", "three-bladed", "x", cwd=place, env=environment)
         run(program, "check", "x.yaml", cwd=place, env=environment)

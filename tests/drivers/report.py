@@ -275,8 +275,8 @@ class Page(Results):
 
     def test_the_summary_has_the_masses_and_the_growing_mode(self):
         text = self.find("#results").text
-        self.assertIn("1 resolved mode grows by more than the estimated error: teeter 1 (doubles in 2.54 s)", text)
-        self.assertIn("unstable: 1 mode grows: teeter 1 doubles in 2.54 s", self.printed["lee"])
+        self.assertIn("1 resolved mode grows by more than the estimated error: 1st teeter (doubles in 2.54 s)", text)
+        self.assertIn("unstable: 1 mode grows: 1st teeter doubles in 2.54 s", self.printed["lee"])
         self.assertIn("samara floquet", text)
         with h5py.File(self.folder / "lee.h5") as file:
             masses = {name.replace("_", " "): value[()] for name, value in file["model/mass"].items()}
@@ -330,11 +330,11 @@ class Page(Results):
     def test_a_chosen_mode_moves_and_stops(self):
         self.wait_for_picture()
         names = self.browser.find_elements(By.CSS_SELECTOR, ".modes tbody button")
-        button = next(name for name in names if name.text == "tower side-side 1")
+        button = next(name for name in names if name.text == "1st tower side-side")
         button.send_keys(Keys.ENTER)
         self.assertEqual(button.get_attribute("aria-pressed"), "true")
         motion = Select(self.control("Motion"))
-        self.assertTrue(motion.first_selected_option.text.startswith("tower side-side 1"))
+        self.assertTrue(motion.first_selected_option.text.startswith("1st tower side-side"))
         play = self.find(".controls button.main")
         self.assertEqual(play.text, "Pause")
         canvas = self.find(".stage canvas")
@@ -388,7 +388,7 @@ class Page(Results):
     def test_between_the_samples_a_mode_has_its_own_frequency(self):
         # The tower does not turn: it oscillates with the frequency of its mode, twelve times that of the rotor.
         with h5py.File(self.folder / "lee.h5") as file:
-            m = list(file["floquet/label"].asstr()[:]).index("tower fore-aft 2")
+            m = list(file["floquet/label"].asstr()[:]).index("2nd tower fore-aft")
             node = list(file["geometry/part"].asstr()[:]).index("tower") + 3
             omega, speed = file["floquet/exponents"][m, 1], file["floquet"].attrs["rotor_speed"]
             self.assertGreater(abs(file["floquet/harmonic"][m]), len(file["geometry/time"]) // 2)
@@ -424,7 +424,7 @@ class Page(Results):
         with h5py.File(self.folder / "sweep.h5") as file:
             group = file["campbell"]
             modes = group["mode"].asstr()[:]
-            label = "tower fore-aft 2"
+            label = "2nd tower fore-aft"
             line, point = list(modes).index(label), 1
             frequency, damping = group["frequency_hz"][line, point], group["damping_ratio"][line, point]
             value = group["value"][point]
@@ -442,7 +442,7 @@ class Page(Results):
         self.assertEqual(self.find(".modes tr.chosen th").text, label)
         self.assertTrue(Select(self.control("Motion")).first_selected_option.text.startswith(label))
         buttons = self.browser.find_elements(By.CSS_SELECTOR, ".lines button")
-        other = next(button for button in buttons if button.text == "blade lead-lag symmetric 1")
+        other = next(button for button in buttons if button.text == "1st blade lead-lag symmetric")
         line = list(modes).index(other.text)
         self.js("arguments[0].focus()", other)
         other.send_keys(Keys.ARROW_RIGHT)
@@ -450,7 +450,7 @@ class Page(Results):
             wanted = f"{file['campbell/frequency_hz'][line, 1]:.4f} Hz"
         self.assertIn(wanted, self.find("#campbell .told").text)
         other.send_keys(Keys.ENTER)
-        self.assertEqual(self.js("return samara.selection.label"), "blade lead-lag symmetric 1")
+        self.assertEqual(self.js("return samara.selection.label"), "1st blade lead-lag symmetric")
         numbers = self.js("""return [...document.querySelectorAll('#campbell details table')].map(table =>
             Object.fromEntries([...table.tBodies[0].rows].map(row => [row.cells[0].textContent,
                 [...row.cells].slice(1).map(cell => cell.textContent)])))""")

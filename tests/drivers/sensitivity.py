@@ -53,7 +53,7 @@ class Sensitivity(ProgramTest):
             text, errors = run.communicate(timeout=LONGEST_RUN)
             self.assertEqual(run.returncode, 130, "the run has ended before the signal")
             delay *= 1.5
-        self.assertIn("tower fore-aft 1", text)
+        self.assertIn("1st tower fore-aft", text)
         with h5py.File(self.folder / "run.h5") as file:
             self.assertGreater(len(file["floquet/exponents"]), 6)
             self.assertNotIn("sensitivity", file["floquet"])

@@ -236,7 +236,7 @@ class Cantilever(ProgramTest):
         self.succeed("new", "beam", "beam.yaml")
         self.succeed("modes", "beam.yaml", "--parked", "--set", "blades.sections=[{at: 0, mass: 1, inertia: [2e-4, 1e-4, "
                      "1e-4], stiffness: {EA: 1e8, GA2: 4e7, GA3: 4e7, GJ: 8, EI2: 1e6, EI3: 4e6}}]", "-o", "t.h5")
-        mode = shapes.find_mode(shapes.modes_of(samara.open_result(self.folder / "t.h5")), "", label="blade torsion 1")
+        mode = shapes.find_mode(shapes.modes_of(samara.open_result(self.folder / "t.h5")), "", label="1st blade torsion")
         self.assertAlmostEqual(mode.frequency_hz / (math.sqrt(8 / 2e-4) / 40.0), 1.0, delta=0.01)
         values = mode.normalised().deflections("blade 1")[0, :, 2]
         wanted = math.radians(10.0) * numpy.sin(0.5 * math.pi * mode.turbine.station[mode.turbine.parts["blade 1"]])
@@ -254,7 +254,7 @@ class Pictures(ProgramTest):
         run = self.plot("f.h5", "shapes", "--modes", "8", "-o", "mode.svg")
         self.assertEqual((run.returncode, run.stdout), (0, "picture: mode.svg\n"), run.stderr)
         text = (self.folder / "mode.svg").read_text(encoding="utf-8")
-        for word in ("mode 8, blade lead-lag antisymmetric 1", "3.302 Hz = 3.447 per rev", "blade in plane [m]",
+        for word in ("mode 8, 1st blade lead-lag antisymmetric", "3.302 Hz = 3.447 per rev", "blade in plane [m]",
                      "blade torsion [deg]", "tower fore-aft [m]", "azimuth of blade 1 [deg]", "displacements x"):
             self.assertIn(word, text)
         run = self.plot("f.h5", "shapes", "--modes", "5,9", "-o", "m.png")
@@ -264,7 +264,7 @@ class Pictures(ProgramTest):
             self.assertGreater((self.folder / name).stat().st_size, 10000)
         # The drawn line is that of the unknowns: the tips of the antisymmetric lead-lag, at most 1 m as a displacement.
         result = samara.open_result(self.folder / "f.h5")
-        figure = samara.plot.mode_shape(result, label="blade lead-lag antisymmetric 1")
+        figure = samara.plot.mode_shape(result, label="1st blade lead-lag antisymmetric")
         lines = [line for line in figure.axes[1].get_lines() if line.get_label() == "blade 1"]
         with h5py.File(self.folder / "f.h5") as file:
             names = list(file["model/unknowns/name"].asstr()[:])
@@ -303,7 +303,7 @@ class Pictures(ProgramTest):
             with h5py.File(path) as file:
                 self.assertEqual(size, file["model"].attrs["degrees_of_freedom"])
                 labels = list(file["modes/label"].asstr()[:])
-                self.assertEqual(frequency, file["modes/frequency_hz"][labels.index("blade flap 1")])
+                self.assertEqual(frequency, file["modes/frequency_hz"][labels.index("1st blade flap")])
         run = self.plot("b4.h5", "convergence", "-o", "e.svg")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("estimated error of the exponent [%]", (self.folder / "e.svg").read_text(encoding="utf-8"))

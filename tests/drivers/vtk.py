@@ -114,7 +114,7 @@ class Export(ProgramTest):
 
     def test_modes_with_the_rotor_held(self):
         self.succeed("floquet", BASELINE, "-o", "f.h5")
-        frames = self.frames("f.h5", "--label", "blade flap symmetric 1", "--held", "--cycles", "2", "--frames", "12",
+        frames = self.frames("f.h5", "--label", "1st blade flap symmetric", "--held", "--cycles", "2", "--frames", "12",
                              "--scale", "0.5")
         self.assertEqual(len(frames), 24)
         motion, frequency, places = self.shape(9)
@@ -161,7 +161,7 @@ class Export(ProgramTest):
         self.succeed("floquet", BASELINE, "-o", "f.h5")
         own = self.frames("f.h5", "--mode", "8", "--held", "90", "--frames", "3", "--scale", "2")
         run = self.succeed("export", "f.h5", "-o", "b.pvd", "--mode", "8", "--held", "90", "--frames", "3", "--scale", "2")
-        self.assertEqual(run.stdout, "animation: b.pvd, 3 frames of mode 8, blade lead-lag antisymmetric 1; 0.30282 s a "
+        self.assertEqual(run.stdout, "animation: b.pvd, 3 frames of mode 8, 1st blade lead-lag antisymmetric; 0.30282 s a "
                          "cycle, displacements x 2\n")
         numpy.testing.assert_array_equal(Frame(self.folder / "b/frame_0001.vtu").points, own[1].points)
         self.refuse("export", "f.h5", "-o", "c.pvd", "--mode", "99", words="no mode 99")
@@ -324,7 +324,7 @@ class Export(ProgramTest):
         before = self.files()
         for arguments, words in ((["t.h5", "-o", "a.pvd", "--mode", "1"], "no modes; hint: samara floquet"),
                                  (["f.h5", "-o", "a.pvd", "--mode", "30"], "no mode 30 with a shape; hint: there are 1-15"),
-                                 (["f.h5", "-o", "a.pvd", "--label", "flap"], "hint: blade flap symmetric 1"),
+                                 (["f.h5", "-o", "a.pvd", "--label", "flap"], "hint: 1st blade flap symmetric"),
                                  (["f.h5", "-o", "a.pvd", "--label", "flop symmetric"], "hint: blade flap symmetric"),
                                  (["f.h5", "-o", "a.pvd", "--mode", "1", "--held"], "does not oscillate; hint:"),
                                  (["f.h5", "-o", "a.vtu"], "ends in .pvd"),

@@ -72,7 +72,7 @@ analysis::Floquet small_floquet() {
   pair.exponent = {-0.1, 3.0};
   pair.harmonic = 1;
   pair.damping_ratio = 1.0 / 30.0;
-  pair.label = "blade flap 1";
+  pair.label = "1st blade flap";
   pair.residual = 1e-12;
   pair.parts = {{"blade", 0.9}, {"tower", 0.1}};
   analysis::Mode real;
@@ -307,7 +307,7 @@ BOOST_AUTO_TEST_CASE(modes_are_rows_in_their_order) {
 BOOST_AUTO_TEST_CASE(an_unresolved_mode_says_so) {
   const Folder folder;
   const Reader reader(write_floquet(folder));
-  require_equal(reader.words("/floquet/label"), {"yaw (unresolved)", "blade flap 1"});
+  require_equal(reader.words("/floquet/label"), {"yaw (unresolved)", "1st blade flap"});
   require_equal(reader.values("/floquet/resolved"), {0.0, 1.0});
 }
 
@@ -499,7 +499,7 @@ BOOST_AUTO_TEST_CASE(a_table_of_modes_has_a_line_a_mode) {
              "exponent_re,exponent_im,"
              "multiplier_re,multiplier_im,harmonic,resolved,residual,error,error_growth");
   BOOST_TEST(found[1] == "1,yaw,0,0,-1,nan,0.20000000000000001,0,1.5,0,0,0,0,0,0");
-  BOOST_TEST(found[2].starts_with("2,blade flap 1,1.5,0.4774648292756"));
+  BOOST_TEST(found[2].starts_with("2,1st blade flap,1.5,0.4774648292756"));
   BOOST_TEST(count_files(folder) == 1u);
 }
 

@@ -95,12 +95,11 @@ inline std::string message_of(const std::string& text) {
   return "";
 }
 
-/// Frequencies of the modes whose labels start with `label`, ascending [rad/s].
-inline std::vector<double> frequencies(const analysis::ModeSet& set,
-                                       const std::string& label = "") {
+/// Frequencies of the modes whose names start with `name`, ascending [rad/s].
+inline std::vector<double> frequencies(const analysis::ModeSet& set, const std::string& name = "") {
   std::vector<double> found;
   for (const analysis::Mode& mode : set.modes)
-    if (mode.label.starts_with(label)) found.push_back(mode.exponent.imag());
+    if (mode.name.starts_with(name)) found.push_back(mode.exponent.imag());
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -61,19 +61,12 @@ analysis::ModeSet modes_of(const Input& input, Mesh used, Rule rule) {
       .set;
 }
 
-std::string stem_of(std::string label) {
-  const std::size_t end = label.find_last_not_of("0123456789");
-  label.resize(end == std::string::npos ? 0 : end + 1);
-  while (label.ends_with(' ')) label.pop_back();
-  return label;
-}
-
 /// Distance to the nearest mode of the same name; each is known modulo i Omega, and stands for its
 /// conjugate.
 double distance(const analysis::Mode& mode, const analysis::ModeSet& set) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const analysis::Mode& other : set.modes) {
-    if (!other.resolved || stem_of(other.label) != stem_of(mode.label)) continue;
+    if (!other.resolved || other.name != mode.name) continue;
     for (const Complex exponent : {other.exponent, std::conj(other.exponent)}) {
       const Complex off = mode.exponent - exponent;
       nearest =

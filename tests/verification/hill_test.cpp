@@ -15,13 +15,8 @@ using namespace samara::test;
 
 namespace {
 
-/// The last word of a name is a number where there are several modes of the name.
-std::string without_number(const std::string& label) {
-  return label.substr(0, label.find_last_not_of(" 0123456789") + 1);
-}
-
-/// Each mode of `some` has its own mode in `all`, with the same exponent, name and damping, and
-/// each resolved mode of `all` below `some.searched` has one in `some`.
+/// Each mode of `some` has its own mode in `all`, with the same exponent, name with its number and
+/// damping, and each resolved mode of `all` below `some.searched` has one in `some`.
 void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& all,
                        const std::string& place, double residual = 1e-7) {
   BOOST_REQUIRE(some.searched);
@@ -34,7 +29,7 @@ void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& a
     std::size_t at = 0;
     for (std::size_t m = 0; m < all.modes.size(); ++m) {
       // Among equal exponents the one with the same name.
-      const bool same_name = without_number(all.modes[m].label) == without_number(mode.label);
+      const bool same_name = all.modes[m].label == mode.label;
       const double distance = std::abs(all.modes[m].exponent - mode.exponent) +
                               (same_name ? 0.0 : 1e-7 * some.rotor_speed);
       if (used.count(m) == 0 && distance < best) {
@@ -54,8 +49,7 @@ void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& a
     BOOST_TEST(std::abs(std::abs(mode.multiplier) / std::abs(other.multiplier) - 1.0) < 1e-5,
                place << ": " << mode.label << " " << mode.multiplier << " " << other.multiplier);
     if (other.resolved)
-      BOOST_TEST(without_number(mode.label) == without_number(other.label),
-                 place << ": " << mode.label << " " << other.label);
+      BOOST_TEST(mode.label == other.label, place << ": " << mode.label << " " << other.label);
   }
   for (std::size_t m = 0; m < some.modes.size(); ++m)
     if (std::abs(some.modes[m].exponent) > 1e-5 * some.rotor_speed)
@@ -145,7 +139,7 @@ BOOST_AUTO_TEST_CASE(energies_of_modes_are_those_of_their_series) {
     for (std::size_t m = 0; m < some.modes.size(); ++m) {
       const analysis::Mode& mode = some.modes[m];
       const auto found = std::ranges::find_if(all.modes, [&](const analysis::Mode& other) {
-        return other.resolved && without_number(other.label) == without_number(mode.label) &&
+        return other.resolved && other.label == mode.label &&
                std::abs(other.exponent - mode.exponent) < 1e-3 * std::abs(mode.exponent);
       });
       if (found == all.modes.end()) continue;

@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(the_teetering_turbine_is_stable_and_teeters_once_a_revoluti
   int teeters = 0;
   for (const analysis::Mode& mode : floquet.set.modes) {
     if (mode.resolved) BOOST_TEST(mode.exponent.real() < 0.0, mode.label << " " << mode.exponent);
-    if (!mode.label.starts_with("teeter")) continue;
+    if (!mode.name.starts_with("teeter")) continue;
     ++teeters;
     BOOST_TEST(mode.exponent.imag() == floquet.set.rotor_speed, tolerance(5e-3));
     BOOST_TEST(mode.damping_ratio == 0.02, tolerance(0.05));

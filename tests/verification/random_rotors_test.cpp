@@ -188,7 +188,7 @@ void check_names(const model::TurbineDefinition& definition, const analysis::Mod
     const Shares shares = shares_of(definition, system, set.shapes[m]);
     const auto check = [&](double share, const std::string& name) {
       if (share > clear_share)
-        BOOST_TEST(mode.label.starts_with(name),
+        BOOST_TEST(mode.name.starts_with(name),
                    mode.label << " " << mode.exponent << " has " << share << " of " << name);
     };
     check(shares.axial, "blade axial");

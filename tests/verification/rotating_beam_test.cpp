@@ -14,8 +14,8 @@ using boost::test_tools::tolerance;
 
 namespace {
 
-/// By label: the two planes of bending must not have equal frequencies, for then any mixture of
-/// them is a mode and has no label.
+/// By name: the two planes of bending must not have equal frequencies, for then any mixture of
+/// them is a mode and has no such name.
 std::vector<double> flap(const BeamCase& beam) {
   return frequencies(constant_modes_of(definition_of(beam)), "blade flap");
 }

@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(energy_of_the_undamped_turbine_changes_by_the_work_of_the_d
       "baseline", with(mesh(true, 2, 2), {"nacelle.yaw.joint=locked", "hub.inertia=[0, 0, 0]"}));
   const auto system = system_of(input.turbine);
   const analysis::Trim trim = trim_of(*system, 0);
-  const TransientStart start = released(*system, trim, "tower side-side 1", 0.2);
+  const TransientStart start = released(*system, trim, "1st tower side-side", 0.2);
   const double period = system->period();
   std::vector<double> gains;
   for (const int steps : {200, 400, 800})
@@ -424,7 +424,7 @@ BOOST_AUTO_TEST_CASE(disturbance_along_a_mode_decays_and_oscillates_as_floquet_s
                                               "nacelle.yaw.joint=locked", "blades.damping=1e-3"}));
   const auto system = system_of(input.turbine);
   const analysis::Trim trim = trim_of(*system, 10);
-  for (const std::string label : {"tower side-side 1", "blade flap symmetric 1"}) {
+  for (const std::string label : {"1st tower side-side", "1st blade flap symmetric"}) {
     const FoundMode found = mode_of(*system, trim, label);
     constexpr int steps = 400;
     const auto differences =

@@ -15,13 +15,18 @@ namespace samara::analysis {
 int count_instances(const std::vector<system::Motion>& motions);
 
 /// The motion that a mode is named after: the one with most kinetic and strain energy.
+/// How blades at rest move against each other, without a mean: the cosine or the sine of the angle
+/// from blade 1, multiplied by one amplitude.
+enum class CyclicMotion { none, cosine, sine };
+
 struct LeadingMotion {
   system::Motion motion;
   /// Multiblade component n of the motion: each blade is 2 pi n / B ahead of the blade behind it.
-  /// -1: no component is dominant.
+  /// -1: no component is dominant. At rest only the mean, n = 0, and `cyclic` are distinct.
   int component = -1;
   int harmonic = 0;      ///< that has its energy, as Mode::harmonic
   bool is_clear = true;  ///< most of its energy is in this harmonic
+  CyclicMotion cyclic = CyclicMotion::none;
 };
 
 /// One for each mode; empty where the system does not declare its motions, or without shapes. Each

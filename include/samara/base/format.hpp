@@ -17,6 +17,9 @@ std::string general(double value, int digits);
 /// "1 mode", "3 modes".
 std::string count(int number, const std::string& noun);
 
+/// "1st", "2nd", "3rd", "11th".
+std::string ordinal(int number);
+
 /// The shortest text of a number that reads as the same; a whole number has no exponent.
 std::string shortest(double value);
 

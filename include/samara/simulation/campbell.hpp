@@ -39,6 +39,7 @@ struct CampbellMode {
   Motion motion = Motion::decaying;
   bool is_rough = false;
   std::string name;
+  int number = 0;  ///< among the modes of its name; 0: none
   /// Shares of the mean kinetic energy in the harmonics -campbell_harmonics ... of the rotor speed,
   /// counted from `exponent`; the sum may be less than 1.
   std::vector<double> participation;
@@ -70,7 +71,7 @@ CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const an
 
 /// A mode over the points of a sweep.
 struct CampbellLine {
-  std::string name;  ///< most frequent name of its modes and, where several lines have it, a number
+  std::string name;  ///< most frequent number and name of its modes; no two lines have the same
   std::vector<analysis::TrackedMode> modes;
 };
 
