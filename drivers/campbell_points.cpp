@@ -87,8 +87,11 @@ class OperationFinder final : public CampbellPointFinder {
   std::optional<simulation::OperatingPointFinder> finder_;
 };
 
+/// Of the files of points: files of another one are found again.
+constexpr int point_format = 2;
+
 std::string origin_of(const std::string& case_text, const std::string& value) {
-  return std::string("samara ") + version + ", points with numbers of modes\n" +
+  return std::string("samara ") + version + ", points " + std::to_string(point_format) + "\n" +
          petsc::Session::options() + "\n" + value + "\n" + case_text;
 }
 

@@ -116,48 +116,63 @@ const char* word_of(const LeadingMotion& leading, int instances) {
   return n == instances - 1 ? " progressive" : " reactionless";
 }
 
-/// Number of a mode of a part that deforms, by its shape: the load that its motion restores changes
-/// its sign (number - 1) times along the part. Thus the number is known where other modes of the
-/// motion are not. 0: the part has too few places, or the motion no such load.
-int shape_number(const system::PeriodicSystem& system, const system::Motion& motion,
-                 const Eigen::MatrixXcd& shape) {
+/// Numbers of modes of parts that deform, by their shapes.
+class ShapeNumbers {
+ public:
+  explicit ShapeNumbers(const system::PeriodicSystem& system) {
+    for (const EnergyGroup& group : system.energy_groups()) {
+      if (group.kind != EnergyGroup::Kind::strain || group.unknowns.size() != 1) continue;
+      const Eigen::Index load = group.unknowns.front();
+      const std::string& quantity = system.unknowns()[static_cast<std::size_t>(load)].quantity;
+      loads_[{group.owner.kind, motion_name(group)}][{group.owner.instance, quantity}].push_back(
+          {load, group.weight.front(), 0.0});
+    }
+  }
+
+  /// The load that the motion restores changes its sign (number - 1) times along the part. Thus the
+  /// number is known where other modes of the motion are not. 0: the part has too few places, or
+  /// the motion no such load.
+  int number_of(const system::Motion& motion, const Eigen::MatrixXcd& shape) const {
+    const auto found = loads_.find({motion.owner.kind, motion.name()});
+    if (found == loads_.end() || shape.size() == 0) return 0;
+    std::vector<Place> places;
+    double most = 0.0;
+    for (const auto& [key, along] : found->second) {
+      std::vector<Place> own = along;
+      double energy = 0.0;
+      for (Place& place : own) {
+        place.energy = place.weight * shape.row(place.load).squaredNorm();
+        energy += place.energy;
+      }
+      if (energy <= most) continue;
+      most = energy;
+      places = std::move(own);
+    }
+    if (places.empty()) return 0;
+    const Place& largest = *std::ranges::max_element(places, {}, &Place::energy);
+    int number = 0;
+    bool is_positive = true;
+    for (const Place& place : places) {
+      if (place.energy < least_energy * largest.energy) continue;
+      const bool sign = shape.row(largest.load).dot(shape.row(place.load)).real() > 0.0;
+      if (number == 0 || sign != is_positive) ++number;
+      is_positive = sign;
+    }
+    return 2 * number <= static_cast<int>(places.size()) ? number : 0;
+  }
+
+ private:
   struct Place {
     Eigen::Index load;
+    double weight;
     double energy;
   };
-  using Load = std::pair<int, std::string>;  // instance of the part, quantity
-  std::map<Load, std::vector<Place>> loads;  // from the root of the part to its tip
-  std::map<Load, double> energies;
-  for (const EnergyGroup& group : system.energy_groups()) {
-    if (group.kind != EnergyGroup::Kind::strain || group.unknowns.size() != 1 ||
-        group.owner.kind != motion.owner.kind || motion_name(group) != motion.name())
-      continue;
-    const Eigen::Index load = group.unknowns.front();
-    const double energy = group.weight.front() * shape.row(load).squaredNorm();
-    const Load key{group.owner.instance,
-                   system.unknowns()[static_cast<std::size_t>(load)].quantity};
-    loads[key].push_back({load, energy});
-    energies[key] += energy;
-  }
-  if (energies.empty()) return 0;
-  const std::vector<Place>& places =
-      loads[std::ranges::max_element(energies, {}, [](const auto& one) {
-              return one.second;
-            })->first];
-  const Place& largest = *std::ranges::max_element(places, {}, &Place::energy);
-  if (!(largest.energy > 0.0)) return 0;
-  int number = 1;
-  bool is_positive = true;
-  bool is_first = true;
-  for (const Place& place : places) {
-    if (place.energy < least_energy * largest.energy) continue;
-    const bool sign = shape.row(largest.load).dot(shape.row(place.load)).real() > 0.0;
-    if (!is_first && sign != is_positive) ++number;
-    is_positive = sign;
-    is_first = false;
-  }
-  return 2 * number <= static_cast<int>(places.size()) ? number : 0;
-}
+  using Motion = std::pair<system::PartKind, std::string>;  // kind of part, name
+  using Load = std::pair<int, std::string>;                 // instance of the part, quantity
+
+  /// From the root of each part to its tip.
+  std::map<Motion, std::map<Load, std::vector<Place>>> loads_;
+};
 
 /// Name of a mode, in two parts.
 struct Name {
@@ -333,6 +348,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
       }));
   if (set.shapes.empty()) return;  // another rank has them
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const ShapeNumbers numbers(system);
   std::vector<Name> names;
   for (std::size_t m = 0; m < set.shapes.size(); ++m) {
     const Mode& mode = set.modes[m];
@@ -356,7 +372,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
     mode.shares_number =
         is_mixture || (set.instances > 1 && motion.owner.instance > 0 && !has_pattern);
     mode.shape_number =
-        shape_number(system, leading.empty() ? motion : leading[m].motion, set.shapes[m]);
+        numbers.number_of(leading.empty() ? motion : leading[m].motion, set.shapes[m]);
     const double frequency = mode.exponent.imag();
     const bool is_rotating = names[m].motion.owner.instance > 0;
     const bool is_clear = leading.empty() || mode.state || leading[m].is_clear;
