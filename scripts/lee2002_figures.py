@@ -53,7 +53,7 @@ def number(value):
 def row(figure, title, printed, mode):
     """Largest values over a revolution and over the tower, for a deflection of the tip of 1 m or a torsion of 10 deg."""
     tips = numpy.concatenate([mode.deflections(blade)[:, -1] for blade in ("blade 1", "blade 2")])
-    kind = {"flap": 0, "lead-lag": 1, "torsion": 2}[mode.label.split()[1]]
+    kind = {"flap": 0, "lead-lag": 1, "torsion": 2}[mode.label.split()[2]]
     scale = abs(tips[:, kind]).max() / (numpy.radians(10.0) if kind == 2 else 1.0)
     tower = abs(mode.deflections("tower")).max((0, 1)) / scale
     angles = {name: values / scale for name, values in mode.joints().items()}

@@ -109,10 +109,10 @@ class Run:
 
     def find(self, wanted):
         label = self.label(wanted)
-        # The label has no number if the mode is the only resolved one of its kind, and it ends in
+        # A mode that is alone has no number where the shape does not tell it; the label ends in
         # "(unresolved)" if the mode is not resolved.
-        for name in (label, label.removesuffix(" 1"), f"{label} (unresolved)",
-                     f"{label.removesuffix(' 1')} (unresolved)"):
+        alone = label.removeprefix("1st ")
+        for name in (label, alone, f"{label} (unresolved)", f"{alone} (unresolved)"):
             if name in self.modes:
                 frequency, resolved = self.modes[name]
                 return frequency + IN_ROTOR.get((self.name, label), 0.0), resolved

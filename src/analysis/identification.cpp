@@ -430,7 +430,7 @@ void arrange_modes(ModeSet& set) {
   for (const Mode& mode : set.modes)
     if (mode.resolved) ++alike[mode.name];
   std::map<std::string, int> number;
-  std::map<std::string, int> same;
+  std::map<std::string, int> times;
   for (Mode& mode : set.modes) {
     int& last = number[mode.name];
     const bool is_shared = mode.shares_number && mode.shape_number > 0;
@@ -440,13 +440,9 @@ void arrange_modes(ModeSet& set) {
         !mode.name.empty() && (alike[mode.name] > 1 || own > 1 || mode.shape_number > 0);
     mode.number = has_number ? own : 0;
     mode.label = has_number ? ordinal(own) + " " + mode.name : mode.name;
-    if (is_shared) ++same[mode.label];
+    if (const int time = ++times[mode.label]; time > 1 && !mode.name.empty())
+      mode.label += " (" + std::to_string(time) + ")";
   }
-  // Blades that move without a common pattern have several modes of one number.
-  std::map<std::string, int> place;
-  for (Mode& mode : set.modes)
-    if (const auto all = same.find(mode.label); all != same.end() && all->second > 1)
-      mode.label += " (" + std::to_string(++place[all->first]) + ")";
 }
 
 }  // namespace samara::analysis

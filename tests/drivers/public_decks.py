@@ -110,7 +110,8 @@ class PublicDecks(ProgramTest):
         sizes 0.77367, 0.77354, 0.58535 and 0.54859."""
         self.find("AWT_YFix_WSt.fst")
         self.succeed("floquet", "case.yaml", "--csv", "modes.csv", "-o", "result.h5",
-                     "--set", "shaft.torsion={joint: locked}", "--set", "aero=none")
+                     "--set", "shaft.torsion={joint: locked}", "--set", "aero=none",
+                     "--set", "blades.elements=12")
         found = self.multipliers()
         for mode, size in (("1st tower side-side", 0.77367), ("1st tower fore-aft", 0.77354),
                            ("teeter", 0.58535), ("1st blade flap symmetric", 0.54859)):
@@ -169,12 +170,13 @@ class PublicDecks(ProgramTest):
         self.find("Ideal_Beam_Fixed_Free_Linear.fst")
         found = self.frequencies("case.yaml")
         self.assert_near(found, {"1st blade bending": 0.58410}, 2e-3)
-        self.assert_near(found, {"3rd blade bending": 3.6605}, 1e-2)
+        self.assert_near(found, {"2nd blade bending": 3.6605}, 1e-2)
         self.find("5MW_Land_DLL_WTurb.fst")
         found = self.frequencies("case.yaml", "--parked")
         self.assert_near(found, {"1st tower fore-aft": 0.3195, "1st tower side-side": 0.3164}, 2e-2)
         self.assert_near(found, {"shaft torsion": 0.6094}, 1e-2)
-        self.assert_near(found, {"1st blade lead-lag": 1.0740, "2nd blade lead-lag": 1.0877}, 1.5e-2)
+        self.assert_near(found, {"1st blade lead-lag sine-cyclic": 1.0740,
+                                 "1st blade lead-lag cosine-cyclic": 1.0877}, 1.5e-2)
         self.write("case.yaml", (SOURCE / "inputs/iea15mw/land.yaml").read_bytes())
         self.assert_near(self.alone("tower"), {"1st tower bending": 0.7746}, 1.2e-2)
         found = self.alone("blades")
@@ -185,7 +187,7 @@ class PublicDecks(ProgramTest):
         self.find("AWT_YFree_WSt.fst")
         self.succeed("floquet", "case.yaml", "--csv", "modes.csv", "-o", "result.h5",
                      "--set", "aero=none")
-        self.assertTrue(any(mode.startswith("yaw") for mode in self.multipliers()))
+        self.assertTrue(any("yaw" in mode for mode in self.multipliers()))
 
     def rotor_loads(self, case):
         """Power by the twist of the shaft [W], and thrust at the tower's foot [N]."""
@@ -269,8 +271,9 @@ class PublicDecks(ProgramTest):
         self.assertLess(abs(found["each blade"][1] / known["each blade"][1] - 1.0), 1e-3)
         frequencies = self.frequencies("case.yaml", "--parked", "--set", "aero=none")
         self.assert_near(frequencies, {"1st tower side-side": 0.2220, "1st tower fore-aft": 0.2251,
-                                       "1st blade flap": 0.4568, "2nd blade flap": 0.4948,
-                                       "2nd blade lead-lag": 0.6909}, 1e-2)
+                                       "1st blade flap sine-cyclic": 0.4568,
+                                       "1st blade flap cosine-cyclic": 0.4948,
+                                       "1st blade lead-lag sine-cyclic": 0.6909}, 1e-2)
         for point, known in (((8, 5.6819, 0.000535), (6852.108, 1295.040)),
                              ((15, 7.559987, 9.189114), (15666.72, 1268.984))):
             for one, other in zip(self.operating_point(*point), known):

@@ -32,7 +32,7 @@ class Package(ProgramTest):
         exponents = samara.result.complex_of(result.modes["exponents"])
         numpy.testing.assert_allclose(abs(exponents.imag), 2 * numpy.pi * frequency, rtol=1e-12)
         names = list(result["floquet"]["label"].values)
-        self.assertTrue(any(name.startswith("tower fore-aft") for name in names))
+        self.assertTrue(any("tower fore-aft" in name for name in names))
         self.assertIn("--set", result.command_line)
         self.assertTrue(result.case.startswith("# --set blades.elements=2\n"))
         with self.assertRaisesRegex(KeyError, "no /campbell"):

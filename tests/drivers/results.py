@@ -191,7 +191,7 @@ class Others(ProgramTest):
             labels = file["/modes/label"].asstr()[:]
             frequencies = 2 * numpy.pi * file["/modes/frequency_hz"][:]
         for stem, rigidity in (("blade flap", 4e4), ("blade lead-lag", 1e4)):
-            found = [f for f, label in zip(frequencies, labels) if label.startswith(stem)][:2]
+            found = [f for f, label in zip(frequencies, labels) if stem in label][:2]
             expected = beta**2 * numpy.sqrt(rigidity / 1.0 / 10.0**4)
             # Shear and rotary inertia of this slender blade take off less than 0.2 %.
             numpy.testing.assert_allclose(found, expected, rtol=2e-3)
@@ -212,7 +212,7 @@ class Others(ProgramTest):
                 if word in label and numpy.isfinite(ground):
                     self.assertAlmostEqual(ground, abs(f + shift * speed), places=9)
                     seen.add(word)
-            if label.startswith("tower") and numpy.isfinite(ground):
+            if "tower" in label and numpy.isfinite(ground):
                 self.assertEqual(ground, f)
         self.assertEqual(seen, set(words))
         self.succeed("floquet", BASELINE, *QUICK, "-o", "two.h5")
