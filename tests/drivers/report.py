@@ -648,7 +648,7 @@ class Page(Results):
         Select(self.find("#theme")).select_by_value("system")
 
     def test_the_page_of_many_modes_opens_quickly(self):
-        for name, moving in (("sixty.html", 60), ("parked.html", 140)):
+        for name, moving in (("sixty.html", 60), ("parked.html", 101)):
             loads = []
             for _ in range(4):
                 self.open(name)

@@ -200,8 +200,8 @@ BOOST_AUTO_TEST_CASE(degenerate_lead_lag_is_labelled_only_where_it_splits) {
       if (mode.name.starts_with("blade lead-lag") && mode.resolved)
         BOOST_TEST(mode.label.find("symmetric") == std::string::npos, mode.label);
   const analysis::ModeSet fast = floquet_of(definition, 300, FloquetPeriod::blade).set;
-  BOOST_TEST(frequencies(fast, "1st blade lead-lag symmetric").size() >= 1U);
-  BOOST_TEST(frequencies(fast, "1st blade lead-lag antisymmetric").size() >= 1U);
+  BOOST_TEST(frequencies(fast, "blade lead-lag symmetric").size() >= 1U);
+  BOOST_TEST(frequencies(fast, "blade lead-lag antisymmetric").size() >= 1U);
 }
 
 BOOST_AUTO_TEST_CASE(azimuth_of_the_first_blade_changes_no_exponent_of_constant_tangents) {
