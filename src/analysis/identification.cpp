@@ -158,7 +158,7 @@ class ShapeNumbers {
       if (number == 0 || sign != is_positive) ++number;
       is_positive = sign;
     }
-    return 2 * number <= static_cast<int>(places.size()) ? number : 0;
+    return 2 * number + 2 <= static_cast<int>(places.size()) ? number : 0;
   }
 
  private:
