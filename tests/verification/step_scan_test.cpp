@@ -26,7 +26,8 @@ const std::vector<ScanCase>& scan_cases() {
   static const std::vector<ScanCase> cases{
       {"NREL 5 MW",
        inputs + "nrel5mw/land.yaml",
-       {"blades.elements=3", "blades.order=3", "tower.order=4"}},
+       {"blades.elements=3", "blades.element_lengths=[1, 1, 1]", "blades.order=3",
+        "tower.order=4"}},
       {"AWT-27",
        std::string(SAMARA_SOURCE_DIR) + "/tests/verification/files/awt27.yaml",
        {"blades.elements=4", "tower.elements=3", "tower.order=3"}},
