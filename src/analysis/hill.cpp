@@ -305,7 +305,7 @@ class Analysis {
         });
       });
     region_is_counted_ = (region_is_counted_ || !has_medium_) &&
-                         static_cast<int>(modes_.size()) + left_out_ >= expected_;
+                         static_cast<double>(modes_.size()) + left_out_ >= expected_;
     if (has_medium_)  // the set of those above is not complete
       std::erase_if(modes_, [this](const Candidate& mode) {
         return modulus_of(mode) >= region_.high - margin();
@@ -609,6 +609,7 @@ class Analysis {
       ranks_.share(0, is_done);
       double largest = 0.0;
       std::vector<HillGroup> left;
+      std::vector<std::vector<Decay>> decays;  // of these
       for (std::size_t g = 0; g < groups.size(); ++g) {
         const double residual = groups[g].residual();
         if (is_done[g] != 0) {
@@ -619,14 +620,17 @@ class Analysis {
           largest = std::max(largest, residual);
           groups[g].before = residual;
           groups[g].before_exponents.clear();
-          for (const Candidate& member : members[g])
+          decays.emplace_back();
+          for (const Candidate& member : members[g]) {
             groups[g].before_exponents.push_back(member.pair.exponent);
+            decays.back().push_back(decay_of(member));
+          }
           for (Candidate& member : members[g]) groups[g].pairs.push_back(std::move(member.pair));
           left.push_back(std::move(groups[g]));
         }
       }
       groups = std::move(left);
-      if (has_medium_ && options_.least_damped > 0) leave_stronger_decays(groups);
+      if (has_medium_ && options_.least_damped > 0) leave_stronger_decays(groups, decays);
       // The residual falls by the same factor with each harmonic.
       if (!groups.empty()) {
         const double factor =
@@ -646,55 +650,62 @@ class Analysis {
         modes_.push_back(std::move(candidate));
   }
 
-  /// Takes out groups that decay faster than the wanted modes, also if each exponent is wrong by
-  /// its change since fewer harmonics.
-  void leave_stronger_decays(std::vector<HillGroup>& groups) {
-    struct Decay {
-      double largest;  ///< with its error
-      Complex exponent;
-      double error;
-    };
-    const auto error_of = [this](Complex exponent, double residual) {
-      return residual * unit_of_change(exponent, speed_);
-    };
-    std::vector<Decay> decays;
-    const auto add = [&](Complex exponent, double residual) {
-      const double error = error_of(exponent, residual);
-      decays.push_back({error - exponent.real(), principal(exponent), error});
-    };
-    for (const Candidate& mode : modes_) add(mode.pair.exponent, mode.residual);
-    for (const HillGroup& group : groups)
-      for (std::size_t i = 0; i < group.pairs.size(); ++i)
-        add(group.pairs[i].exponent, group.residuals[i]);
-    std::ranges::sort(decays, {}, &Decay::largest);
+  /// A decay with its error, the change since fewer harmonics.
+  struct Decay {
+    double value;
+    double error;
+    Complex exponent;
+    double weight;  ///< 0: no mode of the range that is reported, or not at its own harmonic
+  };
+  Decay decay_of(const Candidate& mode) const {
+    const Complex exponent = mode.pair.exponent;
+    const bool counts = is_centred(mode) && modulus_of(mode) < region_.high - margin();
+    return {-exponent.real(), mode.residual * unit_of_change(exponent, speed_), exponent,
+            counts ? weight_of(mode) : 0.0};
+  }
+
+  /// Takes out groups of one mode that decays faster than the wanted ones, and than the range that
+  /// is reported, with all errors. `own`: of the pairs of each group.
+  void leave_stronger_decays(std::vector<HillGroup>& groups,
+                             const std::vector<std::vector<Decay>>& own) {
+    std::vector<Decay> all;
+    for (const Candidate& mode : modes_) all.push_back(decay_of(mode));
+    for (const std::vector<Decay>& decays : own)
+      all.insert(all.end(), decays.begin(), decays.end());
+    std::erase_if(all, [](const Decay& one) { return one.weight == 0.0; });
+    std::ranges::sort(all, {}, [](const Decay& one) { return one.value + one.error; });
     // A mode counts once with its copies, and with other modes of nearly the same exponent.
-    std::vector<Decay> slowest;
-    for (const Decay& decay : decays)
-      if (std::ranges::none_of(slowest, [&](const Decay& other) {
-            return std::abs(decay.exponent - other.exponent) <
-                   decay.error + other.error + clear_difference * speed_;
-          }))
-        slowest.push_back(decay);
-    const auto wanted = static_cast<std::size_t>(options_.least_damped);
-    if (slowest.size() < wanted) return;
-    const double limit = std::max(slowest[wanted - 1].largest, 0.0) + clear_difference * speed_;
-    std::vector<char> is_left;
-    for (const HillGroup& group : groups) {
-      bool is_stronger = true;
-      for (std::size_t i = 0; i < group.pairs.size(); ++i) {
-        const Complex exponent = group.pairs[i].exponent;
-        if (-exponent.real() - error_of(exponent, group.residuals[i]) <= limit) is_stronger = false;
-      }
-      is_left.push_back(is_stronger ? 1 : 0);
+    std::vector<Complex> slowest;
+    double found = 0.0;
+    double limit = std::numeric_limits<double>::infinity();
+    for (const Decay& one : all) {
+      const Complex exponent = principal(one.exponent);
+      const double apart =
+          2.0 * one.error + same_with_medium * std::max(std::abs(one.exponent), speed_);
+      if (std::ranges::any_of(slowest,
+                              [&](Complex other) { return std::abs(exponent - other) < apart; }))
+        continue;
+      slowest.push_back(exponent);
+      found += one.weight;
+      if (found < options_.least_damped) continue;
+      limit = one.value + one.error;
+      break;
     }
+    for (const Decay& one : all) limit = std::max(limit, one.error - one.value);  // a growth
+    limit += clear_difference * speed_;
+    std::vector<char> is_left;
+    for (const std::vector<Decay>& decays : own)
+      is_left.push_back(decays.size() == 1 && decays[0].weight > 0.0 &&
+                                decays[0].value - decays[0].error > limit
+                            ? 1
+                            : 0);
     ranks_.share(0, is_left);
     std::vector<HillGroup> others;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (is_left[g] != 0)
-        left_out_ += static_cast<int>(groups[g].pairs.size());
-      else
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      if (is_left[g] == 0)
         others.push_back(std::move(groups[g]));
-    }
+      else
+        left_out_ += own[g][0].weight;
     groups = std::move(others);
   }
 
@@ -1011,7 +1022,7 @@ class Analysis {
   std::vector<double> decays_;  ///< of exponents by the search and of the medium alone, ascending
   bool region_is_counted_ = false;
   int expected_ = 0;                ///< modes, by the search, not next to the edge of the region
-  int left_out_ = 0;                ///< eigenpairs of decays that are not wanted
+  double left_out_ = 0.0;           ///< modes of decays that are not wanted
   std::vector<Complex> sought_;     ///< exponents of the slowest decays
   std::vector<Complex> all_found_;  ///< exponents by the search, also outside the region
   ModeSet set_;

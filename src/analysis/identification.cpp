@@ -34,7 +34,7 @@ constexpr double degenerate = 1e-7;
 constexpr double many_errors = 4.0;
 /// Part of the largest strain energy of a place along a part, below which the sign of the load
 /// there has no meaning.
-constexpr double least_energy = 0.02;
+constexpr double least_energy = 0.05;
 
 /// Groups of two or more exponents that are the same, each group a chain of neighbours; zeros are
 /// left out. `apart`: for each exponent, the largest relative difference from one that is the same.
@@ -158,7 +158,7 @@ class ShapeNumbers {
       if (number == 0 || sign != is_positive) ++number;
       is_positive = sign;
     }
-    return 2 * number + 2 <= static_cast<int>(places.size()) ? number : 0;
+    return places.size() > 3 && 2 * number < static_cast<int>(places.size()) ? number : 0;
   }
 
  private:
@@ -365,14 +365,9 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   for (std::size_t m = 0; m < names.size(); ++m) {
     Mode& mode = set.modes[m];
     mode.name = names[m].text();
-    const system::Motion& motion = names[m].motion;
-    const bool is_mixture = leading.empty() || motion.direction != leading[m].motion.direction;
-    const bool has_pattern =
-        !names[m].together.empty() && (leading.empty() || leading[m].cyclic == CyclicMotion::none);
-    mode.shares_number =
-        is_mixture || (set.instances > 1 && motion.owner.instance > 0 && !has_pattern);
+    mode.motion = names[m].motion.name();
     mode.shape_number =
-        numbers.number_of(leading.empty() ? motion : leading[m].motion, set.shapes[m]);
+        numbers.number_of(leading.empty() ? names[m].motion : leading[m].motion, set.shapes[m]);
     const double frequency = mode.exponent.imag();
     const bool is_rotating = names[m].motion.owner.instance > 0;
     const bool is_clear = leading.empty() || mode.state || leading[m].is_clear;
@@ -429,15 +424,13 @@ void arrange_modes(ModeSet& set) {
   std::map<std::string, int> alike;
   for (const Mode& mode : set.modes)
     if (mode.resolved) ++alike[mode.name];
-  std::map<std::string, int> number;
+  std::map<std::string, int> last;  // numbers by the names, and by the motions alone
   std::map<std::string, int> times;
   for (Mode& mode : set.modes) {
-    int& last = number[mode.name];
-    const bool is_shared = mode.shares_number && mode.shape_number > 0;
-    const int own = is_shared ? mode.shape_number : std::max(last + 1, mode.shape_number);
-    last = std::max(last, own);
+    const int own = mode.shape_number > 0 ? mode.shape_number : last[mode.name] + 1;
+    for (const std::string& name : {mode.name, mode.motion}) last[name] = std::max(last[name], own);
     const bool has_number =
-        !mode.name.empty() && (alike[mode.name] > 1 || own > 1 || mode.shape_number > 0);
+        !mode.name.empty() && (mode.shape_number > 0 || alike[mode.name] > 1 || own > 1);
     mode.number = has_number ? own : 0;
     mode.label = has_number ? ordinal(own) + " " + mode.name : mode.name;
     if (const int time = ++times[mode.label]; time > 1 && !mode.name.empty())

@@ -91,14 +91,9 @@ std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& 
   return std::nullopt;
 }
 
-/// Name of a line, and its number among the lines of this name; 0: none.
-struct LineName {
-  std::string name;
-  int number = 0;
-};
-
-LineName most_frequent_name(const std::vector<CampbellPoint>& points,
-                            const std::vector<TrackedMode>& line) {
+/// The most frequent name, with its most frequent number.
+std::string most_frequent_name(const std::vector<CampbellPoint>& points,
+                               const std::vector<TrackedMode>& line) {
   std::map<std::string, std::map<int, int>> turning;  // how often each number of a name
   std::map<std::string, std::map<int, int>> at_rest;
   for (const TrackedMode& tracked : line) {
@@ -111,8 +106,9 @@ LineName most_frequent_name(const std::vector<CampbellPoint>& points,
     for (const auto& [number, times] : one.second) count += times;
     return count;
   });
-  return {name,
-          std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first};
+  const int number =
+      std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first;
+  return number > 0 ? ordinal(number) + " " + name : name;
 }
 
 }  // namespace
@@ -203,7 +199,7 @@ std::vector<CampbellLine> name_lines(const std::vector<CampbellPoint>& points,
                                      const std::vector<std::vector<TrackedMode>>& lines) {
   struct Named {
     double frequency;
-    LineName name;
+    std::string name;
     const std::vector<TrackedMode>* modes;
   };
   std::vector<Named> sorted;
@@ -214,18 +210,16 @@ std::vector<CampbellLine> name_lines(const std::vector<CampbellPoint>& points,
                                    .imag()),
                       most_frequent_name(points, line), &line});
   }
+  // Of lines with one name, the one with the most points has it as it is.
+  std::ranges::stable_sort(sorted, std::ranges::greater(),
+                           [](const Named& line) { return line.modes->size(); });
+  std::map<std::string, int> times;
+  for (Named& line : sorted)
+    if (const int time = ++times[line.name]; time > 1)
+      line.name += " (" + std::to_string(time) + ")";
   std::ranges::stable_sort(sorted, {}, &Named::frequency);
-  std::map<std::string, int> alike;
-  for (const Named& line : sorted) ++alike[line.name.name];
-  std::map<std::string, int> numbers;
   std::vector<CampbellLine> result;
-  for (const Named& line : sorted) {
-    const auto& [name, number] = line.name;
-    int& last = numbers[name];
-    last = std::max(last + 1, number);
-    const bool has_number = number > 0 || alike[name] > 1;
-    result.push_back({has_number ? ordinal(last) + " " + name : name, *line.modes});
-  }
+  for (const Named& line : sorted) result.push_back({line.name, *line.modes});
   return result;
 }
 

@@ -119,6 +119,25 @@ BOOST_AUTO_TEST_CASE(searches_in_wind_agree_with_integration) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(growth_beside_few_wanted_modes_in_wind) {
+  // Beyond rated wind without pitch the rotor stalls: a mode grows, and modes of weaker decay lie
+  // above the range of frequencies. Neither may take the place of a wanted mode in the range.
+  for (const std::vector<std::string>& settings :
+       {std::vector<std::string>{"wind.speed=20", "blades.pitch_deg=0"},
+        {"wind.speed=20", "blades.pitch_deg=0", "blades.damping=0",
+         "shaft.torsion.damping=30000000"}}) {
+    Steady turbine(io::read_case(input_path("nrel5mw/land"), with_coarse(settings)));
+    const analysis::ModeSet all = turbine.floquet({180, analysis::FloquetPeriod::automatic, 6});
+    for (const int modes : {1, 2, 5})
+      BOOST_TEST_CONTEXT(settings.size() << " settings, " << modes << " modes") {
+        const analysis::ModeSet found = turbine.floquet(slowest_decays(modes));
+        BOOST_TEST(found.modes.size() >= static_cast<std::size_t>(modes));
+        BOOST_TEST(found.searched->is_counted);
+        require_agreement(found, all, modes - 1);  // the last one is at the edge
+      }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(search_in_wind_next_to_a_frequency) {
   Steady turbine(io::read_case(input_path("nrel5mw/land"), coarse));
   analysis::FloquetOptions options = some_modes(3);

@@ -49,9 +49,9 @@ void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& a
     BOOST_TEST(std::abs(std::abs(mode.multiplier) / std::abs(other.multiplier) - 1.0) < 1e-5,
                place << ": " << mode.label << " " << mode.multiplier << " " << other.multiplier);
     if (other.resolved)
-      BOOST_TEST(
-          (mode.name == other.name && (mode.shape_number == 0 || mode.number == other.number)),
-          place << ": " << mode.label << " " << other.label);
+      BOOST_TEST((mode.name == other.name && (mode.shape_number == 0 || other.shape_number == 0 ||
+                                              mode.number == other.number)),
+                 place << ": " << mode.label << " " << other.label);
   }
   for (std::size_t m = 0; m < some.modes.size(); ++m)
     if (std::abs(some.modes[m].exponent) > 1e-5 * some.rotor_speed)

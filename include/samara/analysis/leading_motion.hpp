@@ -14,11 +14,11 @@ namespace samara::analysis {
 /// Number of identical parts (the blades) that have motions.
 int count_instances(const std::vector<system::Motion>& motions);
 
-/// The motion that a mode is named after: the one with most kinetic and strain energy.
 /// How blades at rest move against each other, without a mean: the cosine or the sine of the angle
 /// from blade 1, multiplied by one amplitude.
 enum class CyclicMotion { none, cosine, sine };
 
+/// The motion that a mode is named after: the one with most kinetic and strain energy.
 struct LeadingMotion {
   system::Motion motion;
   /// Multiblade component n of the motion: each blade is 2 pi n / B ahead of the blade behind it.

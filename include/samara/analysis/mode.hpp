@@ -29,14 +29,13 @@ struct Mode {
   int harmonic = 0;            ///< k, relative to the principal exponent
   double damping_ratio = 0.0;  ///< -Re / |lambda|; 0 where |lambda| counts as zero
   std::string name;            ///< of its motion: equal for modes of the same motion
-  /// Number of the mode among those of its motion, at least: the load that the motion restores
+  std::string motion;          ///< name without the word for how the blades move together
+  /// Number of the mode among those of its motion: the load that the motion restores
   /// changes its sign `shape_number` - 1 times along the part. 0: not known.
   int shape_number = 0;
-  /// A mixture of directions, or blades at rest or without a common pattern: several modes may have
-  /// the same number.
-  bool shares_number = false;
-  int number = 0;     ///< among the modes of its name, from 1; 0: the name has no number
-  std::string label;  ///< number, as "1st", and name
+  /// That of the shape, or else one more than the largest one of the name; 0: the name has none.
+  int number = 0;
+  std::string label;  ///< number, as "1st", and name; another mode with both has "(2)" behind it
   /// Im of the exponent in the fixed frame [rad/s]; not-a-number where the motion has no single
   /// frequency there (docs/theory.md, section 5.6).
   double fixed_frame_frequency = std::numeric_limits<double>::quiet_NaN();

@@ -71,7 +71,8 @@ CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const an
 
 /// A mode over the points of a sweep.
 struct CampbellLine {
-  std::string name;  ///< most frequent number and name of its modes; no two lines have the same
+  /// Most frequent number and name of its modes; shorter lines with the same have "(2)" behind it.
+  std::string name;
   std::vector<analysis::TrackedMode> modes;
 };
 
