@@ -39,7 +39,7 @@ inline void set_mesh(model::BeamDefinition& beam, const Mesh& mesh) {
 /// (docs/import.md). A blade with point masses keeps its mesh, whose ends follow the masses.
 inline void set_air_mesh(model::BeamDefinition& beam) {
   if (!beam.point_masses.empty()) return;
-  beam.element_lengths = {2.6, 3.4, 3.6, 3.3, 2.4, 1.1};
+  beam.element_lengths = {2.72, 3.4, 3.5, 3.2, 2.4, 1.2};
   beam.elements = static_cast<int>(beam.element_lengths.size());
   beam.order = 2;
 }

@@ -199,7 +199,7 @@ class Campbell(ProgramTest):
         """A part without stiffness at one point has no energy there, and the others are compared."""
         self.succeed("campbell", BASELINE, *QUICK, "--sweep", "hub.teeter.stiffness=0:2e5:1e5", "-o", "c.h5")
         found = self.diagram("c.h5")
-        line = next(i for i, name in enumerate(found["mode"]) if name == "1st tower side-side")
+        line = next(i for i, name in enumerate(found["mode"]) if "tower side-side" in name)
         self.assertTrue(numpy.isfinite(found["frequency_hz"][line]).all())
         self.assertTrue((found["likeness"][line] > 0.9).all())
 
