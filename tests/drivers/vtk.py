@@ -325,7 +325,7 @@ class Export(ProgramTest):
         for arguments, words in ((["t.h5", "-o", "a.pvd", "--mode", "1"], "no modes; hint: samara floquet"),
                                  (["f.h5", "-o", "a.pvd", "--mode", "30"], "no mode 30 with a shape; hint: there are 1-15"),
                                  (["f.h5", "-o", "a.pvd", "--label", "flap"], "hint: 1st blade flap symmetric"),
-                                 (["f.h5", "-o", "a.pvd", "--label", "flop symmetric"], "hint: blade flap symmetric"),
+                                 (["f.h5", "-o", "a.pvd", "--label", "flop symmetric"], "blade flap symmetric"),
                                  (["f.h5", "-o", "a.pvd", "--mode", "1", "--held"], "does not oscillate; hint:"),
                                  (["f.h5", "-o", "a.vtu"], "ends in .pvd"),
                                  (["f.h5"], "hint: samara export RESULT.h5 -o NAME.pvd"),

@@ -51,10 +51,12 @@ BOOST_AUTO_TEST_CASE(parked_nrel5mw_lies_between_fast_and_adams) {
   const analysis::ModeSet set = constant_modes_of(parked({}).turbine);
   const Figures page{"N1", "FAST and ADAMS, Jonkman et al. (2009), table 9-1",
                      "blades 3 elements of order 4, tower 1 of order 5"};
-  for (const Published& mode : published)
+  for (const Published& mode : published) {
+    std::vector<double> found = frequencies(set, mode.name);
+    std::erase(found, 0.0);  // overdamped ones
     page.check_spread(std::string(mode.name) + " " + std::to_string(mode.place) + " [Hz]",
-                      frequencies(set, mode.name).at(mode.place - 1) / (2.0 * pi),
-                      {mode.fast, mode.adams}, 0.02);
+                      found.at(mode.place - 1) / (2.0 * pi), {mode.fast, mode.adams}, 0.02);
+  }
   // The second tower modes share their energy with the blades, and their names with it.
   const std::vector<double> all = frequencies(set);
   const double fore_aft = nearest(all, pi * (2.9003 + 2.8590)) / (2.0 * pi);
