@@ -673,6 +673,8 @@ class Analysis {
     for (Mode& mode : set_.modes) {
       ranks_.share(0, mode.fixed_frame_frequency);
       ranks_.share(0, mode.name);
+      ranks_.share(0, mode.motion);
+      ranks_.share(0, mode.shape_number);
     }
   }
 
