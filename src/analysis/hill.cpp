@@ -122,7 +122,7 @@ constexpr int most_steps_of_decays = 240;
 constexpr int most_attempts = 8;
 /// Relative to the rotor speed: distance of exponents of a motion by the steps and by refinement.
 constexpr double same_motion = 0.2;
-/// Beyond their errors, exponents that differ by more belong to different modes.
+/// A decay is left out where it is larger than the wanted ones by this, beyond the errors of both.
 constexpr double clear_difference = 1e-3;
 
 /// An eigenpair with its identification.

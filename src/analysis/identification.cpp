@@ -125,7 +125,7 @@ class ShapeNumbers {
       const Eigen::Index load = group.unknowns.front();
       const std::string& quantity = system.unknowns()[static_cast<std::size_t>(load)].quantity;
       loads_[{group.owner.kind, motion_name(group)}][{group.owner.instance, quantity}].push_back(
-          {load, group.weight.front(), 0.0});
+          {load, group.weight.front()});
     }
   }
 
@@ -135,37 +135,39 @@ class ShapeNumbers {
   int number_of(const system::Motion& motion, const Eigen::MatrixXcd& shape) const {
     const auto found = loads_.find({motion.owner.kind, motion.name()});
     if (found == loads_.end() || shape.size() == 0) return 0;
-    std::vector<Place> places;
-    double most = 0.0;
+    const std::vector<Place>* places = nullptr;
+    Eigen::VectorXd energies = Eigen::VectorXd::Zero(1);
     for (const auto& [key, along] : found->second) {
-      std::vector<Place> own = along;
-      double energy = 0.0;
-      for (Place& place : own) {
-        place.energy = place.weight * shape.row(place.load).squaredNorm();
-        energy += place.energy;
+      Eigen::VectorXd own(static_cast<Eigen::Index>(along.size()));
+      for (Eigen::Index i = 0; i < own.size(); ++i) {
+        const Place& place = along[static_cast<std::size_t>(i)];
+        own(i) = place.weight * shape.row(place.load).squaredNorm();
       }
-      if (energy <= most) continue;
-      most = energy;
-      places = std::move(own);
+      if (own.sum() <= energies.sum()) continue;
+      energies = own;
+      places = &along;
     }
-    if (places.empty()) return 0;
-    const Place& largest = *std::ranges::max_element(places, {}, &Place::energy);
+    if (places == nullptr) return 0;
+    Eigen::Index largest = 0;
+    const double most = energies.maxCoeff(&largest);
+    const auto load_at = [&](Eigen::Index i) {
+      return shape.row((*places)[static_cast<std::size_t>(i)].load);
+    };
     int number = 0;
     bool is_positive = true;
-    for (const Place& place : places) {
-      if (place.energy < least_energy * largest.energy) continue;
-      const bool sign = shape.row(largest.load).dot(shape.row(place.load)).real() > 0.0;
+    for (Eigen::Index i = 0; i < energies.size(); ++i) {
+      if (energies(i) < least_energy * most) continue;
+      const bool sign = load_at(largest).dot(load_at(i)).real() > 0.0;
       if (number == 0 || sign != is_positive) ++number;
       is_positive = sign;
     }
-    return places.size() > 3 && 2 * number < static_cast<int>(places.size()) ? number : 0;
+    return energies.size() > 3 && 2 * number < energies.size() ? number : 0;
   }
 
  private:
   struct Place {
     Eigen::Index load;
     double weight;
-    double energy;
   };
   using Motion = std::pair<system::PartKind, std::string>;  // kind of part, name
   using Load = std::pair<int, std::string>;                 // instance of the part, quantity
@@ -381,6 +383,12 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
   }
 }
 
+std::string label_of(const std::string& name, int number, std::map<std::string, int>& times) {
+  const std::string label = number > 0 ? ordinal(number) + " " + name : name;
+  const int time = ++times[label];
+  return time > 1 ? label + " (" + std::to_string(time) + ")" : label;
+}
+
 void arrange_modes(ModeSet& set) {
   const std::size_t count = set.modes.size();
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
@@ -432,9 +440,7 @@ void arrange_modes(ModeSet& set) {
     const bool has_number =
         !mode.name.empty() && (mode.shape_number > 0 || alike[mode.name] > 1 || own > 1);
     mode.number = has_number ? own : 0;
-    mode.label = has_number ? ordinal(own) + " " + mode.name : mode.name;
-    if (const int time = ++times[mode.label]; time > 1 && !mode.name.empty())
-      mode.label += " (" + std::to_string(time) + ")";
+    mode.label = mode.name.empty() ? "" : label_of(mode.name, mode.number, times);
   }
 }
 

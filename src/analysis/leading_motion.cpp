@@ -226,54 +226,46 @@ Leading find_leading(const system::PeriodicSystem& system,
   return found;
 }
 
-/// Shares of the multiblade components of a motion: n = 0 is the mean of the blades; in component n
-/// each blade is 2 pi n / B ahead of the blade behind it. Empty where nothing moves.
-Eigen::VectorXd multiblade_shares(const std::vector<system::Motion>& motions, int count,
-                                  const system::Motion& one, const Eigen::MatrixXcd& shape) {
+/// The multiblade components of a motion: n = 0 is the mean of the blades; in component n each
+/// blade is 2 pi n / B ahead of the blade behind it.
+struct Multiblade {
+  Eigen::VectorXd shares;  ///< of the components; empty where nothing moves
+  /// Positive where the sum of components 1 and B - 1 follows the cosine of the angle from blade 1
+  /// more than its sine.
+  double cosine_less_sine = 0.0;
+};
+
+Multiblade multiblade_of(const std::vector<system::Motion>& motions, int count,
+                         const system::Motion& one, const Eigen::MatrixXcd& shape) {
   std::vector<const system::Motion*> alike;
   for (const system::Motion& motion : motions)
     if (motion.is_alike(one)) alike.push_back(&motion);
-  Eigen::VectorXd shares = Eigen::VectorXd::Zero(count);
   if (static_cast<int>(alike.size()) != count) return {};
-  for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i)
-    for (int n = 0; n < count; ++n) {
-      Eigen::RowVectorXcd component = Eigen::RowVectorXcd::Zero(shape.cols());
+  Multiblade found{Eigen::VectorXd::Zero(count)};
+  for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i) {
+    Eigen::MatrixXcd components = Eigen::MatrixXcd::Zero(count, shape.cols());
+    for (int n = 0; n < count; ++n)
       for (int k = 0; k < count; ++k)
-        component += std::polar(1.0, -2.0 * std::numbers::pi * n * k / count) *
-                     shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
-      shares(n) += alike.front()->weight[i] * component.squaredNorm();
-    }
-  const double total = shares.sum();
-  return total > 0.0 ? Eigen::VectorXd(shares / total) : Eigen::VectorXd();
+        components.row(n) += std::polar(1.0, -2.0 * std::numbers::pi * n * k / count) *
+                             shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
+    const double weight = alike.front()->weight[i];
+    found.shares += weight * components.rowwise().squaredNorm();
+    // |c_1 + c_B-1|^2 - |c_1 - c_B-1|^2 over four
+    found.cosine_less_sine += weight * components.row(1).dot(components.row(count - 1)).real();
+  }
+  const double total = found.shares.sum();
+  if (!(total > 0.0)) return {};
+  found.shares /= total;
+  return found;
 }
 
 /// How three or more blades at rest move against each other; `none` where they move alike for the
 /// most part, or in patterns of higher order.
-CyclicMotion cyclic_motion(const std::vector<system::Motion>& motions, int count,
-                           const system::Motion& one, const Eigen::MatrixXcd& shape) {
-  std::vector<const system::Motion*> alike;
-  for (const system::Motion& motion : motions)
-    if (motion.is_alike(one)) alike.push_back(&motion);
-  if (static_cast<int>(alike.size()) != count) return CyclicMotion::none;
-  double cosine = 0.0;
-  double sine = 0.0;
-  double all = 0.0;
-  for (std::size_t i = 0; i < alike.front()->unknowns.size(); ++i) {
-    const double weight = alike.front()->weight[i];
-    Eigen::RowVectorXcd of_cosine = Eigen::RowVectorXcd::Zero(shape.cols());
-    Eigen::RowVectorXcd of_sine = of_cosine;
-    for (int k = 0; k < count; ++k) {
-      const auto row = shape.row(alike[static_cast<std::size_t>(k)]->unknowns[i]);
-      const double angle = 2.0 * std::numbers::pi * k / count;
-      of_cosine += std::sqrt(2.0 / count) * std::cos(angle) * row;
-      of_sine += std::sqrt(2.0 / count) * std::sin(angle) * row;
-      all += weight * row.squaredNorm();
-    }
-    cosine += weight * of_cosine.squaredNorm();
-    sine += weight * of_sine.squaredNorm();
-  }
-  if (!(cosine + sine > clear_share * all)) return CyclicMotion::none;
-  return cosine > sine ? CyclicMotion::cosine : CyclicMotion::sine;
+CyclicMotion cyclic_motion(const Multiblade& blades) {
+  const Eigen::Index last = blades.shares.size() - 1;
+  if (last < 2 || !(blades.shares(1) + blades.shares(last) > clear_share))
+    return CyclicMotion::none;
+  return blades.cosine_less_sine > 0.0 ? CyclicMotion::cosine : CyclicMotion::sine;
 }
 
 /// The states of `one` and of the identical parts, as motions.
@@ -321,8 +313,9 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
     if (mode.state) {
       LeadingMotion one{{*mode.state}, -1, mode.harmonic, true};
       if (mode.state->instance > 0 && together && mode.exponent.imag() > zero)
-        one.component = clear_component(multiblade_shares(motions_of_states(system, *mode.state),
-                                                          count, one.motion, set.shapes[m]));
+        one.component = clear_component(
+            multiblade_of(motions_of_states(system, *mode.state), count, one.motion, set.shapes[m])
+                .shares);
       leading.push_back(one);
       continue;
     }
@@ -332,18 +325,20 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
     const int shift = found.shift.value_or(0);
     LeadingMotion one{motion, -1, mode.harmonic + shift, found.shift.has_value()};
     if (motion.owner.instance > 0 && together && mode.exponent.imag() > zero) {
-      one.component = clear_component(multiblade_shares(
-          motions, count, motion,
-          shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m])));
+      one.component = clear_component(
+          multiblade_of(
+              motions, count, motion,
+              shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]))
+              .shares);
       // The mode will be replaced by its conjugate, in which the blades follow each other in the
       // opposite order.
       if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
         one.component = count - one.component;
     }
     if (motion.owner.instance > 0 && count > 2 && set.rotor_speed == 0.0) {
-      const Eigen::VectorXd shares = multiblade_shares(motions, count, motion, set.shapes[m]);
-      if (shares.size() > 0 && shares(0) > clear_share) one.component = 0;
-      one.cyclic = cyclic_motion(motions, count, motion, set.shapes[m]);
+      const Multiblade blades = multiblade_of(motions, count, motion, set.shapes[m]);
+      if (clear_component(blades.shares) == 0) one.component = 0;
+      one.cyclic = cyclic_motion(blades);
     }
     leading.push_back(one);
   }

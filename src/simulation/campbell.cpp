@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "samara/analysis/constant_modes.hpp"
 #include "samara/analysis/floquet.hpp"
+#include "samara/analysis/identification.hpp"
 #include "samara/analysis/ranks.hpp"
-#include "samara/base/format.hpp"
 #include "samara/simulation/held_air.hpp"
 
 namespace samara::simulation {
@@ -91,9 +92,9 @@ std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& 
   return std::nullopt;
 }
 
-/// The most frequent name, with its most frequent number.
-std::string most_frequent_name(const std::vector<CampbellPoint>& points,
-                               const std::vector<TrackedMode>& line) {
+/// The most frequent name, and its most frequent number.
+std::pair<std::string, int> most_frequent_name(const std::vector<CampbellPoint>& points,
+                                               const std::vector<TrackedMode>& line) {
   std::map<std::string, std::map<int, int>> turning;  // how often each number of a name
   std::map<std::string, std::map<int, int>> at_rest;
   for (const TrackedMode& tracked : line) {
@@ -106,9 +107,8 @@ std::string most_frequent_name(const std::vector<CampbellPoint>& points,
     for (const auto& [number, times] : one.second) count += times;
     return count;
   });
-  const int number =
-      std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first;
-  return number > 0 ? ordinal(number) + " " + name : name;
+  return {name,
+          std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first};
 }
 
 }  // namespace
@@ -197,29 +197,27 @@ std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
 
 std::vector<CampbellLine> name_lines(const std::vector<CampbellPoint>& points,
                                      const std::vector<std::vector<TrackedMode>>& lines) {
-  struct Named {
-    double frequency;
-    std::string name;
-    const std::vector<TrackedMode>* modes;
-  };
-  std::vector<Named> sorted;
+  std::vector<std::pair<double, CampbellLine>> sorted;
   for (const std::vector<TrackedMode>& line : lines) {
     const TrackedMode& middle = line[line.size() / 2];
-    sorted.push_back({std::abs(tracked_exponent(mode_of(points, middle).exponent, middle,
-                                                points[middle.point].rotor_speed)
-                                   .imag()),
-                      most_frequent_name(points, line), &line});
+    sorted.emplace_back(std::abs(tracked_exponent(mode_of(points, middle).exponent, middle,
+                                                  points[middle.point].rotor_speed)
+                                     .imag()),
+                        CampbellLine{"", line});
   }
-  // Of lines with one name, the one with the most points has it as it is.
-  std::ranges::stable_sort(sorted, std::ranges::greater(),
-                           [](const Named& line) { return line.modes->size(); });
-  std::map<std::string, int> times;
-  for (Named& line : sorted)
-    if (const int time = ++times[line.name]; time > 1)
-      line.name += " (" + std::to_string(time) + ")";
-  std::ranges::stable_sort(sorted, {}, &Named::frequency);
+  std::ranges::stable_sort(sorted, {}, [](const auto& line) { return line.first; });
   std::vector<CampbellLine> result;
-  for (const Named& line : sorted) result.push_back({line.name, *line.modes});
+  for (auto& [frequency, line] : sorted) result.push_back(std::move(line));
+  // Of lines with one name, the one with the most points has it as it is.
+  std::vector<CampbellLine*> longest;
+  for (CampbellLine& line : result) longest.push_back(&line);
+  std::ranges::stable_sort(longest, std::ranges::greater(),
+                           [](const CampbellLine* line) { return line->modes.size(); });
+  std::map<std::string, int> times;
+  for (CampbellLine* line : longest) {
+    const auto [name, number] = most_frequent_name(points, line->modes);
+    line->name = analysis::label_of(name, number, times);
+  }
   return result;
 }
 

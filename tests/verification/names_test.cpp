@@ -4,6 +4,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "air_case.hpp"
 #include "cases.hpp"
 
 using namespace samara;
@@ -380,12 +381,8 @@ BOOST_AUTO_TEST_CASE(modes_keep_their_numbers_where_others_are_left_out) {
   const std::vector<std::string> settings{
       "blades.elements=4", "blades.element_lengths=[4, 4, 3, 2]", "floquet.steps=48"};
   const auto modes_of = [&settings](const std::vector<std::string>& more) {
-    const io::Case input = io::read_case(
-        std::string(SAMARA_SOURCE_DIR) + "/inputs/nrel5mw/land.yaml", with(settings, more));
-    const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
-    analysis::Observer observer;
-    const analysis::Trim trim = analysis::find_trim(system, input.trim, observer);
-    return find_floquet_modes(system, trim.solution, input.floquet, PETSC_COMM_SELF, observer).set;
+    Steady turbine(io::read_case(input_path("nrel5mw/land"), with(settings, more)));
+    return turbine.floquet(turbine.input.floquet);
   };
   const analysis::ModeSet all = modes_of({});
   std::set<std::string> found;

@@ -2,6 +2,9 @@
 // (docs/theory.md, section 5.6).
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "samara/analysis/leading_motion.hpp"
 #include "samara/analysis/mode.hpp"
 #include "samara/system/periodic_system.hpp"
@@ -43,6 +46,10 @@ void scale_shapes(const system::PeriodicSystem& system, ModeSet& set);
 /// Without shapes no mode is named.
 void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingMotion>& leading,
                 ModeSet& set, int sectors = 1);
+
+/// "2nd blade flap"; without a number (0) the name. `times`: how often each label was given,
+/// counted here; the second one has " (2)" behind it.
+std::string label_of(const std::string& name, int number, std::map<std::string, int>& times);
 
 /// Sorts modes: resolved ones first, then by |lambda|, growth, name and harmonic. Numbers the modes
 /// of the same name. Order and numbers do not depend on the order in which an eigensolver found the
