@@ -261,11 +261,10 @@ Multiblade multiblade_of(const std::vector<system::Motion>& motions, int count,
 
 /// How three or more blades at rest move against each other; `none` where they move alike for the
 /// most part, or in patterns of higher order.
-CyclicMotion cyclic_motion(const Multiblade& blades) {
-  const Eigen::Index last = blades.shares.size() - 1;
-  if (last < 2 || !(blades.shares(1) + blades.shares(last) > clear_share))
-    return CyclicMotion::none;
-  return blades.cosine_less_sine > 0.0 ? CyclicMotion::cosine : CyclicMotion::sine;
+CyclicMotion cyclic_motion(const Multiblade& found) {
+  const Eigen::Index last = found.shares.size() - 1;
+  if (last < 2 || !(found.shares(1) + found.shares(last) > clear_share)) return CyclicMotion::none;
+  return found.cosine_less_sine > 0.0 ? CyclicMotion::cosine : CyclicMotion::sine;
 }
 
 /// The states of `one` and of the identical parts, as motions.
@@ -336,9 +335,9 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
         one.component = count - one.component;
     }
     if (motion.owner.instance > 0 && count > 2 && set.rotor_speed == 0.0) {
-      const Multiblade blades = multiblade_of(motions, count, motion, set.shapes[m]);
-      if (clear_component(blades.shares) == 0) one.component = 0;
-      one.cyclic = cyclic_motion(blades);
+      const Multiblade components = multiblade_of(motions, count, motion, set.shapes[m]);
+      if (clear_component(components.shares) == 0) one.component = 0;
+      one.cyclic = cyclic_motion(components);
     }
     leading.push_back(one);
   }
