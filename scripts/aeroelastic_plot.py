@@ -23,6 +23,8 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
+import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "python"))
@@ -32,7 +34,7 @@ LAND = str(ROOT / "inputs" / "nrel5mw" / "land.yaml")
 WINDS = list(range(4, 26))
 SHOWN = [8.0, 12.0, 20.0]
 INPUTS = {"nrel5mw": "#1f5f9e", "iea15mw": "#b04a00"}
-MESHES = {"nrel5mw": (3, 4, 6, 8, 12, 16), "iea15mw": (4, 6, 8, 10, 12, 16)}  # elements of order 2
+ELEMENTS = (3, 4, 6, 8, 12, 16)  # of order 2, 6 in the inputs
 FINEST = 28
 FIRST = 10
 
@@ -98,10 +100,19 @@ def draw_span(folder, points, path):
     figure.savefig(path, metadata={"Date": None})
 
 
+def divide(lengths, count):
+    """Lengths of `count` elements that are graded as those of the input."""
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    return np.diff(np.interp(np.linspace(0, len(lengths), count + 1), np.arange(len(ends)), ends))
+
+
 def read_damping(folder, name, elements):
-    case = str(ROOT / "inputs" / name / "land.yaml")
-    run(folder, "floquet", case, "--set", f"blades.elements={elements}", "--set", "blades.order=2",
-        "--csv", "modes.csv", "-o", "modes.h5")
+    case = ROOT / "inputs" / name / "land.yaml"
+    blades = yaml.safe_load(case.read_text(encoding="utf-8"))["blades"]
+    assert blades["order"] == 2, case
+    lengths = [round(float(length), 6) for length in divide(blades["element_lengths"], elements)]
+    run(folder, "floquet", str(case), "--set", f"blades.elements={elements}", "--set",
+        f"blades.element_lengths={lengths}", "--csv", "modes.csv", "-o", "modes.h5")
     with open(folder / "modes.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     return {row["label"]: float(row["damping_ratio"]) for row in rows[:FIRST]}
@@ -113,7 +124,7 @@ def draw_mesh(folder, path):
     for name, color in INPUTS.items():
         finest = read_damping(folder, name, FINEST)
         points, largest = [], []
-        for elements in MESHES[name]:
+        for elements in ELEMENTS:
             found = read_damping(folder, name, elements)
             changes = {label: abs(found[label] / ratio - 1) for label, ratio in finest.items() if label in found}
             worst = max(changes, key=changes.get)

@@ -898,7 +898,31 @@ StateResidual state_residual(const system::PeriodicSystem& system, const Periodi
   return largest;
 }
 
+namespace {
+
+/// At instants over a period. @throws DomainError
+void require_admissible(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                        const Ranks& ranks) {
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const int samples = 2 * sample_count(system, solution.harmonics());
+  ranks.attempt([&] {
+    for (int k = ranks.rank; k < samples; k += ranks.size) {
+      const double t = system.period() * k / samples;
+      solution.evaluate(t, z.get(), z_dot.get());
+      try {
+        system.require_admissible(t, z.get());
+      } catch (const DomainError& error) {
+        throw DomainError(std::string("trim: ") + error.what());
+      }
+    }
+  });
+}
+
+}  // namespace
+
 void finish_trim(const system::PeriodicSystem& system, Trim& trim, MPI_Comm comm) {
+  require_admissible(system, trim.solution, Ranks(comm));
   for (std::size_t i = 0; i < system.unknowns().size(); ++i)
     if (system.unknowns()[i].role == system::UnknownRole::internal)
       trim.load_level = std::max(

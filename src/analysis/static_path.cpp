@@ -185,6 +185,7 @@ class Equilibrium {
     Eigen::VectorXd by_factor;
     evaluate(point, r, by_factor);
     StaticState state{point.factor, {}, newton_steps, 0.0};
+    loaded_.require_admissible(0.0, z_.get());
     loaded_.count_from_undeformed(z_.get());
     {
       const petsc::ReadView view(z_.get());

@@ -604,6 +604,11 @@ class Integration {
     }
     finish_midpoint(t, taken);
     note_rates(taken);
+    try {
+      system_.require_admissible(t_, z_.get());
+    } catch (const DomainError& error) {
+      throw DomainError("transient at t = " + general(t_, 6) + " s: " + error.what());
+    }
     const bool goes_on = observer_.sample({t_, z_.get(), z_dot_.get(), step_, on_grid});
     if (on_grid && step_ < last_step_ && options_.checkpoint_steps > 0 &&
         step_ % options_.checkpoint_steps == 0)

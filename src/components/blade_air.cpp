@@ -311,6 +311,16 @@ void BladeAir::settle(const Residual<double>& residual, std::vector<double>& val
   }
 }
 
+void BladeAir::require_admissible(const Residual<double>& residual) const {
+  for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {
+    const auto x = residual.gather<arguments>(points_[at(p)]);
+    const elements::RootPose<double> root =
+        root_pose_of<double>(x.segment<root_pose_values>(at_root));
+    const Vector3 place = root.place + root.axes * Vector3(station(p).x + x.head<3>());
+    air().rotor.wind.tower.require_outside(place, "blade " + std::to_string(k_ + 1));
+  }
+}
+
 template class Stated<BladeAir>;
 
 }  // namespace samara::components

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -253,11 +254,26 @@ class OperatingPointFinder::Search {
 
   OperatingPoint search(double wind) {
     const bool is_above = is_above_rated(wind);
+    // Above the rated wind the steady state at the least pitch may not exist, or a blade may strike
+    // the tower there.
+    std::exception_ptr failure;
     if (!is_above) {
-      const OperatingPoint* point = search_speed(wind);
-      if (point != nullptr) return *point;
+      try {
+        const OperatingPoint* point = search_speed(wind);
+        if (point != nullptr) return *point;
+      } catch (const ConvergenceError&) {
+        failure = std::current_exception();
+      } catch (const DomainError&) {
+        failure = std::current_exception();
+      }
     }
-    if (const std::optional<OperatingPoint> point = search_pitch(wind)) return *point;
+    try {
+      if (const std::optional<OperatingPoint> point = search_pitch(wind)) return *point;
+    } catch (...) {
+      if (failure) std::rethrow_exception(failure);
+      throw;
+    }
+    if (failure) std::rethrow_exception(failure);
     // The torque at the least pitch is below the rated one: the rotor stalls.
     const OperatingPoint* point = is_above ? search_speed(wind) : nullptr;
     if (point != nullptr) return *point;

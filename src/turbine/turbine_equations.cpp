@@ -273,6 +273,16 @@ void TurbineEquations::settle_air(double t, std::vector<double>& z) const {
   z = settled;
 }
 
+void TurbineEquations::require_admissible(double t, const std::vector<double>& z) const {
+  if (airs_.empty() || !turbine_.air->rotor.wind.tower.disturbs()) return;
+  const std::vector<double> rates(z.size(), 0.0);
+  std::vector<double> unused(z.size(), 0.0);  // only the ports count
+  const TurbineInputs<double> inputs;
+  Residual<double> residual(t, z, rates, inputs, declarations_.port_sizes, unused);
+  provide_poses(residual);
+  for (const auto& air : airs_) air->require_admissible(residual);
+}
+
 template <class T>
 components::BodiesReport<T> TurbineEquations::report(double t, const std::vector<T>& z,
                                                      const std::vector<T>& z_dot,

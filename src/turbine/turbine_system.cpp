@@ -351,6 +351,10 @@ void TurbineSystem::settle(double t, Vec z) const {
   assembly_->write_own(values, z);
 }
 
+void TurbineSystem::require_admissible(double t, Vec z) const {
+  assembly_->equations.require_admissible(t, assembly_->gathered(z));
+}
+
 std::unique_ptr<system::PeriodicSystem> TurbineSystem::unloaded() const {
   model::Turbine bare = turbine();
   bare.chain.gravity = 0.0;

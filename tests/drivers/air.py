@@ -35,6 +35,28 @@ class Commands(ProgramTest):
         self.assertIn("unusual: chord of blades.aero_sections[4], 45 m on a blade of 61.5 m", text)
         self.assertIn("unusual: twist of blades.aero_sections[9] differs by", text)
 
+    def test_blades_that_pass_or_strike_the_tower(self):
+        """A shaft without tilt. At the rated wind the blades strike the tower at zero pitch, not at
+        the operating point, whose pitch is that without the tower but for the blades' passage."""
+        case = [LAND, *QUICK, "--set", "shaft.tilt_deg=0", "--set", "trim.harmonics=4"]
+        tower = ["--set", "wind.tower={sections: [[0, 6, 1], [87.6, 3.87, 1]], potential: plain}"]
+        pitch = {}
+        for name, setting in {"free": [], "tower": tower}.items():
+            self.succeed("operate", *case, *setting, "--set", "operation.wind_speeds=[12]", "-o",
+                         f"{name}.h5")
+            with h5py.File(self.folder / f"{name}.h5") as file:
+                pitch[name] = math.degrees(file["operation/pitch"][0])
+        self.assertGreater(pitch["tower"], 3)
+        self.assertLess(abs(pitch["tower"] - pitch["free"]), 0.2)
+        self.refuse("trim", *case, *tower, "--set", "wind.speed=13", code=3,
+                    place=r"samara: trim: blade \d is inside the tower, [23]\d\.\d+ m above the foot; ")
+        run = self.samara("transient", *case, *tower, "--set", "wind.speed=11", "-o", "strike.h5",
+                          "--set", "transient={duration: 8, step: 0.05, wind: {gust: {type: eog, start: 1}}}")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertRegex(run.stderr, r"transient at t = [3-8](\.\d+)? s: blade \d is inside the tower")
+        with h5py.File(self.folder / "strike.h5") as file:  # the rows before are kept
+            self.assertGreater(file["transient/time"][-1], 3)
+
     def test_the_part_of_the_air_in_the_damping(self):
         quick = [*QUICK, "--set", "trim.harmonics=6"]
         text = self.succeed("floquet", LAND, *quick, "--air", "-o", "air.h5").stdout

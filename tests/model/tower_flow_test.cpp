@@ -56,7 +56,32 @@ BOOST_AUTO_TEST_CASE(potential_flow_has_its_stagnation_point_and_twice_the_speed
     BOOST_TEST(std::abs(v(0) + 10.0 * w) < 1e-6);  // to the left is -n1
     BOOST_TEST(v(2) == 0.0);
   }
-  BOOST_CHECK_THROW(at(wind, 0.5, 0.5), DomainError);
+}
+
+/// Iterations may pass through the tower, solutions may not.
+BOOST_AUTO_TEST_CASE(the_flow_is_continued_inside_the_tower) {
+  for (const TowerPotential potential : {TowerPotential::plain, TowerPotential::bak}) {
+    const Wind wind = wind_of(potential);
+    BOOST_TEST(at(wind, 0.0, 0.0).norm() < 100.0);
+    constexpr double h = 1e-6;
+    for (const double angle : {0.3, 1.1, 2.0, 3.0}) {
+      const auto along = [&](double r) {
+        return at(wind, r * std::cos(angle) - (potential == TowerPotential::bak ? 0.1 : 0.0),
+                  r * std::sin(angle));
+      };
+      const double edge = 0.9;
+      const Vector3 inside = (along(edge) - along(edge - h)) / h;
+      const Vector3 outside = (along(edge + h) - along(edge)) / h;
+      BOOST_TEST((inside - outside).norm() < 1e-3);
+      BOOST_TEST(inside.norm() > 1.0);
+    }
+    const TowerFlow& tower = wind.tower;
+    BOOST_CHECK_THROW(tower.require_outside(Vector3(-1.0, 1.0, 40.0), "blade 1"), DomainError);
+    BOOST_CHECK_NO_THROW(tower.require_outside(Vector3(-1.0, 2.0, 40.0), "blade 1"));
+    BOOST_CHECK_NO_THROW(tower.require_outside(Vector3(0.0, 0.0, 84.5), "blade 1"));
+  }
+  BOOST_CHECK_NO_THROW(
+      wind_of(TowerPotential::none).tower.require_outside(Vector3::Zero(), "blade 1"));
 }
 
 /// The formula of the potential with the drag, written out at a point 2.5 radii upwind.

@@ -64,6 +64,10 @@ class BladeAir final : public Stated<BladeAir> {
   /// present motion. `residual`: where the ports have been provided.
   void settle(const Residual<double>& residual, std::vector<double>& values) const;
 
+  /// @throws DomainError if a point of the blade is inside the tower, whose flow has no meaning
+  /// there. `residual`: where the ports have been provided.
+  void require_admissible(const Residual<double>& residual) const;
+
  private:
   /// u, theta, V, Omega; unknowns of the air; rates of its states; poses of hub and root.
   static constexpr int at_air = 12;

@@ -77,6 +77,10 @@ class PeriodicSystem {
   /// stay. Without a medium nothing changes.
   virtual void settle(double /*t*/, Vec /*z*/) const {}
 
+  /// For states that are solutions. Iterations may pass through states in which the equations are
+  /// continued beyond their meaning. @throws DomainError if `z` is such a state
+  virtual void require_admissible(double /*t*/, Vec /*z*/) const {}
+
   virtual petsc::Handle<Vec> make_state() const = 0;
   /// Preallocated for K + shift M.
   virtual petsc::Handle<Mat> make_jacobian() const = 0;

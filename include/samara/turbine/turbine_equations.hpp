@@ -63,6 +63,9 @@ class TurbineEquations {
   /// Sets the unknowns of the air to those of steady air around the blades in their motion at t.
   void settle_air(double t, std::vector<double>& z) const;
 
+  /// @throws DomainError if a blade is inside the tower
+  void require_admissible(double t, const std::vector<double>& z) const;
+
   /// The flow through the disk of a rotor with a finite-state wake; none without it.
   std::optional<elements::DiskFlow<double>> disk_flow(double t, const std::vector<double>& z,
                                                       const std::vector<double>& z_dot) const;

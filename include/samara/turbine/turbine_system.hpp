@@ -39,6 +39,7 @@ class TurbineSystem final : public system::PeriodicSystem {
   std::vector<system::MeshError> mesh_errors() const override;
   void reference_state(double t, Vec z) const override;
   void settle(double t, Vec z) const override;
+  void require_admissible(double t, Vec z) const override;
   petsc::Handle<Vec> make_state() const override;
   petsc::Handle<Mat> make_jacobian() const override;
   petsc::Handle<Mat> make_mass() const override;
