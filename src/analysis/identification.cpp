@@ -179,7 +179,8 @@ class ShapeNumbers {
 /// Name of a mode, in two parts.
 struct Name {
   system::Motion motion;
-  std::string together;  ///< word for the phase between the blades
+  std::string together;     ///< word for the phase between the blades
+  bool is_mixture = false;  ///< of bending in two directions, with others of the same exponent
   std::string text() const { return motion.name() + together; }
 };
 
@@ -211,7 +212,13 @@ void unite_degenerate(const ModeSet& set, int sectors, bool canonical, std::vect
       Name& name = names[m];
       const std::string& part = name.motion.owner.part;
       const int alike = name.motion.bends ? bending[part] : count[name.motion.name()];
-      if (name.motion.bends && directions[part].size() > 1) name.motion.direction = "bending";
+      if (name.motion.bends) {
+        // Arbitrary mixtures may all have more of one direction than of the other: then they are
+        // more than the parts that can move in it.
+        const int parts = name.motion.owner.instance > 0 ? set.instances : 1;
+        name.is_mixture = directions[part].size() > 1 || (parts > 0 && bending[part] > parts);
+        if (name.is_mixture) name.motion.direction = "bending";
+      }
       if (!canonical && alike > 1) name.together = "";
     }
   }
@@ -368,6 +375,7 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
     Mode& mode = set.modes[m];
     mode.name = names[m].text();
     mode.motion = names[m].motion.name();
+    mode.is_mixture = names[m].is_mixture;
     mode.shape_number =
         numbers.number_of(leading.empty() ? names[m].motion : leading[m].motion, set.shapes[m]);
     const double frequency = mode.exponent.imag();
@@ -432,10 +440,18 @@ void arrange_modes(ModeSet& set) {
   std::map<std::string, int> alike;
   for (const Mode& mode : set.modes)
     if (mode.resolved) ++alike[mode.name];
-  std::map<std::string, int> last;  // numbers by the names, and by the motions alone
+  std::map<std::string, int> last;   // numbers by the names, and by the motions alone
+  std::map<std::string, int> mixed;  // place of the size of the last mixture, by the names
   std::map<std::string, int> times;
-  for (Mode& mode : set.modes) {
-    const int own = mode.shape_number > 0 ? mode.shape_number : last[mode.name] + 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    Mode& mode = set.modes[i];
+    const int size = by_size[order[i]];
+    const bool has_partner =
+        mode.is_mixture && mixed.contains(mode.name) && mixed[mode.name] == size;
+    if (mode.is_mixture) mixed[mode.name] = size;
+    const int own = mode.shape_number > 0 ? mode.shape_number
+                    : has_partner         ? last[mode.name]
+                                          : last[mode.name] + 1;
     for (const std::string& name : {mode.name, mode.motion}) last[name] = std::max(last[name], own);
     const bool has_number =
         !mode.name.empty() && (mode.shape_number > 0 || alike[mode.name] > 1 || own > 1);

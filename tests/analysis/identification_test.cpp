@@ -267,6 +267,33 @@ BOOST_AUTO_TEST_CASE(a_system_that_does_not_know_its_motions_is_named_by_its_str
   for (std::size_t i = 0; i < wanted.size(); ++i) BOOST_TEST(set.modes[i].label == wanted[i]);
 }
 
+/// Both eigenvectors of a double exponent may have more of one direction than of the other.
+BOOST_AUTO_TEST_CASE(equal_modes_beyond_the_number_of_parts_have_no_direction) {
+  const Described system;
+  for (const bool is_second_aside : {false, true}) {
+    analysis::ModeSet set;
+    set.rotor_speed = 1.0;
+    set.shape_times = {0.0};
+    std::vector<analysis::LeadingMotion> leading;
+    for (int m = 0; m < 2; ++m) {
+      analysis::Mode mode;
+      mode.exponent = Complex(0.0, m == 1 && is_second_aside ? 2.1 : 2.0);
+      set.modes.push_back(mode);
+      set.shapes.push_back(Eigen::MatrixXcd::Zero(16, 1));
+      analysis::LeadingMotion one;
+      one.motion = {{system::PartKind::beam, "tower"}, "fore-aft"};
+      one.motion.bends = true;
+      leading.push_back(one);
+    }
+    name_modes(system, leading, set);
+    arrange_modes(set);
+    BOOST_TEST(set.modes[0].label ==
+               (is_second_aside ? "1st tower fore-aft" : "1st tower bending"));
+    BOOST_TEST(set.modes[1].label ==
+               (is_second_aside ? "2nd tower fore-aft" : "1st tower bending (2)"));
+  }
+}
+
 namespace {
 
 analysis::Mode mode_of(const std::string& name, Complex exponent, bool resolved = true) {

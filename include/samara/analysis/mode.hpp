@@ -33,6 +33,7 @@ struct Mode {
   /// Number of the mode among those of its motion: the load that the motion restores
   /// changes its sign `shape_number` - 1 times along the part. 0: not known.
   int shape_number = 0;
+  bool is_mixture = false;  ///< bends in two directions, as others of the same exponent
   /// That of the shape, or else one more than the largest one of the name; 0: the name has none.
   int number = 0;
   std::string label;  ///< number, as "1st", and name; another mode with both has "(2)" behind it
