@@ -103,7 +103,8 @@ constexpr double above_last = 2.0;
 constexpr double edge_slack = 1.0;
 constexpr double same_copy = 0.25;
 constexpr double same_exponent = 1e-6;
-/// Relative to an exponent: distance of copies of a mode with a medium.
+/// Distance of copies of a mode with a medium, relative to the exponent, or to the rotor speed
+/// where both are next to their own harmonic.
 constexpr double same_with_medium = 1e-2;
 /// Relative to the rotor speed: distance of two exponents between which the edge of a region may
 /// be.
@@ -674,18 +675,19 @@ class Analysis {
       all.insert(all.end(), decays.begin(), decays.end());
     std::erase_if(all, [](const Decay& one) { return one.weight == 0.0; });
     std::ranges::sort(all, {}, [](const Decay& one) { return one.value + one.error; });
-    // A mode counts once with its copies, and with other modes of nearly the same exponent.
+    // A mode counts once with its copies, whose exponents differ by a multiple of i Omega, and with
+    // others of nearly the same exponent.
     std::vector<Complex> slowest;
     double found = 0.0;
     double limit = std::numeric_limits<double>::infinity();
     for (const Decay& one : all) {
-      const Complex exponent = principal(one.exponent);
-      const double apart =
-          2.0 * one.error + same_with_medium * std::max(std::abs(one.exponent), speed_);
-      if (std::ranges::any_of(slowest,
-                              [&](Complex other) { return std::abs(exponent - other) < apart; }))
+      const double apart = 2.0 * one.error + same_with_medium * speed_;
+      if (std::ranges::any_of(slowest, [&](Complex other) {
+            const Complex change = one.exponent - other;
+            return std::hypot(change.real(), std::remainder(change.imag(), speed_)) < apart;
+          }))
         continue;
-      slowest.push_back(exponent);
+      slowest.push_back(one.exponent);
       found += one.weight;
       if (found < options_.least_damped) continue;
       limit = one.value + one.error;
