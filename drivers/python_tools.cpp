@@ -16,6 +16,15 @@ namespace samara::drivers {
 namespace {
 
 constexpr char interpreter[] = "/usr/bin/python3";
+/// As "-m samara", but Ctrl-C ends with its code also while modules are loaded.
+constexpr char start[] =
+    "import sys\n"
+    "try:\n"
+    "    import runpy\n"
+    "    runpy.run_module('samara', run_name='__main__', alter_sys=True)\n"
+    "except KeyboardInterrupt:\n"
+    "    sys.stderr.write('samara: interrupted\\n')\n"
+    "    sys.exit(130)\n";
 
 /// Replaces the process by the Python package's command line.
 void run_python(const std::string& command, const std::vector<std::string>& arguments) {
@@ -26,7 +35,7 @@ void run_python(const std::string& command, const std::vector<std::string>& argu
     ::setenv("PYTHONPATH", path.c_str(), 1);
   }
   const char* named = std::getenv("SAMARA_PYTHON");
-  std::vector<std::string> words{named != nullptr ? named : interpreter, "-m", "samara", command};
+  std::vector<std::string> words{named != nullptr ? named : interpreter, "-c", start, command};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());

@@ -24,6 +24,7 @@ COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0
 STYLES = ["-", "--", "-.", ":"]
 GREY = "#888888"
 GROWING = "#D00000"
+WIDEST = 5.0  # points, the band of a line whose mode has all its energy in its own harmonic
 LEAST_SHARE = 0.05  # of a harmonic that a diagram shows
 ORDERS = (1, 2, 3, 4, 5, 6, 9, 12)  # multiples of the rotor speed in a diagram
 LEAST_DRAWN = 0.01  # of the scale of a mode shape: the least range of an axis; smaller imaginary parts are left out
@@ -102,11 +103,23 @@ def _campbell_map(result, data):
     return figure
 
 
+def _band(axes, x, y, shares, color):
+    """A band along a line, as wide at each place as the share, from 0 to 1, there."""
+    from matplotlib.collections import LineCollection
+
+    ends = numpy.stack([x, y], axis=1)
+    widths = WIDEST * (shares[:-1] + shares[1:]) / 2.0
+    shown = numpy.isfinite(ends[:-1]).all(1) & numpy.isfinite(ends[1:]).all(1) & numpy.isfinite(widths)
+    axes.add_collection(LineCollection(numpy.stack([ends[:-1], ends[1:]], axis=1)[shown], colors=color,
+                                       linewidths=widths[shown], alpha=0.25, zorder=1), autolim=False)
+
+
 def campbell(result, frame="fixed", first=14):
     """The Campbell diagram and the damping of a result of samara campbell.
 
+    A band around each line is as wide as the share of the kinetic energy in the mode's own harmonic at that point.
     frame: "fixed", or "own", that of the part that moves. A line whose modes have no single frequency in the fixed frame
-    is drawn in its own. In the own frame further harmonics with more than 5 % of the kinetic energy are drawn as thin
+    is drawn in its own, and marked with * in the legend. In the own frame further harmonics with more than 5 % of the kinetic energy are drawn as thin
     lines, as wide as their share: a part that turns and one that does not have no common harmonics in the fixed frame.
     first: number of modes, by their frequency.
     """
@@ -126,11 +139,15 @@ def campbell(result, frame="fixed", first=14):
     ground = data["fixed_frame_frequency_hz"].values
     harmonics = data["harmonic"].values
     top = 0.0
+    has_own = False
     for number, line in enumerate(lines):
         name = str(data["mode"].values[line])
         style = _style(number)
         is_fixed = frame == "fixed" and 2 * numpy.isfinite(ground[line]).sum() >= numpy.isfinite(own[line]).sum()
         frequency = ground[line] if is_fixed else own[line]
+        if frame == "fixed" and not is_fixed:
+            name += " *"
+            has_own = True
         top = max(top, numpy.nanmax(frequency))
         shares = data["participation"].values[line]
         for column, k in enumerate(harmonics):
@@ -139,9 +156,11 @@ def campbell(result, frame="fixed", first=14):
                 continue
             branch = numpy.where(share >= LEAST_SHARE, abs(frequency + k * turns), numpy.nan)
             above.plot(values, branch, color=style["color"], linewidth=0.3 + 1.5 * numpy.nanmax(share), alpha=0.35)
-        above.plot(values, frequency, label=name, linewidth=1.6, marker=".", markersize=3, **style)
         damping = 100.0 * data["damping_ratio"].values[line]
-        below.plot(values, damping, linewidth=1.4, marker=".", markersize=3, **style)
+        main = shares[:, numpy.flatnonzero(harmonics == 0)[0]]
+        for axes, height in ((above, frequency), (below, damping)):
+            axes.plot(values, height, label=name, linewidth=1.2, marker=".", markersize=3, **style)
+            _band(axes, values, height, main, style["color"])
         grows = data["is_growing"].values[line] == 1.0
         for axes, height in ((above, frequency), (below, damping)):
             axes.plot(values[grows], height[grows], "x", color=GROWING, markersize=6)
@@ -152,8 +171,8 @@ def campbell(result, frame="fixed", first=14):
         above.annotate(f"{order}P", (values[-1], min(order * turns[-1], 1.04 * top)), color=GREY, fontsize=7,
                        annotation_clip=True)
     key = _label(data.attrs.get("key", "value"), unit_of(data["value"]))
-    above.set(xlabel=key, ylabel=f"frequency, {'fixed frame' if frame == 'fixed' else 'frame of the part'} [Hz]",
-              ylim=(0.0, 1.08 * top))
+    words = "frame of the part" if frame == "own" else "fixed frame" + (", *: frame of the part" if has_own else "")
+    above.set(xlabel=key, ylabel=f"frequency, {words} [Hz]", ylim=(0.0, 1.08 * top))
     below.set(xlabel=key, ylabel="damping ratio [%]")
     below.axhline(0.0, color=GREY, linewidth=0.8)
     figure.legend(*above.get_legend_handles_labels(), loc="outside lower center" if matplotlib.__version__ >= "3.7"

@@ -3,8 +3,10 @@
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
+import time
 import unittest
 
 import h5py
@@ -96,6 +98,24 @@ class Package(ProgramTest):
         for name in ("tower fore-aft", "blade flap symmetric"):
             label = next(found for found in names if name in found)
             numpy.testing.assert_array_equal(drawn[label].get_ydata(), own[names.index(label)])
+        for delay in (0.3, 0.6, 1.0):  # while modules are loaded, and while it draws
+            with self.subTest(delay=delay):
+                run = subprocess.Popen([PROGRAM, "plot", "c.h5", "-o", "late.svg"], cwd=self.folder,
+                                       stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+                time.sleep(delay)
+                run.send_signal(signal.SIGINT)
+                error = run.communicate()[1]
+                if run.returncode != 0:  # not yet done
+                    self.assertIn((run.returncode, error), [(130, "samara: interrupted\n"),
+                                                            (-signal.SIGINT, "")])  # before Python
+        # The band along a line is as wide as the share of the mode's own harmonic.
+        with h5py.File(self.folder / "c.h5") as file:
+            own_harmonic = list(file["campbell/harmonic"][:]).index(0)
+            first = file["campbell/participation"][0, :, own_harmonic]
+        widths = figure.axes[0].collections[0].get_linewidths()
+        numpy.testing.assert_allclose(numpy.asarray(widths) / samara.plot.WIDEST, (first[1:] + first[:-1]) / 2)
+        self.assertIn("*: frame of the part",  # two blades have no single frequency in the fixed frame
+                      samara.plot.campbell(samara.open_result(self.folder / "c.h5")).axes[0].get_ylabel())
         self.succeed("floquet", BASELINE, *self.settings(), "-o", "f.h5")
         run = self.plot("f.h5")
         self.assertEqual(run.stdout, "picture: f_multipliers.svg\n", run.stderr)
