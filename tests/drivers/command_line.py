@@ -3,6 +3,8 @@
 import os
 import pathlib
 import re
+import shlex
+import shutil
 import subprocess
 import sys
 import unittest
@@ -32,15 +34,39 @@ class CommandLine(ProgramTest):
                 self.assertIn(word, text)
             self.assertLessEqual(max(map(len, text.splitlines())), 100)
 
-    def test_help_of_a_command_has_an_example_that_works(self):
-        for command in COMMANDS:
+    def examples(self, command):
+        """Words of the examples in the help of a command, without the name of the program."""
+        text = self.succeed(command, "--help").stdout
+        found = re.search(r"^examples?:? *\n?((?:.+\n?)+?)(?=\n|\Z)", text, re.MULTILINE).group(1)
+        examples = [shlex.split(one)[1:] for one in " ".join(found.split()).split(";") if one.strip()]
+        self.assertTrue(examples, command)
+        for words in examples:
+            self.assertEqual(words[0], command)
+        return [[str(SOURCE / w) if w.startswith("inputs/") else w for w in words] for words in examples]
+
+    def test_examples_of_all_helps_work(self):
+        results = {"floquet": ["f.h5", "floquet.h5", "coarse.h5"], "campbell": ["c.h5", "campbell.h5"],
+                   "transient": ["RESULT.h5"]}
+        shutil.copytree(SOURCE / "tests/decks/files/three", self.folder, dirs_exist_ok=True)
+        run = {"check", "static", "modes", "trim", "floquet", "campbell", "transient", "operate", "linearize", "new",
+               "schema", "import", "plot", "report", "loads", "export"}
+        first = [*results, *sorted(run - set(results))]  # those that write what others read
+        for command in first:
             with self.subTest(command=command):
-                text = self.succeed(command, "--help").stdout
-                example = re.search(r"^example\n  samara (.*)$", text, re.MULTILINE).group(1)
-                words = example.split()
-                self.assertEqual(words[0], command)
-                words = [str(SOURCE / w) if w.startswith("inputs/") else w for w in words]
-                self.succeed(*words)
+                for words in self.examples(command):
+                    if ">" in words:
+                        words = words[:words.index(">")]
+                    if command in results:
+                        words += ["-o", results[command][0]]
+                    self.succeed(*words)
+                    if command == "floquet":
+                        self.succeed(*words[:-2], "-o", "fine.h5", "--set", "floquet.steps=120")
+                for name in results.get(command, [])[1:]:
+                    shutil.copy(self.folder / results[command][0], self.folder / name)
+        listed = set(re.findall(r"^  ([a-z]+) {2,}", self.succeed("--help").stdout, re.MULTILINE))
+        commands = listed & set(self.complete("samara", ""))
+        self.assertGreater(len(commands), 10)
+        self.assertLessEqual(commands, run)
 
     def complete(self, *words):
         """Bash's completions of the last word."""
