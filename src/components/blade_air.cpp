@@ -40,6 +40,12 @@ constexpr std::array<NamedUnknown, air::unknowns> air_unknowns{{{"W_n", "m/s"},
                                                                 {"m2", "N"},
                                                                 {"m3", "N"}}};
 
+/// Place of a station with the displacement u, components n1 n2 n3 [m].
+template <class T>
+Vec3<T> place_of(const AirStation& station, const Vec3<T>& u, const elements::RootPose<T>& root) {
+  return root.place + root.axes * Vec3<T>(station.x.cast<T>() + u);
+}
+
 /// Whether an unknown is a state of the shed wake.
 bool is_of_wake(const AirModels& models, int i) {
   if (models.dynamics == AirfoilDynamics::peters)
@@ -238,8 +244,7 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
   const elements::SectionFlow<T>& flow = present.flow;
   const Vec3<T> force = root.axes * Vec3<T>(x.template segment<3>(at_air + air::force));
   const Vec3<T> moment = root.axes * Vec3<T>(x.template segment<3>(at_air + air::moment));
-  const Vec3<T> place =
-      root.place + root.axes * Vec3<T>(station.x.cast<T>() + x.template head<3>());
+  const Vec3<T> place = place_of<T>(station, x.template head<3>(), root);
   const Vec3<T> arm = place - hub.place;
   const Vec3<T> outward = arm - hub.axis * dot(arm, hub.axis);
   const Mat3<T> section = root.axes * motion.R;
@@ -316,8 +321,8 @@ void BladeAir::require_admissible(const Residual<double>& residual) const {
     const auto x = residual.gather<arguments>(points_[at(p)]);
     const elements::RootPose<double> root =
         root_pose_of<double>(x.segment<root_pose_values>(at_root));
-    const Vector3 place = root.place + root.axes * Vector3(station(p).x + x.head<3>());
-    air().rotor.wind.tower.require_outside(place, "blade " + std::to_string(k_ + 1));
+    air().rotor.wind.tower.require_outside(place_of<double>(station(p), x.head<3>(), root),
+                                           "blade " + std::to_string(k_ + 1));
   }
 }
 
