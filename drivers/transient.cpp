@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
 #include "samara/io/controller_library.hpp"
@@ -58,6 +59,7 @@ std::string summary(const io::Case& input, const simulation::TransientSummary& d
           general(static_cast<double>(run.newton_steps) / static_cast<double>(run.steps), 3) +
           " Newton steps each, " + std::to_string(run.factorizations) + " factorizations";
   if (run.cuts > 0) text += ", " + std::to_string(run.cuts) + " cuts of the step";
+  if (run.ranks > 1) text += ", mesh on " + std::to_string(run.ranks) + " ranks";
   text += "\nresolved     motions up to " + general(followed, 3) + " Hz, with " +
           general(simulation::steps_a_cycle, 3) + " steps a cycle";
   if (const auto& controller = input.transient.controller)
@@ -111,10 +113,35 @@ std::unique_ptr<simulation::SteppedController> start_controller(const Job& job) 
                   [&] { return std::make_unique<io::ControllerLibrary>(*setup, files); });
 }
 
+/// The result of a simulation that has been started. Both must outlive it.
+std::unique_ptr<io::TimeSeriesFile> create_file(const Job& job,
+                                                const simulation::TransientSimulation& simulation) {
+  const model::Turbine& turbine = simulation.turbine();
+  const analysis::TransientStart& begin = simulation.state().point;
+  io::TimeSeriesContent content;
+  content.channels = simulation.channels();
+  content.azimuth = turbine.azimuth;
+  content.brake_torque = turbine.chain.brake_torque;
+  content.is_generator_lost = simulation.state().is_generator_lost;
+  const auto write_rest =
+      [&job, &begun = simulation.system(), time = begin.time, z = begin.z,
+       masses = model::compute_masses(job.input.turbine, turbine)](io::ResultFile& result) {
+        result.write_model(begun);
+        write_masses(result, masses);
+        if (job.input.transient.has_places) result.write_geometry(begun, time, z);
+      };
+  auto file = std::make_unique<io::TimeSeriesFile>(job.result_path, job.input, record_of(job),
+                                                   content, write_rest);
+  if (!job.restart_path.empty() && io::is_same_file(job.restart_path, job.result_path))
+    file->resume();
+  file->note_events(simulation.state().events);
+  return file;
+}
+
 }  // namespace
 
 void run_transient(const Job& job) {
-  if (petsc::Session::rank() != 0) return;  // one system, one integrator
+  const bool is_first = petsc::Session::rank() == 0;
   const simulation::TransientSetup& transient = job.input.transient;
   if (transient.start == simulation::TransientOrigin::result && job.restart_path.empty())
     require_other_path(job.result_path, {transient.start_path});
@@ -123,47 +150,36 @@ void run_transient(const Job& job) {
     at_place(input.path + ": transient.wind", [&] {
       io::read_wind_files(*input.transient.wind, io::folder_of(input.path), *input.turbine.wind);
     });
-  simulation::TransientSimulation simulation =
-      at_place(input.path, [&] { return simulation::TransientSimulation(input); });
+  simulation::TransientSimulation simulation = at_place(
+      input.path, [&] { return simulation::TransientSimulation(input, PETSC_COMM_WORLD); });
+  if (!is_first && !simulation.is_distributed()) return;
+  const analysis::Ranks ranks(simulation.is_distributed() ? PETSC_COMM_WORLD : PETSC_COMM_SELF);
   const std::unique_ptr<simulation::SteppedController> controller = start_controller(job);
-  Progress progress(true);
+  Progress progress(is_first);
   for (const std::string& note : simulation::transient_notes(job.input)) progress.note(note);
-  start(job, simulation, progress);
-  const model::Turbine& turbine = simulation.turbine();
-  const turbine::TurbineSystem begun(turbine, PETSC_COMM_SELF);
-  const model::Masses masses = model::compute_masses(job.input.turbine, turbine);
-  const analysis::TransientStart begin = simulation.state().point;
-  std::size_t listed = simulation.channels().size();
-  if (transient.has_places) listed -= simulation::channels_of_places(begun);
-  io::TimeSeriesContent content;
-  content.channels = simulation.channels();
-  content.azimuth = turbine.azimuth;
-  content.brake_torque = turbine.chain.brake_torque;
-  content.is_generator_lost = simulation.state().is_generator_lost;
-  io::TimeSeriesFile file(job.result_path, job.input, record_of(job), content,
-                          [&](io::ResultFile& result) {
-                            result.write_model(begun);
-                            write_masses(result, masses);
-                            if (transient.has_places)
-                              result.write_geometry(begun, begin.time, begin.z);
-                          });
-  if (!job.restart_path.empty() && io::is_same_file(job.restart_path, job.result_path))
-    file.resume();
-  file.note_events(simulation.state().events);
-  TimeSeriesOutput output(file, progress);
+  ranks.attempt([&] { start(job, simulation, progress); });
+  std::unique_ptr<io::TimeSeriesFile> file;
+  ranks.attempt([&] {
+    if (is_first) file = create_file(job, simulation);
+  });
+  TimeSeriesOutput output(file.get(), progress);
   const Interruption interruption;
   const Clock::time_point began = Clock::now();
   try {
     const simulation::TransientSummary done = simulation.run(output, controller.get());
     const bool is_complete = done.run.reason == analysis::TransientEnd::complete;
     const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
-    file.note_events(done.end.events);
-    file.finish(is_complete ? "complete" : "interrupted", is_complete ? &done.run.end : nullptr);
-    progress.finish();
-    std::cout << summary(job.input, done, seconds)
-              << channel_table(simulation.channels(), done.ranges, listed)
-              << "result: " << job.result_path << "\n"
-              << std::flush;
+    if (is_first) {
+      std::size_t listed = simulation.channels().size();
+      if (transient.has_places) listed -= simulation::channels_of_places(simulation.system());
+      file->note_events(done.end.events);
+      file->finish(is_complete ? "complete" : "interrupted", is_complete ? &done.run.end : nullptr);
+      progress.finish();
+      std::cout << summary(job.input, done, seconds)
+                << channel_table(simulation.channels(), done.ranges, listed)
+                << "result: " << job.result_path << "\n"
+                << std::flush;
+    }
     if (!is_complete)
       throw Interrupted("interrupted at t = " + general(done.run.end.time, 6) + " s" +
                         (controller ? ""
@@ -177,7 +193,7 @@ void run_transient(const Job& job) {
   } catch (const std::exception& error) {
     progress.finish();
     if (output.has_rows()) {
-      const bool is_written = file.finish_failed(std::string("failed: ") + error.what());
+      const bool is_written = file->finish_failed(std::string("failed: ") + error.what());
       std::cerr << "samara: "
                 << (is_written ? "the computed rows are in "
                                : "the last rows are lost; others may be in ")

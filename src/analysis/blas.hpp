@@ -119,6 +119,14 @@ inline Integer factor(Integer n, Complex* a, Integer* interchanges) {
 }
 
 /// The inverse of an n x n matrix, in place of the result of factor().
+inline void invert(Integer n, double* factors, const Integer* interchanges) {
+  count_operations<double>(2.0 / 3.0 * n * n * n);
+  constexpr Integer block = 32;
+  std::vector<double> work(static_cast<std::size_t>(block * n));
+  const auto length = static_cast<Integer>(work.size());
+  Integer status = 0;
+  LAPACKgetri_(&n, factors, &n, interchanges, work.data(), &length, &status);
+}
 inline void invert(Integer n, Complex* factors, const Integer* interchanges) {
   count_operations<Complex>(2.0 / 3.0 * n * n * n);
   constexpr Integer block = 32;

@@ -26,8 +26,8 @@ double largest_part(const Scalar* values, Eigen::Index count) {
 }  // namespace
 
 template <class Scalar>
-BlockFactors<Scalar>::BlockFactors(const BlockMatrix<Scalar>& pattern)
-    : size_(pattern.size), rows_(pattern.rows) {
+BlockFactors<Scalar>::BlockFactors(const BlockMatrix<Scalar>& pattern, Index eliminated)
+    : size_(pattern.size), rows_(pattern.rows), eliminated_(eliminated) {
   begin_.push_back(0);
   // Row i gets the columns of U of each row k that it eliminates.
   for (Index i = 0; i < rows_; ++i) {
@@ -35,12 +35,14 @@ BlockFactors<Scalar>::BlockFactors(const BlockMatrix<Scalar>& pattern)
     row.insert(i);
     for (PetscInt k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k)
       row.insert(pattern.columns[k]);
-    for (auto k = row.begin(); *k < i; ++k)
+    for (auto k = row.begin(); *k < std::min(i, eliminated_); ++k)
       for (Index entry = diagonal_[static_cast<std::size_t>(*k)] + 1;
            entry < begin_[static_cast<std::size_t>(*k) + 1]; ++entry)
         row.insert(columns_[static_cast<std::size_t>(entry)]);
     const auto first = static_cast<Index>(columns_.size());
     diagonal_.push_back(first + std::distance(row.begin(), row.find(i)));
+    lower_end_.push_back(first +
+                         std::distance(row.begin(), row.lower_bound(std::min(i, eliminated_))));
     columns_.insert(columns_.end(), row.begin(), row.end());
     begin_.push_back(static_cast<Index>(columns_.size()));
   }
@@ -129,6 +131,7 @@ bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix, double leas
   const Index area = size_ * size_;
   std::fill(values_.begin(), values_.end(), Scalar(0.0));
   inverses_.clear();
+  diagonal_inverses_.clear();
   std::vector<Index> place(static_cast<std::size_t>(rows_), -1);
   for (Index i = 0; i < rows_; ++i) {
     const Index first = begin_[static_cast<std::size_t>(i)];
@@ -141,7 +144,7 @@ bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix, double leas
       largest = std::max(largest, largest_part(one, area));
       std::copy_n(one, area, block(place[static_cast<std::size_t>(matrix.columns[k])]));
     }
-    for (Index entry = first; entry < diagonal_[static_cast<std::size_t>(i)]; ++entry) {
+    for (Index entry = first; entry < lower_end_[static_cast<std::size_t>(i)]; ++entry) {
       const auto k = static_cast<std::size_t>(columns_[static_cast<std::size_t>(entry)]);
       find_filled(entry);
       divide(entry, columns_[static_cast<std::size_t>(entry)]);
@@ -150,6 +153,7 @@ bool BlockFactors<Scalar>::factor(const BlockMatrix<Scalar>& matrix, double leas
             entry, other,
             block(place[static_cast<std::size_t>(columns_[static_cast<std::size_t>(other)])]));
     }
+    if (i >= eliminated_) continue;
     for (Index entry = diagonal_[static_cast<std::size_t>(i)] + 1; entry < last; ++entry)
       find_filled(entry);
     if (!factor_diagonal(i, least_pivot * largest)) return false;
@@ -167,7 +171,7 @@ void BlockFactors<Scalar>::resize(Index right_sides) {
 template <class Scalar>
 void BlockFactors<Scalar>::eliminate(Index i) {
   for (Index entry = begin_[static_cast<std::size_t>(i)];
-       entry < diagonal_[static_cast<std::size_t>(i)]; ++entry)
+       entry < lower_end_[static_cast<std::size_t>(i)]; ++entry)
     subtract_product(entry, rows_of(columns_[static_cast<std::size_t>(entry)]), rows_of(i),
                      right_sides_);
 }
@@ -188,6 +192,13 @@ void BlockFactors<Scalar>::solve_diagonal(Index i) {
   const Scalar* factors = block(diagonal_[static_cast<std::size_t>(i)]);
   const auto size = static_cast<blas::Integer>(size_);
   const auto columns = static_cast<blas::Integer>(right_sides_);
+  if (columns == 1 && !diagonal_inverses_.empty()) {
+    work_.assign(rows_of(i), rows_of(i) + size_);
+    Eigen::Map<Vector>(rows_of(i), size_).noalias() =
+        Eigen::Map<const Matrix>(diagonal_inverses_.data() + i * size_ * size_, size_, size_) *
+        Eigen::Map<const Vector>(work_.data(), size_);
+    return;
+  }
   if (columns >= many_columns) {
     inverses_.resize(static_cast<std::size_t>(rows_));
     auto& inverses = inverses_[static_cast<std::size_t>(i)];
@@ -196,6 +207,55 @@ void BlockFactors<Scalar>::solve_diagonal(Index i) {
       return inverses->solve(columns, factors, interchanges(i), rows_of(i), work_);
   }
   blas::solve(size, columns, factors, interchanges(i), rows_of(i));
+}
+
+template <class Scalar>
+void BlockFactors<Scalar>::invert_diagonals() {
+  const Index area = size_ * size_;
+  diagonal_inverses_.resize(static_cast<std::size_t>(eliminated_ * area));
+  for (Index i = 0; i < eliminated_; ++i) {
+    Scalar* inverse = diagonal_inverses_.data() + i * area;
+    std::copy_n(block(diagonal_[static_cast<std::size_t>(i)]), area, inverse);
+    blas::invert(static_cast<blas::Integer>(size_), inverse, interchanges(i));
+  }
+}
+
+template <class Scalar>
+typename BlockFactors<Scalar>::Matrix BlockFactors<Scalar>::complement() const {
+  const Index left = (rows_ - eliminated_) * size_;
+  Matrix complement = Matrix::Zero(left, left);
+  for (Index i = eliminated_; i < rows_; ++i)
+    for (Index entry = lower_end_[static_cast<std::size_t>(i)];
+         entry < begin_[static_cast<std::size_t>(i) + 1]; ++entry) {
+      const Index column = columns_[static_cast<std::size_t>(entry)];
+      complement.block((i - eliminated_) * size_, (column - eliminated_) * size_, size_, size_) =
+          Eigen::Map<const Matrix>(block(entry), size_, size_);
+    }
+  return complement;
+}
+
+template <class Scalar>
+void BlockFactors<Scalar>::solve_lower(Matrix& right) {
+  resize(right.cols());
+  for (Index i = 0; i < rows_; ++i) {
+    Eigen::Map<Matrix> rows(rows_of(i), size_, right_sides_);
+    rows = right.middleRows(i * size_, size_);
+    eliminate(i);
+    if (i >= eliminated_) right.middleRows(i * size_, size_) = rows;
+  }
+}
+
+template <class Scalar>
+void BlockFactors<Scalar>::solve_upper(Matrix& solution) {
+  for (Index i = rows_ - 1; i >= 0; --i) {
+    Eigen::Map<Matrix> rows(rows_of(i), size_, right_sides_);
+    if (i >= eliminated_) {
+      rows = solution.middleRows(i * size_, size_);
+      continue;
+    }
+    substitute(i);
+    solution.middleRows(i * size_, size_) = rows;
+  }
 }
 
 template <class Scalar>

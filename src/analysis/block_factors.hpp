@@ -34,12 +34,26 @@ class BlockFactors {
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
   /// Finds the fill-in of a pattern, which all matrices have.
-  explicit BlockFactors(const BlockMatrix<Scalar>& pattern);
+  explicit BlockFactors(const BlockMatrix<Scalar>& pattern) : BlockFactors(pattern, pattern.rows) {}
+  /// Only the first `eliminated` block rows are eliminated. The others are left with their
+  /// complement A22 - A21 A11^-1 A12, for which solve_lower() and solve_upper() are.
+  BlockFactors(const BlockMatrix<Scalar>& pattern, Index eliminated);
 
   /// @returns false where a diagonal block has a pivot below `least_pivot` times the largest entry
   /// of its row before elimination: by default, where the block is singular to working precision. A
   /// preconditioner whose solutions are checked may have smaller pivots.
   bool factor(const BlockMatrix<Scalar>& matrix, double least_pivot = 1e-13);
+
+  /// Complement of the rows that are eliminated, in those that are left.
+  Matrix complement() const;
+  /// From the right-hand sides of all rows, in the rows that are left, to those of the complement.
+  void solve_lower(Matrix& right);
+  /// After solve_lower(): from the solution of the complement, in the rows that are left, to that
+  /// of all rows.
+  void solve_upper(Matrix& solution);
+
+  /// Makes single right-hand sides faster: the inverses of the diagonal blocks take their place.
+  void invert_diagonals();
 
   /// Solves for all columns of diag(`row_factors`) `right`.
   void solve(const Eigen::Ref<const Matrix>& right,
@@ -82,11 +96,14 @@ class BlockFactors {
 
   Index size_ = 1;  ///< rows of a block
   Index rows_ = 0;  ///< block rows
+  Index eliminated_ = 0;
   Index right_sides_ = 0;
   std::vector<Index> begin_;     ///< of each block row in columns_, with fill-in; rows_ + 1 entries
   std::vector<Index> diagonal_;  ///< entry of the diagonal block of each row
-  std::vector<Index> columns_;   ///< ascending in each row
-  std::vector<Scalar> values_;   ///< L, factors of D, U; blocks column by column
+  /// Of each row, the entry behind those of L: the diagonal one, or the first that is left.
+  std::vector<Index> lower_end_;
+  std::vector<Index> columns_;  ///< ascending in each row
+  std::vector<Scalar> values_;  ///< L, factors of D, U; blocks column by column
   /// The first row or column of a block that is not zero, and the one behind the last.
   struct Range {
     Index first = 0;
@@ -100,6 +117,7 @@ class BlockFactors {
   std::vector<PetscBLASInt> interchanges_;  ///< of the rows of the diagonal blocks, from 1
   /// Of the diagonal blocks, for many right-hand sides; empty: not needed yet.
   std::vector<std::optional<blas::TriangleInverses<Scalar>>> inverses_;
+  std::vector<Scalar> diagonal_inverses_;  ///< block by block; empty: the factors are used
   std::vector<Scalar> work_;
 };
 

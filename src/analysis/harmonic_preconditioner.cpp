@@ -21,8 +21,6 @@ constexpr std::size_t columns_at_once = 32;
 /// Smallest pivot in a chain, relative to the entries of its row. In a chain of 10 000 nodes pivots
 /// of 1e-13 are no round-off; where they are, the iterations that use the factors do not converge.
 constexpr double least_chain_pivot = 1e-16;
-/// Smallest pivot of the border's complement, relative to its largest.
-constexpr double least_pivot = 1e-14;
 
 /// Coefficients of exp(i k Omega t), k = -H ... H, from mean, cosines and sines by row.
 Eigen::MatrixXcd to_series(const Eigen::Ref<const Eigen::MatrixXd>& coefficients) {
@@ -364,21 +362,6 @@ void HarmonicPreconditioner::subtract_rows(int k, const std::vector<BorderColumn
   }
 }
 
-/// Factors the complement. @returns false where it is singular to working precision
-bool HarmonicPreconditioner::factor_complement() {
-  // Entries of about one, so that small pivots mean that the matrix is singular.
-  const auto inverse = [](double square) { return square > 0.0 ? 1.0 / std::sqrt(square) : 1.0; };
-  schur_rows_ = schur_.cwiseAbs2().rowwise().maxCoeff().unaryExpr(inverse);
-  schur_ = (schur_rows_.asDiagonal() * schur_).eval();
-  schur_columns_ = schur_.cwiseAbs2().colwise().maxCoeff().transpose().unaryExpr(inverse);
-  schur_ = (schur_ * schur_columns_.asDiagonal()).eval();
-  schur_interchanges_.resize(static_cast<std::size_t>(schur_.rows()));
-  if (blas::factor(integer(schur_.rows()), schur_.data(), schur_interchanges_.data()) != 0)
-    return false;
-  const auto pivots = schur_.diagonal().cwiseAbs();
-  return pivots.minCoeff() > least_pivot * pivots.maxCoeff();
-}
-
 bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns,
                                     Complex shift) {
   row_factors_ = &rows;
@@ -403,7 +386,7 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   if (present_.empty()) return true;
   eliminate_chains();
   if (partition != nullptr) partition->ranks().sum(schur_);
-  return factor_complement();
+  return complement_factors_.factor(std::move(schur_));
 }
 
 void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& right,
@@ -441,12 +424,11 @@ void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& rig
       border.middleCols(c * border_size(), border_size()) +=
           right.middleCols(c * unknowns, unknowns)(Eigen::all, border_);
     Eigen::MatrixXcd of_border = border.reshaped(border_size() * width_, columns);
-    Eigen::MatrixXcd unknown = schur_rows_.asDiagonal() * of_border(present_, Eigen::all);
-    if (unknown.rows() > 0)
-      blas::solve(integer(unknown.rows()), integer(columns), schur_.data(),
-                  schur_interchanges_.data(), unknown.data());
+    const Eigen::MatrixXcd unknown =
+        present_.empty() ? Eigen::MatrixXcd(0, columns)
+                         : complement_factors_.solve(of_border(present_, Eigen::all));
     of_border.setZero();
-    of_border(present_, Eigen::all) = schur_columns_.asDiagonal() * unknown;
+    of_border(present_, Eigen::all) = unknown;
     border = of_border.reshaped(width_, border_size() * columns);
     for (Index j = 0; j < border_size(); ++j) {
       const Couplings& column = columns_of_border_[static_cast<std::size_t>(j)];
@@ -487,13 +469,8 @@ void HarmonicPreconditioner::solve(const double* right, double* solution) {
 }
 
 HarmonicPreconditioner::Complex HarmonicPreconditioner::log_determinant() const {
-  Complex sum = 0.0;
+  Complex sum = present_.empty() ? 0.0 : complement_factors_.log_determinant();
   for (const BlockFactors<Complex>& factors : factors_) sum += factors.log_determinant();
-  for (Index i = 0; i < schur_.rows(); ++i) {
-    sum += std::log(schur_(i, i)) - std::log(schur_rows_(i)) - std::log(schur_columns_(i));
-    if (schur_interchanges_[static_cast<std::size_t>(i)] != i + 1)
-      sum += Complex(0.0, std::numbers::pi);
-  }
   return sum;
 }
 

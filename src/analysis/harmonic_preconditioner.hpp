@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "block_factors.hpp"
+#include "dense_factors.hpp"
 #include "harmonic_tangents.hpp"
 
 namespace samara::analysis {
@@ -89,7 +90,6 @@ class HarmonicPreconditioner {
   void eliminate_chains();
   void subtract_rows(int k, const std::vector<BorderColumn>& columns,
                      const Eigen::MatrixXcd& solved);
-  bool factor_complement();
   void solve_interior(Eigen::MatrixXcd& coefficients, bool only_coupled);
 
   const HarmonicTangents& tangents_;
@@ -110,10 +110,8 @@ class HarmonicPreconditioner {
   std::vector<BlockFactors<Complex>> factors_;  ///< of each harmonic from first_harmonic()
   std::vector<Index> present_;                  ///< coefficients that the border's unknowns have
   std::vector<Index> position_;                 ///< of all coefficients among these; -1: absent
-  Eigen::VectorXd schur_rows_;                  ///< factors of the border's complement
-  Eigen::VectorXd schur_columns_;
-  Eigen::MatrixXcd schur_;  ///< its factors
-  std::vector<PetscBLASInt> schur_interchanges_;
+  Eigen::MatrixXcd schur_;                      ///< complement of the border
+  DenseFactors<Complex> complement_factors_;
 };
 
 }  // namespace samara::analysis

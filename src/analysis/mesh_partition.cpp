@@ -106,6 +106,24 @@ void MeshPartition::work_alone(RotorSector sector) {
   std::iota(counted_.begin(), counted_.end(), 0);
 }
 
+std::vector<MeshPartition::Run> MeshPartition::runs() const {
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < counted_.size(); ++i) {
+    const PetscInt unknown = sector_.kept[static_cast<std::size_t>(counted_[i])];
+    if (runs.empty() || runs.back().unknown + runs.back().count != unknown)
+      runs.push_back({unknown, static_cast<PetscInt>(i), 0});
+    ++runs.back().count;
+  }
+  return runs;
+}
+
+std::vector<PetscInt> MeshPartition::border_unknowns() const {
+  std::vector<PetscInt> unknowns;
+  for (const PetscInt number : border_)
+    unknowns.push_back(sector_.kept[static_cast<std::size_t>(number)]);
+  return unknowns;
+}
+
 void MeshPartition::sum_border(Eigen::Ref<Eigen::MatrixXd> values) const {
   if (!is_distributed()) return;
   Eigen::MatrixXd border = values(Eigen::all, border_);

@@ -49,6 +49,15 @@ class MeshPartition {
   }
   /// Numbers of the unknowns that this rank counts.
   const std::vector<PetscInt>& counted() const { return counted_; }
+  /// Counted unknowns that follow each other in the system.
+  struct Run {
+    PetscInt unknown;  ///< of the system, the first one
+    PetscInt counted;  ///< its place among those that this rank counts
+    PetscInt count;
+  };
+  std::vector<Run> runs() const;
+  /// The unknowns of the border, by their numbers in the system.
+  std::vector<PetscInt> border_unknowns() const;
   /// Of a distributed mesh: whether each block of the system belongs to the border.
   const std::vector<char>& border() const { return is_border_; }
 

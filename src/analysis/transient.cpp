@@ -16,6 +16,8 @@
 
 #include "admissible_velocities.hpp"
 #include "matrix_entries.hpp"
+#include "mesh_partition.hpp"
+#include "partition_factors.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -47,12 +49,28 @@ constexpr double largest_deviation = 0.1;
 constexpr double start_fraction = 1e-3;
 constexpr int start_iterations = 4;
 
-/// The equations for TS, and the control of TS from one instant of the grid to the next.
+/// The ranks over which the mesh is distributed, if it is large. The midpoint rule, and options of
+/// a solver of PETSc, need the whole mesh on one rank.
+MPI_Comm ranks_for(const TransientOptions& options, MPI_Comm comm) {
+  char* all = nullptr;
+  petsc::check(PetscOptionsGetAll(nullptr, &all));
+  const std::string given = all;
+  petsc::check(PetscFree(all));
+  for (const char* option : {"-transient_ts_type", "-transient_pc_", "-transient_mat_"})
+    if (given.find(option) != std::string::npos) return PETSC_COMM_SELF;
+  return options.method == TransientMethod::bdf2 ? comm : PETSC_COMM_SELF;
+}
+
+/// The equations for TS, and the control of TS from one instant of the grid to the next. Vectors of
+/// TS have the unknowns that the ranks count. `z_`, `z_dot_`, `r_` and the scaling have places for
+/// all unknowns, with values for those on this rank.
 class Integration {
  public:
   Integration(const system::PeriodicSystem& system, const TransientStart& start,
-              const TransientOptions& options, TransientObserver& observer)
-      : system_(system),
+              const TransientOptions& options, TransientObserver& observer, MPI_Comm comm)
+      : whole_(system),
+        partition_(system, {}, false, ranks_for(options, comm)),
+        system_(partition_.system()),
         options_(options),
         observer_(observer),
         start_(start),
@@ -63,11 +81,20 @@ class Integration {
         z_(system.make_state()),
         z_dot_(system.make_state()),
         r_(system.make_state()),
-        jacobian_(system.make_jacobian()) {
+        jacobian_(system_.make_jacobian()) {
+    for (const petsc::Handle<Vec>* vector : {&z_, &z_dot_, &r_})
+      petsc::check(VecSet(vector->get(), 0.0));
     scale_system();
     find_angles();
-    petsc::check(VecDuplicate(z_.get(), x_.fill()));
-    petsc::check(VecDuplicate(z_.get(), before_.fill()));
+    const auto counted = static_cast<PetscInt>(partition_.counted().size());
+    x_ = petsc::make_vector(partition_.ranks().comm, counted, PETSC_DETERMINE);
+    petsc::check(VecDuplicate(x_.get(), before_.fill()));
+    if (partition_.is_distributed()) {
+      runs_ = partition_.runs();
+      border_ = partition_.border_unknowns();
+      whole_z_ = system.make_state();
+      whole_z_dot_ = system.make_state();
+    }
     write_state(start.z);
     make_integrator(start.time);
     limit_ = start_limit();
@@ -103,6 +130,7 @@ class Integration {
       run.method += std::to_string(order);
     }
     run.steps = steps_;
+    run.ranks = partition_.ranks().size;
     run.newton_steps = newton_steps_;
     run.factorizations = factorizations_;
     run.cuts = cuts_;
@@ -121,11 +149,14 @@ class Integration {
 
   void scale_system() {
     const double shift = 1.5 / options_.step;
-    system_.reference_state(origin_, z_.get());
-    petsc::check(VecSet(z_dot_.get(), 0.0));
+    whole_.reference_state(origin_, z_.get());
     system_.tangents(origin_, z_.get(), z_dot_.get(), shift, jacobian_.get(), nullptr);
-    scaling_ = scale_by_role(system_, jacobian_.get(), 1.0 / options_.step);
+    scaling_ = scaling_of(jacobian_.get(), 1.0 / options_.step);
     round_to_powers_of_two(scaling_);
+  }
+
+  Equilibration scaling_of(Mat tangent, double rate) const {
+    return scaling_by_role(system_, to_sparse(tangent), rate, 0.0, &partition_.ranks());
   }
 
   void find_angles() {
@@ -144,54 +175,78 @@ class Integration {
 
   /// Notes the angles at the start of a step.
   void note_angles() {
-    const petsc::ReadView view(before_.get());
-    const petsc::ReadView factors(scaling_.columns.get());
-    for (Angle& angle : angles_) angle.value = view[angle.unknown] * factors[angle.unknown];
+    unscale(before_.get(), r_.get());
+    const petsc::ReadView view(r_.get());
+    for (Angle& angle : angles_) angle.value = view[angle.unknown];
   }
 
   /// Notes the rates at the end of a step. With BDF the equations contain these rates. With other
   /// methods the equations contain other rates (twice the rate in the trapezoidal rule); the mean
   /// over the step is used instead.
   void note_rates(double taken) {
+    unscale(x_.get(), r_.get());
     const petsc::ReadView rates(z_dot_.get());
-    const petsc::ReadView ends(x_.get());
-    const petsc::ReadView factors(scaling_.columns.get());
+    const petsc::ReadView ends(r_.get());
     for (Angle& angle : angles_)
-      angle.rate = is_bdf() ? rates[angle.unknown]
-                            : (ends[angle.unknown] * factors[angle.unknown] - angle.value) / taken;
+      angle.rate = is_bdf() ? rates[angle.unknown] : (ends[angle.unknown] - angle.value) / taken;
     has_rates_ = true;
   }
 
   /// Whether the solution of a step, at the last residual, continues the steps before.
   bool goes_on() {
     if (!has_rates_) return true;
-    const petsc::ReadView view(z_.get());
-    for (const Angle& angle : angles_) {
-      const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(angle.unknown)];
-      const double value = view[angle.unknown];
-      const double deviation = (value - angle.value - (t_ - time_before_) * angle.rate) /
-                               system::angle_stretch(unknown, value);
-      if (std::abs(deviation) <= largest_deviation) continue;
-      error_ = std::make_exception_ptr(DomainError(unknown.name() + " is " + general(deviation, 4) +
-                                                   " rad from the angle that its rate predicts"));
+    try {
+      partition_.ranks().attempt([this] { require_small_deviations(); });
+    } catch (const DomainError&) {
+      error_ = std::current_exception();
       return false;
     }
     return true;
   }
 
-  void write_state(const Eigen::VectorXd& z) {
-    {
-      const petsc::WriteView view(x_.get());
-      Eigen::Map<Eigen::VectorXd>(view.data(), z.size()) = z;
+  void require_small_deviations() const {
+    const petsc::ReadView view(z_.get());
+    for (const Angle& angle : angles_) {
+      if (partition_.number_of(angle.unknown) < 0) continue;
+      const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(angle.unknown)];
+      const double value = view[angle.unknown];
+      const double deviation = (value - angle.value - (t_ - time_before_) * angle.rate) /
+                               system::angle_stretch(unknown, value);
+      if (std::abs(deviation) <= largest_deviation) continue;
+      throw DomainError(unknown.name() + " is " + general(deviation, 4) +
+                        " rad from the angle that its rate predicts");
     }
-    petsc::check(VecPointwiseDivide(x_.get(), x_.get(), scaling_.columns.get()));
   }
 
-  /// z of the scaled state `x`.
+  void write_state(const Eigen::VectorXd& z) {
+    const petsc::ReadView factors(scaling_.columns.get());
+    const petsc::WriteView view(x_.get());
+    const std::vector<PetscInt>& counted = partition_.counted();
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      const PetscInt unknown = partition_.kept()[static_cast<std::size_t>(counted[i])];
+      view[static_cast<PetscInt>(i)] = z(unknown) / factors[unknown];
+    }
+  }
+
+  /// z of the scaled state `x`, with the unknowns of all ranks.
   Eigen::VectorXd read_state(Vec x) const {
-    petsc::check(VecPointwiseMult(r_.get(), x, scaling_.columns.get()));
-    const petsc::ReadView view(r_.get());
-    return Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
+    unscale(x, r_.get());
+    return values_of(r_.get());
+  }
+
+  /// The unknowns of all ranks, from a vector with those on each rank.
+  Eigen::VectorXd values_of(Vec vector) const {
+    const petsc::ReadView view(vector);
+    const Eigen::Map<const Eigen::RowVectorXd> values(view.data(), system_.size());
+    if (!partition_.is_distributed()) return values.transpose();
+    return partition_.whole(partition_.local(values)).transpose();
+  }
+
+  /// The same in place of a vector: itself where this rank has all unknowns.
+  Vec gathered(Vec vector, const petsc::Handle<Vec>& whole) const {
+    if (!partition_.is_distributed()) return vector;
+    put(values_of(vector), whole.get());
+    return whole.get();
   }
 
   TransientStart state() {
@@ -199,8 +254,7 @@ class Integration {
     petsc::check(TSGetTime(ts_.get(), &point.time));
     point.step = step_;
     if (steps_ > 0 && std::abs(t_ - point.time) <= round_off * options_.step) {
-      const petsc::ReadView view(z_dot_.get());
-      point.z_dot = Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
+      point.z_dot = values_of(z_dot_.get());
     }
     return point;
   }
@@ -214,25 +268,81 @@ class Integration {
     return point;
   }
 
-  void unscale(Vec x, Vec x_dot) {
-    petsc::check(VecPointwiseMult(z_.get(), x, scaling_.columns.get()));
-    petsc::check(VecPointwiseMult(z_dot_.get(), x_dot, scaling_.columns.get()));
+  using Values = Eigen::Map<Eigen::ArrayXd>;
+  using ConstValues = Eigen::Map<const Eigen::ArrayXd>;
+
+  /// z = columns x.
+  void unscale(Vec x, Vec z) const {
+    if (!partition_.is_distributed()) {
+      petsc::check(VecPointwiseMult(z, x, scaling_.columns.get()));
+      return;
+    }
+    {
+      const petsc::ReadView from(x);
+      const petsc::ReadView factors(scaling_.columns.get());
+      const petsc::WriteView to(z);
+      if (!partition_.is_first())
+        for (const PetscInt unknown : border_) to[unknown] = 0.0;
+      for (const MeshPartition::Run& run : runs_)
+        Values(to.data() + run.unknown, run.count) =
+            ConstValues(from.data() + run.counted, run.count) *
+            ConstValues(factors.data() + run.unknown, run.count);
+    }
+    sum_border(z);
+  }
+
+  /// Adds up the values of the border, of which each rank has a part.
+  void sum_border(Vec vector) const {
+    const petsc::WriteView values(vector);
+    Eigen::VectorXd border(static_cast<Eigen::Index>(border_.size()));
+    for (std::size_t i = 0; i < border_.size(); ++i)
+      border(static_cast<Eigen::Index>(i)) = values[border_[i]];
+    partition_.ranks().sum(border);
+    for (std::size_t i = 0; i < border_.size(); ++i)
+      values[border_[i]] = border(static_cast<Eigen::Index>(i));
   }
 
   void residual(double t, Vec x, Vec x_dot, Vec f) {
-    unscale(x, x_dot);
+    unscale(x, z_.get());
+    unscale(x_dot, z_dot_.get());
     t_ = t;
+    if (partition_.is_distributed()) {
+      find_residual_on_rank(t);
+      const petsc::ReadView from(r_.get());
+      const petsc::ReadView factors(scaling_.rows.get());
+      const petsc::WriteView to(f);
+      for (const MeshPartition::Run& run : runs_)
+        Values(to.data() + run.counted, run.count) =
+            ConstValues(from.data() + run.unknown, run.count) *
+            ConstValues(factors.data() + run.unknown, run.count);
+      return;
+    }
     system_.residual(t, z_.get(), z_dot_.get(), f);
     add_held_loads(system_, start_.held, f);
     if (is_midpoint_) constrain_end(f);
     petsc::check(VecPointwiseMult(f, f, scaling_.rows.get()));
   }
 
+  /// Of the unknowns on this rank, at z_ and z_dot_. The rows of the border are complete.
+  void find_residual_on_rank(double t) {
+    partition_.ranks().attempt([&] {
+      system_.residual(t, z_.get(), z_dot_.get(), r_.get());
+      if (partition_.is_first()) add_held_loads(system_, start_.held, r_.get());
+    });
+    sum_border(r_.get());
+  }
+
   void tangent(double t, Vec x, Vec x_dot, double shift, Mat matrix) {
-    unscale(x, x_dot);
-    system_.tangents(t, z_.get(), z_dot_.get(), shift, matrix, nullptr);
-    if (is_midpoint_) constrain_end(matrix);
-    apply_scaling(scaling_, matrix);
+    unscale(x, z_.get());
+    unscale(x_dot, z_dot_.get());
+    partition_.ranks().attempt(
+        [&] { system_.tangents(t, z_.get(), z_dot_.get(), shift, jacobian_.get(), nullptr); });
+    if (is_midpoint_) constrain_end(jacobian_.get());
+    apply_scaling(scaling_, jacobian_.get());
+    if (partition_.is_distributed()) {  // a new state of the shell
+      petsc::check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+      petsc::check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+    }
     KSP linear = nullptr;
     petsc::check(SNESGetKSP(snes_, &linear));
     petsc::check(KSPSetOperators(linear, matrix, matrix));
@@ -372,6 +482,7 @@ class Integration {
   /// there. Where the rates are not known, rates and internal loads are those of a backward Euler
   /// step that is too short to change the positions.
   bool sample_start() {
+    // The vectors of this rank have room for the unknowns of all ranks.
     const double dt = start_fraction * options_.step;
     Eigen::VectorXd z = start_.z;
     Eigen::VectorXd z_dot = start_.z_dot;
@@ -383,38 +494,70 @@ class Integration {
       for (int i = 0; i < start_iterations; ++i) {
         put(z, z_.get());
         put(z_dot, z_dot_.get());
-        system_.residual(start_.time + dt, z_.get(), z_dot_.get(), r_.get());
-        add_held_loads(system_, start_.held, r_.get());
-        system_.tangents(start_.time + dt, z_.get(), z_dot_.get(), 1.0 / dt, jacobian_.get(),
-                         nullptr);
-        solver.factor(jacobian_.get());
-        Eigen::MatrixXd change(z.size(), 1);
-        {
-          const petsc::ReadView view(r_.get());
-          change.col(0) = Eigen::Map<const Eigen::VectorXd>(view.data(), z.size());
-        }
-        solver.solve(change);
-        z -= change.col(0);
+        z -= partition_.is_distributed() ? distributed_change(dt) : change_at_start(solver, dt);
         z_dot = (z - start_.z) / dt;
       }
     }
     put(z, z_.get());
     put(z_dot, z_dot_.get());
     begin_angles(z_dot);
-    return observer_.sample({start_.time, z_.get(), z_dot_.get(), 0, true});
+    return show({start_.time, z_.get(), z_dot_.get(), 0, true});
+  }
+
+  /// Newton's step of a backward Euler step.
+  Eigen::VectorXd change_at_start(DirectSolver& solver, double dt) {
+    system_.residual(start_.time + dt, z_.get(), z_dot_.get(), r_.get());
+    add_held_loads(system_, start_.held, r_.get());
+    system_.tangents(start_.time + dt, z_.get(), z_dot_.get(), 1.0 / dt, jacobian_.get(), nullptr);
+    solver.factor(jacobian_.get());
+    Eigen::MatrixXd change = values_of(r_.get());
+    solver.solve(change);
+    return change;
+  }
+
+  /// The same of a distributed mesh, with the unknowns of all ranks.
+  Eigen::VectorXd distributed_change(double dt) {
+    find_residual_on_rank(start_.time + dt);
+    partition_.ranks().attempt([&] {
+      system_.tangents(start_.time + dt, z_.get(), z_dot_.get(), 1.0 / dt, jacobian_.get(),
+                       nullptr);
+    });
+    const Equilibration scaling = scaling_of(jacobian_.get(), 1.0 / dt);
+    apply_scaling(scaling, jacobian_.get());
+    if (!factors_->factor(jacobian_.get()))
+      throw SingularError("transient: the tangent at the start is singular");
+    petsc::check(VecPointwiseMult(r_.get(), r_.get(), scaling.rows.get()));
+    {
+      const petsc::WriteView right(r_.get());
+      if (!partition_.is_first())
+        for (const PetscInt unknown : border_) right[unknown] = 0.0;
+      factors_->solve(right.data());
+    }
+    petsc::check(VecPointwiseMult(r_.get(), r_.get(), scaling.columns.get()));
+    return values_of(r_.get());
+  }
+
+  /// Passes a sample to the observers of all ranks, which have the same vectors. @returns false
+  /// where one of them ends the run
+  bool show(const TransientSample& sample) {
+    bool goes_on = false;
+    partition_.ranks().attempt([&] { goes_on = observer_.sample(sample); });
+    return partition_.ranks().all(goes_on);
   }
 
   // ---- TS --------------------------------------------------------------------------------------
 
   void make_integrator(double time) {
-    petsc::check(TSCreate(PETSC_COMM_SELF, ts_.fill()));
+    petsc::check(TSCreate(partition_.ranks().comm, ts_.fill()));
     TS ts = ts_.get();
     petsc::check(TSSetOptionsPrefix(ts, "transient_"));
     petsc::check(TSSetApplicationContext(ts, this));
     petsc::check(TSSetProblemType(ts, TS_NONLINEAR));
     petsc::check(TSSetEquationType(ts, TS_EQ_IMPLICIT));
     petsc::check(TSSetIFunction(ts, nullptr, form_function, this));
-    petsc::check(TSSetIJacobian(ts, jacobian_.get(), jacobian_.get(), form_jacobian, this));
+    if (partition_.is_distributed()) make_shell();
+    const Mat matrix = partition_.is_distributed() ? shell_.get() : jacobian_.get();
+    petsc::check(TSSetIJacobian(ts, matrix, matrix, form_jacobian, this));
     petsc::check(TSSetType(ts, options_.method == TransientMethod::bdf2 ? TSBDF : TSTHETA));
     if (options_.method == TransientMethod::bdf2) petsc::check(TSBDFSetOrder(ts, 2));
     if (options_.method == TransientMethod::midpoint) petsc::check(TSThetaSetTheta(ts, 0.5));
@@ -444,11 +587,94 @@ class Integration {
     petsc::check(SNESGetKSP(snes_, &linear));
     petsc::check(KSPSetType(linear, KSPPREONLY));
     petsc::check(KSPGetPC(linear, &preconditioner));
-    petsc::check(PCSetType(preconditioner, PCLU));
-    petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
+    if (partition_.is_distributed()) {
+      petsc::check(PCSetType(preconditioner, PCSHELL));
+      petsc::check(PCShellSetName(preconditioner, "pieces of the mesh with a border"));
+      petsc::check(PCShellSetContext(preconditioner, this));
+      petsc::check(PCShellSetSetUp(preconditioner, factor_parts));
+      petsc::check(PCShellSetApply(preconditioner, solve_parts));
+    } else {
+      petsc::check(PCSetType(preconditioner, PCLU));
+      petsc::check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
+    }
     petsc::take_options(TSSetFromOptions, ts);
     require_sound_type();
     prepare_midpoint();
+  }
+
+  // ---- a distributed mesh
+  // ------------------------------------------------------------------------
+
+  /// The tangent of all ranks, scaled: each has its part in `jacobian_`.
+  void make_shell() {
+    factors_.emplace(partition_, jacobian_.get());
+    const auto own = static_cast<PetscInt>(partition_.counted().size());
+    petsc::check(MatCreateShell(partition_.ranks().comm, own, own, PETSC_DETERMINE, PETSC_DETERMINE,
+                                this, shell_.fill()));
+    petsc::check(MatShellSetOperation(shell_.get(), MATOP_MULT,
+                                      reinterpret_cast<void (*)()>(multiply_parts)));
+  }
+
+  static PetscErrorCode multiply_parts(Mat matrix, Vec x, Vec y) noexcept {
+    void* context = nullptr;
+    if (const PetscErrorCode code = MatShellGetContext(matrix, &context)) return code;
+    Integration& self = *static_cast<Integration*>(context);
+    return self.guarded([&] {
+      Eigen::MatrixXd values(1, self.partition_.size());
+      {
+        const petsc::ReadView view(x);
+        self.partition_.spread(view.data(), values);
+      }
+      const petsc::Handle<Vec> in = self.system_.make_state();
+      const petsc::Handle<Vec> out = self.system_.make_state();
+      petsc::check(VecSet(in.get(), 0.0));
+      {
+        const petsc::WriteView view(in.get());
+        Eigen::Map<Eigen::RowVectorXd>(view.data(), self.system_.size())(self.partition_.kept()) =
+            values;
+      }
+      petsc::check(MatMult(self.jacobian_.get(), in.get(), out.get()));
+      {
+        const petsc::ReadView view(out.get());
+        values = self.partition_.local(
+            Eigen::Map<const Eigen::RowVectorXd>(view.data(), self.system_.size()));
+      }
+      self.partition_.sum_border(values);
+      const petsc::WriteView view(y);
+      self.partition_.collect(values, view.data());
+    });
+  }
+
+  static PetscErrorCode factor_parts(PC preconditioner) noexcept {
+    void* context = nullptr;
+    if (const PetscErrorCode code = PCShellGetContext(preconditioner, &context)) return code;
+    Integration& self = *static_cast<Integration*>(context);
+    return self.guarded([&] {
+      const bool is_regular = self.factors_->factor(self.jacobian_.get());
+      petsc::check(
+          PCSetFailedReason(preconditioner, is_regular ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT));
+    });
+  }
+
+  static PetscErrorCode solve_parts(PC preconditioner, Vec x, Vec y) noexcept {
+    void* context = nullptr;
+    if (const PetscErrorCode code = PCShellGetContext(preconditioner, &context)) return code;
+    Integration& self = *static_cast<Integration*>(context);
+    return self.guarded([&] {
+      const petsc::WriteView values(self.r_.get());
+      for (const PetscInt unknown : self.border_) values[unknown] = 0.0;
+      {
+        const petsc::ReadView from(x);
+        for (const MeshPartition::Run& run : self.runs_)
+          Values(values.data() + run.unknown, run.count) =
+              ConstValues(from.data() + run.counted, run.count);
+      }
+      self.factors_->solve(values.data());
+      const petsc::WriteView to(y);
+      for (const MeshPartition::Run& run : self.runs_)
+        Values(to.data() + run.counted, run.count) =
+            ConstValues(values.data() + run.unknown, run.count);
+    });
   }
 
   /// The midpoint rule is TS's theta method where its stage is the middle of the step.
@@ -487,8 +713,12 @@ class Integration {
     petsc::check(VecDuplicate(x_.get(), tolerances_.fill()));
     {
       const petsc::WriteView view(tolerances_.get());
-      for (std::size_t i = 0; i < unknowns.size(); ++i)
-        view[static_cast<PetscInt>(i)] = unknowns[i].is_coordinate() ? tolerance : left_out;
+      const std::vector<PetscInt>& counted = partition_.counted();
+      for (std::size_t i = 0; i < counted.size(); ++i) {
+        const PetscInt unknown = partition_.kept()[static_cast<std::size_t>(counted[i])];
+        view[static_cast<PetscInt>(i)] =
+            unknowns[static_cast<std::size_t>(unknown)].is_coordinate() ? tolerance : left_out;
+      }
     }
     petsc::check(TSSetTolerances(ts_.get(), tolerance, tolerances_.get(), tolerance, nullptr));
   }
@@ -604,12 +834,13 @@ class Integration {
     }
     finish_midpoint(t, taken);
     note_rates(taken);
+    const Vec z = gathered(z_.get(), whole_z_);
     try {
-      system_.require_admissible(t_, z_.get());
+      whole_.require_admissible(t_, z);
     } catch (const DomainError& error) {
       throw DomainError("transient at t = " + general(t_, 6) + " s: " + error.what());
     }
-    const bool goes_on = observer_.sample({t_, z_.get(), z_dot_.get(), step_, on_grid});
+    const bool goes_on = show({t_, z, gathered(z_dot_.get(), whole_z_dot_), step_, on_grid});
     if (on_grid && step_ < last_step_ && options_.checkpoint_steps > 0 &&
         step_ % options_.checkpoint_steps == 0)
       make_checkpoint();
@@ -630,7 +861,7 @@ class Integration {
     limit_ = start_limit();
     const TransientStart point = state();
     begin_angles(point.z_dot);
-    observer_.checkpoint(point);
+    partition_.ranks().attempt([&] { observer_.checkpoint(point); });
     begin_midpoint();
   }
 
@@ -707,10 +938,13 @@ class Integration {
     Vec change = nullptr;
     petsc::check(SNESGetSolutionUpdate(snes_, &change));
     if (change != nullptr) {
-      const petsc::ReadView view(change);
-      const Eigen::Map<const Eigen::VectorXd> values(view.data(), system_.size());
+      Eigen::MatrixXd values(1, partition_.size());
+      {
+        const petsc::ReadView view(change);
+        partition_.spread(view.data(), values);
+      }
       Eigen::Index worst = 0;
-      values.cwiseAbs().maxCoeff(&worst);
+      partition_.whole(values).row(0).cwiseAbs().maxCoeff(&worst);
       text << "; the unknown that changes most: "
            << system_.unknowns()[static_cast<std::size_t>(worst)].name();
     }
@@ -726,7 +960,9 @@ class Integration {
     throw ConvergenceError(text.str());
   }
 
-  const system::PeriodicSystem& system_;
+  const system::PeriodicSystem& whole_;
+  MeshPartition partition_;
+  const system::PeriodicSystem& system_;  ///< part of this rank
   const TransientOptions& options_;
   TransientObserver& observer_;
   const TransientStart& start_;
@@ -739,6 +975,12 @@ class Integration {
   petsc::Handle<Vec> z_dot_;  ///< of the last residual
   petsc::Handle<Vec> r_;
   petsc::Handle<Mat> jacobian_;
+  std::vector<MeshPartition::Run> runs_;     ///< of a distributed mesh
+  std::vector<PetscInt> border_;             ///< the same, unknowns
+  petsc::Handle<Mat> shell_;                 ///< the same
+  std::optional<PartitionFactors> factors_;  ///< the same
+  petsc::Handle<Vec> whole_z_;               ///< the same, for observers
+  petsc::Handle<Vec> whole_z_dot_;
   Equilibration scaling_;
   petsc::Handle<Vec> x_;  ///< z, scaled
   petsc::Handle<Vec> tolerances_;
@@ -776,10 +1018,16 @@ class Integration {
 
 }  // namespace
 
+bool is_distributed(const system::PeriodicSystem& system, const TransientOptions& options,
+                    MPI_Comm comm) {
+  return MeshPartition(system, {}, false, ranks_for(options, comm)).is_distributed();
+}
+
 TransientRun run_transient(const system::PeriodicSystem& system, const TransientStart& start,
-                           const TransientOptions& options, TransientObserver& observer) {
+                           const TransientOptions& options, TransientObserver& observer,
+                           MPI_Comm comm) {
   require_roles(system);
-  return Integration(system, start, options, observer).run();
+  return Integration(system, start, options, observer, comm).run();
 }
 
 TransientStart start_undeformed(const system::PeriodicSystem& system, double t) {

@@ -101,16 +101,23 @@ bool ChannelWatch::find_crossing(const analysis::TransientSample& sample) {
   return false;
 }
 
-TransientLegs::TransientLegs(const TransientSetup& transient, const model::Turbine& turbine,
-                             TransientState state, int generator, TransientOutput& output,
-                             ControlLoop* loop)
+TransientLegs::TransientLegs(const TransientSetup& transient,
+                             std::shared_ptr<const turbine::TurbineSystem> begun,
+                             const model::Turbine& turbine, TransientState state, int generator,
+                             TransientOutput& output, ControlLoop* loop, MPI_Comm comm)
     : transient_(transient),
       options_(options_of(transient)),
       turbine_(turbine_after(transient, turbine, state.events)),
       state_(std::move(state)),
       generator_(generator),
       loop_(loop),
-      watch_(transient, output, loop) {}
+      comm_(comm),
+      watch_(transient, output, loop) {
+  const bool is_begun = loop == nullptr && std::ranges::none_of(state_.events, [](double time) {
+                          return std::isfinite(time);
+                        });
+  if (is_begun) system_ = std::move(begun);
+}
 
 TransientSummary TransientLegs::run() {
   TransientSummary summary;
@@ -157,12 +164,14 @@ double TransientLegs::on_grid(double time) const {
 
 analysis::TransientRun TransientLegs::run_leg(std::optional<double> stop,
                                               const std::vector<std::size_t>& watch) {
-  const turbine::TurbineSystem system(turbine_, PETSC_COMM_SELF);
-  watch_.begin_leg(system, watch, state_);
+  if (!system_) system_ = std::make_shared<const turbine::TurbineSystem>(turbine_, PETSC_COMM_SELF);
+  watch_.begin_leg(*system_, watch, state_);
   analysis::TransientOptions options = options_;
   options.stop_at = stop;
-  analysis::TransientRun leg = analysis::run_transient(system, state_.point, options, watch_);
+  analysis::TransientRun leg =
+      analysis::run_transient(*system_, state_.point, options, watch_, comm_);
   total_.method = leg.method;
+  total_.ranks = leg.ranks;
   total_.steps += leg.steps;
   total_.newton_steps += leg.newton_steps;
   total_.factorizations += leg.factorizations;
@@ -182,6 +191,7 @@ void TransientLegs::fire(std::size_t i) {
   const turbine::TurbineEvent& event = transient_.events[i];
   state_.events[i] = state_.point.time;
   turbine_ = turbine::apply_event(turbine_, event, state_.point.time);
+  system_.reset();
   if (!event.generator_off) return;
   for (analysis::HeldCoordinate& held : state_.point.held)
     if (held.unknown == generator_) held.load = 0.0;

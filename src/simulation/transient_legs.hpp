@@ -1,6 +1,7 @@
 // A simulation in legs. Between two events the turbine does not change.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -64,11 +65,14 @@ class ChannelWatch final : public analysis::TransientObserver {
 
 class TransientLegs {
  public:
-  /// `turbine`: at the start, before the events that have occurred according to `state`.
+  /// `begun`: at the start, before the events that have occurred according to `state`. `turbine`:
+  /// the same, or with a controller in the place of its laws.
   /// `generator`: unknown of the generator's angle. `loop`: null without a controller. Setup,
-  /// output and loop must outlive the object.
-  TransientLegs(const TransientSetup& transient, const model::Turbine& turbine,
-                TransientState state, int generator, TransientOutput& output, ControlLoop* loop);
+  /// output and loop must outlive the object. `comm`: ranks that share a large mesh.
+  TransientLegs(const TransientSetup& transient,
+                std::shared_ptr<const turbine::TurbineSystem> begun, const model::Turbine& turbine,
+                TransientState state, int generator, TransientOutput& output, ControlLoop* loop,
+                MPI_Comm comm);
 
   /// @throws ConvergenceError as `analysis::run_transient`
   TransientSummary run();
@@ -85,9 +89,11 @@ class TransientLegs {
   const TransientSetup& transient_;
   analysis::TransientOptions options_;
   model::Turbine turbine_;
+  std::shared_ptr<const turbine::TurbineSystem> system_;  ///< of the turbine; null: not made yet
   TransientState state_;
   int generator_;
   ControlLoop* loop_;
+  MPI_Comm comm_;
   ChannelWatch watch_;
   analysis::TransientRun total_;
 };

@@ -93,11 +93,15 @@ void ChannelRange::add(double value) {
   ++rows;
 }
 
-TransientSimulation::TransientSimulation(Scenario scenario) : scenario_(std::move(scenario)) {
+TransientSimulation::TransientSimulation(Scenario scenario, MPI_Comm comm)
+    : scenario_(std::move(scenario)) {
   require_none(validate(scenario_, Analysis::transient), "");
   turbine_ = build_operated_turbine(scenario_);
-  system_ = std::make_unique<turbine::TurbineSystem>(turbine_, PETSC_COMM_SELF);
+  system_ = std::make_shared<const turbine::TurbineSystem>(turbine_, PETSC_COMM_SELF);
   channels_ = find_channels(scenario_.transient, *system_);
+  if (!scenario_.transient.controller &&
+      analysis::is_distributed(*system_, scenario_.transient.options, comm))
+    comm_ = comm;
 }
 
 TransientSimulation::~TransientSimulation() = default;
@@ -119,7 +123,7 @@ void TransientSimulation::start(analysis::Observer& observer) {
     at_place("transient.start: trim",
              [&] { require_same_motion(steady, 0.0, system_->turbine()); });
     const turbine::TurbineSystem repeating(steady, PETSC_COMM_SELF);
-    const analysis::Trim trim = find_trim(scenario_, repeating, observer);
+    const analysis::Trim trim = find_trim(scenario_, repeating, observer, comm_);
     state.point = analysis::start_on(repeating, trim, 0.0);
   }
   begin(std::move(state));
@@ -218,8 +222,8 @@ TransientSummary TransientSimulation::run(TransientOutput& output, SteppedContro
     loop.emplace(scenario_.transient, *controller, output);
     loop->take_over(turbine, state, generator);
   }
-  TransientLegs legs(scenario_.transient, turbine, state, generator, output,
-                     loop ? &*loop : nullptr);
+  TransientLegs legs(scenario_.transient, system_, turbine, state, generator, output,
+                     loop ? &*loop : nullptr, comm_);
   TransientSummary summary = legs.run();
   state_ = summary.end;
   return summary;
@@ -244,6 +248,7 @@ void TransientSimulation::use_law(const Scenario& before, bool is_new_law,
 
 void TransientSimulation::begin(TransientState state) {
   turbine_ = turbine_at_start(system_->turbine(), state);
+  system_ = std::make_shared<const turbine::TurbineSystem>(turbine_, PETSC_COMM_SELF);
   state_ = std::move(state);
   is_started_ = true;
 }

@@ -57,6 +57,10 @@ class TurbineSystem::Assembly {
   mutable std::optional<Workspace> made_workspace;
   mutable petsc::Handle<VecScatter> gather;
   mutable petsc::Handle<Vec> whole;
+  /// State, rates and residual of an evaluation: kept, since new ones cost more than their values.
+  mutable std::vector<double> state;
+  mutable std::vector<double> rates;
+  mutable std::vector<double> rows;
 
   /// Made at the first use: its memory is large.
   Workspace& workspace() const {
@@ -78,18 +82,22 @@ class TurbineSystem::Assembly {
 
   /// The whole vector, gathered from all ranks.
   std::vector<double> gathered(Vec z) const {
-    std::vector<double> values(static_cast<std::size_t>(layout.size()));
+    std::vector<double> values;
+    take(z, values);
+    return values;
+  }
+  void take(Vec z, std::vector<double>& values) const {
+    values.resize(static_cast<std::size_t>(layout.size()));
     if (!parallel()) {
       const petsc::ReadView view(z);
       std::copy(view.data(), view.data() + layout.size(), values.begin());
-      return values;
+      return;
     }
     if (!gather) petsc::check(VecScatterCreateToAll(z, gather.fill(), whole.fill()));
     petsc::check(VecScatterBegin(gather.get(), z, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
     petsc::check(VecScatterEnd(gather.get(), z, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
     const petsc::ReadView view(whole.get());
     std::copy(view.data(), view.data() + layout.size(), values.begin());
-    return values;
   }
 
   /// Sets the rotations of the undeformed state.
@@ -419,10 +427,12 @@ void TurbineSystem::count_from_undeformed(Vec z) const {
 
 void TurbineSystem::residual(double t, Vec z, Vec z_dot, Vec r) const {
   const Assembly& assembly = *assembly_;
-  std::vector<double> values(static_cast<std::size_t>(size()));
-  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), {}, values,
+  assembly.take(z, assembly.state);
+  assembly.take(z_dot, assembly.rates);
+  assembly.rows.assign(static_cast<std::size_t>(size()), 0.0);
+  assembly.equations.evaluate(t, assembly.state, assembly.rates, {}, assembly.rows,
                               assembly.portion.get());
-  assembly.write_own(values, r);
+  assembly.write_own(assembly.rows, r);
 }
 
 void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian,
@@ -430,7 +440,9 @@ void TurbineSystem::tangents(double t, Vec z, Vec z_dot, double shift, Mat jacob
   const Assembly& assembly = *assembly_;
   Assembly::Workspace& workspace = assembly.workspace();
   components::Tangents& tangents = workspace.tangents;
-  assembly.equations.evaluate(t, assembly.gathered(z), assembly.gathered(z_dot), tangents);
+  assembly.take(z, assembly.state);
+  assembly.take(z_dot, assembly.rates);
+  assembly.equations.evaluate(t, assembly.state, assembly.rates, tangents);
   std::vector<double>& K = tangents.K().values();
   const std::vector<double>& M = tangents.M().values();
   if (mass != nullptr && !assembly.parallel()) {

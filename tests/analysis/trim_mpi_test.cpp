@@ -8,7 +8,7 @@
 #include "samara/base/error.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
-#include "turbines.hpp"
+#include "distributed.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -18,18 +18,6 @@ namespace {
 /// Relative to the largest coefficient of the same quantity. Both solutions have a residual of
 /// 1e-10.
 constexpr double same = 1e-9;
-
-bool on_all_ranks(bool value) {
-  int all = value ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
-  return all != 0;
-}
-
-int ranks() {
-  int count = 1;
-  MPI_Comm_size(PETSC_COMM_WORLD, &count);
-  return count;
-}
 
 /// Largest difference of the coefficients of unknowns of one role.
 double difference(const system::PeriodicSystem& system, const analysis::Trim& a,
@@ -78,18 +66,6 @@ analysis::TrimOptions with_harmonics(int count) {
   // One rank may take a step more than several: it has one of the blades in the place of all.
   options.tolerance = 1e-12;
   return options;
-}
-
-model::TurbineDefinition single_blade(int elements) {
-  model::TurbineDefinition definition = lee_turbine({}, 9.81);
-  definition.has_tower = false;
-  definition.has_nacelle = false;
-  definition.nacelle = {};
-  definition.hub = {};
-  definition.shaft.overhang = 0.0;
-  definition.blades.count = 1;
-  definition.blades.beam.elements = elements;
-  return definition;
 }
 
 }  // namespace

@@ -76,6 +76,34 @@ class Ranks(ProgramTest):
             self.assertEqual(tables[-1], tables[0])
         self.assertEqual(len(tables[0]), 9)
 
+    def test_a_distributed_time_series_has_the_rows_of_one_rank(self):
+        case = [SOURCE / "inputs/beam/rotating.yaml", "--set", "blades.elements=320", "--set",
+                "blades.order=1", "--set", "gravity=9.81", "--set", "trim.harmonics=3"]
+
+        def rows(name):
+            with h5py.File(self.folder / name) as file:
+                return file["/transient/values"][:]
+
+        def setting(duration):
+            return ["--set", f"transient={{duration: {duration}, step: 0.005, checkpoint: 0.02}}"]
+
+        for ranks in (1, 2, 3):
+            text = self.succeed("transient", *case, *setting(0.06), "-o", f"{ranks}.h5",
+                                ranks=ranks).stdout
+            self.assertEqual(text.count(f"mesh on {ranks} ranks"), 1 if ranks > 1 else 0)
+            self.assertEqual(text.count("result: "), 1)
+        one = rows("1.h5")
+        self.assertEqual(len(one), 13)
+        scale = abs(one).max(axis=0) + 1e-12
+        for ranks in (2, 3):
+            self.assertLess((abs(rows(f"{ranks}.h5") - one) / scale).max(), 1e-6)
+        # The series of three ranks goes on with two, that of two with one.
+        for before, ranks in ((3, 2), (2, 1)):
+            self.succeed("transient", *case, *setting(0.1), "--restart", f"{before}.h5", "-o",
+                         f"{before}.h5", ranks=ranks)
+            self.assertEqual(len(rows(f"{before}.h5")), 21)
+        self.assertLess((abs(rows("3.h5") - rows("2.h5")) / scale).max(), 1e-6)
+
     def test_tables_are_printed_once(self):
         for command in ("check", "trim", "floquet"):
             text = self.succeed(command, BASELINE, *QUICK, ranks=2).stdout

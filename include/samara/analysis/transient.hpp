@@ -62,17 +62,27 @@ struct TransientRun {
   TransientStart before;  ///< the state one step earlier
   TransientEnd reason = TransientEnd::complete;
   std::string method;  ///< type of TS, as text
+  int ranks = 1;       ///< over which the mesh was distributed
   long steps = 0;
   long newton_steps = 0;
   long factorizations = 0;
   long cuts = 0;  ///< steps that were repeated with a shorter length
 };
 
-/// Integrates the system over options.duration from the origin of `start`. Serial: every rank
-/// computes the same. Options prefix `transient_`.
+/// Whether run_transient() distributes the mesh over the ranks of `comm`: with BDF2, a large mesh
+/// and none of PETSc's options for another solver.
+bool is_distributed(const system::PeriodicSystem& system, const TransientOptions& options,
+                    MPI_Comm comm);
+
+/// Integrates the system over options.duration from the origin of `start`. Options prefix
+/// `transient_`. `system`: whole, the same on every rank of `comm`. Collective: where the mesh is
+/// distributed, each rank integrates its part (docs/theory.md, section 9.1), and the observers of
+/// all ranks get the same samples, of all unknowns; the run ends where one of them ends it or
+/// fails. Else every rank computes the same.
 /// @throws ConvergenceError with the time and the unknown that changes most.
 TransientRun run_transient(const system::PeriodicSystem& system, const TransientStart& start,
-                           const TransientOptions& options, TransientObserver& observer);
+                           const TransientOptions& options, TransientObserver& observer,
+                           MPI_Comm comm = PETSC_COMM_SELF);
 
 /// Start from the undeformed system in its prescribed motion at time t.
 TransientStart start_undeformed(const system::PeriodicSystem& system, double t);

@@ -1,7 +1,7 @@
 // The time series of a scenario: its start, events and channels, and its continuation.
 //
 // Between two events the turbine does not change, and the steps are those of
-// analysis::run_transient. A simulation is serial: every rank computes the same.
+// analysis::run_transient, which distributes large meshes over ranks.
 #pragma once
 
 #include <limits>
@@ -71,15 +71,20 @@ std::vector<turbine::Channel> find_channels(const TransientSetup& transient,
 
 class TransientSimulation {
  public:
+  /// `comm`: ranks that share a large mesh. All of them call the same functions, and the outputs of
+  /// all get the same rows. Not with a controller, whose library has one process.
   /// @throws InputError if the turbine cannot be built, or has no such channel
-  explicit TransientSimulation(Scenario scenario);
+  explicit TransientSimulation(Scenario scenario, MPI_Comm comm = PETSC_COMM_SELF);
   ~TransientSimulation();
   TransientSimulation(TransientSimulation&&) noexcept;
   TransientSimulation& operator=(TransientSimulation&&) noexcept;
 
+  /// False: every rank computes the same.
+  bool is_distributed() const { return comm_ != PETSC_COMM_SELF; }
   const Scenario& scenario() const { return scenario_; }
   const std::vector<turbine::Channel>& channels() const { return channels_; }
-  /// System of the turbine at t = 0 of the scenario, before any event.
+  /// System of the turbine before any event: at t = 0 of the scenario, from a start on at its
+  /// state.
   const turbine::TurbineSystem& system() const { return *system_; }
   /// The turbine at the start: at its azimuth, with the effects of earlier events.
   const model::Turbine& turbine() const { return turbine_; }
@@ -116,7 +121,8 @@ class TransientSimulation {
   void begin(TransientState state);
 
   Scenario scenario_;
-  std::unique_ptr<turbine::TurbineSystem> system_;
+  MPI_Comm comm_ = PETSC_COMM_SELF;
+  std::shared_ptr<const turbine::TurbineSystem> system_;
   std::vector<turbine::Channel> channels_;
   model::Turbine turbine_;
   TransientState state_;
