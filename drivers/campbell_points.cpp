@@ -8,12 +8,12 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
-#include "samara/base/version.hpp"
 #include "samara/io/schema.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/simulation/steady_state.hpp"
 
 #include "interruption.hpp"
+#include "point_origin.hpp"
 
 namespace samara::drivers {
 namespace {
@@ -22,7 +22,6 @@ using simulation::CampbellPoint;
 using simulation::StabilityEdge;
 using simulation::SweepPlace;
 
-constexpr int exact_digits = 17;
 /// Groups of neighbouring points of a rank: points cost unlike time at the ends of a sweep.
 constexpr std::size_t groups_of_rank = 4;
 
@@ -86,14 +85,6 @@ class OperationFinder final : public CampbellPointFinder {
   const std::vector<simulation::ScheduledPoint>& table_;
   std::optional<simulation::OperatingPointFinder> finder_;
 };
-
-/// Of the files of points: files of another one are found again.
-constexpr int point_format = 2;
-
-std::string origin_of(const std::string& case_text, const std::string& value) {
-  return std::string("samara ") + version + ", points " + std::to_string(point_format) + "\n" +
-         petsc::Session::options() + "\n" + value + "\n" + case_text;
-}
 
 /// Halves the place of an edge until it is accurate, a point has no modes, or the user interrupts.
 void bisect(CampbellPointFinder& finder, StabilityEdge& edge, const analysis::Ranks& ranks) {
@@ -184,19 +175,16 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
       plan.quantities.push_back({key, io::unit_of_key(key)});
     plan.places = job.sweep.places();
     for (const std::string& text : job.sweep.case_texts())
-      plan.origins.push_back(origin_of(text, ""));
+      plan.origins.push_back(point_origin(text, ""));
     plan.origin_at = [&job](const SweepPlace& place) {
-      return origin_of(job.sweep.case_at(place).text, "");
+      return point_origin(job.sweep.case_at(place).text, "");
     };
     plan.finder = std::make_unique<SweepFinder>(job.sweep);
   } else {
     plan.quantities = {{"wind.speed", "m/s"}};
-    std::string rows;
-    for (const simulation::ScheduledPoint& row : table)
-      for (const double value : {row.wind, row.speed, row.pitch})
-        rows += general(value, exact_digits) + " ";
+    const std::string rows = row_words(table);
     plan.origin_at = [&job, rows](const SweepPlace& place) {
-      return origin_of(job.input.text, rows + general(place.value, exact_digits));
+      return point_origin(job.input.text, rows + exact_words({place.value}));
     };
     for (const double wind : simulation::operating_winds(job.input, table)) {
       plan.places.push_back({wind});

@@ -107,7 +107,8 @@ constexpr std::array<Command, 16> commands{{
      .description =
          "Finds the steady operating points over the wind speed: by a law of the generator's\n"
          "torque below the rated power and by the pitch above it, or from a table of speed and\n"
-         "pitch. Writes speed, pitch, torque, power, thrust and deflections.\n",
+         "pitch. Writes speed, pitch, torque, power, thrust and deflections. A run that was\n"
+         "interrupted or ended goes on where it was, by the same command.\n",
      .example = "inputs/nrel5mw/land.yaml --set operation.wind_speeds=[6,8,10,12,14]",
      .writes_result = true,
      .has_csv = true,

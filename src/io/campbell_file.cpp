@@ -2,14 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <locale>
 #include <numbers>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
 #include "samara/base/error.hpp"
@@ -22,7 +18,6 @@
 namespace samara::io {
 namespace {
 
-namespace fs = std::filesystem;
 using analysis::TrackedMode;
 using simulation::CampbellLine;
 using simulation::CampbellMode;
@@ -35,7 +30,6 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr std::size_t harmonics = 2 * simulation::campbell_harmonics + 1;
 
 /// Names of the datasets of a point; its format is internal and has no attributes of a result.
-constexpr char origin_name[] = "/point/origin";
 constexpr char failure_name[] = "/point/failure";
 constexpr char notes_name[] = "/point/notes";
 constexpr char values_name[] = "/point/values";
@@ -129,42 +123,8 @@ void write_edges(ResultFile& file, const std::vector<SweptQuantity>& quantities,
 
 }  // namespace
 
-CampbellPointFiles::CampbellPointFiles(const std::string& result_path,
-                                       std::vector<std::string> origins)
-    : folder_(resolved_path(result_path) + ".points"), origins_(std::move(origins)) {}
-
-std::string CampbellPointFiles::path_of(std::size_t point) const {
-  // FNV-1a, 64 bits: the same name for the same origin in every run.
-  std::uint64_t hash = 14695981039346656037U;
-  for (const char letter : origins_[point]) {
-    hash ^= static_cast<unsigned char>(letter);
-    hash *= 1099511628211U;
-  }
-  std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "/%016llx.h5", static_cast<unsigned long long>(hash));
-  return folder_ + name.data();
-}
-
-std::unique_ptr<Hdf5Reader> CampbellPointFiles::open(std::size_t point) const {
-  const std::string path = path_of(point);
-  std::error_code error;
-  if (!fs::exists(path, error) && !error) return nullptr;
-  auto file = std::make_unique<Hdf5Reader>(path);
-  if (!file->has(origin_name))
-    throw InputError(path +
-                     ": is not a point of a Campbell diagram; hint: another name for the "
-                     "result, or remove the file");
-  if (file->text(origin_name) != origins_[point]) return nullptr;
-  return file;
-}
-
-bool CampbellPointFiles::has(std::size_t point) const { return open(point) != nullptr; }
-
 void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) const {
-  std::error_code error;
-  fs::create_directories(folder_, error);
   Hdf5File file;
-  file.write(origin_name, origins_[point], plain({}));
   file.write(failure_name, content.failure + "\n", plain({}));
   file.write(notes_name, lines_of(content.notes) + "\n", plain({}));
   const std::array<double, point_values> values{content.place.value,
@@ -201,19 +161,16 @@ void CampbellPointFiles::write(std::size_t point, const CampbellPoint& content) 
           dataset, m, {reinterpret_cast<const float*>(content.signatures.shapes[m].data()), width});
     file.set_attribute("/point", "signals", static_cast<int>(first.rows()));
   }
-  write_whole_file(path_of(point), file.image());
+  save(point, file);
 }
 
 std::optional<CampbellPoint> CampbellPointFiles::read(std::size_t point) const {
   const std::unique_ptr<Hdf5Reader> opened = open(point);
   if (!opened) return std::nullopt;
   const Hdf5Reader& file = *opened;
-  const auto refuse = [this, point] {
-    throw InputError(path_of(point) + ": is damaged; hint: remove the file");
-  };
   CampbellPoint content;
   const std::vector<double> values = file.numbers(values_name);
-  if (values.size() != point_values) refuse();
+  if (values.size() != point_values) refuse(point);
   content.place = {values[0], values[1]};
   content.rotor_speed = values[2];
   content.wind_speed = values[3];
@@ -236,7 +193,7 @@ std::optional<CampbellPoint> CampbellPointFiles::read(std::size_t point) const {
   const std::size_t signals = file.count_attribute("/point", "signals");
   if (width != mode_values || names.size() != count || rows != count || columns != harmonics ||
       shape.size() != 2 || shape[0] != count || signals == 0 || shape[1] % (2 * signals) != 0)
-    refuse();
+    refuse(point);
   content.signatures.rotor_speed = content.rotor_speed;
   for (std::size_t m = 0; m < count; ++m) {
     const double* own = &numbers[m * mode_values];
@@ -264,20 +221,6 @@ std::optional<CampbellPoint> CampbellPointFiles::read(std::size_t point) const {
     content.signatures.shapes.push_back(std::move(own_shape));
   }
   return content;
-}
-
-void CampbellPointFiles::remove() const {
-  std::error_code error;
-  std::vector<fs::path> points;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
-    if (entry.path().extension() == ".h5") points.push_back(entry.path());
-  for (const fs::path& path : points) {
-    try {
-      if (Hdf5Reader(path.string()).has(origin_name)) fs::remove(path, error);
-    } catch (const InputError&) {  // not a file of this program
-    }
-  }
-  fs::remove(folder_, error);  // only if it is empty
 }
 
 void write_campbell(ResultFile& file, const std::vector<SweptQuantity>& quantities,

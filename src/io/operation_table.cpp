@@ -5,16 +5,21 @@
 #include <cstdlib>
 #include <iomanip>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <sstream>
 
 #include "samara/base/error.hpp"
 #include "samara/io/whole_file.hpp"
 
+#include "hdf5_file.hpp"
+#include "hdf5_reader.hpp"
+
 namespace samara::io {
 namespace {
 
 using simulation::OperatingPoint;
+using simulation::OperationMemory;
 using simulation::ScheduledPoint;
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -74,9 +79,122 @@ std::vector<double> numbers_of(const std::string& line) {
   return numbers;
 }
 
+/// Datasets of a point; their format is internal.
+constexpr char point_name[] = "/point/values";
+constexpr char search_name[] = "/point/search";
+constexpr char pitched_name[] = "/point/pitched";
+
+/// Wind and region stand before the quantities.
+constexpr std::size_t values_before = 2;
+constexpr std::size_t search_values = 3;
+constexpr std::size_t pitched_values = 3;
+constexpr std::size_t solved_values = 3;
+
+struct NamedState {
+  const char* name;
+  std::optional<simulation::Solved> simulation::StartPredictor::*state;
+};
+constexpr std::array<NamedState, 3> states{{{"last", &simulation::StartPredictor::last},
+                                            {"point", &simulation::StartPredictor::point},
+                                            {"before", &simulation::StartPredictor::before}}};
+
+struct NamedSlope {
+  const char* name;
+  simulation::StartSlope simulation::StartPredictor::*slope;
+};
+constexpr std::array<NamedSlope, 2> slopes{
+    {{"speed_slope", &simulation::StartPredictor::speed_slope},
+     {"pitch_slope", &simulation::StartPredictor::pitch_slope}}};
+
+Meaning internal(const std::vector<std::string>& axes) { return {"1", "none", "internal", axes}; }
+
+/// Numbers, and a matrix where it has entries.
+void write_part(Hdf5File& file, const std::string& name, const std::vector<double>& numbers,
+                const Eigen::MatrixXd& matrix) {
+  const std::string group = "/point/" + name;
+  file.write(group + "/numbers", numbers, {numbers.size()}, internal({name + "_number"}));
+  if (matrix.size() == 0) return;
+  const auto size = static_cast<std::size_t>(matrix.size());
+  file.write(group + "/matrix", {matrix.data(), size},
+             {static_cast<hsize_t>(matrix.cols()), static_cast<hsize_t>(matrix.rows())},
+             internal({name + "_column", name + "_row"}));
+}
+
+Eigen::MatrixXd read_matrix(const Hdf5Reader& file, const std::string& name) {
+  const std::string whole = "/point/" + name + "/matrix";
+  if (!file.has(whole)) return {};
+  hsize_t columns = 0;
+  hsize_t rows = 0;
+  const std::vector<double> values = file.table(whole, columns, rows);
+  return Eigen::Map<const Eigen::MatrixXd>(values.data(), static_cast<Eigen::Index>(rows),
+                                           static_cast<Eigen::Index>(columns));
+}
+
 }  // namespace
 
-void write_operation(ResultFile& file, const std::vector<OperatingPoint>& points) {
+void OperationPointFiles::write(std::size_t point, const OperationMemory& memory) const {
+  Hdf5File file;
+  std::vector<double> values{memory.point->wind, static_cast<double>(memory.point->region)};
+  for (const Quantity& quantity : quantities) values.push_back(*memory.point.*quantity.value);
+  file.write(point_name, values, {values.size()}, internal({"value"}));
+  const std::array<double, search_values> search{memory.speed_slope, memory.tip_radius,
+                                                 memory.density};
+  file.write(search_name, search, {search.size()}, internal({"search_value"}));
+  std::vector<double> pitched;
+  for (const simulation::PitchedPoint& one : memory.pitched)
+    pitched.insert(pitched.end(), {one.wind, one.pitch, one.slope});
+  if (!pitched.empty())
+    file.write(pitched_name, pitched, {memory.pitched.size(), pitched_values},
+               internal({"pitched_point", "pitched_value"}));
+  for (const auto& [name, state] : states)
+    if (const auto& solved = memory.starts.*state)
+      write_part(file, name, {solved->wind, solved->speed, solved->pitch}, solved->coefficients);
+  for (const auto& [name, slope] : slopes)
+    write_part(file, name, {(memory.starts.*slope).length}, (memory.starts.*slope).value);
+  save(point, file);
+}
+
+std::optional<OperationMemory> OperationPointFiles::read(std::size_t point) const {
+  const std::unique_ptr<Hdf5Reader> file = open(point);
+  if (!file) return std::nullopt;
+  const auto numbers = [&](const std::string& name, std::size_t size) {
+    std::vector<double> values = file->numbers(name);
+    if (values.size() != size) refuse(point);
+    return values;
+  };
+  OperationMemory memory;
+  const std::vector<double> values = numbers(point_name, values_before + quantities.size());
+  OperatingPoint& found = memory.point.emplace();
+  found.wind = values[0];
+  found.region = static_cast<simulation::OperatingRegion>(static_cast<int>(values[1]));
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    found.*quantities.at(i).value = values[values_before + i];
+  const std::vector<double> search = numbers(search_name, search_values);
+  memory.speed_slope = search[0];
+  memory.tip_radius = search[1];
+  memory.density = search[2];
+  if (file->has(pitched_name)) {
+    hsize_t count = 0;
+    hsize_t width = 0;
+    const std::vector<double> rows = file->table(pitched_name, count, width);
+    if (width != pitched_values) refuse(point);
+    for (std::size_t i = 0; i < rows.size(); i += pitched_values)
+      memory.pitched.push_back({rows[i], rows[i + 1], rows[i + 2]});
+  }
+  for (const auto& [name, state] : states) {
+    const std::string place = std::string("/point/") + name + "/numbers";
+    if (!file->has(place)) continue;
+    const std::vector<double> own = numbers(place, solved_values);
+    memory.starts.*state = {own[0], own[1], own[2], read_matrix(*file, name)};
+  }
+  for (const auto& [name, slope] : slopes)
+    memory.starts.*slope = {read_matrix(*file, name),
+                            numbers(std::string("/point/") + name + "/numbers", 1).front()};
+  return memory;
+}
+
+void write_operation(ResultFile& file, const std::vector<OperatingPoint>& points,
+                     const std::string& status) {
   const auto values_of = [&points](double OperatingPoint::*value) {
     std::vector<double> values;
     for (const OperatingPoint& point : points) values.push_back(point.*value);
@@ -92,6 +210,7 @@ void write_operation(ResultFile& file, const std::vector<OperatingPoint>& points
   for (const Quantity& quantity : quantities)
     file.write_values(std::string("operation/") + quantity.name, values_of(quantity.value),
                       {quantity.unit, "", quantity.description, {"wind_speed"}});
+  file.set_attribute("/operation", "status", status);
 }
 
 void write_operation_table(const std::string& path, const std::vector<OperatingPoint>& points) {

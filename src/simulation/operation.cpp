@@ -11,10 +11,9 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
+#include "samara/simulation/start_predictor.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_channels.hpp"
-
-#include "start_predictor.hpp"
 
 namespace samara::simulation {
 namespace {
@@ -135,8 +134,8 @@ class OperatingPointFinder::Search {
       if (table_.empty()) note_law(observer);
       OperatingPoint point = table_.empty() ? search(wind) : follow_table(wind);
       note_roughness(*last_, observer, place + "trim");
-      previous_ = point;
-      starts_.finish_point();
+      memory_.point = point;
+      memory_.starts.finish_point();
       return point;
     } catch (const InputError& error) {
       throw InputError(place + error.what());
@@ -149,6 +148,13 @@ class OperatingPointFinder::Search {
 
   const turbine::TurbineSystem& system() const { return *system_; }
   const analysis::Trim& trim() const { return *last_; }
+
+  const OperationMemory& memory() const { return memory_; }
+  void recall(const OperationMemory& memory) {
+    memory_ = memory;
+    present_ = memory.point;
+    present_is_rough_ = false;
+  }
 
  private:
   /// The steady state at a speed and a pitch.
@@ -168,11 +174,12 @@ class OperatingPointFinder::Search {
     analysis::TrimOptions options = trim_options(scenario);
     options.is_draft = is_rough;
     if (is_rough) options.tolerance = std::max(options.tolerance, rough_tolerance);
-    std::optional<analysis::Trim> near = last_;
-    if (const auto start = starts_.predict(wind, speed, pitch))
-      near->solution = analysis::PeriodicSolution(*start, system.period());
+    std::optional<analysis::Trim> near;
+    if (auto start = memory_.starts.predict(wind, speed, pitch))
+      near = analysis::Trim{.solution =
+                                analysis::PeriodicSolution(std::move(*start), system.period())};
     last_ = solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, near ? &*near : nullptr);
-    starts_.add({wind, speed, pitch, last_->solution.coefficients()});
+    memory_.starts.add({wind, speed, pitch, last_->solution.coefficients()});
     system_ = std::move(built);
     if (!is_rough) require_wake_range(system, *last_);
     OperatingPoint point;
@@ -189,8 +196,8 @@ class OperatingPointFinder::Search {
     point.tip_speed_ratio = speed * rotor.tip_radius / wind;
     point.time_constant = rotor.tau1;
     point.imbalance = last_->imbalance();
-    tip_radius_ = rotor.tip_radius;
-    density_ = rotor.density;
+    memory_.tip_radius = rotor.tip_radius;
+    memory_.density = rotor.density;
     present_ = point;
     present_is_rough_ = is_rough;
     return *present_;
@@ -288,8 +295,8 @@ class OperatingPointFinder::Search {
   /// is regulated by stall, may have a speed at any wind.
   bool is_above_rated(double wind) {
     if (is_law_above_rated()) return false;
-    if (previous_)
-      return previous_->region == OperatingRegion::rated_power && wind >= previous_->wind;
+    if (memory_.point)
+      return memory_.point->region == OperatingRegion::rated_power && wind >= memory_.point->wind;
     const std::optional<double> rated = estimate_rated_wind();
     return rated && wind > 1.15 * *rated;
   }
@@ -298,13 +305,13 @@ class OperatingPointFinder::Search {
   /// state.
   std::optional<double> estimate_rated_wind() {
     constexpr double usual = 0.4;
-    if (tip_radius_ == 0.0) {
+    if (memory_.tip_radius == 0.0) {
       const model::Turbine turbine = model::build_turbine(scenario_.turbine);
-      tip_radius_ = turbine.air->rotor.tip_radius;
-      density_ = turbine.air->rotor.density;
+      memory_.tip_radius = turbine.air->rotor.tip_radius;
+      memory_.density = turbine.air->rotor.density;
     }
-    const double disk = std::numbers::pi * tip_radius_ * tip_radius_;
-    return std::cbrt(setup_.rated_power / (0.5 * usual * density_ * disk));
+    const double disk = std::numbers::pi * memory_.tip_radius * memory_.tip_radius;
+    return std::cbrt(setup_.rated_power / (0.5 * usual * memory_.density * disk));
   }
 
   /// The speed at the least pitch; null where the torque at the rated speed is above the rated one.
@@ -312,18 +319,18 @@ class OperatingPointFinder::Search {
     constexpr double usual_ratio = 8.0;
     estimate_rated_wind();  // for the radius
     const double torque = rated_torque();
-    SearchRange range{least_speed(), setup_.rated_speed, usual_ratio * wind / tip_radius_,
+    SearchRange range{least_speed(), setup_.rated_speed, usual_ratio * wind / memory_.tip_radius,
                       0.03 * setup_.rated_speed};
     // At an equal tip-speed ratio the torque grows with the square of the wind speed.
-    if (previous_ && previous_->region != OperatingRegion::rated_power) {
-      range.start = previous_->speed * wind / previous_->wind;
-      range.slope = speed_slope_ * wind / previous_->wind;
+    if (memory_.point && memory_.point->region != OperatingRegion::rated_power) {
+      range.start = memory_.point->speed * wind / memory_.point->wind;
+      range.slope = memory_.speed_slope * wind / memory_.point->wind;
     }
     const Root root = find_zero(range, [&](double speed, bool is_rough) {
       return (evaluate(wind, speed, fine_pitch(), is_rough).torque - law_at(speed)) / torque;
     });
     if (root.found == Found::zero) {
-      speed_slope_ = root.slope;
+      memory_.speed_slope = root.slope;
       return keep(OperatingRegion::torque_law);
     }
     if (root.found == Found::below_range) {
@@ -359,27 +366,23 @@ class OperatingPointFinder::Search {
       throw InputError("no pitch up to " + general((fine_pitch() + pitch_range) / degree, 3) +
                        " deg limits the power to operation.rated_power");
     if (root.found == Found::below_range) return std::nullopt;
-    pitched_.push_back({wind, root.x, root.slope});
+    memory_.pitched.push_back({wind, root.x, root.slope});
     return take(OperatingRegion::rated_power);
   }
-
-  /// A point at the rated power.
-  struct PitchedPoint {
-    double wind, pitch,
-        slope;  ///< slope: of the torque over the pitch, by the rated torque [1/rad]
-  };
 
   /// Value at a wind speed of the polynomial through the last points, `most` at the most.
   template <class Value>
   std::optional<double> extrapolate(double wind, const Value& value, std::size_t most) const {
-    if (pitched_.empty()) return std::nullopt;
-    const std::size_t first = pitched_.size() - std::min(pitched_.size(), most);
+    if (memory_.pitched.empty()) return std::nullopt;
+    const std::size_t first = memory_.pitched.size() - std::min(memory_.pitched.size(), most);
     double sum = 0.0;
-    for (std::size_t i = first; i < pitched_.size(); ++i) {
+    for (std::size_t i = first; i < memory_.pitched.size(); ++i) {
       double weight = 1.0;
-      for (std::size_t j = first; j < pitched_.size(); ++j)
-        if (j != i) weight *= (wind - pitched_[j].wind) / (pitched_[i].wind - pitched_[j].wind);
-      sum += weight * value(pitched_[i]);
+      for (std::size_t j = first; j < memory_.pitched.size(); ++j)
+        if (j != i)
+          weight *= (wind - memory_.pitched[j].wind) /
+                    (memory_.pitched[i].wind - memory_.pitched[j].wind);
+      sum += weight * value(memory_.pitched[i]);
     }
     return sum;
   }
@@ -395,9 +398,9 @@ class OperatingPointFinder::Search {
     const double rated = *estimate_rated_wind();
     const double growth = std::pow(usual, 1.0 / exponent) / rated;
     double value = growth * rated * std::max(wind / rated - 1.0, 0.02);
-    if (pitched_.size() == 1)
-      value = measure(pitched_.front()) + growth * (wind - pitched_.front().wind);
-    else if (!pitched_.empty())
+    if (memory_.pitched.size() == 1)
+      value = measure(memory_.pitched.front()) + growth * (wind - memory_.pitched.front().wind);
+    else if (!memory_.pitched.empty())
       value = *extrapolate(wind, measure, 3);
     return fine_pitch() + std::pow(std::max(value, 0.0), exponent);
   }
@@ -406,16 +409,11 @@ class OperatingPointFinder::Search {
   const model::OperatingPointsDefinition& setup_;
   const std::vector<ScheduledPoint>& table_;
   std::optional<analysis::Trim> last_;
-  StartPredictor starts_;
   std::unique_ptr<turbine::TurbineSystem> system_;  ///< of last_
   std::optional<OperatingPoint> present_;           ///< of last_
-  std::optional<OperatingPoint> previous_;          ///< of the wind speed before
   bool present_is_rough_ = false;
   bool is_law_noted_ = false;
-  std::vector<PitchedPoint> pitched_;
-  double speed_slope_ = 0.0;  ///< of the torque less its law, by the rated torque [s/rad]
-  double tip_radius_ = 0.0;
-  double density_ = 0.0;
+  OperationMemory memory_;
 };
 
 std::string region_name(OperatingRegion region) {
@@ -443,6 +441,10 @@ OperatingPointFinder::~OperatingPointFinder() = default;
 OperatingPoint OperatingPointFinder::find_at(double wind, analysis::Observer& observer) {
   return search_->find_at(wind, observer);
 }
+
+const OperationMemory& OperatingPointFinder::memory() const { return search_->memory(); }
+
+void OperatingPointFinder::recall(const OperationMemory& memory) { search_->recall(memory); }
 
 const turbine::TurbineSystem& OperatingPointFinder::system() const { return search_->system(); }
 

@@ -1,4 +1,4 @@
-#include "start_predictor.hpp"
+#include "samara/simulation/start_predictor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,51 +17,51 @@ bool have_one_size(const Solved& a, const Solved& b) {
   return a.coefficients.cols() == b.coefficients.cols();
 }
 
+void add_change(const StartSlope& slope, double change, Eigen::MatrixXd& to) {
+  if (slope.value.cols() == to.cols() && std::abs(change) <= longest_change * slope.length)
+    to += change * slope.value;
+}
+
+void take_secant(const Solved& a, const Solved& b, double change, StartSlope& slope) {
+  // A short secant has the errors of the steady states.
+  if (change == 0.0 || std::abs(change) < shortest_secant * slope.length) return;
+  slope.value = (b.coefficients - a.coefficients) / change;
+  slope.length = std::max(0.5 * slope.length, std::abs(change));
+}
+
 }  // namespace
 
-void StartPredictor::Slope::add_change(double change, Eigen::MatrixXd& to) const {
-  if (value.cols() == to.cols() && std::abs(change) <= longest_change * length)
-    to += change * value;
-}
-
-void StartPredictor::Slope::take(const Solved& a, const Solved& b, double change) {
-  // A short secant has the errors of the steady states.
-  if (change == 0.0 || std::abs(change) < shortest_secant * length) return;
-  value = (b.coefficients - a.coefficients) / change;
-  length = std::max(0.5 * length, std::abs(change));
-}
-
 void StartPredictor::add(Solved solved) {
-  if (last_ && last_->wind == solved.wind && have_one_size(*last_, solved)) {
-    if (last_->pitch == solved.pitch)
-      speed_slope_.take(*last_, solved, solved.speed - last_->speed);
-    if (last_->speed == solved.speed)
-      pitch_slope_.take(*last_, solved, solved.pitch - last_->pitch);
+  if (last && last->wind == solved.wind && have_one_size(*last, solved)) {
+    if (last->pitch == solved.pitch)
+      take_secant(*last, solved, solved.speed - last->speed, speed_slope);
+    if (last->speed == solved.speed)
+      take_secant(*last, solved, solved.pitch - last->pitch, pitch_slope);
   }
-  last_ = std::move(solved);
+  last = std::move(solved);
 }
 
 void StartPredictor::finish_point() {
-  before_ = std::move(point_);
-  point_ = last_;
+  before = std::move(point);
+  point = last;
 }
 
 std::optional<Eigen::MatrixXd> StartPredictor::predict(double wind, double speed,
                                                        double pitch) const {
-  if (!last_) return std::nullopt;
-  Solved start = *last_;
-  if (wind != last_->wind && point_ && before_ && have_one_size(*point_, *before_) &&
-      point_->wind != before_->wind) {
-    const double share = (wind - point_->wind) / (point_->wind - before_->wind);
+  if (!last) return std::nullopt;
+  Solved start = *last;
+  if (wind != last->wind && point && before && have_one_size(*point, *before) &&
+      point->wind != before->wind) {
+    const double share = (wind - point->wind) / (point->wind - before->wind);
     if (std::abs(share) <= farthest) {
-      start.speed = point_->speed + share * (point_->speed - before_->speed);
-      start.pitch = point_->pitch + share * (point_->pitch - before_->pitch);
+      start.speed = point->speed + share * (point->speed - before->speed);
+      start.pitch = point->pitch + share * (point->pitch - before->pitch);
       start.coefficients =
-          point_->coefficients + share * (point_->coefficients - before_->coefficients);
+          point->coefficients + share * (point->coefficients - before->coefficients);
     }
   }
-  speed_slope_.add_change(speed - start.speed, start.coefficients);
-  pitch_slope_.add_change(pitch - start.pitch, start.coefficients);
+  add_change(speed_slope, speed - start.speed, start.coefficients);
+  add_change(pitch_slope, pitch - start.pitch, start.coefficients);
   return std::move(start.coefficients);
 }
 

@@ -2,18 +2,16 @@
 // as comma-separated values (docs/case_file.md, "Results").
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "samara/io/point_files.hpp"
 #include "samara/io/result_file.hpp"
 #include "samara/simulation/campbell.hpp"
 
 namespace samara::io {
-
-class Hdf5Reader;
 
 /// The swept quantity.
 struct SweptQuantity {
@@ -21,35 +19,15 @@ struct SweptQuantity {
   std::string unit;
 };
 
-/// The points of a sweep, each a file of its own in the folder RESULT.h5.points from the moment
-/// when it is found: a run that was ended goes on with the points that are there. The name of a
-/// file comes from its origin, so that a finer sweep finds the points of a coarser one. Ranks may
-/// write different points at the same time.
-class CampbellPointFiles {
+/// The points of a diagram as files.
+class CampbellPointFiles : public PointFiles {
  public:
-  /// `origins`: for each point a text that is equal only for the same case and options.
-  CampbellPointFiles(const std::string& result_path, std::vector<std::string> origins);
+  using PointFiles::PointFiles;
 
-  const std::string& folder() const { return folder_; }
-
-  /// Whether the point has a file of its origin. @throws InputError if its file is not one of a
-  /// point, or cannot be read
-  bool has(std::size_t point) const;
   /// @throws InternalError if the file cannot be written
   void write(std::size_t point, const simulation::CampbellPoint& content) const;
   /// The point; none as in has(). @throws InputError as has(), and if the file is damaged
   std::optional<simulation::CampbellPoint> read(std::size_t point) const;
-  /// Removes the files of points, also those of earlier runs that were ended, and the folder if
-  /// nothing else is in it.
-  void remove() const;
-
- private:
-  std::string path_of(std::size_t point) const;
-  /// The file of the point, if it has one of its origin; else null.
-  std::unique_ptr<Hdf5Reader> open(std::size_t point) const;
-
-  std::string folder_;
-  std::vector<std::string> origins_;
 };
 
 /// Beginning of the table of comma-separated values.

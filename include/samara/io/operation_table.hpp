@@ -1,10 +1,13 @@
 // Tables of operating points: in a result, as comma-separated values, and in the form of HAWC2's
-// .opt files.
+// .opt files; and the points as files while a run finds them.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "samara/io/point_files.hpp"
 #include "samara/io/result_file.hpp"
 #include "samara/simulation/operation.hpp"
 
@@ -13,8 +16,20 @@ namespace samara::io {
 /// Beginning of the table of comma-separated values.
 inline constexpr std::string_view operation_table_start = "wind_speed,region,";
 
-/// /operation: one list per quantity.
-void write_operation(ResultFile& file, const std::vector<simulation::OperatingPoint>& points);
+/// /operation: one list per quantity. `status`: complete, interrupted, or failed and why.
+void write_operation(ResultFile& file, const std::vector<simulation::OperatingPoint>& points,
+                     const std::string& status);
+
+/// Operating points as files, each with the memory of the search behind it.
+class OperationPointFiles : public PointFiles {
+ public:
+  using PointFiles::PointFiles;
+
+  /// The last point of the memory. @throws InternalError if the file cannot be written
+  void write(std::size_t point, const simulation::OperationMemory& memory) const;
+  /// None as in has(). @throws InputError as has(), and if the file is damaged
+  std::optional<simulation::OperationMemory> read(std::size_t point) const;
+};
 
 /// One line per point, with the names and units of /operation.
 void write_operation_table(const std::string& path,

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "samara/analysis/observer.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/simulation/scenario.hpp"
+#include "samara/simulation/start_predictor.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 namespace samara::simulation {
@@ -53,6 +55,23 @@ struct OperatingPoint {
   double imbalance = 0.0;           ///< analysis::Trim::imbalance
 };
 
+/// A point at the rated power.
+struct PitchedPoint {
+  double wind = 0.0;   ///< [m/s]
+  double pitch = 0.0;  ///< [rad]
+  double slope = 0.0;  ///< of the torque over the pitch, by the rated torque [1/rad]
+};
+
+/// What a search takes from the points before it.
+struct OperationMemory {
+  std::optional<OperatingPoint> point;  ///< the one before
+  StartPredictor starts;
+  std::vector<PitchedPoint> pitched;  ///< in the order in which they were found
+  double speed_slope = 0.0;           ///< of the torque less its law, by the rated torque [s/rad]
+  double tip_radius = 0.0;            ///< of the rotor [m]; 0: not known
+  double density = 0.0;               ///< of the air [kg/m^3]
+};
+
 /// Finds operating points of `scenario.operation`. `table`: rows of its table; the speed and pitch
 /// of a wind speed between two rows are linear between them. Without a table the pitch of the case
 /// is the least pitch. Laws of the generator and the controller do not act. Each steady state
@@ -66,7 +85,12 @@ class OperatingPointFinder {
   /// @throws ConvergenceError, DomainError as analysis::find_trim, with the wind speed
   OperatingPoint find_at(double wind, analysis::Observer& observer);
 
-  /// The turbine and its steady state at the last operating point.
+  /// With the memory of another object behind a point, the next points are the same as of that
+  /// one.
+  const OperationMemory& memory() const;
+  void recall(const OperationMemory& memory);
+
+  /// The turbine and its steady state at the last operating point that it has found itself.
   const turbine::TurbineSystem& system() const;
   const analysis::Trim& trim() const;
 

@@ -15,11 +15,16 @@ struct Solved {
   Eigen::MatrixXd coefficients;  ///< of analysis::PeriodicSolution
 };
 
+/// Change of the coefficients with speed or pitch, by a secant.
+struct StartSlope {
+  Eigen::MatrixXd value;  ///< empty: not known
+  double length = 0.0;    ///< of the secant
+};
+
 /// Starts of steady states from those before: the change with the wind speed continues that of the
 /// last two operating points, the change with speed or pitch is that of the last two steady states
 /// at one wind speed.
-class StartPredictor {
- public:
+struct StartPredictor {
   /// Takes a steady state of the present search.
   void add(Solved solved);
   /// The last steady state is that of an operating point.
@@ -27,21 +32,11 @@ class StartPredictor {
   /// Coefficients of a start; empty before the first steady state.
   std::optional<Eigen::MatrixXd> predict(double wind, double speed, double pitch) const;
 
- private:
-  /// Change of the coefficients with speed or pitch, by a secant.
-  struct Slope {
-    Eigen::MatrixXd value;  ///< empty: not known
-    double length = 0.0;    ///< of the secant
-
-    void add_change(double change, Eigen::MatrixXd& to) const;
-    void take(const Solved& a, const Solved& b, double change);
-  };
-
-  std::optional<Solved> last_;
-  std::optional<Solved> point_;   ///< last operating point
-  std::optional<Solved> before_;  ///< the one before
-  Slope speed_slope_;
-  Slope pitch_slope_;
+  std::optional<Solved> last;
+  std::optional<Solved> point;   ///< last operating point
+  std::optional<Solved> before;  ///< the one before
+  StartSlope speed_slope;
+  StartSlope pitch_slope;
 };
 
 }  // namespace samara::simulation
