@@ -110,6 +110,11 @@ class Sensitivity(ProgramTest):
 
     def test_errors_name_the_key(self):
         for keys, words in (("blades.hinge", 'no "hinge"; did you mean "hinges"?'),
+                            ("blades.sections.*.EI", 'blades.sections.0: no "EI"; did you mean "stiffness.EI2" or "stiffness.EI3"?'),
+                            ("blades.sections.*.ea", 'did you mean "stiffness.EA"?'),
+                            ("blades.sections.*.stiffness.GA", 'did you mean "GA2" or "GA3"?'),
+                            ("blades.GJ", 'blades: no "GJ"; did you mean "sections.*.stiffness.GJ"?'),
+                            ("*.sections.*.EI", 'blades.sections.0: no "EI"'),
                             ("blades.count", "blades.count"),
                             ("blades.hinges.0.axis", "no number there"),
                             ("shaft.speed,shaft", "shaft.speed is named twice")):
