@@ -197,7 +197,7 @@ class Integration {
     if (!has_rates_) return true;
     try {
       partition_.ranks().attempt([this] { require_small_deviations(); });
-    } catch (const DomainError&) {
+    } catch (...) {
       error_ = std::current_exception();
       return false;
     }
