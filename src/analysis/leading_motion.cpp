@@ -27,6 +27,12 @@ constexpr double dominant_part = 0.5;
 /// Share of the kinetic energy above which a harmonic may become that of the mode.
 constexpr double clear_part = 0.2;
 
+/// Share of a joint in the kinetic energy above which the mean turn of what it carries may name a
+/// mode.
+constexpr double least_of_turn = 0.1;
+/// Relative difference of equal energies.
+constexpr double round_off = 1e-6;
+
 /// Whether an exponent is zero but for round-off and the error by the step.
 bool is_at_rest(const Mode& mode, const ModeSet& set) {
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
@@ -152,6 +158,15 @@ double energy_alike(const std::vector<system::Motion>& motions, std::size_t moti
   return sum;
 }
 
+/// The motion with most energy, together with those with the same name.
+std::size_t leading_of(const std::vector<system::Motion>& motions,
+                       const Eigen::VectorXd& energies) {
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < motions.size(); ++i)
+    if (energy_alike(motions, i, energies) > energy_alike(motions, most, energies)) most = i;
+  return most;
+}
+
 /// The harmonic, counted from the identified one, that has most of the kinetic energy of a motion
 /// and of those with the same name, and more than `clear_part` of that of the mode. Empty where
 /// there is none. `own`: energy of these motions at all harmonics.
@@ -217,6 +232,26 @@ Leading find_leading(const system::PeriodicSystem& system,
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
     shares[name] += energy / (part * mode.kinetic_energy);
   Leading found = leading();
+  // A joint that makes the largest part of the mean turn of what it carries stands for all of it.
+  bool has_joint = false;
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (motions[static_cast<std::size_t>(i)].owner.kind == system::PartKind::joint &&
+        energies(i) > least_of_turn * energies.sum())
+      has_joint = true;
+  if (has_joint) {
+    Eigen::VectorXd turns = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index c = 0; c < named.shape.cols(); ++c)
+      turns += in_time.at(time_of(set, named.shape, c, sectors))
+                   .of_mean_turns((is_dominant ? named.shape_rate : named.whole_rate).col(c),
+                                  named.whole_rate.col(c));
+    const std::size_t most = leading_of(motions, turns);
+    const auto own = static_cast<Eigen::Index>(most);
+    Eigen::VectorXd parts = energies - turns;  // of the mean turn
+    parts(own) = energies(own);
+    const bool is_in_series = motions[most].owner.kind == system::PartKind::joint &&
+                              turns(own) > (1.0 + round_off) * energies(own);
+    if (is_in_series && leading_of(motions, parts) == most) found.motion = most;
+  }
   // Where most of this motion is at another harmonic, the frequency of the motion is that of this
   // harmonic.
   const double own = energy_alike(motions, found.motion, all);

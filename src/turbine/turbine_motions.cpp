@@ -200,6 +200,11 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     for (std::size_t k = 0; k < turbine.blades.size(); ++k)
       blades_.push_back(masses_of(turbine.blades[k], pose_.blades()[k]));
     place_riders(equations, steady);
+    const BodyTwists unit = turn_of_shaft();
+    const Eigen::VectorXcd rest = Eigen::VectorXcd::Zero(steady.size());
+    Eigen::VectorXd unused = Eigen::VectorXd::Zero(size_);
+    turning_inertia_ =
+        sum(pose_.shaft_axis(), momentum_of_rotor(unit, rest, rest, unused).angular).real();
   }
 
   Eigen::VectorXd of(const ShapeView& z_dot, const ShapeView& z) const override {
@@ -210,21 +215,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     // Outward: motion of each body.
     const BodyTwists twists = pose_.body_twists(z);
     // Inward: momenta of all parts that a joint carries, about a point of its axis.
-    Momentum carried = hub_.momentum_of(twists.hub);
-    for (std::size_t k = 0; k < blades_.size(); ++k) {
-      const BeamPose& blade = pose_.blades()[k];
-      const Twist base = pose_.base_twist(k, twists.hub, z);
-      const Momentum momentum =
-          momentum_of(blade, blades_[k], base, blade_directions, root_directions,
-                      Numbering::blade(k), {}, z_dot, z, energies);
-      for (const HingePose& hinge : pose_.hinges(k))
-        energies(Numbering::blade(k) + motions_a_beam + motion_of(hinge.axis)) +=
-            half_product(z_dot(hinge.angle), momentum.along(hinge.twist));
-      carried += momentum.from(blade.base - pose_.pin());
-    }
-    add_joint(teeter, layout_.teeter(), sum(pose_.teeter_axis(), carried.angular));
-    carried = carried.from(pose_.pin() - pose_.bearing());
-    carried += shaft_.momentum_of(twists.shaft);
+    Momentum carried = momentum_of_rotor(twists, z_dot, z, energies);
     const Complex turning = sum(pose_.shaft_axis(), carried.angular);
     const Complex rolling = sum(pose_.shaft_axis(), twists.nacelle.rotation);
     const Complex spin =
@@ -243,7 +234,60 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
     return energies;
   }
 
+  Eigen::VectorXd of_mean_turns(const ShapeView& z_dot, const ShapeView& z) const override {
+    Eigen::VectorXd energies = of(z_dot, z);
+    if (!(turning_inertia_ > 0.0)) return energies;
+    const BodyTwists twists = pose_.body_twists(z);
+    Eigen::VectorXd whole = Eigen::VectorXd::Zero(size_);
+    const Complex p = sum(pose_.shaft_axis(), momentum_of_rotor(twists, z_dot, z, whole).angular);
+    // Momentum of the deformation on a shaft that stands still.
+    Eigen::VectorXd unused = Eigen::VectorXd::Zero(size_);
+    const Complex deformation =
+        sum(pose_.shaft_axis(), momentum_of_rotor({}, z_dot, z_dot, unused).angular);
+    // Momenta of the motion without its mean turn.
+    BodyTwists rest = twists;
+    const BodyTwists turn = turn_of_shaft();
+    rest.shaft = rest.shaft - turn.shaft * (p / turning_inertia_);
+    rest.hub = rest.hub - turn.hub * (p / turning_inertia_);
+    Eigen::VectorXd relative = Eigen::VectorXd::Zero(size_);
+    momentum_of_rotor(rest, z_dot, z, relative);
+    energies += relative - whole;
+    energies(numbering_.joints + torsion) += half_product(deformation / turning_inertia_, p);
+    return energies;
+  }
+
  private:
+  /// A turn of the shaft and of all that it carries by one radian.
+  BodyTwists turn_of_shaft() const {
+    BodyTwists twists;
+    twists.shaft.rotation = pose_.shaft_axis().cast<Complex>();
+    twists.hub = twists.shaft.at(pose_.pin() - pose_.bearing());
+    return twists;
+  }
+
+  /// Momentum of the rotor and the shaft about the bearing. Adds the energies of the motions of the
+  /// blades and of the teeter.
+  Momentum momentum_of_rotor(const BodyTwists& twists, const ShapeView& z_dot, const ShapeView& z,
+                             Eigen::VectorXd& energies) const {
+    Momentum carried = hub_.momentum_of(twists.hub);
+    for (std::size_t k = 0; k < blades_.size(); ++k) {
+      const BeamPose& blade = pose_.blades()[k];
+      const Twist base = pose_.base_twist(k, twists.hub, z);
+      const Momentum momentum =
+          momentum_of(blade, blades_[k], base, blade_directions, root_directions,
+                      Numbering::blade(k), {}, z_dot, z, energies);
+      for (const HingePose& hinge : pose_.hinges(k))
+        energies(Numbering::blade(k) + motions_a_beam + motion_of(hinge.axis)) +=
+            half_product(z_dot(hinge.angle), momentum.along(hinge.twist));
+      carried += momentum.from(blade.base - pose_.pin());
+    }
+    energies(numbering_.joints + teeter) +=
+        half_product(z_dot(layout_.teeter()), sum(pose_.teeter_axis(), carried.angular));
+    carried = carried.from(pose_.pin() - pose_.bearing());
+    carried += shaft_.momentum_of(twists.shaft);
+    return carried;
+  }
+
   static Complex sum(const Vector3& axis, const Vector3c& vector) {
     return axis.cast<Complex>().cwiseProduct(vector).sum();
   }
@@ -319,6 +363,7 @@ class TurbineMotionEnergies final : public system::MotionEnergies {
   int size_;
   TurbinePose pose_;
   Mass nacelle_, shaft_, hub_;
+  double turning_inertia_ = 0.0;  ///< of rotor and shaft, about the shaft's axis
   CarriedMasses tower_;
   std::vector<CarriedMasses> blades_;
   std::vector<Rider> nacelle_riders_;

@@ -1,7 +1,10 @@
 // Names of modes, against shares of kinetic energy that are computed here.
+#include <cmath>
+#include <map>
 #include <set>
 #include <string>
 
+#include <Eigen/Eigenvalues>
 #include <boost/test/unit_test.hpp>
 
 #include "air_case.hpp"
@@ -111,6 +114,66 @@ blades:
   sections:
   - {mass: 4, inertia: [2.0e-4, 1.0e-4, 1.0e-4], stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: 1.0e+9, EI3: 1.0e+9}}
 )";
+
+/// A rotor at rest of two rigid blades, each on a flap and a lag hinge with springs at the axis of
+/// a shaft that twists. The hinges are turned with the pitch.
+constexpr const char* hinged = R"(
+samara: 1
+gravity: 0
+shaft:
+  speed: 0
+  torsion: {joint: free, stiffness: 1}
+hub: {radius: 1, mass: 1, inertia: [1, 1, 1]}
+blades:
+  count: 2
+  length: 10
+  elements: 1
+  order: 3
+  pitch_deg: 0
+  hinges:
+  - {axis: pitch, joint: locked}
+  - {axis: flap, joint: free, stiffness: 1.0e+4}
+  - {axis: lag, joint: free, stiffness: 2.0e+4}
+  sections:
+  - {mass: 3, inertia: [2.0e-6, 1.0e-6, 1.0e-6], stiffness: {EA: rigid, GA2: rigid, GA3: rigid, GJ: rigid, EI2: rigid, EI3: rigid}}
+)";
+
+/// The two modes of `hinged` in which both blades move alike. A thin blade that turns by x about
+/// the shaft and by y across it, both times as a whole, has the energy I (x_dot^2 + y_dot^2)/2.
+/// Springs are in series: a moment (m, n) on both blades turns them by C (m, n), where the shaft
+/// adds 1/k to the compliances of the hinges. A free generator of inertia J turns against the
+/// rotor; then x is the turn of one against the other, with the inertia 2 I J/(2 I + J).
+struct HingedModes {
+  Eigen::Vector2d omega;
+  Eigen::Vector2d turning;  ///< share of the energy in the turn about the shaft
+  /// Part of the shaft's spring in this turn, and the larger one of those of the hinges.
+  Eigen::Vector2d of_shaft, of_hinges;
+
+  HingedModes(double k, double pitch, double generator) {
+    const double inertia = 2.0 * 3.0 * (std::pow(11.0, 3) - 1.0) / 3.0;
+    const double c = std::cos(pitch);
+    const double s = std::sin(pitch);
+    const double flap = 0.5e-4;
+    const double lag = 0.25e-4;
+    Eigen::Matrix2d C;
+    C << 1.0 / k + s * s * flap + c * c * lag, s * c * (flap - lag), s * c * (flap - lag),
+        c * c * flap + s * s * lag;
+    const double reduced = generator > 0.0 ? inertia * generator / (inertia + generator) : inertia;
+    const Eigen::Vector2d root(std::sqrt(reduced), std::sqrt(inertia));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(root.asDiagonal() * C *
+                                                                root.asDiagonal());
+    for (int i = 0; i < 2; ++i) {
+      const double period = solver.eigenvalues()(1 - i);
+      omega(i) = 1.0 / std::sqrt(period);
+      turning(i) = std::pow(solver.eigenvectors()(0, 1 - i), 2);
+      const Eigen::Vector2d turns = solver.eigenvectors().col(1 - i).cwiseQuotient(root);
+      const Eigen::Vector2d moments = C.inverse() * turns;
+      of_shaft(i) = moments(0) / k / turns(0);
+      of_hinges(i) = std::max(s * flap * (s * moments(0) + c * moments(1)) / turns(0),
+                              c * lag * (c * moments(0) - s * moments(1)) / turns(0));
+    }
+  }
+};
 
 /// Share of motion along b3 of the twisted sections in that along b2 and b3, of a blade of evenly
 /// spread mass.
@@ -252,6 +315,71 @@ BOOST_AUTO_TEST_CASE(the_mode_of_the_shaft_keeps_its_name_at_any_speed) {
     }
     BOOST_TEST(found == 1, rpm << " rpm");
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_rotor_that_turns_on_its_shaft_is_shaft_torsion) {
+  // More by the spring of the shaft than by a hinge; a stiffer shaft leaves the turn to the hinges.
+  for (const double generator : {0.0, 500.0})
+    for (const double pitch_deg : {5.0, 20.0, 35.0, 70.0}) {
+      std::vector<std::string> of_turn;  // names of the mode that turns most, over the stiffness
+      int compared = 0;
+      for (double k = 1e3; k < 2e7; k *= 1.25)
+        BOOST_TEST_CONTEXT("k " << k << " pitch " << pitch_deg << " generator " << generator) {
+          std::vector<std::string> settings{"shaft.torsion.stiffness=" + std::to_string(k),
+                                            "blades.pitch_deg=" + std::to_string(pitch_deg)};
+          if (generator > 0.0)
+            settings.push_back(
+                "shaft.generator={joint: free, own_inertia: " + std::to_string(generator) + "}");
+          const analysis::ModeSet set = Run(parsed(hinged, settings)).constant();
+          const HingedModes expected(k, pitch_deg * pi / 180.0, generator);
+          for (int i = 0; i < 2; ++i) {
+            const auto found = std::ranges::min_element(set.modes, {}, [&](const auto& mode) {
+              return std::abs(mode.exponent.imag() - expected.omega(i));
+            });
+            // The hub has 4e-4 of the inertia of the blades.
+            BOOST_TEST(found->exponent.imag() == expected.omega(i), tolerance(1e-3));
+            const bool is_turn = expected.turning(i) > 0.52;
+            const bool is_shaft = found->name == "shaft torsion";
+            if (is_turn) of_turn.push_back(found->name);
+            if (is_turn && expected.of_shaft(i) > 1.05 * expected.of_hinges(i))
+              BOOST_TEST(is_shaft, found->label);
+            if (expected.turning(i) < 0.48 || expected.of_shaft(i) < 0.95 * expected.of_hinges(i))
+              BOOST_TEST(!is_shaft, found->label);
+            if (!is_shaft) BOOST_TEST(found->name.ends_with("hinge symmetric"), found->label);
+            ++compared;
+          }
+        }
+      BOOST_TEST(compared == 90);
+      // The name changes once.
+      BOOST_TEST(of_turn.front() == "shaft torsion");
+      BOOST_TEST(of_turn.back().starts_with("blade"));
+      int changes = 0;
+      for (std::size_t i = 1; i < of_turn.size(); ++i)
+        if ((of_turn[i] == "shaft torsion") != (of_turn[i - 1] == "shaft torsion")) ++changes;
+      BOOST_TEST(changes == 1);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(one_mode_of_two_blades_on_a_soft_shaft_is_shaft_torsion) {
+  // It meets the blades' symmetric flap near 6 rpm and goes from the upper to the lower of two
+  // frequencies that stay apart. The momentum of the rotor about the shaft tells which one it is.
+  for (const char* elements : {"2", "4"})
+    for (const double pitch : {0.0, 12.0})
+      for (const double rpm : {2.0, 4.0, 8.0, 10.0, 14.0, 16.0})
+        BOOST_TEST_CONTEXT(rpm << " rpm, " << pitch << " deg, " << elements << " elements") {
+          Run run(input("two_bladed/teetering", {std::string("blades.elements=") + elements,
+                                                 "blades.pitch_deg=" + std::to_string(pitch),
+                                                 "shaft.speed_rpm=" + std::to_string(rpm)}));
+          const analysis::ModeSet set = run.floquet(60);
+          std::map<std::string, int> count;
+          for (const analysis::Mode& mode : set.modes) {
+            const double hertz = mode.exponent.imag() / (2.0 * pi);
+            if (hertz > 0.6 && hertz < 0.9) ++count[mode.label];
+          }
+          BOOST_TEST(count.size() == 2U);
+          BOOST_TEST(count["shaft torsion"] == 1);
+          BOOST_TEST(count["1st blade flap symmetric"] == 1);
+        }
 }
 
 BOOST_AUTO_TEST_CASE(teeter_is_teeter_where_the_yaw_is_free) {

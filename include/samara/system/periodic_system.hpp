@@ -27,6 +27,14 @@ class MotionEnergies {
   /// `whole`. If `z_dot` also has the rates of all positions, the sum is the kinetic energy.
   virtual Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
                              const Eigen::Ref<const Eigen::VectorXcd>& whole) const = 0;
+
+  /// The same sum, with the mean turn of all parts that a joint carries as the q of the joint: its
+  /// own turn and that by the deformation of these parts, which is in series with its spring. The
+  /// motions of these parts give up what they add to it.
+  virtual Eigen::VectorXd of_mean_turns(const Eigen::Ref<const Eigen::VectorXcd>& z_dot,
+                                        const Eigen::Ref<const Eigen::VectorXcd>& whole) const {
+    return of(z_dot, whole);
+  }
 };
 
 class PeriodicSystem {
