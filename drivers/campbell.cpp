@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/ranks.hpp"
@@ -29,6 +30,7 @@ using simulation::StabilityEdge;
 /// What the files contain: only on the first rank.
 struct Diagram {
   std::vector<CampbellPoint> points;
+  std::vector<std::size_t> numbers;  ///< of the points in the plan
   std::vector<CampbellLine> lines;
   std::string failures;  ///< whole lines
   int failed = 0;
@@ -52,6 +54,7 @@ Diagram read_diagram(const CampbellPlan& plan, const io::CampbellPointFiles& fil
     }
     point.signatures = {};
     diagram.points.push_back(std::move(point));
+    diagram.numbers.push_back(i);
   }
   diagram.lines = simulation::name_lines(diagram.points, tracker.lines());
   return diagram;
@@ -66,15 +69,23 @@ void report_notes(const Diagram& diagram, analysis::Observer& observer) {
                   ": " + note);
 }
 
-/// The edges of the first rank, refined by all ranks; the result is on all of them.
-std::vector<StabilityEdge> refine_together(const CampbellPlan& plan,
-                                           std::vector<StabilityEdge> edges,
-                                           const analysis::Ranks& ranks,
+/// The edges between the points of the first rank, found by all ranks; the result is on all of
+/// them.
+std::vector<StabilityEdge> search_together(const CampbellPlan& plan,
+                                           const io::CampbellPointFiles& files,
+                                           const Diagram& diagram, const analysis::Ranks& ranks,
                                            analysis::Observer& observer) {
-  ranks.share(0, edges);
-  ranks.attempt([&] { refine_edges(plan, edges, ranks, observer); });
-  for (std::size_t i = 0; i < edges.size(); ++i)
-    ranks.share(rank_of(i, edges.size(), ranks), edges[i]);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const auto& [first, second] : simulation::find_changes(diagram.points, diagram.lines))
+    pairs.emplace_back(diagram.numbers[first], diagram.numbers[second]);
+  ranks.share(0, pairs);
+  std::vector<std::vector<StabilityEdge>> found;
+  ranks.attempt([&] { found = search_edges(plan, files, pairs, ranks, observer); });
+  std::vector<StabilityEdge> edges;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ranks.share(rank_of(i, found.size(), ranks), found[i]);
+    edges.insert(edges.end(), found[i].begin(), found[i].end());
+  }
   return edges;
 }
 
@@ -180,8 +191,7 @@ void run_campbell(const Job& job) {
     }
   }
   report_notes(diagram, progress);
-  const std::vector<StabilityEdge> edges =
-      refine_together(plan, simulation::find_edges(diagram.points), ranks, progress);
+  const std::vector<StabilityEdge> edges = search_together(plan, files, diagram, ranks, progress);
   const bool is_interrupted = !ranks.all(!Interruption::is_asked());
   int found = static_cast<int>(diagram.points.size());
   ranks.share(0, found);

@@ -86,22 +86,13 @@ class OperationFinder final : public CampbellPointFinder {
   std::optional<simulation::OperatingPointFinder> finder_;
 };
 
-/// Halves the place of an edge until it is accurate, a point has no modes, or the user interrupts.
-void bisect(CampbellPointFinder& finder, StabilityEdge& edge, const analysis::Ranks& ranks) {
-  const double accuracy =
-      simulation::edge_accuracy * std::max(std::abs(edge.to), std::abs(edge.from));
-  while (std::abs(edge.to - edge.from) > accuracy && ranks.all(!Interruption::is_asked())) {
-    const double middle = 0.5 * (edge.from + edge.to);
-    const CampbellPoint point = finder.find({middle, edge.second}, ranks);
-    if (!point.failure.empty()) return;
-    const int growing = simulation::count_growing(point);
-    if (growing == edge.growing_from) {
-      edge.from = middle;
-    } else {
-      edge.to = middle;
-      edge.growing_to = growing;
-    }
-  }
+/// The point at a place; one without modes when the user interrupts the run.
+CampbellPoint find_or_stop(CampbellPointFinder& finder, const SweepPlace& place,
+                           const analysis::Ranks& ranks) {
+  if (ranks.all(!Interruption::is_asked())) return finder.find(place, ranks);
+  CampbellPoint none;
+  none.failure = "interrupted";
+  return none;
 }
 
 /// Deals tasks to the ranks: some to each, or one task to several ranks.
@@ -234,25 +225,33 @@ std::vector<double> search_bands(const CampbellPlan& plan,
   std::vector<double> places(resonances.size(), std::numeric_limits<double>::quiet_NaN());
   deal(*plan.finder, resonances.size(), ranks, "bands of instability", observer,
        [&](std::size_t i, const analysis::Ranks& sharing) {
-         const std::optional<double> place =
-             simulation::find_band(resonances[i], [&](double value) {
-               if (sharing.all(!Interruption::is_asked()))
-                 return plan.finder->find({value}, sharing);
-               CampbellPoint none;
-               none.failure = "interrupted";
-               return none;
-             });
+         const std::optional<double> place = simulation::find_band(
+             resonances[i],
+             [&](double value) { return find_or_stop(*plan.finder, {value}, sharing); });
          if (place) places[i] = *place;
        });
   return places;
 }
 
-void refine_edges(const CampbellPlan& plan, std::vector<StabilityEdge>& edges,
-                  const analysis::Ranks& ranks, analysis::Observer& observer) {
-  deal(*plan.finder, edges.size(), ranks, "edges of instability", observer,
+std::vector<std::vector<StabilityEdge>> search_edges(
+    const CampbellPlan& plan, const io::CampbellPointFiles& files,
+    const std::vector<std::pair<std::size_t, std::size_t>>& pairs, const analysis::Ranks& ranks,
+    analysis::Observer& observer) {
+  std::vector<std::vector<StabilityEdge>> edges(pairs.size());
+  deal(*plan.finder, pairs.size(), ranks, "edges of instability", observer,
        [&](std::size_t i, const analysis::Ranks& sharing) {
-         bisect(*plan.finder, edges[i], sharing);
+         std::optional<CampbellPoint> from;
+         std::optional<CampbellPoint> to;
+         sharing.attempt([&] {
+           from = files.read(pairs[i].first);
+           to = files.read(pairs[i].second);
+         });
+         if (!sharing.all(from && to)) return;
+         edges[i] = simulation::find_edges(*from, *to, [&](double value) {
+           return find_or_stop(*plan.finder, {value, from->place.second}, sharing);
+         });
        });
+  return edges;
 }
 
 }  // namespace samara::drivers

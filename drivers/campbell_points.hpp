@@ -5,12 +5,14 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "samara/analysis/observer.hpp"
 #include "samara/analysis/ranks.hpp"
 #include "samara/io/campbell_file.hpp"
 #include "samara/simulation/campbell.hpp"
+#include "samara/simulation/edge_search.hpp"
 #include "samara/simulation/operation.hpp"
 #include "samara/simulation/resonance.hpp"
 
@@ -65,12 +67,16 @@ std::vector<double> search_bands(const CampbellPlan& plan,
                                  const std::vector<simulation::Resonance>& resonances,
                                  const analysis::Ranks& ranks, analysis::Observer& observer);
 
-/// Refines edges by bisection to simulation::edge_accuracy relative to the larger value; those of
-/// this rank are refined. Stops when the user interrupts the run.
-void refine_edges(const CampbellPlan& plan, std::vector<simulation::StabilityEdge>& edges,
-                  const analysis::Ranks& ranks, analysis::Observer& observer);
+/// Finds the edges of instability between pairs of points of the plan, which have files. Stops when
+/// the user interrupts the run.
+/// @returns for each pair of this rank its edges, refined to simulation::edge_accuracy relative to
+/// the larger value
+std::vector<std::vector<simulation::StabilityEdge>> search_edges(
+    const CampbellPlan& plan, const io::CampbellPointFiles& files,
+    const std::vector<std::pair<std::size_t, std::size_t>>& pairs, const analysis::Ranks& ranks,
+    analysis::Observer& observer);
 
-/// The rank that has the result of an edge or a resonance, of so many. Where there are fewer than
+/// The rank that has the result of a pair or a resonance, of so many. Where there are fewer than
 /// ranks, several share one of them.
 inline int rank_of(std::size_t number, std::size_t count, const analysis::Ranks& ranks) {
   return static_cast<int>(number % std::min(count, static_cast<std::size_t>(ranks.size)));

@@ -67,6 +67,12 @@ void share_modes(const analysis::Ranks& ranks, CampbellPoint& point) {
   ranks.share(0, point.pitch);
   ranks.share(0, point.stability);
   ranks.share(0, parts);
+  analysis::ModeSignatures& signatures = point.signatures;
+  ranks.share(0, signatures.rotor_speed);
+  ranks.share(0, signatures.modes);
+  ranks.share(0, signatures.exponents);
+  signatures.shapes.resize(signatures.modes.size());
+  for (Eigen::MatrixXcf& shape : signatures.shapes) ranks.share(0, shape);
   if (ranks.rank == 0) return;
   for (const Part& part : parts) {
     CampbellMode mode;
@@ -78,17 +84,28 @@ void share_modes(const analysis::Ranks& ranks, CampbellPoint& point) {
   }
 }
 
-/// The refined edge between two points, if the numbers of growing modes beside it are those of the
-/// points.
-std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& b,
-                                   const std::vector<StabilityEdge>& edges) {
+/// The place of the refined edge between two points where a mode begins to grow, that of index
+/// `mode` at b, or ceases, that at a. Where no edge has the mode, the only edge counts if the
+/// numbers of growing modes beside it are those of the points.
+std::optional<double> edge_between(const CampbellPoint& a, const CampbellPoint& b, bool begins,
+                                   std::size_t mode, const std::vector<StabilityEdge>& edges) {
   const auto [low, high] = std::minmax(a.place.value, b.place.value);
   const double accuracy = edge_accuracy * std::max(std::abs(low), std::abs(high));
+  std::vector<const StabilityEdge*> between;
   for (const StabilityEdge& edge : edges)
-    if (std::abs(edge.to - edge.from) <= accuracy && std::min(edge.from, edge.to) >= low &&
-        std::max(edge.from, edge.to) <= high && edge.growing_from == count_growing(a) &&
-        edge.growing_to == count_growing(b))
-      return 0.5 * (edge.from + edge.to);
+    if (std::min(edge.from, edge.to) >= low && std::max(edge.from, edge.to) <= high)
+      between.push_back(&edge);
+  const auto place_of = [accuracy](const StabilityEdge& edge) -> std::optional<double> {
+    if (std::abs(edge.to - edge.from) > accuracy) return std::nullopt;
+    return 0.5 * (edge.from + edge.to);
+  };
+  for (const StabilityEdge* edge : between)
+    if ((edge->growing_to > edge->growing_from) == begins &&
+        std::ranges::count(edge->modes, static_cast<int>(mode)) > 0)
+      return place_of(*edge);
+  if (between.size() == 1 && between.front()->growing_from == count_growing(a) &&
+      between.front()->growing_to == count_growing(b))
+    return place_of(*between.front());
   return std::nullopt;
 }
 
@@ -161,18 +178,6 @@ std::vector<std::pair<std::size_t, std::size_t>> find_neighbours(
   return pairs;
 }
 
-std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points) {
-  std::vector<StabilityEdge> edges;
-  for (const auto& [first, second] : find_neighbours(points)) {
-    const CampbellPoint& a = points[first];
-    const CampbellPoint& b = points[second];
-    if (count_growing(a) != count_growing(b))
-      edges.push_back(
-          {a.place.value, b.place.value, b.place.second, count_growing(a), count_growing(b)});
-  }
-  return edges;
-}
-
 std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
                                      const CampbellLine& line,
                                      const std::vector<StabilityEdge>& edges) {
@@ -187,9 +192,12 @@ std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
     while (i + 1 < line.modes.size() && grows(i + 1)) ++i;
     GrowthRange range{point_of(first).place.value, point_of(i).place.value};
     if (first > 0)
-      range.from = edge_between(point_of(first - 1), point_of(first), edges).value_or(range.from);
+      range.from =
+          edge_between(point_of(first - 1), point_of(first), true, line.modes[first].mode, edges)
+              .value_or(range.from);
     if (i + 1 < line.modes.size())
-      range.to = edge_between(point_of(i), point_of(i + 1), edges).value_or(range.to);
+      range.to = edge_between(point_of(i), point_of(i + 1), false, line.modes[i].mode, edges)
+                     .value_or(range.to);
     ranges.push_back(range);
   }
   return ranges;

@@ -1,6 +1,7 @@
 // A Campbell diagram: the modes at the points of a sweep, joined to lines.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstddef>
 #include <limits>
@@ -63,7 +64,7 @@ struct CampbellPoint {
 /// The modes about a steady state: all of them or as many as `options` want; at rest all. Sets
 /// everything but `place`, `wind_speed` and `notes`. The ranks of `comm`, each with the whole
 /// `system` and the same `trim`, share the work. The first one gets the point, others get its modes
-/// without names, errors, shares of harmonics and signatures.
+/// without names, errors and shares of harmonics.
 /// @throws ConvergenceError, DomainError, InputError from the analyses
 CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const analysis::Trim& trim,
                                   const analysis::FloquetOptions& options, MPI_Comm comm,
@@ -88,6 +89,9 @@ struct StabilityEdge {
   double second = std::numeric_limits<double>::quiet_NaN();  ///< as in SweepPlace
   int growing_from = 0;
   int growing_to = 0;
+  /// Modes of the point behind the edge that begin to grow here, or of the point before it that
+  /// cease; -1: no further one, or one that is not known there.
+  std::array<int, 4> modes{-1, -1, -1, -1};
 };
 
 /// Distance of the sides of a refined edge, relative to the larger value of the points beside it.
@@ -98,17 +102,15 @@ inline constexpr double edge_accuracy = 2e-5;
 std::vector<std::pair<std::size_t, std::size_t>> find_neighbours(
     const std::vector<CampbellPoint>& points);
 
-/// One edge between each two neighbouring points with different numbers.
-std::vector<StabilityEdge> find_edges(const std::vector<CampbellPoint>& points);
-
 /// A range in which the mode of a line grows.
 struct GrowthRange {
   double from = 0.0;  ///< refined edge, or value of the first point that grows
   double to = 0.0;
 };
 
-/// The ranges of a line of a sweep of one quantity, in the order of its points. An edge applies if
-/// it is refined and the growing modes at both its sides are as many as at the points.
+/// The ranges of a line of a sweep of one quantity, in the order of its points. A refined edge
+/// applies if it has the mode of the line, or if it is the only one between two points and the
+/// growing modes at both its sides are as many as at the points.
 std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
                                      const CampbellLine& line,
                                      const std::vector<StabilityEdge>& edges);
