@@ -22,6 +22,7 @@
 #include "mode_report.hpp"
 #include "progress.hpp"
 #include "sensitivity_report.hpp"
+#include "steady_state_groups.hpp"
 #include "table.hpp"
 
 namespace samara::drivers {
@@ -143,7 +144,7 @@ void run_floquet(const Job& job) {
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
-        file.write_trim(trim);
+        write_steady_state(file, system, trim);
         file.write_floquet(floquet);
         file.write_geometry(system, trim, "/floquet", floquet.set);
         if (sensitivities) write_sensitivities(file, floquet.set, *sensitivities);

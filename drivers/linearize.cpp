@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "masses.hpp"
 #include "progress.hpp"
+#include "steady_state_groups.hpp"
 #include "table.hpp"
 
 namespace samara::drivers {
@@ -84,7 +85,7 @@ void run_linearize(const Job& job) {
           [&](io::ResultFile& file) {
             file.write_model(system);
             write_masses(file, model::compute_masses(job.input.turbine, turbine));
-            file.write_trim(trim);
+            write_steady_state(file, system, trim);
             file.write_linearization(linear);
           },
           {});

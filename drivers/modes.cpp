@@ -15,6 +15,7 @@
 #include "masses.hpp"
 #include "mode_report.hpp"
 #include "progress.hpp"
+#include "steady_state_groups.hpp"
 #include "table.hpp"
 
 namespace samara::drivers {
@@ -63,7 +64,7 @@ void run_modes(const Job& job) {
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
-        file.write_trim(trim);
+        write_steady_state(file, system, trim);
         file.write_modes(set);
         file.write_geometry(system, trim, "/modes", set);
         if (air) write_air_part(file, "/modes", *air, turbine.blades.size());

@@ -7,13 +7,13 @@
 #include <optional>
 
 #include "samara/petsc/session.hpp"
-#include "samara/simulation/spanwise_air.hpp"
 #include "samara/simulation/steady_state.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
 #include "commands.hpp"
 #include "masses.hpp"
 #include "progress.hpp"
+#include "steady_state_groups.hpp"
 #include "table.hpp"
 
 namespace samara::drivers {
@@ -185,28 +185,6 @@ std::string air_words(const turbine::TurbineSystem& system, const Trim& trim) {
   return text + "\n";
 }
 
-void write_air(io::ResultFile& file, const simulation::SpanwiseAir& air) {
-  if (air.quantities.empty()) return;
-  const std::string group = "/trim/air/";
-  const std::string rotor = "none";
-  file.write_values(group + "station", air.fractions,
-                    {"1", rotor, "places of the stations, fractions of the length", {"station"}});
-  file.write_values(group + "radius", air.radii,
-                    {"m", rotor, "undeformed distance from the shaft axis", {"station"}});
-  file.write_values(group + "chord", air.chords, {"m", rotor, "chord", {"station"}});
-  const std::vector<std::size_t> shape{air.blades, air.fractions.size()};
-  const auto write = [&](const std::string& name, const std::vector<double>& values,
-                         const std::string& unit, const std::string& words) {
-    file.write_array(group + name, values, shape, {unit, rotor, words, {"blade", "station"}});
-  };
-  for (const simulation::SpanwiseQuantity& quantity : air.quantities) {
-    const std::string& name = quantity.name;
-    write(name, quantity.mean, quantity.unit, "mean over a revolution: " + quantity.description);
-    write(name + "_least", quantity.least, quantity.unit, "least value over a revolution");
-    write(name + "_largest", quantity.largest, quantity.unit, "largest value over a revolution");
-  }
-}
-
 std::string summary(const io::Case& input, const turbine::TurbineSystem& system, const Trim& trim) {
   const int harmonics = trim.solution.harmonics();
   std::string text = title_of(input) + "\n";
@@ -261,9 +239,8 @@ void run_trim(const Job& job) {
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, model::compute_masses(job.input.turbine, turbine));
-        file.write_trim(trim);
+        write_steady_state(file, system, trim);
         file.write_geometry(system, trim);
-        write_air(file, simulation::find_spanwise_air(system, trim));
       },
       [&](const std::string& path) { io::write_trim_table(path, system, trim); });
 }

@@ -1,4 +1,4 @@
-"""Pictures of results: Campbell diagrams, multipliers, steady states, loads along the blades, time series, mode shapes.
+"""Pictures of results: Campbell diagrams, multipliers, steady states, deflections and loads along the beams, time series, mode shapes.
 
     samara plot RESULT.h5 [KIND ...] [-o NAME.svg|NAME.png|NAME.pdf]
     samara plot RESULT.h5 shapes [--modes 1,2,5] [-o NAME.svg]
@@ -31,6 +31,12 @@ LEAST_DRAWN = 0.01  # of the scale of a mode shape: the least range of an axis; 
 DRAWN_SHARE = 0.1  # of the turbine's size, the largest displacement in a view
 FIRST_MODES = 6  # of the mode shapes, unless modes are named
 ENDINGS = (".png", ".svg", ".pdf")
+# Units of results that pictures show in others, with the factor. Any other unit remains.
+TO_DEGREES = {"rad": ("deg", 180.0 / numpy.pi)}
+TO_PER_CENT = {"": ("%", 100.0)}
+OF_RATES = {"s": "Hz"}  # units of 1 over a unit that have a name
+LEAST_RANGE = 1e-8  # of an axis beside the largest load, or the length of the beam: smaller values are round-off
+IN_WORDS = {"fore_aft": "fore-aft", "side_side": "side-side"}
 
 
 class PlotError(ValueError):
@@ -51,6 +57,16 @@ def _style(number):
 
 def _label(name, unit):
     return f"{name} [{unit}]" if unit else name
+
+
+def _shown(array, conversion):
+    """The unit in which a picture shows an array of a result, and the factor."""
+    unit = unit_of(array)
+    return conversion.get(unit, (unit, 1.0))
+
+
+def _rate_of(unit):
+    return OF_RATES.get(unit, f"1/{unit}" if unit else "")
 
 
 def _title(figure, result, text):
@@ -138,6 +154,7 @@ def campbell(result, frame="fixed", first=14):
     own = data["frequency_hz"].values
     ground = data["fixed_frame_frequency_hz"].values
     harmonics = data["harmonic"].values
+    damping_unit, per_cent = _shown(data["damping_ratio"], TO_PER_CENT)
     top = 0.0
     has_own = False
     for number, line in enumerate(lines):
@@ -156,7 +173,7 @@ def campbell(result, frame="fixed", first=14):
                 continue
             branch = numpy.where(share >= LEAST_SHARE, abs(frequency + k * turns), numpy.nan)
             above.plot(values, branch, color=style["color"], linewidth=0.3 + 1.5 * numpy.nanmax(share), alpha=0.35)
-        damping = 100.0 * data["damping_ratio"].values[line]
+        damping = per_cent * data["damping_ratio"].values[line]
         main = shares[:, numpy.flatnonzero(harmonics == 0)[0]]
         for axes, height in ((above, frequency), (below, damping)):
             axes.plot(values, height, label=name, linewidth=1.2, marker=".", markersize=3, **style)
@@ -172,8 +189,9 @@ def campbell(result, frame="fixed", first=14):
                        annotation_clip=True)
     key = _label(data.attrs.get("key", "value"), unit_of(data["value"]))
     words = "frame of the part" if frame == "own" else "fixed frame" + (", *: frame of the part" if has_own else "")
-    above.set(xlabel=key, ylabel=f"frequency, {words} [Hz]", ylim=(0.0, 1.08 * top))
-    below.set(xlabel=key, ylabel="damping ratio [%]")
+    frequency_unit = unit_of(data["frequency_hz" if frame == "own" else "fixed_frame_frequency_hz"])
+    above.set(xlabel=key, ylabel=_label(f"frequency, {words}", frequency_unit), ylim=(0.0, 1.08 * top))
+    below.set(xlabel=key, ylabel=_label("damping ratio", damping_unit))
     below.axhline(0.0, color=GREY, linewidth=0.8)
     figure.legend(*above.get_legend_handles_labels(), loc="outside lower center" if matplotlib.__version__ >= "3.7"
                   else "lower center", ncol=4, fontsize=8, bbox_to_anchor=(0.5, -0.14))
@@ -202,23 +220,63 @@ def multipliers(result):
     return figure
 
 
+def _draw_distribution(axes, data, name, place, least):
+    """Means of a quantity over the place along the beams as lines, the range over a revolution as bands.
+
+    least: the least range of the axis.
+    """
+    means, low, high = (data[name + ending].values.reshape(-1, len(data[place]))
+                        if name + ending in data else None for ending in ("", "_least", "_largest"))
+    for number, mean in enumerate(means):
+        style = _style(number)
+        # Beams that are alike are wide lines under narrow ones.
+        axes.plot(data[place].values, mean, marker=".", markersize=3, linewidth=max(1.0, 2.2 - 0.6 * number),
+                  label=f"blade {number + 1}" if len(means) > 1 else None, **style)
+        if low is not None:
+            axes.fill_between(data[place].values, low[number], high[number], color=style["color"], alpha=0.15, linewidth=0)
+    bottom, top = axes.get_ylim()
+    if top - bottom < least:
+        axes.set_ylim(0.5 * (bottom + top - least), 0.5 * (bottom + top + least))
+
+
 def spanwise(result):
-    """The steady air along the blades, of samara trim."""
-    data = result["trim/air"] if "trim" in result else None
-    if data is None or not data:
-        raise PlotError(f"{result.path}: no distribution along the blades; samara trim of a case with air writes one")
-    place = next((name for name in data if data[name].ndim == 1 and "radius" in name), None)
-    names = [name for name in data if data[name].ndim >= 1 and name != place and data[name].dtype.kind == "f"]
+    """The steady state along the blades and the tower: deflections, internal loads, and the air.
 
-    def draw_panel(axes, name):
-        values = data[name].values
-        at = data[place].values if place else numpy.arange(values.shape[-1])
-        for number, own in enumerate(values.reshape(-1, values.shape[-1])):
-            axes.plot(at, own, linewidth=1.2, **_style(number))
-        return _label(name.replace("_", " "), unit_of(data[name]))
-
-    return _panels(result, "steady air along the blades", names, draw_panel,
-                   _label(place.replace("_", " "), unit_of(data[place])) if place else "station")
+    Of samara trim, and of floquet, modes and linearize. Lines are means, bands the range over a revolution.
+    """
+    if "trim" not in result or "trim/blades" not in result:
+        raise PlotError(f"{result.path}: no distribution along the blades; hint: samara trim writes one")
+    load_level = float(result["trim"]["load_level"])
+    loads = [f"{letter}{axis}" for letter in "FM" for axis in (1, 2, 3)]
+    rows = []  # group, place, names
+    for group, place in (("trim/blades", "radius"), ("trim/tower", "height"), ("trim/air", "radius")):
+        if group not in result:
+            continue
+        data = result[group]
+        names = [name for name in data if name != place and not name.endswith(("_least", "_largest"))]
+        first = [name for name in names if name not in loads]
+        order = ("out_of_plane", "in_plane", "fore_aft", "side_side")
+        first.sort(key=lambda name: order.index(name) if name in order else len(order))
+        names = first + [name for name in loads if name in data]
+        rows += [(group, place, names[i : i + 3]) for i in range(0, len(names), 3)]
+    figure, grid = _pyplot().subplots(len(rows), 3, figsize=(10, 2.0 * len(rows) + 0.4), squeeze=False)
+    for panels, (group, place, names) in zip(grid, rows):
+        data = result[group]
+        extent = float(numpy.ptp(data[place].values))
+        kind = "" if group == "trim/air" else group.split("/")[1].rstrip("s") + " "
+        for axes, name in itertools.zip_longest(panels, names):
+            if name is None:
+                axes.axis("off")
+                continue
+            _draw_distribution(axes, data, name, place, LEAST_RANGE * (load_level if name in loads else extent))
+            words = kind + IN_WORDS.get(name, name.replace("_", " "))
+            axes.set_ylabel(_label(words, unit_of(data[name])), fontsize=7)
+            axes.set_xlabel(_label(place, unit_of(data[place])), fontsize=7)
+            axes.tick_params(labelsize=7)
+    if grid[0][0].get_legend_handles_labels()[0]:
+        grid[0][0].legend(loc="best", fontsize=7)
+    _title(figure, result, "steady state along the blades" + (" and the tower" if "trim/tower" in result else ""))
+    return figure
 
 
 def azimuth(result, unknowns=None):
@@ -239,17 +297,18 @@ def azimuth(result, unknowns=None):
     harmonics = result["trim"]["harmonics"].values
     start = float(result["model"]["azimuth"])
     angle = numpy.linspace(0.0, 2.0 * numpy.pi, 361)
+    angle_unit, degrees = _shown(result["model"]["azimuth"], TO_DEGREES)
 
     def draw_panel(axes, name):
         row = harmonics[names.index(name)]
         values = numpy.full_like(angle, row[0])
         for k in range(1, len(row) // 2 + 1):
             values += row[2 * k - 1] * numpy.cos(k * (angle - start)) + row[2 * k] * numpy.sin(k * (angle - start))
-        axes.plot(numpy.degrees(angle), values, color=COLOURS[0], linewidth=1.2)
+        axes.plot(degrees * angle, values, color=COLOURS[0], linewidth=1.2)
         axes.set_xticks([0, 90, 180, 270, 360])
         return _label(name, units[names.index(name)])
 
-    return _panels(result, "steady state over a revolution", chosen, draw_panel, "azimuth of blade 1 [deg]")
+    return _panels(result, "steady state over a revolution", chosen, draw_panel, _label("azimuth of blade 1", angle_unit))
 
 
 def series(result, channels=None):
@@ -266,6 +325,7 @@ def series(result, channels=None):
     step = numpy.median(numpy.diff(time)) if len(time) > 1 else 1.0
     even = numpy.arange(time[0], time[-1] + 0.5 * step, step)
     window = numpy.hanning(len(even))
+    rate = _rate_of(unit_of(data["time"]))
     for (left, right), name in zip(grid, chosen):
         column = names.index(name)
         values = data["values"].values[:, column]
@@ -275,9 +335,9 @@ def series(result, channels=None):
         own = numpy.interp(even, time, values)
         density = 2.0 * step * abs(numpy.fft.rfft((own - own.mean()) * window)) ** 2 / (window**2).sum()
         right.semilogy(numpy.fft.rfftfreq(len(even), step)[1:], density[1:], color=COLOURS[1], linewidth=0.8)
-        right.set_ylabel(f"({unit})$^2$/Hz", fontsize=8)
+        right.set_ylabel(f"({unit})$^2$/{rate}", fontsize=8)
     grid[-1][0].set_xlabel(_label("time", unit_of(data["time"])))
-    grid[-1][1].set_xlabel("frequency [Hz]")
+    grid[-1][1].set_xlabel(_label("frequency", rate))
     _title(figure, result, "time series and power spectral densities (Hann window)")
     return figure
 
@@ -292,6 +352,18 @@ def operation(result):
         return _label(name.replace("_", " "), unit_of(data[name]))
 
     return _panels(result, "operating points", names, draw_panel, _label("wind speed", unit_of(data["wind_speed"])))
+
+
+class _ModeUnits:
+    """Units of the modes of a result in pictures, and the factors from those of the file."""
+
+    def __init__(self, result):
+        data = result.modes
+        self.length, angle = (word.strip() for word in unit_of(data["node_motion"]).split(","))  # "m, rad"
+        self.angle, self.degrees = TO_DEGREES.get(angle, (angle, 1.0))
+        self.azimuth, self.azimuth_degrees = _shown(result["geometry"]["azimuth"], TO_DEGREES)
+        self.frequency = unit_of(data["frequency_hz"])
+        self.damping, self.per_cent = _shown(data["damping_ratio"], TO_PER_CENT)
 
 
 class _View:
@@ -332,7 +404,7 @@ class _View:
         self._axes.set_title(text, fontsize=8)
 
 
-def _draw_view(axes, turbine, mode, colours, where):
+def _draw_view(axes, turbine, mode, colours, where, units):
     """The turbine in a mode over that without it, at the first instant."""
     view = _View(axes, turbine)
     places, sections = turbine.places[0], turbine.all_axes[0]
@@ -341,10 +413,10 @@ def _draw_view(axes, turbine, mode, colours, where):
     factor = mode.drawing_scale(DRAWN_SHARE)
     motion = factor * mode.motion()
     view.draw(places + motion[:, :3], half * node_shapes.turned(sections[:, 1], motion[:, 3:]), colours, 3)
-    angles = [f"{name} {round(float(values[0].real), 2) + 0.0:.2f}" for name, values in _moving_joints(mode).items()]
+    angles = [f"{name} {round(float(values[0].real), 2) + 0.0:.2f}" for name, values in _moving_joints(mode, units).items()]
     lines = [f"displacements x {factor:.3g}{where}", "grey: steady state"]
     if angles:
-        lines += ["joints [deg]:", *(", ".join(angles[i : i + 2]) for i in range(0, min(len(angles), 8), 2))]
+        lines += [_label("joints", units.angle) + ":", *(", ".join(angles[i : i + 2]) for i in range(0, min(len(angles), 8), 2))]
     view.finish("\n".join(lines))
 
 
@@ -359,7 +431,7 @@ def _limits(axes, scale):
         axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
 
 
-def _draw_span(panels, mode, name, style, scales):
+def _draw_span(panels, mode, name, style, scales, units):
     """Out of plane, in plane and torsion of a beam at the first instant; imaginary parts dashed."""
     nodes = mode.turbine.parts[name]
     stations = mode.turbine.station[nodes]
@@ -370,7 +442,7 @@ def _draw_span(panels, mode, name, style, scales):
         if column < 2:
             at, line = node_shapes.curve(stations, own, slopes[:, column], length, max(3, 48 // len(stations)))
         else:
-            own = own * (180.0 / numpy.pi)
+            own = own * units.degrees
             at, line = stations, own
         axes.plot(at, line.real, label=name, **style)
         axes.plot(stations, own.real, ".", color=style["color"], markersize=4)
@@ -391,6 +463,7 @@ def mode_shape(result, mode=None, label=None):
 
 def _draw_mode(result, turbine, mode):
     pyplot = _pyplot()
+    units = _ModeUnits(result)
     has_tower = "tower" in turbine.beams
     kinds = (["blades"] if turbine.blades else []) + (["tower"] if has_tower else []) + (
         ["azimuth"] if turbine.turns else [])
@@ -402,46 +475,48 @@ def _draw_mode(result, turbine, mode):
     styles = {name: {"color": COLOURS[i % 6], "linestyle": "-", "linewidth": max(1.0, 2.2 - 0.7 * i)}
               for i, name in enumerate(turbine.blades)}
     styles["tower"] = {"color": COLOURS[6], "linestyle": "-", "linewidth": 1.3}
-    where = f" at azimuth {numpy.degrees(turbine.azimuths[0]):.3g} deg" if turbine.turns else ""
+    where = f" at azimuth {units.azimuth_degrees * turbine.azimuths[0]:.3g} {units.azimuth}" if turbine.turns else ""
     for row, kind in enumerate(kinds):
         panels = [figure.add_subplot(grid[row, column]) for column in range(3)]
         if kind == "blades":
             for name in turbine.blades:
-                _draw_span(panels, mode, name, styles[name], scales)
-            for axes, text in zip(panels, ("blade out of plane [m]", "blade in plane [m]", "blade torsion [deg]")):
-                axes.set(xlabel="station of the blade, root 0, tip 1 [-]", ylabel=text)
+                _draw_span(panels, mode, name, styles[name], scales, units)
+            for axes, text, unit in zip(panels, ("blade out of plane", "blade in plane", "blade torsion"),
+                                        (units.length, units.length, units.angle)):
+                axes.set(xlabel="station of the blade, root 0, tip 1", ylabel=_label(text, unit))
             panels[0].legend(loc="best", fontsize=7)
         elif kind == "tower":
-            _draw_span(panels, mode, "tower", styles["tower"], scales)
-            for axes, text in zip(panels, ("tower fore-aft [m]", "tower side-side [m]", "tower torsion [deg]")):
-                axes.set(xlabel="station of the tower, foot 0, top 1 [-]", ylabel=text)
+            _draw_span(panels, mode, "tower", styles["tower"], scales, units)
+            for axes, text, unit in zip(panels, ("tower fore-aft", "tower side-side", "tower torsion"),
+                                        (units.length, units.length, units.angle)):
+                axes.set(xlabel="station of the tower, foot 0, top 1", ylabel=_label(text, unit))
         else:
-            _draw_azimuth(panels, mode, styles)
+            _draw_azimuth(panels, mode, styles, units)
         for axes, scale in zip(panels, scales):
             _limits(axes, scale)
             axes.tick_params(labelsize=7)
             axes.xaxis.label.set_size(7.5)
             axes.yaxis.label.set_size(8 if kind != "azimuth" else 7)
     _draw_view(figure.add_subplot(grid[:, 3]), turbine, mode, {name: style["color"] for name, style in styles.items()},
-               where)
+               where, units)
     speed = 2.0 * numpy.pi / turbine.period if turbine.period > 0.0 else 0.0
     rate = f" = {mode.exponent.imag / speed:.4g} per rev" if speed else ""
-    _title(figure, result, f"mode {mode.number}, {mode.label}\n{mode.frequency_hz:.4g} Hz{rate}, damping ratio "
-           f"{round(100.0 * mode.damping_ratio, 3) + 0.0:.3f} %; solid: real part{where}, dashed: imaginary part")
+    _title(figure, result, f"mode {mode.number}, {mode.label}\n{mode.frequency_hz:.4g} {units.frequency}{rate}, damping ratio "
+           f"{round(units.per_cent * mode.damping_ratio, 3) + 0.0:.3f} {units.damping}; solid: real part{where}, dashed: imaginary part")
     return figure
 
 
-def _moving_joints(mode):
-    """Their angles [instant] in degrees."""
-    angles = {name: values * (180.0 / numpy.pi) for name, values in mode.joints().items()}
+def _moving_joints(mode, units):
+    """Their angles [instant] in the unit of the picture."""
+    angles = {name: values * units.degrees for name, values in mode.joints().items()}
     return {name: values for name, values in angles.items() if abs(values).max() > LEAST_DRAWN}
 
 
-def _draw_azimuth(panels, mode, styles):
+def _draw_azimuth(panels, mode, styles, units):
     """Real parts over the azimuth, without the vibration itself: constant for a mode of one frequency."""
     turbine = mode.turbine
     angle = numpy.linspace(0.0, 360.0, 73)
-    first = numpy.degrees(turbine.azimuths[0])
+    first = units.azimuth_degrees * turbine.azimuths[0]
     at_instants = 360.0 * turbine.phases
 
     def plot(axes, values, label=None, **style):
@@ -457,18 +532,18 @@ def _draw_azimuth(panels, mode, styles):
         top = mode.deflections("tower")[:, -1]
         plot(panels[1], top[:, 0], color=COLOURS[6], linestyle="-")
         plot(panels[1], top[:, 1], color=COLOURS[6], linestyle="--")
-    for number, (name, values) in enumerate(_moving_joints(mode).items()):
+    for number, (name, values) in enumerate(_moving_joints(mode, units).items()):
         owner = next((blade for blade in turbine.blades if name.startswith(f"{blade} ")), None)
         style = styles[owner] if owner else {"color": COLOURS[(number + 3) % 6]}
         plot(panels[2], values, name.replace("blade ", ""), **{**style, "linestyle": STYLES[number % len(STYLES)]})
     for name in turbine.blades:
-        values = mode.deflections(name)[:, -1, 2] * (180.0 / numpy.pi)
+        values = mode.deflections(name)[:, -1, 2] * units.degrees
         if abs(values).max() > LEAST_DRAWN * 10.0:
             plot(panels[2], values, f"tip {name.split()[-1]} torsion", **{**styles[name], "linestyle": ":"})
-    for axes, text in zip(panels, ("blade tips [m]\nsolid: out of plane, dashed: in plane",
-                                   "tower top [m]\nsolid: fore-aft, dashed: side-side",
-                                   "joints, torsion of tips [deg]")):
-        axes.set(xlabel="azimuth of blade 1 [deg]", ylabel=text)
+    for axes, text in zip(panels, (_label("blade tips", units.length) + "\nsolid: out of plane, dashed: in plane",
+                                   _label("tower top", units.length) + "\nsolid: fore-aft, dashed: side-side",
+                                   _label("joints, torsion of tips", units.angle))):
+        axes.set(xlabel=_label("azimuth of blade 1", units.azimuth), ylabel=text)
         axes.set_xticks(first + numpy.array([0, 90, 180, 270, 360]))
         if axes.get_legend_handles_labels()[0]:
             axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0.98), ncol=4, fontsize=6, columnspacing=1.0)
@@ -477,6 +552,7 @@ def _draw_azimuth(panels, mode, styles):
 def _mode_data(result):
     """Resolved modes of the structure by label: frequency, damping and their estimated errors."""
     data = result.modes
+    per_cent = _shown(data["damping_ratio"], TO_PER_CENT)[1]
     resolved = data["resolved"].values == 1
     if "node_motion" in data:  # not-a-number for modes of the air
         resolved &= numpy.isfinite(data["node_motion"].values[:, 0, -1, 0, 0])
@@ -490,8 +566,8 @@ def _mode_data(result):
         error = float(data["error"].values[i])
         found[name] = {"frequency": float(data["frequency_hz"].values[i]), "error": error,
                        "frequency error": error * size / (2.0 * numpy.pi),
-                       "damping": 100.0 * float(data["damping_ratio"].values[i]),
-                       "damping error": 100.0 * float(data["error_growth"].values[i]) / size,
+                       "damping": per_cent * float(data["damping_ratio"].values[i]),
+                       "damping error": per_cent * float(data["error_growth"].values[i]) / size,
                        "step": float(data["error_step"].values[i]), "mesh": float(data["error_mesh"].values[i]),
                        "round-off": float(data["error_round_off"].values[i])}
     if not found:
@@ -502,14 +578,16 @@ def _mode_data(result):
 def _draw_errors(result):
     """Estimated errors of the modes of one result over their frequency."""
     modes = _mode_data(result)
+    error_unit, per_cent = _shown(result.modes["error"], TO_PER_CENT)
     figure, axes = _pyplot().subplots(figsize=(7.5, 4.8))
     frequency = numpy.array([mode["frequency"] for mode in modes.values()])
     for number, (name, mark) in enumerate((("error", "o"), ("step", "v"), ("mesh", "s"), ("round-off", "x"))):
-        values = 100.0 * numpy.array([mode[name] for mode in modes.values()])
+        values = per_cent * numpy.array([mode[name] for mode in modes.values()])
         axes.loglog(frequency[values > 0.0], values[values > 0.0], mark, color=COLOURS[number],
                     markersize=7 if name == "error" else 4, fillstyle="none" if name == "error" else "full",
                     label="sum" if name == "error" else name)
-    axes.set(xlabel="frequency [Hz]", ylabel="estimated error of the exponent [%]")
+    axes.set(xlabel=_label("frequency", unit_of(result.modes["frequency_hz"])),
+             ylabel=_label("estimated error of the exponent", error_unit))
     axes.legend(loc="best")
     _title(figure, result, "estimated errors of the resolved modes")
     return figure
@@ -539,6 +617,7 @@ def convergence(result, *others, first=8):
     names = [name for name in finest if sum(name in table for table in tables) > 1][:first]
     if not names:
         raise PlotError(f"{result.path}: no resolved mode has the same label in two results")
+    error_unit, per_cent = _shown(result.modes["error"], TO_PER_CENT)
     figure, panels = _pyplot().subplots(1, 3, figsize=(11, 4.6))
     for number, name in enumerate(names):
         style = _style(number)
@@ -548,19 +627,19 @@ def convergence(result, *others, first=8):
                            linewidth=1.2, label=name, **style)
         panels[1].errorbar(sizes[has], values["damping"], values["damping error"], marker=".", capsize=2, linewidth=1.2,
                            **style)
-        estimated = 100.0 * values["error"]
+        estimated = per_cent * values["error"]
         panels[2].plot(sizes[has], numpy.where(estimated > 0.0, estimated, numpy.nan), marker=".", linewidth=1.2,
                        color=style["color"])
         if has[-1] == len(tables) - 1 and len(has) > 1:
-            real = 100.0 * abs(values["frequency"][:-1] / values["frequency"][-1] - 1.0)
+            real = per_cent * abs(values["frequency"][:-1] / values["frequency"][-1] - 1.0)
             panels[2].plot(sizes[has[:-1]], numpy.where(real > 0.0, real, numpy.nan), marker="x", linewidth=0.9,
                            linestyle="--", color=style["color"])
-    panels[0].set(ylabel="frequency [Hz]")
-    panels[1].set(ylabel="damping ratio [%]")
-    panels[2].set(ylabel="error [%]", yscale="log")
+    panels[0].set(ylabel=_label("frequency", unit_of(result.modes["frequency_hz"])))
+    panels[1].set(ylabel=_label("damping ratio", _shown(result.modes["damping_ratio"], TO_PER_CENT)[0]))
+    panels[2].set(ylabel=_label("error", error_unit), yscale="log")
     panels[2].set_title("dots: estimated; crosses: difference of the frequency from the finest", fontsize=8)
     for axes in panels:
-        axes.set_xlabel(f"{text} [-]")
+        axes.set_xlabel(text)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncol=4, fontsize=8,
                   bbox_to_anchor=(0.5, -0.13))
     _title(figure, result, "convergence; bars: estimated errors")
@@ -568,7 +647,7 @@ def convergence(result, *others, first=8):
 
 
 KINDS = {"campbell": (campbell, "campbell"), "multipliers": (multipliers, "floquet"),
-         "operation": (operation, "operation"), "spanwise": (spanwise, "trim/air"),
+         "operation": (operation, "operation"), "spanwise": (spanwise, "trim/blades"),
          "azimuth": (azimuth, "trim"), "series": (series, "transient")}
 ON_REQUEST = {"shapes": mode_shape, "convergence": convergence}  # drawn only where they are named
 

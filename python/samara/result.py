@@ -26,7 +26,10 @@ class Result:
         return f"Result({str(self.path)!r}): {', '.join(self.groups)}"
 
     def __contains__(self, group):
-        return group.split("/")[0] in self.groups
+        if "/" not in group:
+            return group in self.groups
+        with h5py.File(self.path) as file:
+            return isinstance(file.get(group), h5py.Group)
 
     def __getitem__(self, group):
         """The variables of a group, "floquet" or "model/unknowns". Read once."""

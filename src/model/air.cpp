@@ -10,6 +10,7 @@
 #include "samara/base/error.hpp"
 #include "samara/math/rotation.hpp"
 #include "samara/model/airfoil.hpp"
+#include "samara/model/radius.hpp"
 
 namespace samara::model {
 namespace {
@@ -128,12 +129,6 @@ elements::TowerFlow tower_flow_of(const TowerFlowDefinition& definition, const T
   return flow;
 }
 
-/// Undeformed distance from the shaft axis.
-double radius_of(const BladeRoot& root, const Vector3& x) {
-  const Vector3 place = root.position + root.C_Ha * x;
-  return std::hypot(place(0), place(2));
-}
-
 /// Height of the apex of the undeformed rotor, and the wind there, along the rotor's axis and
 /// whole.
 struct HubWind {
@@ -214,7 +209,7 @@ void place_stations(const TurbineDefinition& definition, const Turbine& turbine,
                   place.of([](const AeroSectionDefinition& s) { return s.center[1]; }));
       station.arc_to_tip = (1.0 - fraction) * beam.length;
       station.arc_to_hub = fraction * beam.length;
-      station.radius = radius_of(root, station.x);
+      station.radius = undeformed_radius(root, station.x);
       const double speed = std::hypot(turbine.speed * station.radius, definition.wind->speed);
       station.airfoil = shelf.at(place, speed * station.chord / kinematic_viscosity);
       if (air.rotor.models.induction != elements::Induction::none &&
@@ -244,7 +239,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
   rotor.hub_radius = definition.hub.radius;
   for (std::size_t k = 0; k < turbine.blades.size(); ++k)
     rotor.tip_radius =
-        std::max(rotor.tip_radius, radius_of(turbine.roots[k], turbine.blades[k].tip));
+        std::max(rotor.tip_radius, undeformed_radius(turbine.roots[k], turbine.blades[k].tip));
   place_stations(definition, turbine, air);
   const HubWind wind = find_hub_wind(rotor.wind.mean, turbine);
   air.hub_height = wind.height;

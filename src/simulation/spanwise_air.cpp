@@ -1,8 +1,6 @@
 #include "samara/simulation/spanwise_air.hpp"
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <numbers>
 
 #include "samara/simulation/steady_state.hpp"
@@ -56,11 +54,11 @@ SpanwiseAir find_spanwise_air(const turbine::TurbineSystem& system, const analys
     air.chords.push_back(station.chord);
   }
   const std::size_t size = air.blades * air.fractions.size();
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (const Quantity& quantity : quantities)
-    air.quantities.push_back({quantity.name, quantity.unit, quantity.description,
-                              std::vector<double>(size, 0.0), std::vector<double>(size, infinity),
-                              std::vector<double>(size, -infinity)});
+  for (const Quantity& quantity : quantities) {
+    air.quantities.push_back({quantity.name, quantity.unit, "none", quantity.description});
+    air.quantities.back().resize(size);
+  }
+  const int instants = instants_of_means(trim);
   visit_instants(system, trim, [&](double t, Vec z, Vec z_dot) {
     const Reports reports =
         system.equations().air_report<double>(t, petsc::values_of(z), petsc::values_of(z_dot), {});
@@ -68,17 +66,9 @@ SpanwiseAir find_spanwise_air(const turbine::TurbineSystem& system, const analys
       SpanwiseQuantity& own = air.quantities[q];
       std::size_t at = 0;
       for (const std::vector<Report>& blade : reports)
-        for (const Report& report : blade) {
-          const double value = quantities[q].value(report);
-          own.mean[at] += value;
-          own.least[at] = std::min(own.least[at], value);
-          own.largest[at] = std::max(own.largest[at], value);
-          ++at;
-        }
+        for (const Report& report : blade) own.add(at++, quantities[q].value(report), instants);
     }
   });
-  for (SpanwiseQuantity& quantity : air.quantities)
-    for (double& mean : quantity.mean) mean /= instants_of_means(trim);
   return air;
 }
 

@@ -12,6 +12,7 @@
 #include "samara/base/words.hpp"
 
 #include "channel_catalogue.hpp"
+#include "turning.hpp"
 
 namespace samara::turbine {
 
@@ -32,27 +33,6 @@ Vec3<T> along_beam(const Vec3<T>& v) {
 template <class T>
 Vec3<T> of_body(const Vec3<T>& v) {
   return Vec3<T>(v(1), -v(0), v(2));
-}
-
-template <class T>
-double real_of(const T& value) {
-  if constexpr (std::is_same_v<T, double>)
-    return value;
-  else
-    return value.real();
-}
-
-/// The rotation vector of Rodrigues parameters.
-template <class T>
-Vec3<T> rotation_vector(const Vec3<T>& theta) {
-  using std::atan;
-  using std::sqrt;
-  const T square = math::dot(theta, theta);
-  // 2 atan(x / 2) / x; its series for small x.
-  constexpr double small = 1e-4;
-  if (std::abs(real_of(square)) < small * small) return theta * T(T(1.0) - square / 12.0);
-  const T length = sqrt(square);
-  return theta * T(2.0 * atan(length * 0.5) / length);
 }
 
 /// Weights of the polynomial through the element's points. For elements with one point: of the
@@ -309,11 +289,7 @@ class Quantities {
 
   /// The rotation vector at a place in element e, from the undeformed state.
   Vec3<T> turned_by(const model::Beam& beam, int e, const Block<T>& state) const {
-    const Vec3<T> theta = state.template segment<3>(3);
-    const Matrix3& reference = beam.reference(e);
-    if (reference.isIdentity(0.0)) return rotation_vector<T>(theta);
-    const Vector3 from = math::parameters_of(reference);
-    return rotation_vector<T>(math::compose<T>(theta, from.cast<T>()));
+    return turned_from<T>(beam.reference(e), Vec3<T>(state.template segment<3>(3)));
   }
 
   void add_shaft(const components::BodiesReport<T>& chain) {

@@ -1,5 +1,6 @@
 """The Python package: results as labelled arrays, runs, cases, pictures; and samara plot."""
 
+import ast
 import os
 import pathlib
 import re
@@ -118,9 +119,9 @@ class Package(ProgramTest):
                       samara.plot.campbell(samara.open_result(self.folder / "c.h5")).axes[0].get_ylabel())
         self.succeed("floquet", BASELINE, *self.settings(), "-o", "f.h5")
         run = self.plot("f.h5")
-        self.assertEqual(run.stdout, "picture: f_multipliers.svg\n", run.stderr)
+        self.assertEqual(run.stdout, "picture: f_multipliers.svg\npicture: f_spanwise.svg\n", run.stderr)
         for ending in ("png", "pdf"):
-            self.assertEqual(self.plot("f.h5", "-o", f"f.{ending}").returncode, 0)
+            self.assertEqual(self.plot("f.h5", "multipliers", "-o", f"f.{ending}").returncode, 0)
             self.assertGreater((self.folder / f"f.{ending}").stat().st_size, 5000)
         self.succeed("transient", BASELINE, *self.settings(), "--set",
                      "transient={duration: 2, step: 0.01}", "-o", "t.h5")
@@ -145,11 +146,69 @@ class Package(ProgramTest):
         self.assertEqual(run.stdout, "picture: o_operation.svg\n", run.stderr)
         self.assertIn("wind speed [m/s]", (self.folder / "o_operation.svg").read_text())
 
+    def test_units_of_pictures_are_those_of_the_file(self):
+        self.succeed("campbell", BASELINE, *self.settings(), "--sweep", "shaft.speed=1:2:1", "-o", "c.h5")
+        self.succeed("floquet", BASELINE, *self.settings(), "--set", "gravity=9.81", "-o", "f.h5")
+        self.succeed("transient", BASELINE, *self.settings(), "--set", "transient={duration: 1, step: 0.01}", "-o", "t.h5")
+
+        def labels(name, kind, **units):
+            """Texts of the picture of a result whose datasets have other units."""
+            with h5py.File(self.folder / name, "r+") as file:
+                for dataset, unit in units.items():
+                    file[dataset.replace("__", "/")].attrs["unit"] = unit
+            function = samara.plot.ON_REQUEST.get(kind) or samara.plot.KINDS[kind][0]
+            figure = function(samara.open_result(self.folder / name))
+            figure.savefig(self.folder / "labels.svg")
+            return (self.folder / "labels.svg").read_text(encoding="utf-8")
+
+        self.assertIn("frequency, frame of the part [ppm]", samara.plot.campbell(
+            self.with_unit("c.h5", "campbell/frequency_hz", "ppm"), frame="own").axes[0].get_ylabel())
+        text = labels("c.h5", "campbell", campbell__fixed_frame_frequency_hz="1/h", campbell__damping_ratio="dB")
+        self.assertIn("[1/h]", text)
+        self.assertIn("damping ratio [dB]", text)
+        self.assertIn("frequency [Hz]", labels("t.h5", "series"))
+        self.assertIn("frequency [1/min]", labels("t.h5", "series", transient__time="min"))
+        self.assertIn("azimuth of blade 1 [deg]", labels("f.h5", "azimuth"))
+        self.assertIn("azimuth of blade 1 [turns]", labels("f.h5", "azimuth", model__azimuth="turns"))
+        text = labels("f.h5", "shapes", floquet__node_motion="ft, turns", floquet__frequency_hz="bpm", geometry__azimuth="gon")
+        for words in ("blade in plane [ft]", "blade torsion [turns]", "tower fore-aft [ft]", "joints [turns]", " bpm = ",
+                      "azimuth of blade 1 [gon]", "at azimuth 0 gon", "damping ratio"):
+            self.assertIn(words, text)
+        text = labels("f.h5", "convergence", floquet__error="ppm")
+        self.assertIn("frequency [bpm]", text)
+        self.assertIn("[ppm]", text)
+        text = labels("f.h5", "spanwise", trim__blades__F1="kN", trim__tower__height="ft")
+        self.assertIn("blade F1 [kN]", text)
+        self.assertIn("height [ft]", text)
+
+    def with_unit(self, name, dataset, unit):
+        with h5py.File(self.folder / name, "r+") as file:
+            file[dataset].attrs["unit"] = unit
+        return samara.open_result(self.folder / name)
+
+    def test_no_unit_is_typed_in_the_code_of_pictures(self):
+        """Units in brackets, and the names of units in other texts. The tables of conversions have them alone."""
+        tree = ast.parse((SOURCE / "python/samara/plot.py").read_text(encoding="utf-8"))
+        documents = {id(node.body[0].value) for node in ast.walk(tree) if isinstance(node, (ast.Module, ast.FunctionDef, ast.ClassDef))
+                     and isinstance(node.body[0], ast.Expr)}
+        texts = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
+                 and id(node) not in documents]
+        self.assertGreater(len(texts), 200)
+
+        def typed(text):
+            return re.search(r"\[(?!KIND\])[^\]\[]+\]", text) or re.search(r"[ \[](Hz|deg|rad|rpm|m|s|N|kN|N m|%)([ \],;:)]|$)", text)
+
+        for text in ("frequency [Hz]", "damping ratio [%]", "blade tips [m]\nsolid", "station [-]", " Hz", "angle in deg, "):
+            self.assertTrue(typed(text), text)
+        self.assertEqual([text for text in texts if typed(text)], [])
+
     def test_wrong_arguments_of_plot(self):
         self.succeed("trim", BASELINE, *self.settings(), "-o", "trim.h5")
-        for arguments, words in ((["none.h5"], "none.h5"), (["trim.h5"], "nothing to draw"),
+        self.succeed("static", BASELINE, *self.settings(), "--set", "shaft.speed=0", "-o", "static.h5")
+        for arguments, words in ((["none.h5"], "none.h5"), (["static.h5"], "nothing to draw"),
                                  (["trim.h5", "campbel"], "they are campbell"),
-                                 (["trim.h5", "campbell"], "nothing to draw"),
+                                 (["static.h5", "campbell"], "nothing to draw"),
+                                 (["trim.h5", "campbell"], "no picture campbell; it allows spanwise"),
                                  (["trim.h5", "-o", "x.gif"], "ends in .png, .svg, .pdf")):
             run = self.plot(*arguments)
             self.assertEqual(run.returncode, 2, run.stderr)
