@@ -16,13 +16,23 @@ namespace samara::drivers {
 namespace {
 
 constexpr char interpreter[] = "/usr/bin/python3";
-/// As "-m samara", but Ctrl-C ends with its code also while modules are loaded.
+/// As "-m samara", but Ctrl-C ends with its code also while modules are loaded: a module in C may
+/// turn it into an error of its own.
 constexpr char start[] =
     "import sys\n"
+    "asked = []\n"
+    "def stop(*_):\n"
+    "    asked.append(True)\n"
+    "    raise KeyboardInterrupt\n"
     "try:\n"
+    "    import signal\n"
+    "    signal.signal(signal.SIGINT, stop)\n"
     "    import runpy\n"
     "    runpy.run_module('samara', run_name='__main__', alter_sys=True)\n"
-    "except KeyboardInterrupt:\n"
+    "except BaseException as error:\n"
+    "    is_said = isinstance(error, SystemExit) and error.code == 130\n"
+    "    if is_said or not (asked or isinstance(error, KeyboardInterrupt)):\n"
+    "        raise\n"
     "    sys.stderr.write('samara: interrupted\\n')\n"
     "    sys.exit(130)\n";
 
