@@ -18,7 +18,6 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
 import matplotlib
 
 matplotlib.use("Agg")
@@ -26,7 +25,8 @@ import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "python"))
-import samara
+import samara  # noqa: E402
+
 PROGRAM = os.environ.get("SAMARA", str(ROOT / "build" / "samara"))
 LAND = str(ROOT / "inputs" / "nrel5mw" / "land.yaml")
 WINDS = list(range(4, 26))
@@ -79,15 +79,12 @@ def draw_span(folder, points, path):
     for wind, color in zip(SHOWN, ("#1f5f9e", "#b04a00", "#2e7d32")):
         point = next(one for one in points if float(one["wind_speed"]) == wind)
         run(folder, "trim", LAND, *keys_of(point), "-o", "steady.h5")
-        with h5py.File(folder / "steady.h5") as file:
-            air = file["trim/air"]
-            radius = air["radius"][:]
-            for axis, name, factor in zip(axes, ("angle_of_attack", "axial_induction",
-                                                 "normal_force"), (1, 1, 1e-3)):
-                axis.plot(radius, factor * air[name][0], "o-", markersize=3, color=color,
-                          label=f"{wind:g} m/s")
-                axis.fill_between(radius, factor * air[name + "_least"][0],
-                                  factor * air[name + "_largest"][0], color=color, alpha=0.2)
+        air = samara.open_result(folder / "steady.h5")["trim/air"]
+        radius = air["radius"].values
+        for axis, name, factor in zip(axes, ("angle_of_attack", "axial_induction", "normal_force"), (1, 1, 1e-3)):
+            mean, least, largest = (factor * air[name + ending].values[0] for ending in ("", "_least", "_largest"))
+            axis.plot(radius, mean, "o-", markersize=3, color=color, label=f"{wind:g} m/s")
+            axis.fill_between(radius, least, largest, color=color, alpha=0.2)
     for axis, label in zip(axes, ("angle of attack [deg]", "axial induction", "normal force [kN/m]")):
         axis.set_xlabel("radius [m]")
         axis.set_ylabel(label)

@@ -7,9 +7,9 @@
 import argparse
 import pathlib
 import subprocess
+import sys
 import tempfile
 
-import h5py
 import matplotlib
 import numpy as np
 
@@ -17,6 +17,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python"))
+import samara  # noqa: E402
+
 CASE = ROOT / "inputs/lee2002/baseline.yaml"
 TOWER, OVERHANG, RADIUS, BLADE = 27.0, 2.388, 1.8, 8.42  # of the case [m]
 LARGEST = 3.2  # drawn, of the largest displacement [m]
@@ -42,16 +45,15 @@ class Result:
     """Data of a result file for the plot."""
 
     def __init__(self, path):
-        with h5py.File(path) as file:
-            names = [name.decode() for name in file["/model/unknowns/name"]]
-            self.place = {name: i for i, name in enumerate(names)}
-            modes = file["/floquet/modes"]
-            self.shapes = modes[:, 0, :, 0] + 1j * modes[:, 0, :, 1]  # azimuth 0.4 degrees
-            self.labels = [label.decode() for label in file["/floquet/label"]]
-            self.per_rev = file["/floquet/frequency_per_rev"][:]
-            self.hertz = file["/floquet/frequency_hz"][:]
-            self.parts = [part.decode() for part in file["/floquet/part"]]
-            self.shares = file["/floquet/part_share"][:]
+        result = samara.open_result(path)
+        modes = result["floquet"]
+        self.place = {str(name): i for i, name in enumerate(result["model/unknowns"]["name"].values)}
+        self.shapes = samara.result.complex_of(modes["modes"]).values[:, 0]  # azimuth 0.4 degrees
+        self.labels = [str(label) for label in modes["label"].values]
+        self.per_rev = modes["frequency_per_rev"].values
+        self.hertz = modes["frequency_hz"].values
+        self.parts = [str(part) for part in modes["part"].values]
+        self.shares = modes["part_share"].values
 
     def vector(self, shape, name):
         return np.array([shape[self.place[f"{name}{i}"]] for i in (1, 2, 3)])

@@ -16,14 +16,17 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
 import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-PROGRAM = pathlib.Path(__file__).resolve().parent / "samara"
+SCRIPTS = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(SCRIPTS.parent / "python"))
+import samara  # noqa: E402
+
+PROGRAM = SCRIPTS / "samara"
 STEPS = {2: (60, 120, 240, 480), 4: (24, 36, 60, 96), 6: (18, 24, 36, 48, 72)}
 REFERENCE = (6, 240)
 COUNTED = 10
@@ -43,11 +46,9 @@ def run(case, order, steps, settings, folder):
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode not in (0, 3):  # 3: no verdict
         sys.exit(f"{case}: {done.stderr}")
-    with h5py.File(result) as file:
-        found = file["/floquet"]
-        exponents = (found["exponents"][:] @ [1, 1j])[found["resolved"][:] == 1]
-        speed = found.attrs["rotor_speed"]
-    moving = exponents[abs(exponents) > 1e-5 * speed]
+    found = samara.open_result(result)["floquet"]
+    exponents = samara.result.complex_of(found["exponents"]).values[found["resolved"].values == 1]
+    moving = exponents[abs(exponents) > 1e-5 * found.attrs["rotor_speed"]]
     return (moving[np.argsort(abs(moving))],
             after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
 

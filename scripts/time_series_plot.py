@@ -9,13 +9,16 @@ docs/time_series.svg shows the time series of README.md.
 
 import argparse
 import pathlib
+import sys
 
-import h5py
 import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"))
+import samara  # noqa: E402
 
 COLOR, EVENT_COLOR = "#1f5f9e", "#b04a00"
 MOST = 8  # panels
@@ -25,16 +28,16 @@ class TimeSeries:
     """Data of a result file for the plot."""
 
     def __init__(self, path):
-        with h5py.File(path) as file:
-            series = file["/transient"]
-            self.time = series["time"][:]
-            self.values = series["values"][:]
-            self.names, self.units, self.descriptions = (
-                list(series[f"channel_{what}"].asstr()[:])
-                for what in ("name", "unit", "description"))
-            checkpoint = series.get("checkpoint", {})
-            times = checkpoint["event_time"][:] if "event_time" in checkpoint else np.empty(0)
-            self.events = times[np.isfinite(times)]  # of those that came
+        result = samara.open_result(path)
+        series = result["transient"]
+        self.time = series["time"].values
+        self.unit = samara.result.unit_of(series["time"])
+        self.values = series["values"].values
+        self.names, self.units, self.descriptions = (
+            [str(text) for text in series[f"channel_{what}"].values] for what in ("name", "unit", "description"))
+        checkpoint = result["transient/checkpoint"] if "transient/checkpoint" in result else {}
+        times = checkpoint["event_time"].values if "event_time" in checkpoint else np.empty(0)
+        self.events = times[np.isfinite(times)]  # of those that came
 
 
 def draw_panel(axes, series, name):
@@ -58,7 +61,7 @@ def draw(series, names):
     figure, panels = plt.subplots(len(names), 1, figsize=(10, height), sharex=True, squeeze=False)
     for axes, name in zip(panels[:, 0], names):
         draw_panel(axes, series, name)
-    panels[-1, 0].set_xlabel("time [s]", fontsize=9)
+    panels[-1, 0].set_xlabel(f"time [{series.unit}]", fontsize=9)
     figure.align_ylabels()
     figure.tight_layout(pad=0.6, h_pad=0.7)
     return figure

@@ -12,9 +12,9 @@ exponents of this equation, found by harmonic lifting.
 import argparse
 import pathlib
 import subprocess
+import sys
 import tempfile
 
-import h5py
 import matplotlib
 import numpy as np
 import scipy.integrate
@@ -24,6 +24,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python"))
+import samara  # noqa: E402
+
 CASE = ROOT / "inputs/lee2002/article_mesh.yaml"
 MODEL = ("linearize={azimuths: 25, harmonics: 10, inputs: [yaw_torque, top_force_n1], "
          "outputs: [NacYaw, NacYawV]}")
@@ -39,12 +42,12 @@ class Model:
     """x_dot = A(psi) x + B(psi) u, y = C(psi) x; matrices [mean, cos 1, sin 1, ...]."""
 
     def __init__(self, path):
-        with h5py.File(path) as file:
-            group = file["/linearize/state_space"]
-            self.A, self.B, self.C = (group[name][:] for name in "ABC")
-            self.inputs = list(group["inputs/name"].asstr()[:])
-            self.outputs = list(group["outputs/name"].asstr()[:])
-            self.speed = file["/linearize"].attrs["rotor_speed"]
+        result = samara.open_result(path)
+        form = "linearize/state_space"
+        self.A, self.B, self.C = (result[form][name].values for name in "ABC")
+        self.inputs = [str(name) for name in result[f"{form}/inputs"]["name"].values]
+        self.outputs = [str(name) for name in result[f"{form}/outputs"]["name"].values]
+        self.speed = result["linearize"].attrs["rotor_speed"]
 
     def close(self, gains):
         """A of the loop u_0 = gains y, where y does not depend on the azimuth."""
