@@ -1,9 +1,11 @@
-"""The pages of docs/examples: their commands are understood, their links lead somewhere, and scripts/examples finds the figures
-of the cheapest page again. (scripts/examples --check, which runs for ten minutes, does so for all pages.)"""
+"""The pages of docs/examples: their commands are understood, their links lead somewhere, scripts/examples finds the figures of
+the cheapest page again, and the quick commands of the other pages give their figures. (scripts/examples --check, which runs for ten
+minutes, does so for all commands and figures.)"""
 
 import importlib.machinery
 import importlib.util
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -114,6 +116,69 @@ class Examples(ProgramTest):
                 ("](tower_stiffness.svg)", "](another.svg)", "draws another.svg")):
             found = faults(old, new)
             self.assertTrue(any(words in fault for fault in found), (new, found))
+
+    def run_some(self, name, is_chosen):
+        """A page whose chosen commands were run in the folder of the test, and its script."""
+        script = load_script()
+        page = script.KINDS[name](PROGRAM)
+        page.folder = self.folder
+        (self.folder / "inputs").symlink_to(SOURCE / "inputs")
+        chosen = [words for words in script.list_commands(page) if is_chosen(words)]
+        for words in chosen:
+            self.succeed(*words)
+        return script, page, chosen
+
+    def cells(self, page, block):
+        """Rows of a table of a page, by their first cell."""
+        text = re.search(f"<!-- begin {block} -->\n(.*?)<!-- end", page.text, re.S)[1]
+        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines()[2:]]
+        return {row[0]: row[1:] for row in rows}
+
+    def near(self, script, text, value):
+        self.assertTrue(script.agrees(text, value, script.BLOCK_TOLERANCE), (text, value))
+
+    def test_quick_figures_of_two_blades(self):
+        """The sweep with its edges and its picture, the averaged model at three speeds, and exponents at four."""
+        few = ("220", "280", "400")
+        script, page, chosen = self.run_some("two_blades", lambda words: words[0] == "floquet" or words[-1] in (
+            "two.h5", "two_blades_campbell.svg", "multiblade.h5", *(f"averaged_{rpm}.h5" for rpm in few)))
+        self.assertEqual(len(chosen), 1 + 1 + 1 + 3 + 5)
+        two = script.Diagram(self.folder / "two.h5")
+        page.statements = lambda: [
+            ("between {} and {} rpm and between {} and {} rpm", *two.edges.flatten()),
+            ("has the largest growth {} 1/s, Floquet's theory", page.averaged(self.folder / "multiblade.h5", "multiblade_average").real.max())]
+        found = [fault for fault in page.faults_of_text() if not fault.startswith(("no statement", "missing"))]
+        self.assertEqual(found, [])
+        picture = "two_blades_campbell.svg"
+        self.assertEqual(script.words_of(self.folder / picture), script.words_of(PAGES / picture))
+        growth = self.cells(page, "growth")
+        for rpm in few:
+            self.near(script, growth[rpm][0], two.growth[two.line("blade lag hinge antisymmetric"), two.at(int(rpm))])
+            self.near(script, growth[rpm][1], page.averaged(self.folder / f"averaged_{rpm}.h5").real.max())
+        for rpm, cells in self.cells(page, "series").items():
+            self.near(script, cells[0], page.antisymmetric(rpm))
+
+    def test_quick_figures_of_nrel5mw(self):
+        """Damping without the air, and two of the operating points."""
+        script, page, chosen = self.run_some("nrel5mw", lambda words: words[-1].startswith("none_"))
+        self.assertEqual(len(chosen), 2)
+        damping = self.cells(page, "damping")
+        self.assertEqual(len(damping), len(page.MODES))
+        for column, wind in ((2, 8), (5, 18)):
+            without = page.modes(f"none_{wind}")
+            for mode, cells in damping.items():
+                self.near(script, cells[column], without[mode][0])
+        operate = next(words for words in script.list_commands(page) if words[0] == "operate")
+        self.succeed(*[re.sub(r"wind_speeds=.*", "wind_speeds=[8, 18]", word) for word in operate])
+        rows = script.read_csv(self.folder / "points.csv")
+        self.assertEqual(len(rows), 2)
+        points = self.cells(page, "points")
+        for row in rows:
+            cells = points[f"{float(row['wind_speed']):g}"]
+            for cell, value in zip(cells, (float(row["rotor_speed"]) * 30 / math.pi, math.degrees(float(row["pitch"])),
+                                           float(row["power"]) / 1e6, float(row["thrust"]) / 1e3)):
+                self.near(script, cell, value)
+            self.assertEqual(cells[-1], row["region"])
 
 
 if __name__ == "__main__":
