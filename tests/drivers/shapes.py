@@ -294,7 +294,7 @@ class Pictures(ProgramTest):
         run = self.plot("b4.h5", "b1.h5", "b2.h5", "convergence", "--first", "2", "-o", "c.svg")
         self.assertEqual((run.returncode, run.stdout), (0, "picture: c.svg\n"), run.stderr)
         text = (self.folder / "c.svg").read_text(encoding="utf-8")
-        for word in ("degrees of freedom [-]", "frequency [Hz]", "damping ratio [%]", "error [%]", "blade flap"):
+        for word in ("degrees of freedom", "frequency [Hz]", "damping ratio [%]", "error [%]", "blade flap"):
             self.assertIn(word, text)
         paths = [self.folder / f"b{elements}.h5" for elements in (1, 2, 4)]
         figure = samara.plot.convergence(*map(samara.open_result, paths), first=1)
@@ -311,7 +311,7 @@ class Pictures(ProgramTest):
             self.succeed("floquet", BASELINE, "--set", f"floquet.steps={steps}", "-o", f"f{steps}.h5")
         run = self.plot("f24.h5", "f44.h5", "convergence", "-o", "s.svg")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("steps of a revolution [-]", (self.folder / "s.svg").read_text(encoding="utf-8"))
+        self.assertIn("steps of a revolution", (self.folder / "s.svg").read_text(encoding="utf-8"))
         run = self.plot("b4.h5", "b4.h5", "convergence", "-o", "x.svg")
         self.assertEqual(run.returncode, 2)
         self.assertIn("equal degrees of freedom", run.stderr)
