@@ -58,7 +58,7 @@ class Library(unittest.TestCase):
         program = self.tree / "bin/samara"
         run(program, "new", "beam", "mine", cwd=folder)
         run(program, "floquet", "mine.yaml", cwd=folder)
-        self.assertEqual(run(program, "plot", "mine.h5", cwd=folder), "picture: mine_multipliers.svg\n")
+        self.assertEqual(run(program, "plot", "mine.h5", cwd=folder), "picture: mine_multipliers.svg\npicture: mine_spanwise.svg\n")
 
     def test_a_beam_has_the_frequencies_of_euler_and_bernoulli(self):
         rows, _ = self.found("beam", r"(\S+) Hz +(\S+)\n")

@@ -194,7 +194,8 @@ class Packages(unittest.TestCase):
         self.assertEqual(unpacked.replace("r.h5", "b.h5"), built)
         run(program, "new", "three-bladed", "x", cwd=place, env=environment)
         run(program, "check", "x.yaml", cwd=place, env=environment)
-        self.assertEqual(run(program, "plot", "r.h5", cwd=place, env=environment), "picture: r_multipliers.svg\n")
+        self.assertEqual(run(program, "plot", "r.h5", cwd=place, env=environment),
+                         "picture: r_multipliers.svg\npicture: r_spanwise.svg\n")
         where = run(sys.executable, "-c", "import samara; print(samara.__file__)", cwd=place, env=environment).strip()
         self.assertTrue(pathlib.Path(where).is_relative_to(self.prefix), where)
 
