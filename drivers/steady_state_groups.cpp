@@ -52,10 +52,12 @@ void write_air(io::ResultFile& file, const simulation::SpanwiseAir& air) {
 
 void write_structure(io::ResultFile& file, const simulation::SpanwiseStructure& structure) {
   const simulation::SpanwiseBeams& blades = structure.blades;
-  write_stations(file, "/trim/blades/", blades.fractions);
-  write_radii(file, "/trim/blades/", blades.places);
-  write_quantities(file, "/trim/blades/", blades.quantities,
-                   {blades.count, blades.fractions.size()});
+  if (blades.count > 0) {
+    write_stations(file, "/trim/blades/", blades.fractions);
+    write_radii(file, "/trim/blades/", blades.places);
+    write_quantities(file, "/trim/blades/", blades.quantities,
+                     {blades.count, blades.fractions.size()});
+  }
   const simulation::SpanwiseBeams& tower = structure.tower;
   if (tower.count == 0) return;
   write_stations(file, "/trim/tower/", tower.fractions);

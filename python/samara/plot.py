@@ -36,6 +36,7 @@ TO_DEGREES = {"rad": ("deg", 180.0 / numpy.pi)}
 TO_PER_CENT = {"": ("%", 100.0)}
 OF_RATES = {"s": "Hz"}  # units of 1 over a unit that have a name
 LEAST_RANGE = 1e-8  # of an axis beside the largest load, or the length of the beam: smaller values are round-off
+ALONG_BEAMS = ("trim/blades", "trim/tower")
 IN_WORDS = {"fore_aft": "fore-aft", "side_side": "side-side"}
 
 
@@ -244,7 +245,7 @@ def spanwise(result):
 
     Of samara trim, and of floquet, modes and linearize. Lines are means, bands the range over a revolution.
     """
-    if "trim" not in result or "trim/blades" not in result:
+    if not any(group in result for group in ALONG_BEAMS):
         raise PlotError(f"{result.path}: no distribution along the blades; hint: samara trim writes one")
     load_level = float(result["trim"]["load_level"])
     loads = [f"{letter}{axis}" for letter in "FM" for axis in (1, 2, 3)]
@@ -275,7 +276,8 @@ def spanwise(result):
             axes.tick_params(labelsize=7)
     if grid[0][0].get_legend_handles_labels()[0]:
         grid[0][0].legend(loc="best", fontsize=7)
-    _title(figure, result, "steady state along the blades" + (" and the tower" if "trim/tower" in result else ""))
+    _title(figure, result, "steady state along the " + " and the ".join(
+        group.split("/")[1] for group in ALONG_BEAMS if group in result))
     return figure
 
 
@@ -647,7 +649,7 @@ def convergence(result, *others, first=8):
 
 
 KINDS = {"campbell": (campbell, "campbell"), "multipliers": (multipliers, "floquet"),
-         "operation": (operation, "operation"), "spanwise": (spanwise, "trim/blades"),
+         "operation": (operation, "operation"), "spanwise": (spanwise, *ALONG_BEAMS),
          "azimuth": (azimuth, "trim"), "series": (series, "transient")}
 ON_REQUEST = {"shapes": mode_shape, "convergence": convergence}  # drawn only where they are named
 
@@ -655,11 +657,11 @@ ON_REQUEST = {"shapes": mode_shape, "convergence": convergence}  # drawn only wh
 def kinds_of(result):
     """The kinds of pictures that a result allows, without those on request."""
     found = []
-    for kind, (_, group) in KINDS.items():
+    for kind, (_, *groups) in KINDS.items():
         try:
             # A constant steady state has nothing to show over the azimuth.
-            is_constant = kind == "azimuth" and group in result and result[group]["harmonics"].shape[1] == 1
-            if group in result and result[group] and not is_constant:
+            is_constant = kind == "azimuth" and "trim" in result and result["trim"]["harmonics"].shape[1] == 1
+            if any(group in result and result[group] for group in groups) and not is_constant:
                 found.append(kind)
         except (KeyError, OSError):
             continue

@@ -77,14 +77,16 @@ void add(SpanwiseBeams& beams, std::size_t at, int instants, const BeamStation& 
 SpanwiseStructure find_spanwise_structure(const turbine::TurbineSystem& system,
                                           const analysis::Trim& trim) {
   const model::Turbine& turbine = system.turbine();
-  const model::Beam& blade = turbine.blades.front();
   SpanwiseStructure structure;
-  structure.blades = make_beams(blade_kind, blade, turbine.blades.size());
-  structure.blades.places.push_back(
-      model::undeformed_radius(turbine.roots.front(), Vector3::Zero()));
-  for (const elements::BeamPoint& point : blade.points)
-    structure.blades.places.push_back(model::undeformed_radius(turbine.roots.front(), point.x));
-  structure.blades.places.push_back(model::undeformed_radius(turbine.roots.front(), blade.tip));
+  if (!turbine.blades.empty()) {
+    const model::Beam& blade = turbine.blades.front();
+    const model::BladeRoot& root = turbine.roots.front();
+    structure.blades = make_beams(blade_kind, blade, turbine.blades.size());
+    structure.blades.places.push_back(model::undeformed_radius(root, Vector3::Zero()));
+    for (const elements::BeamPoint& point : blade.points)
+      structure.blades.places.push_back(model::undeformed_radius(root, point.x));
+    structure.blades.places.push_back(model::undeformed_radius(root, blade.tip));
+  }
   if (turbine.has_tower) {
     structure.tower = make_beams(tower_kind, turbine.tower, 1);
     structure.tower.places.push_back(0.0);

@@ -174,6 +174,19 @@ class Spanwise(ProgramTest):
                 if not settings:
                     numpy.testing.assert_allclose(result[group]["F1"].values, alone[group]["F1"].values, atol=1e-6)
 
+    def test_a_tower_alone(self):
+        """F1 = - m g (L - x)."""
+        case = self.write("tower.yaml", MINIMAL.replace("shaft: {speed: 6}\n", "").replace("blades:", "tower:"))
+        result = self.trim(case, "--set", "gravity=0.1", "--set", "tower.elements=3")
+        self.assertNotIn("trim/blades", result)
+        tower = result["trim/tower"]
+        self.assertEqual(tower["F1"].dims, ("station",))
+        weight = WEIGHT * (LENGTH - tower["height"].values)
+        self.assertLess(abs(tower["F1"].values + weight).max(), STRAIN)
+        self.assertIn("steady state along the tower", samara.plot.spanwise(result)._suptitle.get_text())
+        self.plot(result, "-o", "tower.svg")
+        self.assertIn("tower F1 [N]", (self.folder / "tower.svg").read_text(encoding="utf-8"))
+
     def plot(self, result, *arguments):
         run = subprocess.run([PROGRAM, "plot", result.path, "spanwise", *arguments], cwd=self.folder, text=True,
                              capture_output=True, check=False)

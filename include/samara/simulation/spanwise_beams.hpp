@@ -19,8 +19,8 @@ struct SpanwiseBeams {
 };
 
 struct SpanwiseStructure {
-  SpanwiseBeams blades;
-  SpanwiseBeams tower;  ///< empty: none
+  SpanwiseBeams blades;  ///< empty: none
+  SpanwiseBeams tower;   ///< the same
 };
 
 SpanwiseStructure find_spanwise_structure(const turbine::TurbineSystem& system,
