@@ -53,6 +53,7 @@ bool is_single(const Eigen::VectorXcd& exponents, Index i, double speed) {
 struct Start {
   HillPair pair;
   int harmonic = 0;  ///< of the mode, from the exponent of the pair
+  double change = std::numeric_limits<double>::quiet_NaN();  ///< of the exponent, the last one
 };
 
 }  // namespace
@@ -145,8 +146,11 @@ class ExponentDerivatives::Basis {
         }
         if (change > wanted && !is_last)
           left.insert(left.end(), group.begin(), group.end());
-        else if (change <= largest_change && distance <= largest_distance)
+        else if (change <= largest_change && distance <= largest_distance) {
+          for (const std::size_t i : group)
+            starts_[i].change = change * unit_of_change(starts_[i].pair.exponent, speed());
           add_group(group);
+        }
       }
       active = left;
       if (active.empty()) return;
@@ -272,6 +276,13 @@ ExponentDerivatives::Residuals ExponentDerivatives::residuals(const system::Peri
     residuals.groups.push_back(std::move(product));
   }
   return residuals;
+}
+
+Eigen::VectorXd ExponentDerivatives::last_changes(bool by_sector) {
+  const std::vector<Start>& starts = basis(by_sector).starts();
+  Eigen::VectorXd changes(static_cast<Index>(starts.size()));
+  for (std::size_t m = 0; m < starts.size(); ++m) changes(static_cast<Index>(m)) = starts[m].change;
+  return changes;
 }
 
 Eigen::MatrixXcd ExponentDerivatives::derivatives(const std::vector<Residuals>& rates) {

@@ -54,6 +54,10 @@ constexpr Stencil one_sided{{0.0, 1.0, 2.0, 3.0, 4.0},
                             5,
                             25.0 / 3.0};
 
+/// Derivative, by the logarithm of a number, of the error that missing harmonics leave in an
+/// exponent, relative to its change by the last ones (docs/theory.md, section 5.13).
+constexpr double change_caution = 3.0;
+
 double first_step(const Parameter& parameter) {
   return parameter.value == 0.0 ? zero_steps.front() : relative_step * std::abs(parameter.value);
 }
@@ -102,6 +106,7 @@ class Differences {
     std::optional<Residuals> better;
     std::optional<Residuals> simple;
     double caution = 1.0;  ///< of Stencil
+    double value = 0.0;    ///< of the number
   };
 
   /// With the step that has the smallest error.
@@ -156,6 +161,7 @@ class Differences {
     }
     Quotients quotients;
     quotients.caution = stencil.caution;
+    quotients.value = parameter.value;
     const auto add = [](std::optional<Residuals>& sum, double factor, const Residuals& residuals) {
       sum =
           sum ? combine(1.0, *sum, factor, residuals) : combine(factor, residuals, 0.0, residuals);
@@ -168,6 +174,12 @@ class Differences {
     return quotients;
   }
 
+  /// Error of a derivative by the harmonics that a series does not have: the exponent's own error
+  /// from them, about its last change, varies over the range of the number.
+  static double of_harmonics(double change, double value) {
+    return value == 0.0 ? 0.0 : change_caution * change / std::abs(value);
+  }
+
   std::vector<Sensitivity> differentiate(const std::vector<Quotients>& quotients) {
     std::vector<Residuals> rates;
     for (const Quotients& one : quotients) {
@@ -176,13 +188,16 @@ class Differences {
     }
     const Eigen::MatrixXcd found = derivatives_.derivatives(rates);
     std::vector<Sensitivity> result(quotients.size());
-    for (std::size_t p = 0; p < result.size(); ++p)
+    for (std::size_t p = 0; p < result.size(); ++p) {
+      const Eigen::VectorXd changes = derivatives_.last_changes(quotients[p].better->by_sector);
       for (Eigen::Index m = 0; m < found.rows(); ++m) {
         const auto at = static_cast<Eigen::Index>(2 * p);
         result[p].rates.push_back(found(m, at));
         result[p].errors.push_back(quotients[p].caution *
-                                   std::abs(found(m, at) - found(m, at + 1)));
+                                       std::abs(found(m, at) - found(m, at + 1)) +
+                                   of_harmonics(changes(m), quotients[p].value));
       }
+    }
     return result;
   }
 

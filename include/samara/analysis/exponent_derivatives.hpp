@@ -46,6 +46,10 @@ class ExponentDerivatives {
   /// @throws ConvergenceError
   Eigen::MatrixXcd derivatives(const std::vector<Residuals>& rates);
 
+  /// Change of each mode's exponent by the last harmonics that its series got [1/s]; not-a-number
+  /// for a mode whose eigenpair was not found. `by_sector`: as in Residuals.
+  Eigen::VectorXd last_changes(bool by_sector);
+
  private:
   class Basis;
   Basis& basis(bool by_sector);
