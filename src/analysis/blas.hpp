@@ -118,22 +118,23 @@ inline Integer factor(Integer n, Complex* a, Integer* interchanges) {
   return status;
 }
 
-/// The inverse of an n x n matrix, in place of the result of factor().
-inline void invert(Integer n, double* factors, const Integer* interchanges) {
-  count_operations<double>(2.0 / 3.0 * n * n * n);
-  constexpr Integer block = 32;
-  std::vector<double> work(static_cast<std::size_t>(block * n));
-  const auto length = static_cast<Integer>(work.size());
+inline void invert(Integer n, double* factors, const Integer* interchanges, double* work,
+                   Integer length) {
   Integer status = 0;
-  LAPACKgetri_(&n, factors, &n, interchanges, work.data(), &length, &status);
+  LAPACKgetri_(&n, factors, &n, interchanges, work, &length, &status);
 }
-inline void invert(Integer n, Complex* factors, const Integer* interchanges) {
-  count_operations<Complex>(2.0 / 3.0 * n * n * n);
-  constexpr Integer block = 32;
-  std::vector<Complex> work(static_cast<std::size_t>(block * n));
-  const auto length = static_cast<Integer>(work.size());
+inline void invert(Integer n, Complex* factors, const Integer* interchanges, Complex* work,
+                   Integer length) {
   Integer status = 0;
-  zgetri_(&n, factors, &n, interchanges, work.data(), &length, &status);
+  zgetri_(&n, factors, &n, interchanges, work, &length, &status);
+}
+/// The inverse of an n x n matrix, in place of the result of factor().
+template <class Scalar>
+void invert(Integer n, Scalar* factors, const Integer* interchanges) {
+  count_operations<Scalar>(2.0 / 3.0 * n * n * n);
+  constexpr Integer block = 32;
+  std::vector<Scalar> work(static_cast<std::size_t>(block * n));
+  invert(n, factors, interchanges, work.data(), static_cast<Integer>(work.size()));
 }
 
 inline void solve_triangle(char part, Integer n, const double* a, double* b) {

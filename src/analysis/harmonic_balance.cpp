@@ -13,6 +13,7 @@
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/options.hpp"
+#include "samara/petsc/session.hpp"
 
 #include "harmonic_preconditioner.hpp"
 #include "harmonic_tangents.hpp"
@@ -497,10 +498,7 @@ double residual_at(const Eigen::VectorXd& h, SolverContext& context) {
 
 /// Whether an option chooses a preconditioner or a matrix that the harmonics' own does not serve.
 bool is_direct_solver_given() {
-  char* all = nullptr;
-  petsc::check(PetscOptionsGetAll(nullptr, &all));
-  const std::string options = all;
-  petsc::check(PetscFree(all));
+  const std::string options = petsc::Session::options();
   const auto is_there = [&](const char* text) { return options.find(text) != std::string::npos; };
   return is_there("-trim_pc_") || is_there("-trim_mat_") || is_there("-trim_ksp_type preonly");
 }

@@ -11,6 +11,7 @@
 #include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
 #include "samara/petsc/options.hpp"
+#include "samara/petsc/session.hpp"
 
 #include "blas.hpp"
 #include "block_factors.hpp"
@@ -269,10 +270,7 @@ DirectSolver::~DirectSolver() = default;
 
 /// Whether an option chooses or shows something of the KSP or of its preconditioner.
 bool DirectSolver::is_solver_given() const {
-  char* all = nullptr;
-  petsc::check(PetscOptionsGetAll(nullptr, &all));
-  const std::string options = all;
-  petsc::check(PetscFree(all));
+  const std::string options = petsc::Session::options();
   const auto is_there = [&](const char* part) {
     return options.find("-" + prefix_ + part) != std::string::npos;
   };

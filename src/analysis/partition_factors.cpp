@@ -41,23 +41,19 @@ PartitionFactors::PartitionFactors(const MeshPartition& partition, Mat pattern)
     begin_.push_back(static_cast<PetscInt>(columns_.size()));
   }
   values_.resize(entries_.size() * static_cast<std::size_t>(size_ * size_));
-  factors_.emplace(BlockMatrix<double>{size_, static_cast<Eigen::Index>(blocks_.size()),
-                                       begin_.data(), columns_.data(), values_.data()},
-                   inner_);
+  factors_.emplace(matrix(), inner_);
   right_.resize(static_cast<Eigen::Index>(blocks_.size()) * size_, 1);
 }
 
-bool PartitionFactors::factor(Mat matrix) {
+bool PartitionFactors::factor(Mat tangent) {
   const Eigen::Index area = size_ * size_;
   {
-    const MatrixEntries all(matrix);
+    const MatrixEntries all(tangent);
     for (std::size_t i = 0; i < entries_.size(); ++i)
       std::copy_n(all.values() + entries_[i] * area, area,
                   values_.data() + static_cast<Eigen::Index>(i) * area);
   }
-  const bool is_regular = factors_->factor({size_, static_cast<Eigen::Index>(blocks_.size()),
-                                            begin_.data(), columns_.data(), values_.data()},
-                                           least_pivot);
+  const bool is_regular = factors_->factor(matrix(), least_pivot);
   if (!partition_.ranks().all(is_regular)) return false;
   factors_->invert_diagonals();
   Eigen::MatrixXd complement = factors_->complement();

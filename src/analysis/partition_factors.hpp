@@ -22,13 +22,18 @@ class PartitionFactors {
   PartitionFactors(const MeshPartition& partition, Mat pattern);
 
   /// @returns false where it is singular to working precision
-  bool factor(Mat matrix);
+  bool factor(Mat tangent);
 
   /// From a right-hand side to the solution, in the places of all unknowns of the system: those on
   /// this rank are read and written. The ranks' parts of the border add up.
   void solve(double* values);
 
  private:
+  BlockMatrix<double> matrix() const {
+    return {size_, static_cast<Eigen::Index>(blocks_.size()), begin_.data(), columns_.data(),
+            values_.data()};
+  }
+
   const MeshPartition& partition_;
   Eigen::Index size_;             ///< rows of a block
   std::vector<PetscInt> blocks_;  ///< of the part on this rank, the border at the end

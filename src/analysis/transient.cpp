@@ -52,10 +52,7 @@ constexpr int start_iterations = 4;
 /// The ranks over which the mesh is distributed, if it is large. The midpoint rule, and options of
 /// a solver of PETSc, need the whole mesh on one rank.
 MPI_Comm ranks_for(const TransientOptions& options, MPI_Comm comm) {
-  char* all = nullptr;
-  petsc::check(PetscOptionsGetAll(nullptr, &all));
-  const std::string given = all;
-  petsc::check(PetscFree(all));
+  const std::string given = petsc::Session::options();
   for (const char* option : {"-transient_ts_type", "-transient_pc_", "-transient_mat_"})
     if (given.find(option) != std::string::npos) return PETSC_COMM_SELF;
   return options.method == TransientMethod::bdf2 ? comm : PETSC_COMM_SELF;
@@ -184,11 +181,12 @@ class Integration {
   /// methods the equations contain other rates (twice the rate in the trapezoidal rule); the mean
   /// over the step is used instead.
   void note_rates(double taken) {
-    unscale(x_.get(), r_.get());
+    const bool has_rates = is_bdf();
+    if (!has_rates) unscale(x_.get(), r_.get());
     const petsc::ReadView rates(z_dot_.get());
     const petsc::ReadView ends(r_.get());
     for (Angle& angle : angles_)
-      angle.rate = is_bdf() ? rates[angle.unknown] : (ends[angle.unknown] - angle.value) / taken;
+      angle.rate = has_rates ? rates[angle.unknown] : (ends[angle.unknown] - angle.value) / taken;
     has_rates_ = true;
   }
 
@@ -482,7 +480,6 @@ class Integration {
   /// there. Where the rates are not known, rates and internal loads are those of a backward Euler
   /// step that is too short to change the positions.
   bool sample_start() {
-    // The vectors of this rank have room for the unknowns of all ranks.
     const double dt = start_fraction * options_.step;
     Eigen::VectorXd z = start_.z;
     Eigen::VectorXd z_dot = start_.z_dot;
@@ -498,7 +495,7 @@ class Integration {
         z_dot = (z - start_.z) / dt;
       }
     }
-    put(z, z_.get());
+    put(z, z_.get());  // it has room for the unknowns of all ranks
     put(z_dot, z_dot_.get());
     begin_angles(z_dot);
     return show({start_.time, z_.get(), z_dot_.get(), 0, true});
@@ -602,8 +599,7 @@ class Integration {
     prepare_midpoint();
   }
 
-  // ---- a distributed mesh
-  // ------------------------------------------------------------------------
+  // ---- a distributed mesh ----------------------------------------------------------------------
 
   /// The tangent of all ranks, scaled: each has its part in `jacobian_`.
   void make_shell() {

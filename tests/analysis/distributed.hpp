@@ -1,7 +1,12 @@
 // Meshes that are large enough for a distribution, and checks on all ranks.
 #pragma once
 
+#include <algorithm>
+
+#include <Eigen/Core>
 #include <petscsys.h>
+
+#include "samara/system/periodic_system.hpp"
 
 #include "turbines.hpp"
 
@@ -29,6 +34,20 @@ inline model::TurbineDefinition single_blade(int elements) {
   definition.blades.count = 1;
   definition.blades.beam.elements = elements;
   return definition;
+}
+
+/// Largest difference in the unknowns of a role, relative to the largest value; a row for each
+/// unknown.
+inline double difference(const system::PeriodicSystem& system, const Eigen::MatrixXd& a,
+                         const Eigen::MatrixXd& b, system::UnknownRole role) {
+  double largest = 0.0;
+  double size = 0.0;
+  for (Eigen::Index i = 0; i < system.size(); ++i) {
+    if (system.unknowns()[static_cast<std::size_t>(i)].role != role) continue;
+    size = std::max(size, a.row(i).cwiseAbs().maxCoeff());
+    largest = std::max(largest, (a.row(i) - b.row(i)).cwiseAbs().maxCoeff());
+  }
+  return size > 0.0 ? largest / size : largest;
 }
 
 }  // namespace samara::test

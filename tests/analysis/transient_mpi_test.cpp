@@ -59,19 +59,6 @@ TransientOptions steps_of(double step, int count) {
   return options;
 }
 
-/// Largest difference in the unknowns of a role, relative to the largest one.
-double difference(const system::PeriodicSystem& system, const Eigen::VectorXd& a,
-                  const Eigen::VectorXd& b, system::UnknownRole role) {
-  double largest = 0.0;
-  double size = 0.0;
-  for (Eigen::Index i = 0; i < system.size(); ++i) {
-    if (system.unknowns()[static_cast<std::size_t>(i)].role != role) continue;
-    size = std::max(size, std::abs(a(i)));
-    largest = std::max(largest, std::abs(a(i) - b(i)));
-  }
-  return size > 0.0 ? largest / size : largest;
-}
-
 void require_same(const system::PeriodicSystem& system, const Eigen::VectorXd& a,
                   const Eigen::VectorXd& b) {
   for (const system::UnknownRole role :

@@ -19,20 +19,6 @@ namespace {
 /// 1e-10.
 constexpr double same = 1e-9;
 
-/// Largest difference of the coefficients of unknowns of one role.
-double difference(const system::PeriodicSystem& system, const analysis::Trim& a,
-                  const analysis::Trim& b, system::UnknownRole role) {
-  double largest = 0.0;
-  double size = 0.0;
-  for (Eigen::Index i = 0; i < system.size(); ++i) {
-    if (system.unknowns()[static_cast<std::size_t>(i)].role != role) continue;
-    const Eigen::RowVectorXd one = a.solution.coefficients().row(i);
-    size = std::max(size, one.cwiseAbs().maxCoeff());
-    largest = std::max(largest, (one - b.solution.coefficients().row(i)).cwiseAbs().maxCoeff());
-  }
-  return size > 0.0 ? largest / size : largest;
-}
-
 void require_same(const model::TurbineDefinition& definition, const analysis::TrimOptions& options,
                   bool is_distributed) {
   const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
@@ -46,7 +32,8 @@ void require_same(const model::TurbineDefinition& definition, const analysis::Tr
   for (const system::UnknownRole role :
        {system::UnknownRole::position, system::UnknownRole::velocity,
         system::UnknownRole::internal})
-    BOOST_TEST(on_all_ranks(difference(system, alone, together, role) < same));
+    BOOST_TEST(on_all_ranks(difference(system, alone.solution.coefficients(),
+                                       together.solution.coefficients(), role) < same));
   BOOST_TEST_REQUIRE(together.held.size() == alone.held.size());
   for (std::size_t i = 0; i < alone.held.size(); ++i)
     BOOST_TEST(on_all_ranks(std::abs(together.held[i].load - alone.held[i].load) <
