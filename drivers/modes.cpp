@@ -21,13 +21,15 @@
 namespace samara::drivers {
 namespace {
 
-std::string headline(const io::Case& input, const analysis::ModeSet& set) {
+std::string headline(const io::Case& input, const analysis::ModeSet& set, PetscInt unknowns) {
   const std::string rotor = set.rotor_speed > 0.0
                                 ? "rotor speed " + general(set.rotor_speed, 6) +
                                       " rad/s, frequencies in the rotor's axes (--parked: at rest)"
                                 : "parked rotor";
-  return title_of(input) + "\n" + rotor + "; " + count(set.degrees_of_freedom, "degree") +
-         " of freedom\n\n";
+  const std::string size =
+      set.searched ? std::to_string(unknowns) + " unknowns; Hill's method without harmonics"
+                   : count(set.degrees_of_freedom, "degree") + " of freedom";
+  return title_of(input) + "\n" + rotor + "; " + size + "\n\n";
 }
 
 }  // namespace
@@ -48,17 +50,20 @@ void run_modes(const Job& job) {
         "azimuth; hint: samara floquet, or samara modes --parked for the rotor at rest");
   simulation::note_roughness(trim, progress);
   const auto held = simulation::hold_wake(system);
-  const analysis::ModeSet set = analysis::find_constant_modes(held ? *held : system, trim.solution);
+  const auto find = [&](const turbine::TurbineSystem& of) {
+    return analysis::find_constant_modes(of, trim.solution, job.input.floquet, PETSC_COMM_WORLD,
+                                         progress);
+  };
+  const analysis::ModeSet set = find(held ? *held : system);
   std::optional<simulation::AirPart> air;
   if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr)
-    air = simulation::find_air_part(system, trim.solution, set,
-                                    analysis::find_constant_modes(*still, trim.solution));
+    air = simulation::find_air_part(system, trim.solution, set, find(*still));
   progress.finish();
   if (!is_first) return;
   const simulation::StabilityAssessment assessment = simulation::assess_stability(set);
   deliver(
       job,
-      headline(job.input, set) +
+      headline(job.input, set, system.size()) +
           mode_table(set, assessment, {job.all_modes, job.first_modes, air ? &*air : nullptr}) +
           "\n" + verdict_text(set, assessment, job.all_modes),
       [&](io::ResultFile& file) {

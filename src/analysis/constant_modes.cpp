@@ -5,9 +5,12 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "samara/analysis/consistent_subspace.hpp"
 #include "samara/analysis/harmonic_energy.hpp"
+#include "samara/analysis/hill.hpp"
 #include "samara/analysis/identification.hpp"
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/mode_error.hpp"
@@ -195,7 +198,7 @@ std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
                                          const PeriodicSolution& solution, int count) {
   const ConsistentSubspace subspace(system, solution);
   if (subspace.size() == 0) return {};
-  const double rate = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 1.0;
+  const double rate = system::base_rate(system);
   // Both of a pair, and some that count as zero.
   const int values = 3 * count;
   return moduli_at(
@@ -209,7 +212,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   if (subspace.size() == 0)
     throw InputError("modes: nothing can move, all strains and joints are rigid");
   const double speed = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
-  const double rate = speed > 0.0 ? speed : 1.0;
+  const double rate = system::base_rate(system);
   const auto checked = [&](double sigma) {
     return CheckedSpectrum{sigma, find_spectrum(system, solution, subspace, sigma, rate),
                            find_spectrum(system, solution, subspace, check_shift * sigma, rate)};
@@ -323,6 +326,17 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   arrange_modes(set);
   scale_shapes(system, set);
   return set;
+}
+
+ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                            const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
+  if (options.modes > 0 || options.least_damped > 0) {
+    require_constant(system, solution);
+    if (std::optional<ModeSet> found = find_hill_constant_modes(system, solution, options, comm))
+      return std::move(*found);
+    observer.note("modes: all modes, because the mesh is too coarse for Hill's method");
+  }
+  return find_constant_modes(system, solution);
 }
 
 }  // namespace samara::analysis

@@ -635,7 +635,8 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
     throw LinearFailure("trim: the preconditioner of the harmonics does not serve");
   context.start = &h;
   const Eigen::VectorXd undeformed = local_start(nullptr);
-  tangents.scale(balance.largest_load(undeformed.data()), context.rows, context.columns);
+  tangents.scale(balance.largest_load(undeformed.data()), tangents.highest_rate(), context.rows,
+                 context.columns);
   const auto width = static_cast<PetscInt>(balance.width());
   const PetscInt own = width * static_cast<PetscInt>(partition.counted().size());
   const petsc::Handle<Mat> matrix = context.preconditioner != nullptr

@@ -524,11 +524,13 @@ void HarmonicTangents::coupling(const Place& place, std::complex<double> shift,
     if (!has(place.row, k)) block.row(k + harmonics_).setZero();
 }
 
-double HarmonicTangents::rate() const { return 2.0 * std::numbers::pi / period(); }
+double HarmonicTangents::rate() const { return system::base_rate(system_); }
 
-void HarmonicTangents::scale(double loads, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const {
+double HarmonicTangents::period() const { return 2.0 * std::numbers::pi / rate(); }
+
+void HarmonicTangents::scale(double loads, double rate, Eigen::VectorXd& rows,
+                             Eigen::VectorXd& columns) const {
   const Eigen::Index samples = values_of_.rows();
-  const double rate = harmonics_ > 0 ? 2.0 * std::numbers::pi * harmonics_ / period() : 1.0;
   // Entries of all blades, from those of the first one.
   std::vector<Eigen::Triplet<double>> entries;
   const std::vector<PetscInt>& source = system_.symmetry().source;

@@ -107,13 +107,15 @@ class HarmonicTangents {
                 Eigen::Ref<Eigen::MatrixXcd> block) const;
   /// Means of K and M over the period, 2 x places.
   const Eigen::MatrixXd& means() const { return means_; }
-  /// The base frequency [rad/s]; without a period 2 pi.
+  /// The base frequency [rad/s]; without a period 1.
   double rate() const;
 
   /// Row and column factors of all coefficients from the roles of unknowns (scale_by_role);
-  /// `loads`: size of the internal loads, where inertia alone is less. The same for the border on
-  /// all ranks.
-  void scale(double loads, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const;
+  /// `loads`: size of the internal loads, where inertia alone is less; `rate`: of the motions
+  /// [rad/s]. The same for the border on all ranks.
+  void scale(double loads, double rate, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const;
+  /// That of the highest harmonic; without harmonics 1.
+  double highest_rate() const { return harmonics_ > 0 ? harmonics_ * rate() : 1.0; }
 
   /// An AIJ matrix with the pattern of J.
   petsc::Handle<Mat> make_matrix() const;
@@ -121,7 +123,7 @@ class HarmonicTangents {
   void fill(Mat matrix) const;
 
  private:
-  double period() const { return system_.period() > 0.0 ? system_.period() : 1.0; }
+  double period() const;
   void make_map(TangentPattern& whole);
   void mark_border(const std::vector<char>& blocks);
   void find_followers();

@@ -137,13 +137,15 @@ struct Candidate {
 
 class Analysis {
  public:
+  /// `is_constant`: the tangents are constant, and exponents have no copies.
   Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-           const FloquetOptions& options, const Ranks& ranks)
+           const FloquetOptions& options, const Ranks& ranks, bool is_constant)
       : system_(system),
         solution_(solution),
         options_(options),
         ranks_(ranks),
-        speed_(2.0 * std::numbers::pi / system.period()),
+        is_constant_(is_constant),
+        speed_(base_rate(system)),
         energy_(system),
         parts_(find_state_parts(system)) {}
 
@@ -153,7 +155,8 @@ class Analysis {
       std::optional<HillPencil> pencil;
       ranks_.attempt([&] { search(pencil); });
       if (!pencil) return std::nullopt;
-      if (options_.least_damped == 0 || has_medium_) count_missing(*pencil);
+      if ((options_.least_damped == 0 || is_by_region()) && !counts_refined())
+        count_missing(*pencil);
     }
     {
       const petsc::Stage stage("Hill: refinement");
@@ -169,18 +172,19 @@ class Analysis {
   /// `near_hz` to both sides. There is no pencil where the structure of the system does not serve.
   void search(std::optional<HillPencil>& pencil) {
     const int sectors = system_.symmetry().sectors;
-    const int harmonics = sectors > 2 ? sectors / 2 : search_harmonics;
-    pencil.emplace(system_, solution_, harmonics);
+    const int of_turning = sectors > 2 ? sectors / 2 : search_harmonics;
+    const int harmonics = is_constant_ ? 0 : of_turning;
+    pencil.emplace(system_, solution_, harmonics, !is_constant_);
     if (!pencil->is_solvable()) {
       pencil.reset();
       return;
     }
     has_medium_ = pencil->has_medium();
     search_harmonics_ = harmonics;
-    samples_ = std::max(shape_samples, 4 * harmonics + 2);
+    samples_ = is_constant_ ? 1 : std::max(shape_samples, 4 * harmonics + 2);
     sectors_ = pencil->sectors();
     nearest_ = sectors_ / 2;
-    if (options_.least_damped > 0 && !has_medium_) {
+    if (options_.least_damped > 0 && !is_by_region()) {
       search_decays();
       return;
     }
@@ -198,7 +202,7 @@ class Analysis {
       return candidate.pair.exponent.imag() > region_.high || !is_in_width(candidate);
     });
     expected_ = centred(options_.least_damped > 0 ? std::numeric_limits<double>::infinity()
-                                                  : region_.high - edge_slack * speed_);
+                                                  : region_.high - slack());
   }
 
   /// Counts the eigenvalues in the region, that of the first rank.
@@ -298,16 +302,16 @@ class Analysis {
   /// the exponents of the steps have errors. The range becomes theirs.
   void leave_slowest_decays() {
     // Neighbours of those that the search has found.
-    if (!has_medium_)
+    if (!is_by_region())
       std::erase_if(modes_, [this](const Candidate& mode) {
         const Complex exponent = principal(mode.pair.exponent);
         return std::none_of(sought_.begin(), sought_.end(), [&](Complex other) {
           return std::abs(exponent - principal(other)) < same_motion * speed_;
         });
       });
-    region_is_counted_ = (region_is_counted_ || !has_medium_) &&
+    region_is_counted_ = (region_is_counted_ || !is_by_region()) &&
                          static_cast<double>(modes_.size()) + left_out_ >= expected_;
-    if (has_medium_)  // the set of those above is not complete
+    if (is_by_region())  // the set of those above is not complete
       std::erase_if(modes_, [this](const Candidate& mode) {
         return modulus_of(mode) >= region_.high - margin();
       });
@@ -412,8 +416,13 @@ class Analysis {
     }
   }
 
+  /// Whether the slowest decays are found as all modes of a region are: a medium has many decays of
+  /// its own, and constant tangents need no integration.
+  bool is_by_region() const { return has_medium_ || is_constant_; }
   /// Largest distance of the frequency of a mode from that of its eigenpair.
-  double margin() const { return (nearest_ + 1) * speed_; }
+  double margin() const { return is_constant_ ? 0.0 : (nearest_ + 1) * speed_; }
+  /// Slack of the edges of the region. The search has the exponents of constant tangents.
+  double slack() const { return is_constant_ ? same_exponent * speed_ : edge_slack * speed_; }
 
   /// Exponent of the mode of an eigenpair, by its energy.
   Complex exponent_of(const Candidate& candidate) const {
@@ -424,7 +433,9 @@ class Analysis {
     const double rate = candidate.pair.exponent.real();
     return -rate <= region_.decay && rate <= region_.growth;
   }
-  const Accuracy& accuracy() const { return has_medium_ ? of_change : of_residual; }
+  /// With a medium, the change from one number of harmonics to the next is the error.
+  bool is_by_change() const { return has_medium_ && !is_constant_; }
+  const Accuracy& accuracy() const { return is_by_change() ? of_change : of_residual; }
   double modulus_of(const Candidate& candidate) const { return std::abs(exponent_of(candidate)); }
 
   /// With an even number of blades, a mode in which they move in opposite directions has two pairs.
@@ -558,9 +569,9 @@ class Analysis {
     const auto is_chosen = [this](const Candidate& candidate) {
       if (options_.least_damped > 0) return true;
       const double modulus = modulus_of(candidate);
-      const double slack = edge_slack * speed_;  // few harmonics give it approximately
-      if (modulus > region_.high - margin() + slack ||
-          (region_.low > 0.0 && modulus < region_.low + margin() - slack))
+      // Few harmonics give it approximately.
+      if (modulus > region_.high - margin() + slack() ||
+          (region_.low > 0.0 && modulus < region_.low + margin() - slack()))
         return false;
       if (is_centred(candidate)) return true;
       const int shift = candidate.mode.harmonic > 0 ? sectors_ : -sectors_;
@@ -590,12 +601,13 @@ class Analysis {
     std::vector<Candidate> doubtful;
     harmonics_ = has_medium_ ? std::max(least_harmonics, 2 * search_harmonics_)
                              : std::max(least_harmonics, solution_.harmonics());
+    if (is_constant_) harmonics_ = 0;
     int added = 0;  // harmonics, since the attempt before
-    const Tolerance& tolerances = has_medium_ ? of_series_with_medium : of_series;
-    double tolerance = tolerances.first;
+    const Tolerance& tolerances = is_by_change() ? of_series_with_medium : of_series;
+    double tolerance = is_constant_ ? tolerances.last : tolerances.first;
     while (!groups.empty()) {
-      HillPencil pencil(system_, solution_, harmonics_);
-      samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
+      HillPencil pencil(system_, solution_, harmonics_, !is_constant_);
+      if (!is_constant_) samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
       HillGroups all(system_, solution_, pencil, ranks_);
       all.refine(groups, tolerance);
       if (tolerance > tolerances.last) all.refine_further(groups, tolerances.last);
@@ -726,8 +738,8 @@ class Analysis {
   /// Whether more harmonics are not needed, or of no use. `added`: since the attempt before.
   bool is_last(const HillGroup& group, const std::vector<Candidate>& members, int added) const {
     const double residual = group.residual();
-    if ((residual <= accuracy().wanted && (!has_medium_ || know_growth(members))) ||
-        harmonics_ == most_harmonics)
+    if ((residual <= accuracy().wanted && (!is_by_change() || know_growth(members))) ||
+        harmonics_ == most_harmonics || is_constant_)
       return true;
     const bool is_own = std::any_of(members.begin(), members.end(), [this](const Candidate& one) {
       return is_centred(one);  // next to its own harmonic
@@ -847,6 +859,7 @@ class Analysis {
 
   /// The exponent up to multiples of i Q Omega and up to its conjugate.
   Complex principal(Complex exponent) const {
+    if (is_constant_) return {exponent.real(), std::abs(exponent.imag())};
     return {exponent.real(), std::abs(std::remainder(exponent.imag(), sectors_ * speed_))};
   }
 
@@ -888,7 +901,40 @@ class Analysis {
       for (const std::size_t j : *best) chosen.push_back(std::move(modes_[j]));
     }
     modes_ = std::move(chosen);
+    if (is_constant_) choose_among_equals();
+    if (counts_refined()) {
+      take_refined();
+      HillPencil pencil(system_, solution_, 0, false);
+      count_missing(pencil);
+    }
     if (options_.least_damped > 0) leave_slowest_decays();
+  }
+
+  /// Whether the exponents that the count leaves out are the refined ones. Of several double zeros,
+  /// the search finds some.
+  bool counts_refined() const { return is_constant_ && !has_medium_; }
+  void take_refined() {
+    std::erase_if(all_found_, [this](Complex other) {
+      return std::ranges::any_of(modes_, [&](const Candidate& mode) {
+        return std::abs(mode.pair.exponent - other) < same_found * unit_of_change(other, speed_);
+      });
+    });
+    for (const Candidate& mode : modes_) all_found_.push_back(mode.pair.exponent);
+  }
+
+  /// Motions of equal exponents: combinations of these that have names.
+  void choose_among_equals() {
+    std::vector<Complex> exponents;
+    std::vector<Eigen::MatrixXcd> shapes;
+    for (const Candidate& mode : modes_) {
+      exponents.push_back(mode.pair.exponent);
+      shapes.emplace_back(mode.pair.series.transpose());
+    }
+    choose_shapes(system_, exponents, shapes);
+    for (std::size_t i = 0; i < modes_.size(); ++i) {
+      modes_[i].pair = {exponents[i], shapes[i].transpose()};
+      describe(modes_[i], zero_exponent);
+    }
   }
 
   /// Whether two pairs have exponents that are equal up to multiples of i Q Omega and up to their
@@ -897,7 +943,7 @@ class Analysis {
     const Complex first = a.pair.exponent;
     const Complex second = b.pair.exponent;
     if (is_same(principal(first), principal(second))) return true;
-    if (!has_medium_) return false;
+    if (!is_by_change()) return false;
     const double error = same_with_medium * std::max(std::abs(first), speed_);
     const auto are_copies = [&](const HillPair& one, const HillPair& other) {
       const double between = (other.exponent.imag() - one.exponent.imag()) / speed_;
@@ -930,7 +976,7 @@ class Analysis {
     const bool is_zero = size < zero_exponent * speed_;
     mode.damping_ratio = is_zero ? 0.0 : -mode.exponent.real() / size;
     // A change is relative to the exponent of the pair, or to the rotor speed.
-    const double unit = has_medium_ ? unit_of_change(modes_[m].pair.exponent, speed_) : size;
+    const double unit = is_by_change() ? unit_of_change(modes_[m].pair.exponent, speed_) : size;
     const double error = is_zero ? 0.0 : mode.residual * unit;
     mode.step_error = is_zero ? 0.0 : error / size;
     set_growth_error(mode, {error, error}, modes_[m].pair.exponent);
@@ -939,10 +985,10 @@ class Analysis {
   Floquet finish() {
     const auto count = static_cast<Index>(modes_.size());
     set_ = {};
-    set_.rotor_speed = speed_;
+    set_.rotor_speed = system_.period() > 0.0 ? speed_ : 0.0;
     set_.conservative = system_.is_conservative();
     set_.first_harmonic = -static_cast<int>(samples_ / 2);
-    set_.participation.resize(count, samples_);
+    if (!is_constant_) set_.participation.resize(count, samples_);
     for (Index i = 0; i < samples_; ++i)
       set_.shape_times.push_back(system_.period() * static_cast<double>(i) /
                                  static_cast<double>(samples_));
@@ -951,10 +997,10 @@ class Analysis {
       Mode mode = found.mode;
       mode.residual = found.residual;
       mode.resolved = found.residual <= accuracy().largest;
-      mode.multiplier = std::exp(found.pair.exponent * system_.period());
+      if (!is_constant_) mode.multiplier = std::exp(found.pair.exponent * system_.period());
       set_.shapes.push_back(shape_of(found.pair.series));
       found.pair.series.resize(0, 0);  // of a large mesh as large as the shape
-      set_.participation.row(static_cast<Index>(m)) = found.participation;
+      if (!is_constant_) set_.participation.row(static_cast<Index>(m)) = found.participation;
       const bool is_real = std::abs(found.pair.exponent.imag()) < zero_exponent * speed_;
       mode.exponent = found.pair.exponent;
       if (is_real && !mode.state && is_rigid_body(system_, set_.shapes.back(), mode))
@@ -964,7 +1010,7 @@ class Analysis {
     }
     const std::vector<LeadingMotion> leading = find_leading_motions(system_, solution_, set_);
     for (std::size_t m = 0; m < leading.size(); ++m) {
-      if (leading[m].harmonic == set_.modes[m].harmonic) continue;
+      if (is_constant_ || leading[m].harmonic == set_.modes[m].harmonic) continue;
       set_.modes[m].harmonic = leading[m].harmonic;
       settle(m);
     }
@@ -987,7 +1033,7 @@ class Analysis {
     // The search and the refinement may differ in what lies at the edges, but no mode gets lost.
     const auto kept = std::count_if(set_.modes.begin(), set_.modes.end(), [&](const Mode& mode) {
       const double modulus = std::abs(mode.exponent);
-      return modulus < high && modulus > low - edge_slack * speed_;
+      return modulus < high && modulus > low - slack();
     });
     set_.searched =
         SearchedRegion{low,
@@ -1008,7 +1054,8 @@ class Analysis {
   const PeriodicSolution& solution_;
   const FloquetOptions& options_;
   Ranks ranks_;
-  double speed_;
+  bool is_constant_;
+  double speed_;  ///< of the rotor; at rest 1 rad/s
   bool has_medium_ = false;
   int search_harmonics_ = 0;
   HarmonicEnergy energy_;
@@ -1035,7 +1082,15 @@ class Analysis {
 std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution,
                                        const FloquetOptions& options, MPI_Comm comm) {
-  return Analysis(system, solution, options, Ranks(comm)).run();
+  return Analysis(system, solution, options, Ranks(comm), false).run();
+}
+
+std::optional<ModeSet> find_hill_constant_modes(const system::PeriodicSystem& system,
+                                                const PeriodicSolution& solution,
+                                                const FloquetOptions& options, MPI_Comm comm) {
+  std::optional<Floquet> found = Analysis(system, solution, options, Ranks(comm), true).run();
+  if (!found) return std::nullopt;
+  return std::move(found->set);
 }
 
 }  // namespace samara::analysis

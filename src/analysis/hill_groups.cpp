@@ -117,6 +117,7 @@ std::vector<std::vector<HillPair>> HillGroups::deal(const std::vector<HillGroup*
     for (std::size_t g = 0; g < groups.size(); ++g) {
       if (rank_of(g) != ranks_.rank) continue;
       changed[g] = groups[g]->pairs;
+      pencil_.fit_scales(std::abs(groups[g]->pairs.front().exponent));
       results[g] = refinement_.refine(groups[g]->pairs, tolerance);
       if (!is_other(results[g])) changed[g].clear();
     }
@@ -267,7 +268,7 @@ void HillGroups::find_changes(HillGroup& group) const {
 }
 
 void HillGroups::find_residuals(const std::vector<HillGroup*>& groups) const {
-  if (pencil_.has_medium()) {
+  if (pencil_.has_medium() && pencil_.harmonics() > 0) {
     for (HillGroup* group : groups) find_changes(*group);
     return;
   }

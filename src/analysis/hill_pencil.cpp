@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace samara::analysis {
+namespace {
+
+/// Ratio of rates whose scales are alike.
+constexpr double most_unlike = 2.0;
+
+}  // namespace
 
 using Index = Eigen::Index;
 
@@ -12,7 +18,18 @@ HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolut
       preconditioner_(tangents_),
       medium_(tangents_, rows_, columns_) {
   tangents_.sample(solution);
-  tangents_.scale(0.0, rows_, columns_);
+  take_rate(tangents_.highest_rate());
+}
+
+void HillPencil::take_rate(double rate) {
+  rate_ = rate;
+  tangents_.scale(0.0, rate, rows_, columns_);
+  shift_.reset();
+}
+
+void HillPencil::fit_scales(double rate) {
+  const double wanted = std::max(rate, speed());
+  if (harmonics() == 0 && std::max(wanted / rate_, rate_ / wanted) > most_unlike) take_rate(wanted);
 }
 
 /// exp(i k Omega t) = cos + i sin: the coefficient of cos is z_k + z_-k, that of sin i (z_k -

@@ -68,6 +68,9 @@ class HillPencil {
   void drop_medium(Vector& x) const { medium_.drop(x); }
   /// The exponent that fits a vector best: (A + lambda B) x is least in the 2-norm.
   Complex exponent_of(const Vector& x);
+  /// Without harmonics: scales for motions of this rate [rad/s] from now on, which changes all
+  /// vectors. Loads of fast motions are much larger than those of slow ones.
+  void fit_scales(double rate);
   /// Takes the scales of another pencil, of a system with the same unknowns.
   void take_scales(const HillPencil& other);
 
@@ -97,11 +100,13 @@ class HillPencil {
   void to_coefficients(Input x, bool is_rate, Eigen::MatrixXd& to) const;
   void to_series(const Eigen::MatrixXd& coefficients, Output y) const;
   void take_coefficients(Input x, Input w);
+  void take_rate(double rate);
   void drop_states(Output y) const;
 
   HarmonicTangents tangents_;
   HarmonicPreconditioner preconditioner_;
   std::optional<Complex> shift_;
+  double rate_ = 0.0;  ///< of the scales [rad/s]
   Eigen::VectorXd rows_, columns_;
   HillMedium medium_;
   Eigen::MatrixXd values_, rates_, products_;  ///< real parts, then imaginary parts

@@ -26,13 +26,25 @@ using Complex = std::complex<double>;
 using Index = Eigen::Index;
 using Vector = Eigen::VectorXcd;
 
-/// Relative tolerances of the eigensolver and of its linear solves.
-constexpr double eigenvalue_tolerance = 1e-6;
-constexpr double linear_tolerance = 1e-7;
+/// Relative tolerances of the eigensolver and of its linear solves. Without harmonics, a solve
+/// takes an iteration or two, and the eigenvalues of the pairs that are found differ by many
+/// orders.
+struct Tolerances {
+  double eigenvalues;
+  double linear;
+};
+constexpr Tolerances of_search{1e-6, 1e-7};
+constexpr Tolerances of_search_without_harmonics{1e-11, 1e-13};
 
 /// Real part of the shifts, relative to the rotor speed. Undamped motions, whose exponents are
 /// imaginary, have real eigenvalues for an imaginary shift, equal to those of their conjugates.
 constexpr double real_part_of_shift = 0.3;
+
+/// Least distance of an exponent from the real part of the shift, relative to the imaginary part,
+/// at which the eigenvalue gives it; and relative difference from the approximation above which the
+/// eigenvalue is that of something else.
+constexpr double least_distance = 0.1;
+constexpr double largest_correction = 0.5;
 
 /// Solves (A + sigma B) y = B x for real x.
 struct ShiftInvert {
@@ -57,6 +69,7 @@ constexpr double most_difference = 0.3;
 /// Difference of numbers of eigenvalues that are the same.
 constexpr double same_number = 0.1;
 constexpr int most_points = 1000;
+constexpr double most_parts_of_side = 150.0;  ///< at first
 /// Vectors by which the contraction is estimated, at most and at least; the estimate, with its
 /// residual, below which the least number is enough; and a norm of round-off.
 constexpr int contraction_steps = 8;
@@ -113,6 +126,21 @@ PetscErrorCode apply_inverse(Mat matrix, Vec x, Vec y) {
     return PETSC_ERR_USER;
   }
   return 0;
+}
+
+/// The exponent lambda of an eigenvalue -Im(sigma) / ((sigma - lambda) (conj(sigma) - lambda)) next
+/// to an approximation by the eigenvector, which has larger errors far from the shift. Near its
+/// real part the eigenvalue hardly depends on the exponent, and the approximation stays.
+Complex exponent_at(Complex shift, Complex eigenvalue, Complex approximation) {
+  const double height = shift.imag();
+  const Complex square = -height * height - height / eigenvalue;  // (lambda - Re(sigma))^2
+  Complex distance = std::sqrt(square);
+  if (std::abs(distance) < least_distance * height) return approximation;
+  if (std::real(std::conj(distance) * (approximation - shift.real())) < 0.0) distance = -distance;
+  const Complex exponent = shift.real() + distance;
+  return std::abs(exponent - approximation) < largest_correction * std::abs(approximation)
+             ? exponent
+             : approximation;
 }
 
 /// Half the width at height y of the region |s^2 + omega^2| <= rho; 0 outside.
@@ -189,6 +217,7 @@ ComplexSolver solver_at(HillPencil& pencil, Complex shift, double tolerance) {
 }
 
 HillRegion HillSearch::find(double frequency, int count, double known) {
+  pencil_.fit_scales(frequency);
   return pencil_.has_medium() ? HillWithoutMedium(pencil_).find(frequency, count, known)
                               : find_all(frequency, count);
 }
@@ -198,7 +227,8 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   const auto n = static_cast<PetscInt>(size);
   const double beside = real_part_of_shift * pencil_.speed();
   const Complex shift(beside, frequency);
-  ComplexSolver linear = solver_at(pencil_, shift, linear_tolerance);
+  const Tolerances& tolerances = pencil_.harmonics() > 0 ? of_search : of_search_without_harmonics;
+  ComplexSolver linear = solver_at(pencil_, shift, tolerances.linear);
   ShiftInvert context{pencil_, linear};
   petsc::Handle<Mat> inverse;
   petsc::check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &context, inverse.fill()));
@@ -211,7 +241,7 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
   petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_MAGNITUDE));
   petsc::check(EPSSetDimensions(solver.get(), 2 * count, PETSC_DEFAULT, PETSC_DEFAULT));
-  petsc::check(EPSSetTolerances(solver.get(), eigenvalue_tolerance, PETSC_DEFAULT));
+  petsc::check(EPSSetTolerances(solver.get(), tolerances.eigenvalues, PETSC_DEFAULT));
   petsc::take_options(EPSSetFromOptions, solver.get());
   EPSWhich which = EPS_LARGEST_MAGNITUDE;
   petsc::check(EPSGetWhichEigenpairs(solver.get(), &which));
@@ -247,7 +277,9 @@ HillRegion HillSearch::find_all(double frequency, int count) {
       from_real(view.data(), pencil_.width(), y);
     }
     x += Complex(0.0, 1.0) * y;
-    const Complex exponent = pencil_.exponent_of(x);
+    const Complex exponent = pencil_.harmonics() > 0
+                                 ? pencil_.exponent_of(x)
+                                 : exponent_at(shift, {value_re, value_im}, pencil_.exponent_of(x));
     const double expected =
         frequency / std::abs((shift - exponent) * (std::conj(shift) - exponent));
     if (std::abs(expected - modulus) > 0.5 * modulus) {  // of an infinite exponent
@@ -374,7 +406,8 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
     const std::array<double, 4> widths{region.growth, std::min(region.growth, region.decay),
                                        region.decay, std::min(region.growth, region.decay)};
     const double most = std::max(widest * pencil_.speed(), part_of_side * std::abs(length));
-    const double longest = std::max(pencil_.speed(), std::min(of_half_width * widths[side], most));
+    const double longest = std::max({pencil_.speed(), std::min(of_half_width * widths[side], most),
+                                     std::abs(length) / most_parts_of_side});
     const auto halves = 2 * static_cast<int>(std::ceil(std::abs(length) / longest));
     for (int half = 0; half < halves; ++half)
       edge.push_back({corners[side] + length * (static_cast<double>(half) / halves), 0.0});
@@ -419,7 +452,8 @@ HillSearch::Missing HillSearch::count_missing(const HillRegion& region,
   const double number = sum / (is_closed ? 2.0 * std::numbers::pi : std::numbers::pi);
   if (parts.empty() && std::abs(number - std::round(number)) < same_number)
     result.eigenvalues = static_cast<int>(std::lround(number));
-  if (result.eigenvalues != 0) return result;
+  // Without harmonics, the preconditioner is the inverse of the pencil.
+  if (result.eigenvalues != 0 || pencil_.harmonics() == 0) return result;
   ranks.attempt([&] {
     int point = 0;
     for (std::size_t side = 0; side + 1 < corners.size(); ++side)

@@ -143,7 +143,7 @@ CampbellPoint find_campbell_point(const turbine::TurbineSystem& system, const an
   const ModeSet set =
       turbine.speed > 0.0
           ? analysis::find_floquet_modes(small, trim.solution, options, comm, observer).set
-          : analysis::find_constant_modes(small, trim.solution);
+          : analysis::find_constant_modes(small, trim.solution, options, comm, observer);
   CampbellPoint point;
   point.rotor_speed = turbine.speed;
   point.pitch = turbine.pitch;

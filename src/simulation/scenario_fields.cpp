@@ -82,9 +82,10 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
   fields.integer(
       Field(
           "modes", "", integers(1, most_modes),
-          "number of modes to find by Hill's method, for large meshes: the slowest ones, or those "
-          "nearest to `near_hz`. In the air, modes of the air alone are left out. Other keys of "
-          "`floquet` then do not count")
+          "number of modes to find by Hill's method, for large meshes, also by `samara modes`: the "
+          "slowest ones, or those nearest to `near_hz`. In the air, modes of the air alone are "
+          "left "
+          "out. Other keys of `floquet` then do not count")
           .none_at_zero("all modes"),
       floquet.modes);
   fields.number({"near_hz", "Hz", positive, "frequency next to which `modes` are searched"},
@@ -93,8 +94,9 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
       Field("least_damped", "", integers(1, most_modes),
             "number of modes that decay slowest or grow, in a range of frequencies that the output "
             "states, for large meshes. They are found by integration of a block of columns, in the "
-            "air by Hill's method without the modes of the air alone, and refined by Hill's "
-            "method. `steps`, `period`, `time_order` and `accuracy` then do not count")
+            "air and by `samara modes` by Hill's method without the modes of the air alone, and "
+            "refined by Hill's method. `steps`, `period`, `time_order` and `accuracy` then do not "
+            "count")
           .none_at_zero("all modes"),
       floquet.least_damped);
 }

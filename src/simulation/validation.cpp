@@ -71,6 +71,9 @@ class Validation {
         check_rest();
         break;
       case Analysis::modes:
+        check_steady();
+        check_search();
+        break;
       case Analysis::trim:
         check_steady();
         break;

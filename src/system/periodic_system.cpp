@@ -44,6 +44,10 @@ void require_counts(const PeriodicSystem& system) {
 
 }  // namespace
 
+double base_rate(const PeriodicSystem& system) {
+  return system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 1.0;
+}
+
 void require_roles(const PeriodicSystem& system) {
   require_counts(system);
   const std::vector<std::vector<PetscInt>> pattern = system.pattern();

@@ -4,7 +4,11 @@
 
 #include <vector>
 
+#include <mpi.h>
+
 #include "samara/analysis/mode.hpp"
+#include "samara/analysis/observer.hpp"
+#include "samara/analysis/options.hpp"
 #include "samara/analysis/periodic_solution.hpp"
 #include "samara/system/periodic_system.hpp"
 
@@ -14,6 +18,13 @@ namespace samara::analysis {
 /// computes the same. Mode::multiplier and participation stay empty, shapes have one sample.
 /// @throws InputError where the tangents depend on time (hint: samara floquet)
 ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution);
+
+/// With `options.modes` or `options.least_damped` some of the modes by Hill's method (hill.hpp),
+/// which the ranks of `comm` share; else, and where the mesh is too coarse for it, all of them as
+/// above.
+/// @throws InputError where the tangents depend on time, ConvergenceError
+ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                            const FloquetOptions& options, MPI_Comm comm, Observer& observer);
 
 /// The smallest moduli of the exponents that the tangents at t = 0 have, ascending [rad/s], at
 /// least `count` if there are; without those that count as zero. A guide to the frequencies of a

@@ -16,4 +16,12 @@ std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution,
                                        const FloquetOptions& options, MPI_Comm comm);
 
+/// The same of constant tangents, which are Hill's eigenproblem without harmonics: the slowest
+/// decays, too, are all in a region that is searched. Mode::multiplier and participation stay
+/// empty.
+/// @throws ConvergenceError
+std::optional<ModeSet> find_hill_constant_modes(const system::PeriodicSystem& system,
+                                                const PeriodicSolution& solution,
+                                                const FloquetOptions& options, MPI_Comm comm);
+
 }  // namespace samara::analysis

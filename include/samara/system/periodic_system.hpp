@@ -136,6 +136,9 @@ class PeriodicSystem {
   virtual void tangents(double t, Vec z, Vec z_dot, double shift, Mat jacobian, Mat mass) const = 0;
 };
 
+/// The rotor speed 2 pi / period, or 1 where there is no period [rad/s]: slow motions are slower.
+double base_rate(const PeriodicSystem& system);
+
 /// Checks the unknowns and rows of a system against their roles (docs/theory.md, section 4): as
 /// many velocities as kinematic rows; the evolution row of a state and the definition row of an
 /// auxiliary at the index of the unknown. From the declared pattern, so that no state is lost:
