@@ -17,6 +17,7 @@
 #include "samara/base/error.hpp"
 
 #include "energy_coordinates.hpp"
+#include "massless_states.hpp"
 #include "state_parts.hpp"
 
 namespace samara::analysis {
@@ -75,8 +76,9 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
 
 /// (sigma - A)^-1 of the states, in energy coordinates, and the shapes that it leads to.
 struct ShiftedInverse {
-  Eigen::MatrixXd map;     ///< states x states
-  Eigen::MatrixXd shapes;  ///< size x states
+  Eigen::MatrixXd map;      ///< states x states
+  Eigen::MatrixXd shapes;   ///< size x states
+  MasslessStates massless;  ///< which the map maps among each other
 };
 
 /// If x is a consistent state, y of (K + sigma M) y = M x is one, too, with the rate sigma y - x.
@@ -93,12 +95,16 @@ ShiftedInverse invert_at(const system::PeriodicSystem& system, const PeriodicSol
   const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
   DirectSolver solver(
       "modes_", [&system, sigma](Mat matrix) { return scale_by_role(system, matrix, sigma); });
-  solver.factor(jacobian.get());
   const Eigen::Index d = subspace.degrees_of_freedom();
   Eigen::MatrixXd states = subspace.basis(0.0);
   const EnergyCoordinates coordinates(system, states, d, rate);
+  ShiftedInverse inverse;
+  if (coordinates.without_inertia().cols() > 0)
+    inverse.massless =
+        MasslessStates(to_sparse(jacobian.get()) - sigma * M, M, states, coordinates);
   coordinates.divide(states);
-  ShiftedInverse inverse{{}, M * states};
+  inverse.shapes = M * states;
+  solver.factor(jacobian.get());  // scales it
   solver.solve(inverse.shapes);
   Eigen::MatrixXd images(subspace.size(), subspace.size());
   images.topRows(d) = subspace.coordinates_of(inverse.shapes);
@@ -111,7 +117,7 @@ ShiftedInverse invert_at(const system::PeriodicSystem& system, const PeriodicSol
 Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                        const ConsistentSubspace& subspace, double sigma, double rate) {
   const ShiftedInverse inverse = invert_at(system, solution, subspace, sigma, rate);
-  const Eigenpairs pairs = dense_eigenpairs(inverse.map, "modes_");
+  const Eigenpairs pairs = inverse.massless.eigenpairs_of(inverse.map, "modes_");
   const std::vector<int> states_of_pairs =
       leading_states(pairs, 2 * subspace.degrees_of_freedom(), find_state_parts(system));
   Spectrum spectrum;
@@ -201,8 +207,8 @@ std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
   const double rate = system::base_rate(system);
   // Both of a pair, and some that count as zero.
   const int values = 3 * count;
-  return moduli_at(
-      rate, largest_eigenvalues(invert_at(system, solution, subspace, rate, rate).map, values));
+  const ShiftedInverse inverse = invert_at(system, solution, subspace, rate, rate);
+  return moduli_at(rate, largest_eigenvalues(inverse.massless.without(inverse.map), values));
 }
 
 ModeSet find_constant_modes(const system::PeriodicSystem& system,
@@ -221,8 +227,10 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   // modes, which are of interest, and the fast modes, which a fine mesh adds, therefore have a
   // shift each, and so have modes that are much slower than the other slow ones.
   const double zero = zero_exponent * rate;
+  const ShiftedInverse at_rate = invert_at(system, solution, subspace, rate, rate);
+  const MasslessStates& massless = at_rate.massless;
   const std::vector<double> moduli =
-      moduli_at(rate, dense_eigenvalues(invert_at(system, solution, subspace, rate, rate).map));
+      moduli_at(rate, dense_eigenvalues(massless.without(at_rate.map)));
   const auto first_above = [&moduli](double limit) {
     return static_cast<std::size_t>(std::lower_bound(moduli.begin(), moduli.end(), limit) -
                                     moduli.begin());
@@ -264,7 +272,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   collect();
   // A mode that two shifts place on different sides of a border is lost or found twice. Then all
   // modes are those of the fast shift.
-  if (exponents != subspace.size()) {
+  if (exponents != subspace.size() - massless.count()) {
     std::fill(borders.begin(), borders.end(), -1.0);
     collect();
   }
@@ -280,8 +288,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   const Eigen::VectorXcd one = Eigen::VectorXcd::Ones(1);
   const std::vector<system::MeshError> elements = system.mesh_errors();
   ModeSet set;
-  set.states = subspace.size();
-  set.degrees_of_freedom = subspace.degrees_of_freedom();
+  set.states = subspace.size() - massless.count();
+  set.degrees_of_freedom = subspace.degrees_of_freedom() - massless.directions();
   set.rotor_speed = speed;
   set.conservative = system.is_conservative();
   set.shape_times = {0.0};

@@ -1,6 +1,7 @@
 #include "energy_coordinates.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "samara/analysis/harmonic_energy.hpp"
 
@@ -13,6 +14,27 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& metric, double fallback) {
   if (factors.info() != Eigen::Success || !metric.allFinite())
     return fallback * Eigen::MatrixXd::Identity(metric.rows(), metric.cols());
   return factors.matrixU();
+}
+
+/// Pivot of a factorization, relative to the diagonal, that may be round-off; and eigenvalue of a
+/// metric with ones on the diagonal that is.
+constexpr double least_pivot = 1e-11;
+constexpr double least_eigenvalue = 1e-13;
+
+/// Basis of the null space of a metric, d x its dimension.
+Eigen::MatrixXd null_space_of(const Eigen::MatrixXd& metric) {
+  const Eigen::VectorXd diagonal = metric.diagonal();
+  if (diagonal.size() == 0 || !metric.allFinite() || !(diagonal.minCoeff() > 0.0))
+    return {metric.rows(), 0};
+  const Eigen::LLT<Eigen::MatrixXd> factors(metric);
+  if (factors.info() == Eigen::Success &&
+      (factors.matrixLLT().diagonal().array().square() > least_pivot * diagonal.array()).all())
+    return {metric.rows(), 0};
+  const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * metric *
+                                                              scale.asDiagonal());
+  const Eigen::Index null = (solver.eigenvalues().array() < least_eigenvalue).count();
+  return scale.asDiagonal() * solver.eigenvectors().leftCols(null);
 }
 
 }  // namespace
@@ -28,8 +50,16 @@ EnergyCoordinates::EnergyCoordinates(const system::PeriodicSystem& system,
         energy_root(group) * basis(group.unknowns, Eigen::seqN(is_kinetic ? d : 0, d));
     (is_kinetic ? kinetic : strain).noalias() += signals.transpose() * signals;
   }
+  without_inertia_ = null_space_of(kinetic);
   strain += rate * rate * kinetic;
   eta_ = root_of(strain, 1.0);
+  // As large as the strain energy at `rate`.
+  if (without_inertia_.cols() > 0) {
+    const Eigen::MatrixXd loads = strain * without_inertia_ / rate;
+    kinetic.noalias() +=
+        loads *
+        (without_inertia_.transpose() * strain * without_inertia_).ldlt().solve(loads.transpose());
+  }
   rate_ = root_of(kinetic, 1.0 / rate);
 }
 

@@ -21,6 +21,10 @@ class EnergyCoordinates {
   EnergyCoordinates(const system::PeriodicSystem& system, const Eigen::MatrixXd& basis,
                     Eigen::Index d, double rate);
 
+  /// Directions of eta that have no kinetic energy, beyond round-off: d x their number. Their rates
+  /// count as if they had some.
+  const Eigen::MatrixXd& without_inertia() const { return without_inertia_; }
+
   /// Converts columns per unit of (eta, eta_dot, xi), in place, to columns per unit of these
   /// coordinates.
   void divide(Eigen::MatrixXd& columns) const;
@@ -31,6 +35,7 @@ class EnergyCoordinates {
 
  private:
   Eigen::MatrixXd eta_, rate_;  ///< upper triangles
+  Eigen::MatrixXd without_inertia_;
 };
 
 }  // namespace samara::analysis

@@ -20,6 +20,7 @@
 
 #include "energy_coordinates.hpp"
 #include "energy_shares.hpp"
+#include "massless_states.hpp"
 #include "sector_motion.hpp"
 #include "signal_series.hpp"
 #include "state_parts.hpp"
@@ -53,6 +54,8 @@ constexpr double far_from_zero = std::numeric_limits<double>::infinity();
 /// round-off. The computed exponent of a motion at rest is the square root of round-off, and so is
 /// its speed.
 constexpr double rest_energy = 1e-10;
+/// Harmonics of positions among which that of a motion without energy is.
+constexpr int most_harmonic_of_rest = 4;
 /// Initial states that are advanced at once.
 constexpr Index group_states = 128;
 /// Largest number of instants of the mode shapes per revolution.
@@ -137,6 +140,10 @@ class Analysis {
   void integrate() {
     Eigen::MatrixXd start = subspace_.basis(0.0);
     coordinates_ = EnergyCoordinates(system_, start, subspace_.degrees_of_freedom(), speed_);
+    if (coordinates_.without_inertia().cols() > 0) {
+      const SparseTangents tangents = tangents_on(system_, solution_, 0.0);
+      massless_ = MasslessStates(tangents.K, tangents.M, start, coordinates_);
+    }
     const long first = first_step(ranks_.rank);
     const long end = first_step(ranks_.rank + 1);
     map_.setIdentity(states_, states_);
@@ -267,8 +274,8 @@ class Analysis {
   }
 
   void solve_eigenproblem() {
-    const Eigenpairs pairs = dense_eigenpairs(map_, "floquet_");
-    const Eigen::VectorXd conditions = condition_numbers(pairs);
+    Eigen::VectorXd conditions;
+    const Eigenpairs pairs = massless_.eigenpairs_of(map_, "floquet_", &conditions);
     const StateParts parts = find_state_parts(system_);
     const std::vector<int> states =
         leading_states(pairs, 2 * subspace_.degrees_of_freedom(), parts);
@@ -358,6 +365,31 @@ class Analysis {
                        }},
                       set_);
     find_displacements();
+  }
+
+  /// The largest harmonic of the positions over a period: 0 of a displacement at rest, 1 of a rotor
+  /// disc that stays tilted on hinges of the shaft axis, which has no energy in its own axes.
+  int harmonic_of_positions(const Eigen::MatrixXcd& shape) const {
+    const Eigen::Index count = shape.cols();
+    int best = 0;
+    double largest = 0.0;
+    for (int k = 0; k <= std::min<int>(static_cast<int>(count / 2), most_harmonic_of_rest); ++k) {
+      Eigen::VectorXcd wave(count);
+      for (Eigen::Index i = 0; i < count; ++i)
+        wave(i) = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k * i % count) /
+                                      static_cast<double>(count));
+      const Eigen::VectorXcd part = shape * wave;
+      double size = 0.0;
+      for (Eigen::Index i = 0; i < part.size(); ++i)
+        if (const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(i)];
+            unknown.role == system::UnknownRole::position)
+          size += std::norm(part(i) / unknown.scale);
+      if (k > 0) size *= 2.0;  // and its conjugate, of a real motion
+      if (size <= largest) continue;
+      largest = size;
+      best = k;
+    }
+    return best;
   }
 
   /// Finds displacements at rest that nothing restores: their kinetic energy is round-off, and at
@@ -494,12 +526,21 @@ class Analysis {
                           is_rigid_body(system_, set_.shapes[m], mode);
         if ((!is_zero(exponents_[m]) && !real) || is_too_fast(m))
           harmonics(static_cast<Eigen::Index>(m)) = set_.modes[m].harmonic;
+        else
+          harmonics(static_cast<Eigen::Index>(m)) = harmonic_of_positions(set_.shapes[m]);
       }
     }
     ranks_.sum(harmonics);
-    for (std::size_t m = 0; m < set_.modes.size(); ++m)
-      set_.modes[m].harmonic =
-          static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
+    for (std::size_t m = 0; m < set_.modes.size(); ++m) {
+      Mode& mode = set_.modes[m];
+      mode.harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
+      if (mode.harmonic == 0 || !mode.parts.empty()) continue;
+      for (Eigen::MatrixXd* shares : {&set_.participation, &sampled_shares_}) {  // of no energy
+        auto row = shares->row(static_cast<Eigen::Index>(m));
+        row.setZero();
+        for (const int k : {-mode.harmonic, mode.harmonic}) row(samples_ / 2 + k) += 0.5;
+      }
+    }
   }
 
   // ---- the result ------------------------------------------------------------------------------
@@ -601,12 +642,12 @@ class Analysis {
   Floquet finish() {
     for (std::size_t m = 0; m < set_.modes.size(); ++m) settle(m);
     drop_round_off();
-    set_.degrees_of_freedom = subspace_.degrees_of_freedom();
+    set_.degrees_of_freedom = subspace_.degrees_of_freedom() - massless_.directions();
     set_.rotor_speed = speed_;
     set_.step = rule_.step;
     set_.conservative = system_.is_conservative();
     set_.first_harmonic = -samples_ / 2;
-    set_.states = static_cast<int>(states_);
+    set_.states = static_cast<int>(states_) - massless_.count();
     for (const Complex multiplier : multipliers_) set_.found += multiplier.imag() == 0.0 ? 1 : 2;
     if (set_.found + set_.deflated != set_.states)
       throw InternalError("floquet: " + std::to_string(set_.found) + " exponents found and " +
@@ -702,6 +743,7 @@ class Analysis {
       end_;  ///< all unknowns at the first sample after the sector; empty on other ranks
   Eigen::MatrixXd before_;            ///< map from the start to the first step of this rank
   EnergyCoordinates coordinates_;     ///< of the states at the start
+  MasslessStates massless_;           ///< the same
   Eigen::MatrixXd map_;               ///< over a sector, in these coordinates
   std::vector<Complex> multipliers_;  ///< of the sector
   std::vector<double> conditions_;    ///< of the multipliers

@@ -38,7 +38,29 @@ struct Jet {
   Matrix value, first, second;
 };
 
-/// Dense solve with rows and columns of size one, refined once.
+/// Smallest pivot, relative to the largest, of a matrix that has an inverse. (Turbines have 1e-8
+/// and more, singular matrices 1e-15.)
+constexpr double least_pivot = 1e-13;
+
+/// The matrix maps a vector to zero whose largest entry has this number.
+struct Singular {
+  Eigen::Index largest;
+};
+
+void require_regular(const Eigen::PartialPivLU<Dense>& lu) {
+  const auto& U = lu.matrixLU();
+  Eigen::Index at = 0;
+  const Eigen::VectorXd pivots = U.diagonal().cwiseAbs();
+  if (pivots.minCoeff(&at) > least_pivot * pivots.maxCoeff()) return;
+  Eigen::VectorXd null = Eigen::VectorXd::Zero(U.rows());
+  null(at) = 1.0;
+  null.head(at) = -U.topLeftCorner(at, at).triangularView<Eigen::Upper>().solve(U.col(at).head(at));
+  Singular singular{};
+  null.cwiseAbs().maxCoeff(&singular.largest);
+  throw singular;
+}
+
+/// Dense solve with rows and columns of size one, refined once. @throws Singular
 Dense solve_scaled(const Dense& matrix, const Dense& right) {
   if (matrix.rows() == 0) return right;
   Eigen::VectorXd rows = matrix.cwiseAbs().rowwise().maxCoeff();
@@ -52,6 +74,7 @@ Dense solve_scaled(const Dense& matrix, const Dense& right) {
   columns = columns.cwiseInverse();
   scaled = scaled * columns.asDiagonal();
   const Eigen::PartialPivLU<Dense> lu(scaled);
+  require_regular(lu);
   const Dense b = rows.asDiagonal() * right;
   Dense x = lu.solve(b);
   x += lu.solve(b - multiply(scaled, x));
@@ -277,7 +300,17 @@ StateSpace LinearModel::state_space(double t) const {
     rest << all.leftCols(2 * d), all.middleCols(at.xi(), n_1), all.rightCols(3 * m);
     return rest;
   };
-  const Dense found = solve_scaled(matrix, -without(known));
+  Dense found;
+  try {
+    found = solve_scaled(matrix, -without(known));
+  } catch (const Singular& singular) {
+    if (singular.largest >= d)
+      throw InternalError("the balances do not determine accelerations and reactions");
+    throw InputError(
+        "linearize: a motion of \"" + states_[static_cast<std::size_t>(singular.largest)].name +
+        "\" has no inertia (so it is with an elastic blade behind a hinge): its acceleration does "
+        "not follow from the state; hint: samara modes and samara floquet leave such a motion out");
+  }
   const Dense acceleration = found.topRows(d);
   const Dense xi_dot = found.bottomRows(n_1);
 

@@ -1,9 +1,12 @@
 // Blades on hinges: frequencies in closed form, and rigid blades of particles on three hinges in
 // any order, whose equations are written from positions alone.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -322,6 +325,94 @@ BOOST_AUTO_TEST_CASE(prescribed_flapping_takes_the_moment_of_a_rigid_blade) {
       BOOST_TEST(std::abs(moment - wanted) < 1e-5 * I * speed * speed);
     }
   }
+}
+
+/// A uniform elastic blade, 10 m long, on hinges of the shaft axis.
+std::string elastic(double rate, const std::string& hinges, int elements, int count = 1) {
+  return "samara: 1\ngravity: 0\nshaft: {speed: " + std::to_string(rate) +
+         "}\nhub: {radius: 0}\nblades:\n  count: " + std::to_string(count) +
+         "\n  length: 10\n  order: 5\n  elements: " + std::to_string(elements) +
+         "\n  sections: [{mass: 1, inertia: [2e-6, 1e-6, 1e-6], stiffness: {EA: 1e8, GA2: 4e7, "
+         "GA3: "
+         "4e7, GJ: 8e3, EI2: 1e4, EI3: 1e4}}]\n  hinges: " +
+         hinges + "\n";
+}
+
+/// Moduli of the resolved exponents in the upper half plane, ascending.
+std::vector<double> moduli_of(const analysis::ModeSet& set) {
+  std::vector<double> moduli;
+  for (const analysis::Mode& mode : set.modes)
+    if (mode.resolved) moduli.push_back(std::abs(mode.exponent));
+  std::ranges::sort(moduli);
+  return moduli;
+}
+
+/// One bending of an elastic blade behind each hinge has all Gauss points as nodes: no inertia, and
+/// no exponent. In the maps of the steps it had multipliers of 1, as rigid-body motions have.
+BOOST_AUTO_TEST_CASE(bending_without_inertia_behind_a_hinge_has_no_exponent) {
+  constexpr int of_element = 5 * 6;  // elastic strains
+  // Roots of tan(x) = tanh(x): a beam on a hinge, with free end.
+  constexpr std::array<double, 3> roots{3.926602, 7.068583, 10.210176};
+  const Solved parked(elastic(0.0, "[{axis: flap, joint: free}]", 2));
+  BOOST_TEST(parked.set.degrees_of_freedom == 2 * of_element);
+  BOOST_TEST(parked.set.states == 4 * of_element);
+  BOOST_TEST(parked.set.found == 4 * of_element);
+  std::vector<double> flap;
+  int rigid = 0;
+  for (const analysis::Mode& mode : parked.set.modes) {
+    BOOST_TEST(mode.resolved, mode.label);
+    BOOST_TEST(std::abs(mode.exponent.real()) < 1e-3, mode.label << mode.exponent);
+    if (mode.exponent == 0.0) ++rigid;
+    if (mode.exponent != 0.0 && mode.name.find("flap") != std::string::npos)
+      flap.push_back(mode.exponent.imag());
+  }
+  BOOST_TEST(rigid == 2);  // the swing of the blade, twice zero
+  for (std::size_t i = 0; i < roots.size(); ++i)
+    BOOST_TEST(std::abs(flap.at(i) / (roots[i] * roots[i]) - 1.0) < 5e-3, flap.at(i));
+  // Turning: by all routes the same modes, with and without a damper, of one blade and of three.
+  const std::vector<std::pair<std::string, int>> cases{
+      {"[{axis: flap, joint: free}]", 1},
+      {"[{axis: flap, joint: free, stiffness: 500}, {axis: lag, joint: free, stiffness: 1000}]", 3},
+      {"[{axis: lag, joint: free, stiffness: 1000, damping: 100}]", 3}};
+  for (const auto& [hinges, count] : cases) BOOST_TEST_CONTEXT(hinges) {
+      Solved turning(elastic(6.0, hinges, 1, count));
+      const bool is_damped = hinges.find("damping") != std::string::npos;
+      const std::vector<double> known = moduli_of(turning.set);
+      BOOST_TEST(turning.set.found == turning.set.states);
+      BOOST_TEST(turning.set.degrees_of_freedom == count * of_element);
+      BOOST_TEST(turning.set.states == 2 * count * of_element + (is_damped ? count : 0));
+      analysis::FloquetOptions some;
+      some.modes = 3 * count;
+      const std::vector<double> searched = moduli_of(analysis::find_constant_modes(
+          turning.system, turning.trim.solution, some, PETSC_COMM_SELF, turning.observer));
+      for (std::size_t i = 0; i < searched.size(); ++i)
+        BOOST_TEST(std::abs(searched[i] / known.at(i) - 1.0) < 1e-8);
+      for (const int order : {2, 6}) {
+        const int steps = order == 2 ? 360 : 60;
+        const analysis::ModeSet set =
+            analysis::find_floquet_modes(turning.system, turning.trim.solution,
+                                         {steps, analysis::FloquetPeriod::automatic, order},
+                                         PETSC_COMM_SELF, turning.observer)
+                .set;
+        BOOST_TEST(set.degrees_of_freedom == count * of_element);
+        BOOST_TEST(set.states == turning.set.states);
+        const std::vector<double> moduli = moduli_of(set);
+        // Free flap about the shaft axis is once per revolution, where a multiplier of a pair is
+        // real.
+        std::vector<double> above;
+        std::ranges::copy_if(moduli, std::back_inserter(above),
+                             [](double modulus) { return modulus > 7.0; });
+        const auto first = std::ranges::upper_bound(known, 7.0);
+        const auto inside =
+            std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(above.size()), 3 * count);
+        for (std::ptrdiff_t i = 0; i < inside; ++i)
+          BOOST_TEST(std::abs(above[static_cast<std::size_t>(i)] / *(first + i) - 1.0) <
+                         (order == 2 ? 4e-2 : 1e-4),
+                     "order " << order);
+        for (const double modulus : moduli)
+          BOOST_TEST(modulus > 1e-3, "order " << order << ": a motion at rest");
+      }
+    }
 }
 
 BOOST_AUTO_TEST_CASE(angles_are_channels_and_pitch_moves_them) {
