@@ -109,6 +109,10 @@ constexpr double same_with_medium = 1e-2;
 /// Relative to the rotor speed: distance of two exponents between which the edge of a region may
 /// be.
 constexpr double least_gap = 0.01;
+/// An exponent of constant tangents below this factor of the square root of its residual, and below
+/// this part of the rotor speed (or 1 rad/s), may be that of a double zero.
+constexpr double most_split = 3.0;
+constexpr double largest_split = 1e-4;
 /// Relative to the rotor speed: an exponent below this, in the search, is that of a displacement.
 constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
@@ -408,7 +412,9 @@ class Analysis {
       const bool is_new = std::none_of(
           all_found_.begin(), all_found_.begin() + known,
           [&](Complex other) { return std::abs(other - pair.exponent) < same_found * speed_; });
-      if ((frequency > low || low == 0.0) && is_new) all_found_.push_back(pair.exponent);
+      // The first range also has those below it, which change the phase along its edge.
+      if ((frequency > low || low == 0.0 || known == 0) && is_new)
+        all_found_.push_back(pair.exponent);
       if (frequency > high || (frequency <= low && low > 0.0)) continue;
       Candidate candidate{pair, {}, {}};
       describe(candidate);
@@ -919,7 +925,11 @@ class Analysis {
         return std::abs(mode.pair.exponent - other) < same_found * unit_of_change(other, speed_);
       });
     });
-    for (const Candidate& mode : modes_) all_found_.push_back(mode.pair.exponent);
+    for (const Candidate& mode : modes_) {
+      Complex exponent = mode.pair.exponent;
+      if (std::abs(exponent.imag()) < zero_exponent * speed_) exponent.imag(0.0);
+      all_found_.push_back(exponent);
+    }
   }
 
   /// Motions of equal exponents: combinations of these that have names.
@@ -932,6 +942,9 @@ class Analysis {
     }
     choose_shapes(system_, exponents, shapes);
     for (std::size_t i = 0; i < modes_.size(); ++i) {
+      // Round-off splits a double zero by its square root.
+      const double split = most_split * std::sqrt(modes_[i].residual) * speed_;
+      if (std::abs(exponents[i]) < std::min(split, largest_split * speed_)) exponents[i] = 0.0;
       modes_[i].pair = {exponents[i], shapes[i].transpose()};
       describe(modes_[i], zero_exponent);
     }

@@ -283,7 +283,9 @@ HillRegion HillSearch::find_all(double frequency, int count) {
     const double expected =
         frequency / std::abs((shift - exponent) * (std::conj(shift) - exponent));
     if (std::abs(expected - modulus) > 0.5 * modulus) {  // of an infinite exponent
-      region.is_whole = true;
+      // Without harmonics, exponents in the range differ so much that some eigenvectors next to the
+      // last ones are not accurate; others follow from a shift next to them.
+      region.is_whole = pencil_.harmonics() > 0 || i == 0;
       break;
     }
     least = std::min(least, modulus);
