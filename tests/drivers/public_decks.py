@@ -86,7 +86,7 @@ class PublicDecks(ProgramTest):
                 self.analyse(row["modes"], "modes", "case.yaml", "--parked", "--set", "aero=none")
                 self.analyse("", "trim", "case.yaml")
                 self.analyse(row["floquet"], "floquet", "case.yaml")
-                self.analyse("", "transient", "case.yaml", "--set", "transient.duration=10",
+                self.analyse("", "transient", "case.yaml", "--set", "transient.duration=3",
                              "--set", "transient.step=0.01")
 
 

@@ -65,6 +65,20 @@ class Ranks(ProgramTest):
                 distances = abs(found[-1][:, None] - found[0]).min(axis=1)
                 self.assertLess((distances / numpy.maximum(1, abs(found[-1]))).max(), 1e-8)
 
+    def test_a_search_of_constant_tangents_finds_the_same(self):
+        case = SOURCE / "inputs/nrel5mw/land.yaml"
+        found = []
+        for ranks in (1, 2, 3):
+            self.succeed("modes", case, "--parked", "--set", "aero=none", "--set", "floquet.modes=8",
+                         "-o", "some.h5", ranks=ranks)
+            with h5py.File(self.folder / "some.h5") as file:
+                group = file["/modes"]
+                self.assertEqual(group.attrs["searched_is_counted"], 1)
+                found.append((group["exponents"][:] @ [1, 1j], list(group["label"].asstr()[:])))
+        for exponents, labels in found[1:]:
+            self.assertLess((abs(exponents - found[0][0]) / abs(found[0][0])).max(), EXPONENTS)
+            self.assertEqual(labels, found[0][1])
+
     def test_a_distributed_trim_has_the_table_of_one_rank(self):
         case = [SOURCE / "inputs/beam/rotating.yaml", "--set", "blades.elements=320", "--set",
                 "blades.order=1", "--set", "gravity=9.81", "--set", "trim.harmonics=3"]
