@@ -8,27 +8,27 @@
 namespace samara::analysis {
 namespace {
 
-/// R with R^T R = metric; `fallback` on the diagonal where the metric is not positive definite.
-Eigen::MatrixXd root_of(const Eigen::MatrixXd& metric, double fallback) {
-  const Eigen::LLT<Eigen::MatrixXd> factors(metric);
-  if (factors.info() != Eigen::Success || !metric.allFinite())
-    return fallback * Eigen::MatrixXd::Identity(metric.rows(), metric.cols());
-  return factors.matrixU();
-}
-
 /// Pivot of a factorization, relative to the diagonal, that may be round-off; and eigenvalue of a
 /// metric with ones on the diagonal that is.
 constexpr double least_pivot = 1e-11;
 constexpr double least_eigenvalue = 1e-13;
 
+using Factors = Eigen::LLT<Eigen::MatrixXd>;
+
+/// R with R^T R = metric; `fallback` on the diagonal where the metric is not positive definite.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& metric, const Factors& factors, double fallback) {
+  if (factors.info() != Eigen::Success || !metric.allFinite())
+    return fallback * Eigen::MatrixXd::Identity(metric.rows(), metric.cols());
+  return factors.matrixU();
+}
+
 /// Basis of the null space of a metric, d x its dimension.
-Eigen::MatrixXd null_space_of(const Eigen::MatrixXd& metric) {
+Eigen::MatrixXd null_space_of(const Eigen::MatrixXd& metric, const Factors& factors) {
   const Eigen::VectorXd diagonal = metric.diagonal();
-  if (diagonal.size() == 0 || !metric.allFinite() || !(diagonal.minCoeff() > 0.0))
-    return {metric.rows(), 0};
-  const Eigen::LLT<Eigen::MatrixXd> factors(metric);
-  if (factors.info() == Eigen::Success &&
-      (factors.matrixLLT().diagonal().array().square() > least_pivot * diagonal.array()).all())
+  const bool has_null_columns = diagonal.size() == 0 || !(diagonal.minCoeff() > 0.0);
+  if (has_null_columns || !metric.allFinite() ||
+      (factors.info() == Eigen::Success &&
+       (factors.matrixLLT().diagonal().array().square() > least_pivot * diagonal.array()).all()))
     return {metric.rows(), 0};
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * metric *
@@ -50,17 +50,19 @@ EnergyCoordinates::EnergyCoordinates(const system::PeriodicSystem& system,
         energy_root(group) * basis(group.unknowns, Eigen::seqN(is_kinetic ? d : 0, d));
     (is_kinetic ? kinetic : strain).noalias() += signals.transpose() * signals;
   }
-  without_inertia_ = null_space_of(kinetic);
+  Factors kinetic_factors(kinetic);
+  without_inertia_ = null_space_of(kinetic, kinetic_factors);
   strain += rate * rate * kinetic;
-  eta_ = root_of(strain, 1.0);
+  eta_ = root_of(strain, Factors(strain), 1.0);
   // As large as the strain energy at `rate`.
   if (without_inertia_.cols() > 0) {
     const Eigen::MatrixXd loads = strain * without_inertia_ / rate;
     kinetic.noalias() +=
         loads *
         (without_inertia_.transpose() * strain * without_inertia_).ldlt().solve(loads.transpose());
+    kinetic_factors.compute(kinetic);
   }
-  rate_ = root_of(kinetic, 1.0 / rate);
+  rate_ = root_of(kinetic, kinetic_factors, 1.0 / rate);
 }
 
 void EnergyCoordinates::divide(Eigen::MatrixXd& columns) const {

@@ -413,14 +413,14 @@ class Analysis {
     }
   }
 
-  /// A mode at rest has no energy in any part, and its harmonic is 0.
-  void settle_rest(Eigen::Index mode) {
+  /// A mode that has no energy in any part. `harmonic`: of its positions.
+  void settle_rest(Eigen::Index mode, int harmonic = 0) {
     Mode& at_rest = set_.modes[static_cast<std::size_t>(mode)];
     at_rest.parts.clear();
-    at_rest.harmonic = 0;
+    at_rest.harmonic = harmonic;
     for (Eigen::MatrixXd* shares : {&set_.participation, &sampled_shares_}) {
       shares->row(mode).setZero();
-      (*shares)(mode, samples_ / 2) = 1.0;
+      for (const int k : {-harmonic, harmonic}) (*shares)(mode, samples_ / 2 + k) += 0.5;
     }
   }
 
@@ -534,12 +534,8 @@ class Analysis {
     for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       Mode& mode = set_.modes[m];
       mode.harmonic = static_cast<int>(std::lround(harmonics(static_cast<Eigen::Index>(m))));
-      if (mode.harmonic == 0 || !mode.parts.empty()) continue;
-      for (Eigen::MatrixXd* shares : {&set_.participation, &sampled_shares_}) {  // of no energy
-        auto row = shares->row(static_cast<Eigen::Index>(m));
-        row.setZero();
-        for (const int k : {-mode.harmonic, mode.harmonic}) row(samples_ / 2 + k) += 0.5;
-      }
+      if (mode.harmonic != 0 && mode.parts.empty())
+        settle_rest(static_cast<Eigen::Index>(m), mode.harmonic);
     }
   }
 

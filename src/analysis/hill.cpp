@@ -156,11 +156,9 @@ class Analysis {
   std::optional<Floquet> run() {
     {
       const petsc::Stage stage("Hill: search");
-      std::optional<HillPencil> pencil;
-      ranks_.attempt([&] { search(pencil); });
-      if (!pencil) return std::nullopt;
-      if ((options_.least_damped == 0 || is_by_region()) && !counts_refined())
-        count_missing(*pencil);
+      ranks_.attempt([&] { search(); });
+      if (!pencil_) return std::nullopt;
+      if ((options_.least_damped == 0 || is_by_region()) && !counts_refined()) count_missing();
     }
     {
       const petsc::Stage stage("Hill: refinement");
@@ -172,33 +170,47 @@ class Analysis {
   }
 
  private:
+  /// The pencil with a number of harmonics, which is kept until another one is asked for. Shapes
+  /// get the samples that it needs.
+  HillPencil& pencil_of(int harmonics) {
+    if (!pencil_ || pencil_->harmonics() != harmonics)
+      pencil_.emplace(system_, solution_, harmonics, !is_constant_);
+    const Index least = is_constant_ ? 1 : std::max(shape_samples, 4 * harmonics + 2);
+    samples_ = std::max(samples_, least);
+    return *pencil_;
+  }
+  /// Of the refinement.
+  int first_harmonics() const {
+    if (is_constant_) return 0;
+    return std::max(least_harmonics, has_medium_ ? 2 * search_harmonics_ : solution_.harmonics());
+  }
+
   /// Finds approximate exponents with few harmonics, from the real axis upwards, or from
   /// `near_hz` to both sides. There is no pencil where the structure of the system does not serve.
-  void search(std::optional<HillPencil>& pencil) {
+  void search() {
     const int sectors = system_.symmetry().sectors;
     const int of_turning = sectors > 2 ? sectors / 2 : search_harmonics;
     const int harmonics = is_constant_ ? 0 : of_turning;
-    pencil.emplace(system_, solution_, harmonics, !is_constant_);
-    if (!pencil->is_solvable()) {
-      pencil.reset();
+    HillPencil& pencil = pencil_of(harmonics);
+    if (!pencil.is_solvable()) {
+      pencil_.reset();
       return;
     }
-    has_medium_ = pencil->has_medium();
+    has_medium_ = pencil.has_medium();
     search_harmonics_ = harmonics;
-    samples_ = is_constant_ ? 1 : std::max(shape_samples, 4 * harmonics + 2);
-    sectors_ = pencil->sectors();
+    sectors_ = pencil.sectors();
     nearest_ = sectors_ / 2;
     if (options_.least_damped > 0 && !is_by_region()) {
       search_decays();
       return;
     }
-    HillSearch search(*pencil);
+    HillSearch search(pencil);
     if (options_.near_hz)
       search_near(search, 2.0 * std::numbers::pi * *options_.near_hz);
     else
       search_upwards(search);
     if (!options_.near_hz) lower_edge();
-    if (has_medium_) lower_decay(*pencil);
+    if (has_medium_) lower_decay(pencil);
     // Slow modes have no larger decay: those of strong damping are left out.
     region_.decay = std::min(region_.decay, region_.high);
     region_.growth = std::min(region_.growth, region_.high);
@@ -210,14 +222,14 @@ class Analysis {
   }
 
   /// Counts the eigenvalues in the region, that of the first rank.
-  void count_missing(HillPencil& pencil) {
+  void count_missing() {
     for (double* value : {&region_.low, &region_.high, &region_.decay, &region_.growth})
       ranks_.share(0, *value);
     ranks_.share(0, all_found_);
     ranks_.share(0, expected_);
     ranks_.share(0, needed_decay_);
     ranks_.share(0, decays_);
-    HillSearch search(pencil);
+    HillSearch search(*pencil_);
     region_is_counted_ = is_complete(search, region_);
     if (!has_medium_) return;
     // Next to exponents of the medium, the preconditioner may not serve.
@@ -605,16 +617,12 @@ class Analysis {
   void refine(std::vector<HillGroup> groups) {
     share_groups(ranks_, groups);
     std::vector<Candidate> doubtful;
-    harmonics_ = has_medium_ ? std::max(least_harmonics, 2 * search_harmonics_)
-                             : std::max(least_harmonics, solution_.harmonics());
-    if (is_constant_) harmonics_ = 0;
+    harmonics_ = first_harmonics();
     int added = 0;  // harmonics, since the attempt before
     const Tolerance& tolerances = is_by_change() ? of_series_with_medium : of_series;
     double tolerance = is_constant_ ? tolerances.last : tolerances.first;
     while (!groups.empty()) {
-      HillPencil pencil(system_, solution_, harmonics_, !is_constant_);
-      if (!is_constant_) samples_ = std::max<Index>(samples_, 4 * harmonics_ + 2);
-      HillGroups all(system_, solution_, pencil, ranks_);
+      HillGroups all(system_, solution_, pencil_of(harmonics_), ranks_);
       all.refine(groups, tolerance);
       if (tolerance > tolerances.last) all.refine_further(groups, tolerances.last);
       tolerance = tolerances.last;
@@ -910,9 +918,9 @@ class Analysis {
     if (is_constant_) choose_among_equals();
     if (counts_refined()) {
       take_refined();
-      HillPencil pencil(system_, solution_, 0, false);
-      count_missing(pencil);
+      count_missing();
     }
+    pencil_.reset();
     if (options_.least_damped > 0) leave_slowest_decays();
   }
 
@@ -1069,6 +1077,7 @@ class Analysis {
   Ranks ranks_;
   bool is_constant_;
   double speed_;  ///< of the rotor; at rest 1 rad/s
+  std::optional<HillPencil> pencil_;
   bool has_medium_ = false;
   int search_harmonics_ = 0;
   HarmonicEnergy energy_;

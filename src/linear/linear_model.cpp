@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include <Eigen/LU>
@@ -42,12 +43,9 @@ struct Jet {
 /// and more, singular matrices 1e-15.)
 constexpr double least_pivot = 1e-13;
 
-/// The matrix maps a vector to zero whose largest entry has this number.
-struct Singular {
-  Eigen::Index largest;
-};
-
-void require_regular(const Eigen::PartialPivLU<Dense>& lu) {
+/// `moved`: states whose accelerations the first columns belong to.
+/// @throws InputError with the name of the one that moves most where the matrix is singular
+void require_regular(const Eigen::PartialPivLU<Dense>& lu, std::span<const ModelState> moved) {
   const auto& U = lu.matrixLU();
   Eigen::Index at = 0;
   const Eigen::VectorXd pivots = U.diagonal().cwiseAbs();
@@ -55,13 +53,18 @@ void require_regular(const Eigen::PartialPivLU<Dense>& lu) {
   Eigen::VectorXd null = Eigen::VectorXd::Zero(U.rows());
   null(at) = 1.0;
   null.head(at) = -U.topLeftCorner(at, at).triangularView<Eigen::Upper>().solve(U.col(at).head(at));
-  Singular singular{};
-  null.cwiseAbs().maxCoeff(&singular.largest);
-  throw singular;
+  Eigen::Index largest = 0;
+  null.cwiseAbs().maxCoeff(&largest);
+  if (largest >= static_cast<Eigen::Index>(moved.size()))
+    throw InternalError("the balances do not determine accelerations and reactions");
+  throw InputError(
+      "linearize: a motion of \"" + moved[static_cast<std::size_t>(largest)].name +
+      "\" has no inertia (so it is with an elastic blade behind a hinge): its acceleration does "
+      "not follow from the state; hint: samara modes and samara floquet leave such a motion out");
 }
 
-/// Dense solve with rows and columns of size one, refined once. @throws Singular
-Dense solve_scaled(const Dense& matrix, const Dense& right) {
+/// Dense solve with rows and columns of size one, refined once. `moved`: see require_regular.
+Dense solve_scaled(const Dense& matrix, const Dense& right, std::span<const ModelState> moved) {
   if (matrix.rows() == 0) return right;
   Eigen::VectorXd rows = matrix.cwiseAbs().rowwise().maxCoeff();
   if (rows.minCoeff() == 0.0)
@@ -74,7 +77,7 @@ Dense solve_scaled(const Dense& matrix, const Dense& right) {
   columns = columns.cwiseInverse();
   scaled = scaled * columns.asDiagonal();
   const Eigen::PartialPivLU<Dense> lu(scaled);
-  require_regular(lu);
+  require_regular(lu, moved);
   const Dense b = rows.asDiagonal() * right;
   Dense x = lu.solve(b);
   x += lu.solve(b - multiply(scaled, x));
@@ -300,17 +303,8 @@ StateSpace LinearModel::state_space(double t) const {
     rest << all.leftCols(2 * d), all.middleCols(at.xi(), n_1), all.rightCols(3 * m);
     return rest;
   };
-  Dense found;
-  try {
-    found = solve_scaled(matrix, -without(known));
-  } catch (const Singular& singular) {
-    if (singular.largest >= d)
-      throw InternalError("the balances do not determine accelerations and reactions");
-    throw InputError(
-        "linearize: a motion of \"" + states_[static_cast<std::size_t>(singular.largest)].name +
-        "\" has no inertia (so it is with an elastic blade behind a hinge): its acceleration does "
-        "not follow from the state; hint: samara modes and samara floquet leave such a motion out");
-  }
+  const Dense found =
+      solve_scaled(matrix, -without(known), std::span(states_).first(static_cast<std::size_t>(d)));
   const Dense acceleration = found.topRows(d);
   const Dense xi_dot = found.bottomRows(n_1);
 

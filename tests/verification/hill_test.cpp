@@ -132,8 +132,6 @@ BOOST_AUTO_TEST_CASE(hill_agrees_with_integration) {
   }
 }
 
-/// The steps find energies from time series of the signals of all initial states, Hill's method
-/// from the series of one mode.
 /// At rest with gravity, with a free generator or a teeter, in still and in moving air; a rotor, a
 /// beam and a tower that turn in their own axes.
 BOOST_AUTO_TEST_CASE(searches_of_constant_tangents_agree_with_all_modes) {
@@ -177,6 +175,8 @@ BOOST_AUTO_TEST_CASE(searches_of_constant_tangents_agree_with_all_modes) {
     }
 }
 
+/// The steps find energies from time series of the signals of all initial states, Hill's method
+/// from the series of one mode.
 BOOST_AUTO_TEST_CASE(energies_of_modes_are_those_of_their_series) {
   for (const auto& [name, order, steps] :
        {std::tuple{"nrel5mw/land", 6, 36}, std::tuple{"nrel5mw/land", 2, 360},

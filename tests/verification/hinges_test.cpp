@@ -332,9 +332,8 @@ std::string elastic(double rate, const std::string& hinges, int elements, int co
   return "samara: 1\ngravity: 0\nshaft: {speed: " + std::to_string(rate) +
          "}\nhub: {radius: 0}\nblades:\n  count: " + std::to_string(count) +
          "\n  length: 10\n  order: 5\n  elements: " + std::to_string(elements) +
-         "\n  sections: [{mass: 1, inertia: [2e-6, 1e-6, 1e-6], stiffness: {EA: 1e8, GA2: 4e7, "
-         "GA3: "
-         "4e7, GJ: 8e3, EI2: 1e4, EI3: 1e4}}]\n  hinges: " +
+         "\n  sections: [{mass: 1, inertia: [2e-6, 1e-6, 1e-6], stiffness: {EA: 1e8, "
+         "GA2: 4e7, GA3: 4e7, GJ: 8e3, EI2: 1e4, EI3: 1e4}}]\n  hinges: " +
          hinges + "\n";
 }
 

@@ -43,7 +43,8 @@ std::vector<int> scanned_steps() {
   std::vector<int> steps{100, 774};
   if (std::getenv("SAMARA_ALL_STEPS") == nullptr) return steps;
   for (int count = 150; count <= 2000; count += 100) steps.push_back(count);
-  for (const int count : {251, 726, 735, 741, 747, 756, 762, 768, 801, 861}) steps.push_back(count);
+  for (const int count : {251, 501, 726, 735, 741, 747, 756, 762, 768, 801, 861})
+    steps.push_back(count);
   return steps;
 }
 
@@ -51,6 +52,7 @@ std::vector<int> scanned_steps() {
 std::vector<std::string> scanned_damping() {
   std::vector<std::string> damping{"0", "0.02"};
   if (std::getenv("SAMARA_ALL_STEPS") == nullptr) return damping;
+  damping.emplace_back("0.0055");
   for (int i = 1; i < 20; ++i) damping.push_back(std::to_string(0.001 * i));
   return damping;
 }
