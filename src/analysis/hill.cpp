@@ -109,6 +109,8 @@ constexpr double same_with_medium = 1e-2;
 /// Relative to the rotor speed: distance of two exponents between which the edge of a region may
 /// be.
 constexpr double least_gap = 0.01;
+/// The highest edge of a region of constant tangents, relative to the lowest one that is enough.
+constexpr double highest_edge = 1.3;
 /// An exponent of constant tangents below this factor of the square root of its residual, and below
 /// this part of the rotor speed (or 1 rad/s), may be that of a double zero.
 constexpr double most_split = 3.0;
@@ -481,8 +483,12 @@ class Analysis {
   int centred() const { return centred(region_.high); }
 
   /// Lowers the edge of the region to what the slowest modes need, to the middle between two
-  /// exponents.
+  /// exponents. Those of constant tangents may be close to each other relative to their size: the
+  /// widest gap within a range is taken.
   void lower_edge() {
+    double lowest = 0.0;
+    double widest = 0.0;
+    double chosen = region_.high;
     std::vector<double> frequencies;
     for (const Complex exponent : all_found_) frequencies.push_back(exponent.imag());
     std::sort(frequencies.begin(), frequencies.end());
@@ -491,9 +497,13 @@ class Analysis {
       if (frequencies[i] - frequencies[i - 1] < least_gap * speed_ || edge > region_.high ||
           is_next_to_medium(edge) || !is_enough(edge))
         continue;
-      region_.high = edge;
-      return;
+      if (lowest == 0.0) lowest = edge;
+      if (edge > (is_constant_ ? highest_edge : 1.0) * lowest) break;
+      if (frequencies[i] - frequencies[i - 1] <= widest) continue;
+      widest = frequencies[i] - frequencies[i - 1];
+      chosen = edge;
     }
+    region_.high = chosen;
   }
 
   /// Whether copies of the decays of a medium are next to an edge.

@@ -6,6 +6,7 @@
 #include <exception>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,7 @@ constexpr double real_part_of_shift = 0.3;
 /// eigenvalue is that of something else.
 constexpr double least_distance = 0.1;
 constexpr double largest_correction = 0.5;
+constexpr double no_exponent = std::numeric_limits<double>::infinity();
 
 /// Solves (A + sigma B) y = B x for real x.
 struct ShiftInvert {
@@ -130,17 +132,18 @@ PetscErrorCode apply_inverse(Mat matrix, Vec x, Vec y) {
 
 /// The exponent lambda of an eigenvalue -Im(sigma) / ((sigma - lambda) (conj(sigma) - lambda)) next
 /// to an approximation by the eigenvector, which has larger errors far from the shift. Near its
-/// real part the eigenvalue hardly depends on the exponent, and the approximation stays.
-Complex exponent_at(Complex shift, Complex eigenvalue, Complex approximation) {
+/// real part the eigenvalue hardly depends on the exponent, and the approximation stays. Empty
+/// where the two do not fit.
+std::optional<Complex> exponent_at(Complex shift, Complex eigenvalue, Complex approximation) {
   const double height = shift.imag();
   const Complex square = -height * height - height / eigenvalue;  // (lambda - Re(sigma))^2
   Complex distance = std::sqrt(square);
   if (std::abs(distance) < least_distance * height) return approximation;
   if (std::real(std::conj(distance) * (approximation - shift.real())) < 0.0) distance = -distance;
   const Complex exponent = shift.real() + distance;
-  return std::abs(exponent - approximation) < largest_correction * std::abs(approximation)
-             ? exponent
-             : approximation;
+  if (!(std::abs(exponent - approximation) < largest_correction * std::abs(approximation)))
+    return std::nullopt;
+  return exponent;
 }
 
 /// Half the width at height y of the region |s^2 + omega^2| <= rho; 0 outside.
@@ -277,12 +280,14 @@ HillRegion HillSearch::find_all(double frequency, int count) {
       from_real(view.data(), pencil_.width(), y);
     }
     x += Complex(0.0, 1.0) * y;
-    const Complex exponent = pencil_.harmonics() > 0
-                                 ? pencil_.exponent_of(x)
-                                 : exponent_at(shift, {value_re, value_im}, pencil_.exponent_of(x));
+    const Complex approximation = pencil_.exponent_of(x);
+    const Complex exponent =
+        pencil_.harmonics() > 0
+            ? approximation
+            : exponent_at(shift, {value_re, value_im}, approximation).value_or(no_exponent);
     const double expected =
         frequency / std::abs((shift - exponent) * (std::conj(shift) - exponent));
-    if (std::abs(expected - modulus) > 0.5 * modulus) {  // of an infinite exponent
+    if (!(std::abs(expected - modulus) <= 0.5 * modulus)) {  // of an infinite exponent
       // Without harmonics, exponents in the range differ so much that some eigenvectors next to the
       // last ones are not accurate; others follow from a shift next to them.
       region.is_whole = pencil_.harmonics() > 0 || i == 0;

@@ -3,8 +3,19 @@
 #include <algorithm>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 namespace samara::analysis {
+namespace {
+
+/// Left eigenvectors by row. There are fewer eigenvectors than entries where directions without
+/// inertia are left out.
+Eigen::MatrixXcd left_vectors_of(const Eigen::MatrixXcd& right) {
+  if (right.rows() == right.cols()) return right.partialPivLu().inverse();
+  return right.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+}  // namespace
 
 StateParts find_state_parts(const system::PeriodicSystem& system) {
   StateParts parts;
@@ -21,7 +32,7 @@ std::vector<int> leading_states(const Eigenpairs& pairs, Eigen::Index motion,
                                 const StateParts& parts) {
   std::vector<int> leading(pairs.values.size(), -1);
   if (parts.owners.empty()) return leading;
-  const Eigen::MatrixXcd left = pairs.vectors.partialPivLu().inverse();
+  const Eigen::MatrixXcd left = left_vectors_of(pairs.vectors);
   for (std::size_t m = 0; m < leading.size(); ++m) {
     const auto column = static_cast<Eigen::Index>(m);
     Eigen::VectorXcd factors = left.row(column).transpose().cwiseProduct(pairs.vectors.col(column));
