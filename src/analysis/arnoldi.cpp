@@ -4,17 +4,18 @@
 
 namespace samara::analysis {
 
-Arnoldi::Arnoldi(const Vector& start, Index most)
-    : basis_(start.normalized()), small_(Matrix::Zero(most + 1, most)) {}
+Arnoldi::Arnoldi(const Vector& start, Index most, const Ranks& ranks)
+    : ranks_(ranks), basis_(start / ranks.norm(start)), small_(Matrix::Zero(most + 1, most)) {}
 
 bool Arnoldi::extend(Vector image, double least) {
   const Index step = size();
   for (int repeat = 0; repeat < 2; ++repeat) {
-    const Vector parts = basis_.adjoint() * image;
+    Matrix parts = basis_.adjoint() * image;
+    ranks_.sum(parts);
     image -= basis_ * parts;
     small_.col(step).head(step + 1) += parts;
   }
-  const double norm = image.norm();
+  const double norm = ranks_.norm(image);
   const bool is_new = norm > least;
   basis_.conservativeResize(Eigen::NoChange, step + 2);
   if (is_new) {

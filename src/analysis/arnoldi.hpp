@@ -3,18 +3,20 @@
 
 #include <Eigen/Core>
 
+#include "samara/analysis/ranks.hpp"
+
 namespace samara::analysis {
 
 /// An orthonormal basis v_0 ... v_n of a Krylov space of a map S, and the map on it:
-/// S v_k = sum_j v_j h_jk. The caller applies the map.
+/// S v_k = sum_j v_j h_jk. The caller applies the map. Each rank has a part of all vectors.
 class Arnoldi {
  public:
   using Index = Eigen::Index;
   using Vector = Eigen::VectorXcd;
   using Matrix = Eigen::MatrixXcd;
 
-  /// `most`: images that are added. The start is not zero.
-  Arnoldi(const Vector& start, Index most);
+  /// `most`: images that are added. The start is not zero. `ranks`: those that have the parts.
+  Arnoldi(const Vector& start, Index most, const Ranks& ranks);
 
   Index size() const { return basis_.cols() - 1; }  ///< number of images
   /// The vector whose image is next.
@@ -29,6 +31,7 @@ class Arnoldi {
   Vector vector_of(const Vector& in_basis) const { return basis_.leftCols(size()) * in_basis; }
 
  private:
+  Ranks ranks_;
   Matrix basis_, small_;
 };
 

@@ -53,18 +53,18 @@ PetscErrorCode ComplexSolver::precondition(PC preconditioner, Vec x, Vec y) {
 }
 
 ComplexSolver::ComplexSolver(Eigen::Index size, Map matrix, Map preconditioner, double tolerance,
-                             const std::string& prefix)
+                             const std::string& prefix, MPI_Comm comm)
     : matrix_map_(std::move(matrix)),
       preconditioner_map_(std::move(preconditioner)),
       in_(size),
       out_(size) {
   const auto n = static_cast<PetscInt>(2 * size);
-  petsc::check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, this, matrix_.fill()));
+  petsc::check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, this, matrix_.fill()));
   petsc::check(
       MatShellSetOperation(matrix_.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
-  right_ = petsc::make_vector(PETSC_COMM_SELF, n, n);
-  solution_ = petsc::make_vector(PETSC_COMM_SELF, n, n);
-  petsc::check(KSPCreate(PETSC_COMM_SELF, solver_.fill()));
+  right_ = petsc::make_vector(comm, n, PETSC_DETERMINE);
+  solution_ = petsc::make_vector(comm, n, PETSC_DETERMINE);
+  petsc::check(KSPCreate(comm, solver_.fill()));
   KSP solver = solver_.get();
   petsc::check(KSPSetOptionsPrefix(solver, prefix.c_str()));
   petsc::check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));

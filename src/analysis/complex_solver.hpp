@@ -7,6 +7,7 @@
 #include <string>
 
 #include <Eigen/Core>
+#include <mpi.h>
 
 #include "samara/petsc/handle.hpp"
 
@@ -20,9 +21,10 @@ class ComplexSolver {
   /// Writes the product with the first vector into the second one.
   using Map = std::function<void(const Vector&, Vector&)>;
 
-  /// `matrix` and `preconditioner` (an approximate inverse) of size x size.
+  /// `matrix` and `preconditioner` (an approximate inverse) of size x size. Each rank of `comm` has
+  /// a part of the vectors, of its own size.
   ComplexSolver(Eigen::Index size, Map matrix, Map preconditioner, double tolerance,
-                const std::string& prefix);
+                const std::string& prefix, MPI_Comm comm);
   ComplexSolver(const ComplexSolver&) = delete;
   ComplexSolver& operator=(const ComplexSolver&) = delete;
   ~ComplexSolver() = default;

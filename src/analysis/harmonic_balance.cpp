@@ -98,7 +98,7 @@ class Balance {
 
   Eigen::Index width() const { return width_; }
   /// On all ranks.
-  Eigen::Index unknowns() const { return partition_.is_distributed() ? system_.size() : size_; }
+  Eigen::Index unknowns() const { return partition_.size_of_all(); }
   const MeshPartition& partition() const { return partition_; }
 
   /// Zero where another rank has the unknown.
@@ -139,7 +139,7 @@ class Balance {
 
   /// Sets them to the solutions of the rows.
   void solve_deferred(PetscScalar* h) {
-    if (tangents_.deferred().empty()) return;
+    if (partition_.ranks().all(tangents_.deferred().empty())) return;
     drop_deferred(h);
     Eigen::MatrixXd rows(width_, size_);
     complete_residual(h, rows.data());
@@ -365,8 +365,7 @@ PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* 
     const bool is_start =
         context.start != nullptr &&
         ranks.all((context.unscaled - *context.start).norm() <= same * context.start->norm());
-    if (!is_start)
-      ranks.attempt([&] { context.tangents->sample(context.balance->own_solution(h)); });
+    if (!is_start) context.tangents->sample(context.balance->own_solution(h));
     context.start = nullptr;
     if (context.preconditioner != nullptr) {
       if (!factors_serve(snes, context)) factor_harmonics(context);
@@ -567,10 +566,12 @@ void choose_linear_solver(SNES solver, SolverContext& context) {
 
 /// What a rank has of the mesh.
 std::string words_of(const MeshPartition& partition) {
-  if (partition.is_distributed())
-    return ", mesh on " + std::to_string(partition.ranks().size) + " ranks";
   const int sectors = partition.sector().sectors;
-  return sectors > 1 ? ", one of " + std::to_string(sectors) + " blades in the place of all" : "";
+  std::string words;
+  if (sectors > 1) words = ", one of " + std::to_string(sectors) + " blades in the place of all";
+  if (partition.is_distributed())
+    words += ", mesh on " + std::to_string(partition.ranks().size) + " ranks";
+  return words;
 }
 
 /// The linear solver that was used, for the report.
@@ -617,14 +618,14 @@ Trim solve_by(bool tries_harmonics, const system::PeriodicSystem& system, const 
   const MeshPartition partition(system, held, tries_harmonics && given.empty(),
                                 tries_harmonics ? comm : PETSC_COMM_SELF);
   const Ranks& ranks = partition.ranks();
-  HarmonicTangents tangents(partition, held, harmonics);
+  HarmonicTangents tangents(partition, held, harmonics, true);
   Balance balance(partition, tangents, held, given, harmonics);
   HarmonicPreconditioner preconditioner(tangents);
   const auto local_start = [&](const PeriodicSolution* from) -> Eigen::VectorXd {
     return partition.local(start_coefficients(system, harmonics, from)).reshaped();
   };
   Eigen::VectorXd h = local_start(start);
-  ranks.attempt([&] { tangents.sample(balance.own_solution(h.data())); });
+  tangents.sample(balance.own_solution(h.data()));
   tangents.sector().drop_absent(h.reshaped(balance.width(), partition.size()));
   balance.drop_deferred(h.data());
   SolverContext context;

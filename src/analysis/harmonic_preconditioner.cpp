@@ -469,9 +469,10 @@ void HarmonicPreconditioner::solve(const double* right, double* solution) {
 }
 
 HarmonicPreconditioner::Complex HarmonicPreconditioner::log_determinant() const {
-  Complex sum = present_.empty() ? 0.0 : complement_factors_.log_determinant();
-  for (const BlockFactors<Complex>& factors : factors_) sum += factors.log_determinant();
-  return sum;
+  Eigen::MatrixXcd sum = Eigen::MatrixXcd::Zero(1, 1);
+  for (const BlockFactors<Complex>& factors : factors_) sum(0) += factors.log_determinant();
+  if (tangents_.partition() != nullptr) tangents_.partition()->ranks().sum(sum);
+  return present_.empty() ? sum(0) : sum(0) + complement_factors_.log_determinant();
 }
 
 }  // namespace samara::analysis

@@ -71,14 +71,14 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, int har
 }
 
 HarmonicTangents::HarmonicTangents(const MeshPartition& partition, const Coordinates& held,
-                                   int harmonics)
+                                   int harmonics, bool may_defer)
     : system_(partition.system()),
       partition_(partition.is_distributed() ? &partition : nullptr),
       harmonics_(harmonics),
       width_(2 * harmonics + 1),
       block_size_(partition.block_size()),
       sector_(partition.sector()),
-      repeats_(sector_.sectors > 1) {
+      repeats_(may_defer && sector_.sectors > 1) {
   TangentPattern whole = find_pattern(system_, held);
   mark_border(partition.is_distributed() ? partition.border()
                                          : find_border(whole, block_size_, held));
@@ -158,12 +158,22 @@ bool HarmonicTangents::holds(PetscInt row, PetscInt unknown) const {
 }
 
 void HarmonicTangents::sample(const PeriodicSolution& solution) {
+  const auto take = [&](int turns) {
+    Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(4, size_);
+    const auto work = [&] { sample_all(solution, turns, likeness); };
+    if (partition_ != nullptr)
+      partition_->ranks().attempt(work);
+    else
+      work();
+    if (sector_.sectors > 1) find_followers();
+    return likeness;
+  };
   if (!repeats_) {
-    sample_all(solution, 1);
-  } else if (!defer(sample_all(solution, sector_.sectors))) {
+    take(1);
+  } else if (!defer(unlike_rows(take(sector_.sectors)))) {
     repeats_ = false;
     deferred_.clear();
-    sample_all(solution, 1);
+    take(1);
   }
   list_entries();
 }
@@ -224,8 +234,9 @@ HarmonicTangents::Series HarmonicTangents::find_series(const Place& place) const
 }
 
 /// With several turns, all blades at the instants of a sector are the first blade at the instants
-/// of a revolution. @returns rows for which one instant shows that they are not
-std::vector<PetscInt> HarmonicTangents::sample_all(const PeriodicSolution& solution, int turns) {
+/// of a revolution. `likeness`: what one instant shows of this, see likeness_of(); K, then M.
+void HarmonicTangents::sample_all(const PeriodicSolution& solution, int turns,
+                                  Eigen::MatrixXd& likeness) {
   const petsc::Handle<Vec> z = system_.make_state();
   const petsc::Handle<Vec> z_dot = system_.make_state();
   const petsc::Handle<Mat> jacobian = system_.make_jacobian();
@@ -240,7 +251,6 @@ std::vector<PetscInt> HarmonicTangents::sample_all(const PeriodicSolution& solut
   // The samples of a place are next to each other in memory: some at a time are written.
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(pattern_.nonZeros(), turns * samples_at_once);
   Eigen::MatrixXd M = K;
-  std::vector<PetscInt> unlike;
   for (int first = 0; first < evaluated; first += samples_at_once) {
     const int count = std::min(samples_at_once, evaluated - first);
     for (int n = 0; n < count; ++n) {
@@ -259,10 +269,8 @@ std::vector<PetscInt> HarmonicTangents::sample_all(const PeriodicSolution& solut
     }
     if (turns > 1 && first == 0) {
       evaluate(evaluated);
-      unlike = unlike_rows(jacobian.get(), of_jacobian_, K.col(samples_at_once));
-      const std::vector<PetscInt> of_rates =
-          unlike_rows(mass.get(), of_mass_, M.col(samples_at_once));
-      unlike.insert(unlike.end(), of_rates.begin(), of_rates.end());
+      likeness << likeness_of(jacobian.get(), of_jacobian_, K.col(samples_at_once)),
+          likeness_of(mass.get(), of_mass_, M.col(samples_at_once));
     }
     if (sector_.sectors > 1)
       for (const Place& place : places_)
@@ -277,25 +285,25 @@ std::vector<PetscInt> HarmonicTangents::sample_all(const PeriodicSolution& solut
       sampled_.middleRows(samples + begin, count) = M.middleCols(from, count).transpose();
     }
   }
-  if (sector_.sectors > 1) find_followers();
-  return unlike;
 }
 
 /// An unknown that is not moved and that no other row refers to, such as the component of a
 /// velocity in axes of the rotor, only follows the others. It has all harmonics if its row has no
 /// blade, and not its own rate.
 void HarmonicTangents::find_followers() {
-  std::vector<char> is_used(sector_.kept.size(), 0);
+  Eigen::MatrixXd uses = Eigen::MatrixXd::Zero(1, size_);
   for (const Place& place : places_) {
     const auto sampled = sampled_.col(place.number);
     if (sampled.isZero(0.0)) continue;
     if (place.row != place.column || !sampled.tail(sampled.size() / 2).isZero(0.0))
-      is_used[static_cast<std::size_t>(place.column)] = 1;
-    if (sector_.is_moved(place.column)) is_used[static_cast<std::size_t>(place.row)] = 1;
+      ++uses(place.column);
+    if (sector_.is_moved(place.column)) ++uses(place.row);
   }
-  is_follower_.resize(is_used.size(), 0);
-  for (std::size_t i = 0; i < is_used.size(); ++i) {
-    if (is_used[i] || sector_.is_moved(static_cast<PetscInt>(i))) continue;
+  if (partition_ != nullptr) partition_->sum_border(uses);
+  is_follower_.resize(sector_.kept.size(), 0);
+  for (std::size_t i = 0; i < is_follower_.size(); ++i) {
+    if (uses(static_cast<Eigen::Index>(i)) > 0.0 || sector_.is_moved(static_cast<PetscInt>(i)))
+      continue;
     is_follower_[i] = 1;
     sector_.remainder[i] = RotorSector::every;
   }
@@ -358,32 +366,38 @@ void HarmonicTangents::require_pattern(Mat tangent, const EntryPlaces& places) c
       });
 }
 
-/// Rows of a tangent that differ from the turned entries of a sector before, beyond round-off and
-/// the error of the solution.
-std::vector<PetscInt> HarmonicTangents::unlike_rows(
+/// For each row of a tangent: the largest entry, and the largest difference from the turned entries
+/// of a sector before.
+Eigen::MatrixXd HarmonicTangents::likeness_of(
     Mat tangent, const std::vector<EntryPlaces>& places,
     const Eigen::Ref<const Eigen::VectorXd>& turned) const {
   Eigen::VectorXd direct = Eigen::VectorXd::Zero(turned.size());
   take_entries(tangent, places.front(), direct);
-  Eigen::VectorXd largest = Eigen::VectorXd::Zero(size_);
-  Eigen::VectorXd difference = largest;
+  Eigen::MatrixXd largest = Eigen::MatrixXd::Zero(2, size_);
   for (const Place& place : places_) {
     const double scale = unknown(place.column).scale;
     const auto number = static_cast<Eigen::Index>(place.number);
-    double& most = largest(place.row);
-    double& change = difference(place.row);
-    most = std::max(most, scale * std::abs(direct(number)));
-    change = std::max(change, scale * std::abs(direct(number) - turned(number)));
+    auto row = largest.col(place.row);
+    row(0) = std::max(row(0), scale * std::abs(direct(number)));
+    row(1) = std::max(row(1), scale * std::abs(direct(number) - turned(number)));
   }
   // Entries of other blades whose images the pattern of the first one does not have.
   const MatrixEntries entries(tangent);
   for (const EntryPlaces& turn : places)
     for (const EntryPlaces::Outside& one : turn.outside)
-      difference(one.row) =
-          std::max(difference(one.row), one.scale * std::abs(entries.values()[one.entry]));
+      largest(1, one.row) =
+          std::max(largest(1, one.row), one.scale * std::abs(entries.values()[one.entry]));
+  return largest;
+}
+
+/// Rows that differ from those of a sector before, beyond round-off and the error of the solution.
+std::vector<PetscInt> HarmonicTangents::unlike_rows(Eigen::MatrixXd likeness) const {
+  if (partition_ != nullptr) partition_->sum_border(likeness);
   std::vector<PetscInt> unlike;
   for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i)
-    if (!(difference(i) <= same_tangent * largest(i))) unlike.push_back(i);
+    if (!(likeness(1, i) <= same_tangent * likeness(0, i)) ||
+        !(likeness(3, i) <= same_tangent * likeness(2, i)))
+      unlike.push_back(i);
   return unlike;
 }
 
@@ -395,20 +409,42 @@ bool HarmonicTangents::defer(const std::vector<PetscInt>& rows) {
   for (const PetscInt row : rows)
     if (std::ranges::none_of(deferred_, [row](const Deferred& one) { return one.number == row; }))
       deferred_.push_back({row, 0.0});
-  for (Deferred& deferred : deferred_) {
+  bool serves = true;
+  Eigen::MatrixXd factors = Eigen::MatrixXd::Zero(1, size_);
+  const auto diagonal_of = [this](PetscInt row) {
+    for (PetscInt e = pattern_.outerIndexPtr()[row]; e < pattern_.outerIndexPtr()[row + 1]; ++e)
+      if (pattern_.innerIndexPtr()[e] == row) return e;
+    return PetscInt{-1};
+  };
+  // The ranks' parts of a row of the border add up; the first rank has the factor 1.
+  const auto is_counted = [this](PetscInt row) {
+    return partition_ == nullptr || partition_->is_first() || !is_border(row);
+  };
+  for (const Deferred& deferred : deferred_) {
     const PetscInt row = deferred.number;
-    if (is_follower_[static_cast<std::size_t>(row)] == 0) return false;
+    const PetscInt place = diagonal_of(row);
+    serves = serves && is_follower_[static_cast<std::size_t>(row)] != 0 &&
+             (place >= 0 || !is_counted(row));
+    if (place < 0) continue;
+    const auto sampled = sampled_.col(place).head(samples);
+    factors(row) = sampled.mean();
+    const double change = (sampled.array() - factors(row)).abs().maxCoeff();
+    serves = serves && change <= same_tangent * std::abs(factors(row));
+  }
+  if (partition_ != nullptr) partition_->sum_border(factors);
+  for (Deferred& deferred : deferred_) {
+    deferred.factor = factors(deferred.number);
+    serves = serves && deferred.factor != 0.0;
+  }
+  if (partition_ != nullptr) serves = partition_->ranks().all(serves);
+  if (!serves) return false;
+  for (const Deferred& deferred : deferred_) {
+    const PetscInt row = deferred.number;
     for (PetscInt e = pattern_.outerIndexPtr()[row]; e < pattern_.outerIndexPtr()[row + 1]; ++e) {
-      auto sampled = sampled_.col(e);
-      if (pattern_.innerIndexPtr()[e] == row) {
-        const double mean = sampled.head(samples).mean();
-        const double change = (sampled.head(samples).array() - mean).abs().maxCoeff();
-        if (mean == 0.0 || change > same_tangent * std::abs(mean)) return false;
-        deferred.factor = mean;
-        sampled.head(samples).setOnes();
-      } else {
-        sampled.setZero();
-      }
+      if (pattern_.innerIndexPtr()[e] != row)
+        sampled_.col(e).setZero();
+      else
+        sampled_.col(e).head(samples).setConstant(is_counted(row) ? 1.0 : 0.0);
     }
   }
   return true;

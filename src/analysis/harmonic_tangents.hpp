@@ -38,11 +38,13 @@ class HarmonicTangents {
   /// `by_sector`: motions as above, if the system has identical blades.
   HarmonicTangents(const system::PeriodicSystem& system, int harmonics, bool by_sector);
   /// The map of the unknowns on this rank, with the terms that this rank evaluates. Sums over the
-  /// ranks are those of the whole system.
-  HarmonicTangents(const MeshPartition& partition, const Coordinates& held, int harmonics);
+  /// ranks are those of the whole system. `may_defer`: rows of followers may be taken out of it,
+  /// see deferred(); fewer instants are evaluated then.
+  HarmonicTangents(const MeshPartition& partition, const Coordinates& held, int harmonics,
+                   bool may_defer);
 
-  /// Evaluates K and M along `solution`. Of a sector in a MeshPartition, all blades are evaluated
-  /// at the instants of one sector where the solution repeats from blade to blade.
+  /// Evaluates K and M along `solution`; collective. Of a sector in a MeshPartition, all blades are
+  /// evaluated at the instants of one sector where the solution repeats from blade to blade.
   void sample(const PeriodicSolution& solution);
 
   /// The row of a follower that has only its own unknown in the map, with the factor 1. (In the
@@ -170,9 +172,10 @@ class HarmonicTangents {
   void take_entries(Mat tangent, const EntryPlaces& places,
                     Eigen::Ref<Eigen::VectorXd> sample) const;
   void require_pattern(Mat tangent, const EntryPlaces& places) const;
-  std::vector<PetscInt> sample_all(const PeriodicSolution& solution, int turns);
-  std::vector<PetscInt> unlike_rows(Mat tangent, const std::vector<EntryPlaces>& places,
-                                    const Eigen::Ref<const Eigen::VectorXd>& turned) const;
+  void sample_all(const PeriodicSolution& solution, int turns, Eigen::MatrixXd& likeness);
+  Eigen::MatrixXd likeness_of(Mat tangent, const std::vector<EntryPlaces>& places,
+                              const Eigen::Ref<const Eigen::VectorXd>& turned) const;
+  std::vector<PetscInt> unlike_rows(Eigen::MatrixXd likeness) const;
   bool defer(const std::vector<PetscInt>& rows);
 
   const system::PeriodicSystem& system_;

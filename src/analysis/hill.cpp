@@ -18,6 +18,8 @@
 #include "hill_pencil.hpp"
 #include "hill_search.hpp"
 #include "least_damped_search.hpp"
+#include "mesh_partition.hpp"
+#include "mode_sharing.hpp"
 #include "sector_motion.hpp"
 #include "state_parts.hpp"
 
@@ -118,6 +120,9 @@ constexpr double largest_split = 1e-4;
 /// Relative to the rotor speed: an exponent below this, in the search, is that of a displacement.
 constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
+/// Smallest piece of a distributed mesh, in blocks. Each cut adds unknowns with all harmonics to
+/// the border; smaller meshes are faster with groups of modes on each rank.
+constexpr Index least_piece = 300;
 /// Steps a revolution and multipliers of the search for the slowest decays; the factor of steps
 /// where all multipliers were found, but not enough, and that of multipliers; the largest number of
 /// steps, and that of attempts.
@@ -145,12 +150,14 @@ class Analysis {
  public:
   /// `is_constant`: the tangents are constant, and exponents have no copies.
   Analysis(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-           const FloquetOptions& options, const Ranks& ranks, bool is_constant)
+           const FloquetOptions& options, MPI_Comm comm, bool is_constant)
       : system_(system),
         solution_(solution),
         options_(options),
-        ranks_(ranks),
+        all_ranks_(comm),
         is_constant_(is_constant),
+        mesh_(divided_mesh()),
+        ranks_(mesh_ ? Ranks(MPI_COMM_SELF) : all_ranks_),
         speed_(base_rate(system)),
         energy_(system),
         parts_(find_state_parts(system)) {}
@@ -172,10 +179,27 @@ class Analysis {
   }
 
  private:
+  /// The mesh over the ranks, where it is large enough. The search for the slowest decays by
+  /// integration and media need it whole.
+  std::optional<MeshPartition> divided_mesh() const {
+    std::optional<MeshPartition> mesh;
+    const bool is_whole = std::ranges::any_of(
+        system_.unknowns(), [](const system::Unknown& one) { return one.is_of_medium(); });
+    if (all_ranks_.size == 1 || is_whole || (options_.least_damped > 0 && !is_constant_))
+      return mesh;
+    mesh.emplace(system_, Coordinates{}, !is_constant_, all_ranks_.comm,
+                 is_constant_ ? MeshPartition::usual_piece : least_piece);
+    if (!mesh->is_distributed()) mesh.reset();
+    return mesh;
+  }
+  const MeshPartition* mesh() const { return mesh_ ? &*mesh_ : nullptr; }
+
   /// The pencil with a number of harmonics, which is kept until another one is asked for. Shapes
   /// get the samples that it needs.
   HillPencil& pencil_of(int harmonics) {
-    if (!pencil_ || pencil_->harmonics() != harmonics)
+    if ((!pencil_ || pencil_->harmonics() != harmonics) && mesh_)
+      pencil_.emplace(*mesh_, solution_, harmonics);
+    else if (!pencil_ || pencil_->harmonics() != harmonics)
       pencil_.emplace(system_, solution_, harmonics, !is_constant_);
     const Index least = is_constant_ ? 1 : std::max(shape_samples, 4 * harmonics + 2);
     samples_ = std::max(samples_, least);
@@ -226,11 +250,11 @@ class Analysis {
   /// Counts the eigenvalues in the region, that of the first rank.
   void count_missing() {
     for (double* value : {&region_.low, &region_.high, &region_.decay, &region_.growth})
-      ranks_.share(0, *value);
-    ranks_.share(0, all_found_);
-    ranks_.share(0, expected_);
-    ranks_.share(0, needed_decay_);
-    ranks_.share(0, decays_);
+      all_ranks_.share(0, *value);
+    all_ranks_.share(0, all_found_);
+    all_ranks_.share(0, expected_);
+    all_ranks_.share(0, needed_decay_);
+    all_ranks_.share(0, decays_);
     HillSearch search(*pencil_);
     region_is_counted_ = is_complete(search, region_);
     if (!has_medium_) return;
@@ -355,7 +379,7 @@ class Analysis {
     const Eigen::MatrixXcd shape = search.shape(number);
     Candidate candidate{search.pair(number, shape, 0, sectors_), {}, {}};
     describe(shape, candidate);
-    settle_rest(candidate, at_rest);
+    settle_rest(candidate.pair.series, candidate, at_rest);
     int copies = (std::abs(candidate.mode.harmonic) + (sectors_ - 1) / 2) / sectors_;
     if (candidate.mode.harmonic < 0) copies = -copies;
     const int shift = copies * sectors_;
@@ -459,7 +483,11 @@ class Analysis {
   double modulus_of(const Candidate& candidate) const { return std::abs(exponent_of(candidate)); }
 
   /// With an even number of blades, a mode in which they move in opposite directions has two pairs.
+  /// Round-off splits a double zero into two real exponents or into a pair: both count once.
   double weight_of(const Candidate& candidate) const {
+    const Complex exponent = candidate.pair.exponent;
+    if (is_constant_ && exponent.imag() == 0.0 && std::abs(exponent) < largest_split * speed_)
+      return 0.5;
     return 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
   }
   /// Modes that the search has found, with moduli of exponents from the lower edge to `high`, less
@@ -632,7 +660,7 @@ class Analysis {
     const Tolerance& tolerances = is_by_change() ? of_series_with_medium : of_series;
     double tolerance = is_constant_ ? tolerances.last : tolerances.first;
     while (!groups.empty()) {
-      HillGroups all(system_, solution_, pencil_of(harmonics_), ranks_);
+      HillGroups all(system_, solution_, pencil_of(harmonics_), ranks_, mesh());
       all.refine(groups, tolerance);
       if (tolerance > tolerances.last) all.refine_further(groups, tolerances.last);
       tolerance = tolerances.last;
@@ -643,7 +671,7 @@ class Analysis {
         is_done.push_back(is_last(group, members.back(), added) ? 1 : 0);
       }
       // All ranks follow the first one.
-      ranks_.share(0, is_done);
+      all_ranks_.share(0, is_done);
       double largest = 0.0;
       std::vector<HillGroup> left;
       std::vector<std::vector<Decay>> decays;  // of these
@@ -677,7 +705,7 @@ class Analysis {
             most_harmonics,
             static_cast<int>(
                 std::ceil(std::clamp(factor, 1.0 + 1.0 / harmonics_, most_increase) * harmonics_)));
-        ranks_.share(0, next);  // pow and log may differ by round-off
+        all_ranks_.share(0, next);  // pow and log may differ by round-off
         added = next - harmonics_;
         harmonics_ = next;
       }
@@ -737,7 +765,7 @@ class Analysis {
                                 decays[0].value - decays[0].error > limit
                             ? 1
                             : 0);
-    ranks_.share(0, is_left);
+    all_ranks_.share(0, is_left);
     std::vector<HillGroup> others;
     for (std::size_t g = 0; g < groups.size(); ++g)
       if (is_left[g] == 0)
@@ -787,26 +815,41 @@ class Analysis {
   /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut
   /// off: the positions in the largest harmonics are the same.
   bool is_copy(const Candidate& candidate) const {
-    const auto largest = [this](const Candidate& one) {
-      const Index harmonics = (one.pair.series.rows() - 1) / 2;
+    const auto largest = [this](const Eigen::MatrixXcd& series, int harmonic) {
+      const Index harmonics = (series.rows() - 1) / 2;
       Eigen::VectorXcd positions = Eigen::VectorXcd::Zero(system_.size());
       for (Index i = 0; i < system_.size(); ++i)
         if (system_.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::position)
-          positions(i) = one.pair.series(
-              harmonics + std::clamp<Index>(one.mode.harmonic, -harmonics, harmonics), i);
+          positions(i) = series(harmonics + std::clamp<Index>(harmonic, -harmonics, harmonics), i);
       return Eigen::VectorXcd(positions.normalized());
     };
-    const Eigen::MatrixXcd& series = candidate.pair.series;
+    const Eigen::MatrixXcd series = whole_series(candidate.pair.series);
     const double tail =
         series.topRows(edge_harmonics).norm() + series.bottomRows(edge_harmonics).norm();
     if (tail < edge_part * series.norm()) return false;
-    const Eigen::VectorXcd own = largest(candidate);
+    const Eigen::VectorXcd own = largest(series, candidate.mode.harmonic);
     return std::any_of(modes_.begin(), modes_.end(), [&](const Candidate& mode) {
-      const Eigen::VectorXcd other = largest(mode);
+      const Eigen::VectorXcd other = largest(whole_series(mode.pair.series), mode.mode.harmonic);
       return std::max(std::abs(other.dot(own)), std::abs(other.conjugate().dot(own))) > same_shape;
     });
   }
 
+  /// A series with the unknowns of all ranks, on all of them.
+  Eigen::MatrixXcd whole_series(const Eigen::MatrixXcd& series) const {
+    if (!mesh_) return series;
+    Eigen::MatrixXcd whole = mesh_->own_series(series);
+    all_ranks_.sum(whole);
+    return whole;
+  }
+  /// The same on the first rank only; empty on the others.
+  Eigen::MatrixXcd first_series(const Eigen::MatrixXcd& series) const {
+    const bool is_first = all_ranks_.rank == 0;
+    if (!mesh_) return is_first ? series : Eigen::MatrixXcd();
+    Eigen::MatrixXcd whole = mesh_->own_series(series);
+    all_ranks_.sum_on(0, whole);
+    if (!is_first) whole.resize(0, 0);
+    return whole;
+  }
   /// Values of a series at equal distances over a period.
   Eigen::MatrixXcd shape_of(const Eigen::MatrixXcd& series) const {
     const Index harmonics = (series.rows() - 1) / 2;
@@ -821,13 +864,15 @@ class Analysis {
 
   /// `rest`, relative to the rotor speed: an exponent below it is that of a displacement.
   void describe(Candidate& candidate, double rest = at_rest) {
-    describe(shape_of(candidate.pair.series), candidate);
-    settle_rest(candidate, rest);
+    const Eigen::MatrixXcd series = whole_series(candidate.pair.series);
+    describe(shape_of(series), candidate);
+    settle_rest(series, candidate, rest);
+    if (mesh_) all_ranks_.share(0, candidate.mode.harmonic);
   }
 
   /// A displacement at rest has no energy: its harmonic is that of the positions.
-  void settle_rest(Candidate& candidate, double rest) const {
-    const Index at = largest_harmonic(candidate.pair.series);
+  void settle_rest(const Eigen::MatrixXcd& series, Candidate& candidate, double rest) const {
+    const Index at = largest_harmonic(series);
     if (std::abs(candidate.pair.exponent + Complex(0.0, static_cast<double>(at) * speed_)) <
         rest * speed_)
       candidate.mode.harmonic = static_cast<int>(at);
@@ -956,14 +1001,15 @@ class Analysis {
     std::vector<Eigen::MatrixXcd> shapes;
     for (const Candidate& mode : modes_) {
       exponents.push_back(mode.pair.exponent);
-      shapes.emplace_back(mode.pair.series.transpose());
+      shapes.emplace_back(whole_series(mode.pair.series).transpose());
     }
     choose_shapes(system_, exponents, shapes);
     for (std::size_t i = 0; i < modes_.size(); ++i) {
       // Round-off splits a double zero by its square root.
       const double split = most_split * std::sqrt(modes_[i].residual) * speed_;
       if (std::abs(exponents[i]) < std::min(split, largest_split * speed_)) exponents[i] = 0.0;
-      modes_[i].pair = {exponents[i], shapes[i].transpose()};
+      modes_[i].pair = {exponents[i], mesh_ ? mesh_->counted_series(shapes[i].transpose())
+                                            : Eigen::MatrixXcd(shapes[i].transpose())};
       describe(modes_[i], zero_exponent);
     }
   }
@@ -1013,7 +1059,25 @@ class Analysis {
     set_growth_error(mode, {error, error}, modes_[m].pair.exponent);
   }
 
+  /// The first rank finds the modes of the eigenpairs, and has their shapes.
   Floquet finish() {
+    std::vector<Eigen::MatrixXcd> shapes;
+    for (Candidate& found : modes_) {
+      const Eigen::MatrixXcd series = first_series(found.pair.series);
+      found.pair.series.resize(0, 0);  // of a large mesh as large as the shape
+      if (all_ranks_.rank == 0) shapes.push_back(shape_of(series));
+    }
+    all_ranks_.attempt([&] {
+      if (all_ranks_.rank == 0) take_modes(std::move(shapes));
+    });
+    share_modes(all_ranks_, set_);
+    Floquet result;
+    result.harmonics = harmonics_;
+    result.set = std::move(set_);
+    return result;
+  }
+
+  void take_modes(std::vector<Eigen::MatrixXcd> shapes) {
     const auto count = static_cast<Index>(modes_.size());
     set_ = {};
     set_.rotor_speed = system_.period() > 0.0 ? speed_ : 0.0;
@@ -1029,8 +1093,7 @@ class Analysis {
       mode.residual = found.residual;
       mode.resolved = found.residual <= accuracy().largest;
       if (!is_constant_) mode.multiplier = std::exp(found.pair.exponent * system_.period());
-      set_.shapes.push_back(shape_of(found.pair.series));
-      found.pair.series.resize(0, 0);  // of a large mesh as large as the shape
+      set_.shapes.push_back(std::move(shapes[m]));
       if (!is_constant_) set_.participation.row(static_cast<Index>(m)) = found.participation;
       const bool is_real = std::abs(found.pair.exponent.imag()) < zero_exponent * speed_;
       mode.exponent = found.pair.exponent;
@@ -1075,17 +1138,15 @@ class Analysis {
                        std::max(options_.modes, options_.least_damped),
                        options_.least_damped > 0};
     for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;
-    Floquet result;
-    result.harmonics = harmonics_;
-    result.set = std::move(set_);
-    return result;
   }
 
   const system::PeriodicSystem& system_;
   const PeriodicSolution& solution_;
   const FloquetOptions& options_;
-  Ranks ranks_;
+  Ranks all_ranks_;
   bool is_constant_;
+  std::optional<MeshPartition> mesh_;  ///< where it is distributed
+  Ranks ranks_;   ///< those that share independent work: one, where the mesh is distributed
   double speed_;  ///< of the rotor; at rest 1 rad/s
   std::optional<HillPencil> pencil_;
   bool has_medium_ = false;
@@ -1114,13 +1175,13 @@ class Analysis {
 std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution,
                                        const FloquetOptions& options, MPI_Comm comm) {
-  return Analysis(system, solution, options, Ranks(comm), false).run();
+  return Analysis(system, solution, options, comm, false).run();
 }
 
 std::optional<ModeSet> find_hill_constant_modes(const system::PeriodicSystem& system,
                                                 const PeriodicSolution& solution,
                                                 const FloquetOptions& options, MPI_Comm comm) {
-  std::optional<Floquet> found = Analysis(system, solution, options, Ranks(comm), true).run();
+  std::optional<Floquet> found = Analysis(system, solution, options, comm, true).run();
   if (!found) return std::nullopt;
   return std::move(found->set);
 }

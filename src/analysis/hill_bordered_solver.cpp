@@ -42,40 +42,52 @@ HillBorderedSolver::HillBorderedSolver(HillPencil& pencil, const Matrix& X, cons
       X_(X),
       T_(T),
       Y_(preconditioned(pencil, T, mass)),
-      complement_(X.adjoint() * Y_),
+      complement_(pencil.product(X, Y_)),
       solver_(make_solver(accuracy)) {}
 
-/// A vector has C by column, then D.
+/// A vector has C by column, then D, of which the first rank has all.
 ComplexSolver HillBorderedSolver::make_solver(double accuracy) {
   const Index n = X_.rows();
   const Index m = X_.cols();
-  const auto multiply = [this, n, m](const Vector& x, Vector& y) {
+  const bool is_first = pencil_.ranks().rank == 0;
+  const auto lower_part = [this, n, m, is_first](const Vector& x) {
+    Matrix part;
+    if (is_first) part = Eigen::Map<const Matrix>(x.data() + n * m, m, m);
+    pencil_.ranks().share(0, part);
+    return part;
+  };
+  const auto multiply = [this, n, m, is_first, lower_part](const Vector& x, Vector& y) {
     y.resize(x.size());
     const Eigen::Map<const Matrix> C(x.data(), n, m);
-    const Eigen::Map<const Matrix> D(x.data() + n * m, m, m);
+    const Matrix D = lower_part(x);
     pencil_.multiply(C, C * T_ + X_ * D, Eigen::Map<Matrix>(y.data(), n, m));
-    Eigen::Map<Matrix>(y.data() + n * m, m, m) = X_.adjoint() * C;
+    const Matrix along = pencil_.product(X_, C);
+    if (is_first) Eigen::Map<Matrix>(y.data() + n * m, m, m) = along;
   };
-  const auto precondition = [this, n, m](const Vector& x, Vector& y) {
+  const auto precondition = [this, n, m, is_first, lower_part](const Vector& x, Vector& y) {
     y.resize(x.size());
     Eigen::Map<Matrix> C(y.data(), n, m);
-    Eigen::Map<Matrix> D(y.data() + n * m, m, m);
     pencil_.precondition(Eigen::Map<const Matrix>(x.data(), n, m), C);
-    D = complement_.solve(X_.adjoint() * C - Eigen::Map<const Matrix>(x.data() + n * m, m, m));
+    const Matrix D = complement_.solve(pencil_.product(X_, C) - lower_part(x));
+    if (is_first) Eigen::Map<Matrix>(y.data() + n * m, m, m) = D;
     C -= Y_ * D;
   };
-  return {n * m + m * m, multiply, precondition, accuracy, "hill_refine_"};
+  const Index size = is_first ? n * m + m * m : n * m;
+  return {size, multiply, precondition, accuracy, "hill_refine_", pencil_.ranks().comm};
 }
 
 HillBorderedSolver::Solution HillBorderedSolver::solve(const Matrix& right) {
   const Index n = X_.rows();
   const Index m = X_.cols();
-  Vector whole = Vector::Zero(n * m + m * m);
+  const bool is_first = pencil_.ranks().rank == 0;
+  Vector whole = Vector::Zero(is_first ? n * m + m * m : n * m);
   Eigen::Map<Matrix>(whole.data(), n, m) = right;
   Vector solution;
   solver_.solve(whole, solution);
-  return {Eigen::Map<const Matrix>(solution.data(), n, m),
-          Eigen::Map<const Matrix>(solution.data() + n * m, m, m)};
+  Solution change{Eigen::Map<const Matrix>(solution.data(), n, m), {}};
+  if (is_first) change.D = Eigen::Map<const Matrix>(solution.data() + n * m, m, m);
+  pencil_.ranks().share(0, change.D);
+  return change;
 }
 
 }  // namespace samara::analysis

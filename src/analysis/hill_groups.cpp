@@ -213,10 +213,12 @@ std::vector<HillGroup> HillGroups::neighbours_of(const std::vector<HillPair>& pa
   }
   if (found.empty()) return {};
   const auto part_of = [&](const HillPair& pair) {
-    const Eigen::VectorXcd vector = pencil_.vector_of(pair.series).normalized();
+    const Eigen::VectorXcd vector = pencil_.normalized(pencil_.vector_of(pair.series));
     double largest = 0.0;
     for (const HillPair& own : pairs)
-      largest = std::max(largest, std::abs(vector.dot(pencil_.vector_of(own.series).normalized())));
+      largest = std::max(
+          largest,
+          std::abs(pencil_.product(vector, pencil_.normalized(pencil_.vector_of(own.series)))(0)));
     return largest;
   };
   std::vector<HillPair> near;
@@ -242,8 +244,10 @@ bool HillGroups::has(const HillGroup& group, const HillPair& pair) const {
   for (std::size_t j = 0; j < group.pairs.size(); ++j)
     own.col(static_cast<Index>(j)) = group.pairs[j].series.reshaped();
   const Eigen::VectorXcd vector = pair.series.reshaped();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(own);
-  return (own * qr.solve(vector)).norm() > same_vector * vector.norm();
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXcd> products(
+      pencil_.product(own, own));
+  const Eigen::VectorXcd projected = own * products.solve(pencil_.product(own, vector));
+  return pencil_.ranks().norm(projected) > same_vector * pencil_.ranks().norm(vector);
 }
 
 void HillGroups::refine_further(std::vector<HillGroup>& groups, double tolerance) {
@@ -275,7 +279,8 @@ void HillGroups::find_residuals(const std::vector<HillGroup*>& groups) const {
   std::vector<const HillPair*> pairs;
   for (const HillGroup* group : groups)
     for (const HillPair& pair : group->pairs) pairs.push_back(&pair);
-  const std::vector<double> residuals = find_hill_residuals(system_, solution_, pairs, ranks_);
+  const std::vector<double> residuals =
+      find_hill_residuals(system_, solution_, pairs, ranks_, mesh_);
   auto next = residuals.begin();
   for (HillGroup* group : groups) {
     const auto end = next + static_cast<std::ptrdiff_t>(group->pairs.size());

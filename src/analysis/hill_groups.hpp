@@ -49,13 +49,15 @@ void share_groups(const Ranks& ranks, std::vector<HillGroup>& groups);
 /// them; all ranks get the same result.
 class HillGroups {
  public:
+  /// `mesh`: that of the pencil, if it is distributed; `ranks` is one rank then.
   HillGroups(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-             HillPencil& pencil, const Ranks& ranks)
+             HillPencil& pencil, const Ranks& ranks, const MeshPartition* mesh)
       : system_(system),
         solution_(solution),
         pencil_(pencil),
         refinement_(pencil),
         ranks_(ranks),
+        mesh_(mesh),
         speed_(pencil.speed()) {}
 
   /// Refines all groups. Where the eigenvectors change much, another eigenpair next to it may have
@@ -81,6 +83,7 @@ class HillGroups {
   HillPencil& pencil_;
   HillRefinement refinement_;
   Ranks ranks_;
+  const MeshPartition* mesh_;
   double speed_;
 };
 

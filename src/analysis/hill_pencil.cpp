@@ -10,15 +10,41 @@ constexpr double most_unlike = 2.0;
 
 }  // namespace
 
-using Index = Eigen::Index;
-
 HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                        int harmonics, bool by_sector)
     : tangents_(system, harmonics, by_sector),
+      ranks_(MPI_COMM_SELF),
       preconditioner_(tangents_),
       medium_(tangents_, rows_, columns_) {
   tangents_.sample(solution);
   take_rate(tangents_.highest_rate());
+}
+
+HillPencil::HillPencil(const MeshPartition& mesh, const PeriodicSolution& solution, int harmonics)
+    : tangents_(mesh, {}, harmonics, false),
+      ranks_(mesh.ranks()),
+      preconditioner_(tangents_),
+      medium_(tangents_, rows_, columns_) {
+  tangents_.sample(solution);
+  take_rate(tangents_.highest_rate());
+}
+
+/// That of an unknown of a vector, among those of the tangents.
+HillPencil::Index HillPencil::number_of(Index unknown) const {
+  return mesh() != nullptr ? mesh()->counted()[static_cast<std::size_t>(unknown)] : unknown;
+}
+
+/// Vectors with all unknowns of the tangents, where necessary in `storage`.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+Eigen::Map<const HillPencil::Matrix> HillPencil::spread(Input x, Matrix& storage) const {
+  if (mesh() == nullptr) return {x.data(), x.rows(), x.cols()};
+  storage.resize(width() * tangents_.size(), x.cols());
+  for (Index column = 0; column < x.cols(); ++column)
+    mesh()->spread(
+        reinterpret_cast<const double*>(x.col(column).data()),
+        Eigen::Map<Eigen::MatrixXd>(reinterpret_cast<double*>(storage.col(column).data()),
+                                    2 * width(), tangents_.size()));
+  return {storage.data(), storage.rows(), storage.cols()};
 }
 
 void HillPencil::take_rate(double rate) {
@@ -36,10 +62,10 @@ void HillPencil::fit_scales(double rate) {
 /// z_-k). Real parts come first, then imaginary parts.
 void HillPencil::to_coefficients(Input x, bool is_rate, Eigen::MatrixXd& to) const {
   const Index H = harmonics();
-  const Index count = x.cols() * unknowns();
+  const Index count = x.cols() * tangents_.size();
   const Eigen::Map<const Eigen::MatrixXcd> series(x.data(), width(), count);
   for (Index i = 0; i < count; ++i) {
-    const double factor = columns_(i % unknowns() * width());
+    const double factor = columns_(i % tangents_.size() * width());
     auto real = to.col(i);
     auto imaginary = to.col(count + i);
     if (!is_rate) {
@@ -67,7 +93,7 @@ void HillPencil::to_series(const Eigen::MatrixXd& coefficients, Output y) const 
   const Index count = coefficients.cols() / 2;
   Eigen::Map<Eigen::MatrixXcd> series(y.data(), width(), count);
   for (Index i = 0; i < count; ++i) {
-    const double scale = rows_(i % unknowns() * width());
+    const double scale = rows_(i % tangents_.size() * width());
     const auto real = coefficients.col(i);
     const auto imaginary = coefficients.col(count + i);
     series(H, i) = scale * Complex(real(0), imaginary(0));
@@ -82,11 +108,38 @@ void HillPencil::to_series(const Eigen::MatrixXd& coefficients, Output y) const 
 
 /// Those of x, and of its rate d/dt x plus w.
 void HillPencil::take_coefficients(Input x, Input w) {
-  values_.setZero(width(), 2 * x.cols() * unknowns());
+  const Eigen::Map<const Matrix> all_x = spread(x, spread_x_);
+  const Eigen::Map<const Matrix> all_w = spread(w, spread_w_);
+  values_.setZero(width(), 2 * x.cols() * tangents_.size());
   rates_.setZero(values_.rows(), values_.cols());
-  to_coefficients(x, false, values_);
-  to_coefficients(x, true, rates_);
-  to_coefficients(w, false, rates_);
+  to_coefficients(all_x, false, values_);
+  to_coefficients(all_x, true, rates_);
+  to_coefficients(all_w, false, rates_);
+}
+
+/// The series of the products. The ranks' parts of the border add up.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::give_products(Output y) {
+  if (mesh() == nullptr) {
+    to_series(products_, y);
+    return;
+  }
+  const Index count = tangents_.size();
+  for (Index first = 0; first < products_.cols(); first += count)
+    mesh()->sum_border(products_.middleCols(first, count));
+  spread_x_.resize(width() * count, y.cols());
+  to_series(products_, spread_x_);
+  collect(spread_x_, y);
+}
+
+/// The unknowns of a vector on this rank.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::collect(const Matrix& all, Output y) const {
+  for (Index column = 0; column < y.cols(); ++column)
+    mesh()->collect(
+        Eigen::Map<const Eigen::MatrixXd>(reinterpret_cast<const double*>(all.col(column).data()),
+                                          2 * width(), tangents_.size()),
+        reinterpret_cast<double*>(y.col(column).data()));
 }
 
 /// Sets the evolution rows of the medium's states to zero.
@@ -99,22 +152,23 @@ void HillPencil::drop_states(Output y) const {
 void HillPencil::multiply(Input x, Input w, Output y) {
   take_coefficients(x, w);
   tangents_.multiply(values_, rates_, products_);
-  to_series(products_, y);
+  give_products(y);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply_uncoupled(Input x, Input w, Output y) {
   take_coefficients(x, w);
   tangents_.multiply_uncoupled(values_, rates_, products_);
-  to_series(products_, y);
+  give_products(y);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply_mass(Input w, Output y) {
-  rates_.setZero(width(), 2 * w.cols() * unknowns());
-  to_coefficients(w, false, rates_);
+  const Eigen::Map<const Matrix> all_w = spread(w, spread_w_);
+  rates_.setZero(width(), 2 * w.cols() * tangents_.size());
+  to_coefficients(all_w, false, rates_);
   tangents_.multiply_mass(rates_, products_);
-  to_series(products_, y);
+  give_products(y);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
@@ -158,7 +212,7 @@ HillPencil::Complex HillPencil::exponent_of(const Vector& x) {
   Vector mass(size());
   multiply(x, Vector::Zero(size()), stiffness);
   multiply_mass(x, mass);
-  return -mass.dot(stiffness) / mass.squaredNorm();
+  return -product(mass, stiffness)(0) / product(mass, mass)(0);
 }
 
 void HillPencil::take_scales(const HillPencil& other) {
@@ -173,8 +227,16 @@ bool HillPencil::set_shift(Complex s) {
 }
 
 void HillPencil::precondition(Input right, Output x) {
-  preconditioner_.solve(Eigen::Map<const Matrix>(right.data(), width(), right.cols() * unknowns()),
-                        Eigen::Map<Matrix>(x.data(), width(), right.cols() * unknowns()));
+  const Eigen::Map<const Matrix> given = spread(right, spread_w_);
+  const Index count = right.cols() * tangents_.size();
+  const Eigen::Map<const Matrix> series(given.data(), width(), count);
+  if (mesh() == nullptr) {
+    preconditioner_.solve(series, Eigen::Map<Matrix>(x.data(), width(), count));
+    return;
+  }
+  spread_x_.resize(width() * tangents_.size(), right.cols());
+  preconditioner_.solve(series, Eigen::Map<Matrix>(spread_x_.data(), width(), count));
+  collect(spread_x_, x);
 }
 
 void HillPencil::drop_absent(Output x) const {
@@ -182,23 +244,23 @@ void HillPencil::drop_absent(Output x) const {
   for (Index column = 0; column < x.cols(); ++column)
     for (Index i = 0; i < unknowns(); ++i)
       for (int k = -harmonics(); k <= harmonics(); ++k)
-        if (!tangents_.has(i, k)) x(i * width() + k + harmonics(), column) = 0.0;
+        if (!tangents_.has(number_of(i), k)) x(i * width() + k + harmonics(), column) = 0.0;
 }
 
 Eigen::MatrixXcd HillPencil::series_of(const Vector& x) const {
   Eigen::MatrixXcd series = Eigen::Map<const Eigen::MatrixXcd>(x.data(), width(), unknowns());
-  for (Index i = 0; i < unknowns(); ++i) series.col(i) *= columns_(i * width());
-  return tangents_.whole(series);
+  for (Index i = 0; i < unknowns(); ++i) series.col(i) *= columns_(number_of(i) * width());
+  return mesh() != nullptr ? series : tangents_.whole(series);
 }
 
 HillPencil::Vector HillPencil::vector_of(const Eigen::MatrixXcd& whole) const {
-  const Eigen::MatrixXcd series = tangents_.part(whole);
+  const Eigen::MatrixXcd series = mesh() != nullptr ? whole : tangents_.part(whole);
   const Index other = (series.rows() - 1) / 2;
   const Index common = std::min<Index>(other, harmonics());
   Vector x = Vector::Zero(size());
   for (Index i = 0; i < unknowns(); ++i)
     x.segment(i * width() + harmonics() - common, 2 * common + 1) =
-        series.col(i).segment(other - common, 2 * common + 1) / columns_(i * width());
+        series.col(i).segment(other - common, 2 * common + 1) / columns_(number_of(i) * width());
   return x;
 }
 

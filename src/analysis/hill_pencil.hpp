@@ -8,12 +8,14 @@
 #include <Eigen/Core>
 
 #include "samara/analysis/periodic_solution.hpp"
+#include "samara/analysis/ranks.hpp"
 #include "samara/petsc/handle.hpp"
 #include "samara/system/periodic_system.hpp"
 
 #include "harmonic_preconditioner.hpp"
 #include "harmonic_tangents.hpp"
 #include "hill_medium.hpp"
+#include "mesh_partition.hpp"
 
 namespace samara::analysis {
 
@@ -21,9 +23,11 @@ namespace samara::analysis {
 /// (A + lambda B) z = 0: A is K + M d/dt on Fourier series, B is M on them. Vectors have the
 /// coefficients of all unknowns of HarmonicTangents (of one blade among identical ones), (2 H + 1)
 /// x unknowns by column, from k = -H. Rows and unknowns are scaled by their roles. A matrix has a
-/// vector in each column; all of them are multiplied, or solved for, at once.
+/// vector in each column; all of them are multiplied, or solved for, at once. Of a distributed
+/// mesh, each rank has the unknowns that it counts, and all ranks call the same functions.
 class HillPencil {
  public:
+  using Index = Eigen::Index;
   using Complex = std::complex<double>;
   using Vector = Eigen::VectorXcd;
   using Matrix = Eigen::MatrixXcd;
@@ -34,15 +38,31 @@ class HillPencil {
   /// `by_sector`: of one blade among identical ones, if there are such.
   HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution, int harmonics,
              bool by_sector = true);
+  /// Of a distributed mesh, which must outlive the object.
+  HillPencil(const MeshPartition& mesh, const PeriodicSolution& solution, int harmonics);
   HillPencil(const HillPencil&) = delete;
   HillPencil& operator=(const HillPencil&) = delete;
   ~HillPencil() = default;
 
   int harmonics() const { return tangents_.harmonics(); }
   Eigen::Index width() const { return tangents_.width(); }
-  Eigen::Index unknowns() const { return tangents_.size(); }
+  /// Of a vector on this rank.
+  Eigen::Index unknowns() const {
+    return mesh() != nullptr ? static_cast<Eigen::Index>(mesh()->counted().size())
+                             : tangents_.size();
+  }
   Eigen::Index size() const { return width() * unknowns(); }
   double speed() const { return tangents_.rate(); }
+  /// The ranks that have the parts of a vector; one rank, if the mesh is not distributed.
+  const Ranks& ranks() const { return ranks_; }
+  /// A^H B.
+  template <class A, class B>
+  Matrix product(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) const {
+    Matrix product = a.adjoint() * b;
+    ranks_.sum(product);
+    return product;
+  }
+  Vector normalized(const Vector& x) const { return x / ranks_.norm(x); }
   /// Whether the tangents have the structure that precondition() needs.
   bool is_solvable() const { return preconditioner_.is_useful(); }
 
@@ -89,12 +109,19 @@ class HillPencil {
   int sectors() const { return tangents_.sectors(); }
   /// Sets the coefficients that an unknown does not have to zero.
   void drop_absent(Output x) const;
-  /// Series of all unknowns of the system without scaling, (2 H + 1) x system size.
+  /// Series of all unknowns of the system without scaling, (2 H + 1) x system size; of a
+  /// distributed mesh, those that this rank counts.
   Eigen::MatrixXcd series_of(const Vector& x) const;
   /// The inverse, for a series of any number of harmonics: others are zero or left out.
   Vector vector_of(const Eigen::MatrixXcd& whole) const;
 
  private:
+  /// Null: the mesh is not distributed.
+  const MeshPartition* mesh() const { return tangents_.partition(); }
+  Index number_of(Index unknown) const;
+  Eigen::Map<const Matrix> spread(Input x, Matrix& storage) const;
+  void give_products(Output y);
+  void collect(const Matrix& all, Output y) const;
   /// Adds the coefficients of mean, cosines and sines, unscaled, of x or its rate d/dt x to
   /// those of `to`.
   void to_coefficients(Input x, bool is_rate, Eigen::MatrixXd& to) const;
@@ -104,12 +131,14 @@ class HillPencil {
   void drop_states(Output y) const;
 
   HarmonicTangents tangents_;
+  Ranks ranks_;
   HarmonicPreconditioner preconditioner_;
   std::optional<Complex> shift_;
   double rate_ = 0.0;  ///< of the scales [rad/s]
   Eigen::VectorXd rows_, columns_;
   HillMedium medium_;
   Eigen::MatrixXd values_, rates_, products_;  ///< real parts, then imaginary parts
+  Matrix spread_x_, spread_w_;                 ///< with the unknowns of the border on all ranks
 };
 
 }  // namespace samara::analysis

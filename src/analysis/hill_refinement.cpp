@@ -28,17 +28,38 @@ constexpr int most_steps = 20;
 /// Relative residual of the linear solves: what Newton's step can use, between these.
 constexpr double finest_solve = 1e-6;
 constexpr double coarsest_solve = 3e-2;
-/// X with orthonormal columns and T with an upper triangle, of the same subspace.
-void to_schur_form(Eigen::MatrixXcd& X, Eigen::MatrixXcd& T) {
+
+/// X = Q R with orthonormal columns of Q and an upper triangle R.
+struct OrthonormalColumns {
+  explicit OrthonormalColumns(const Eigen::MatrixXcd& X) {
+    const Index m = X.cols();
+    Eigen::MatrixXcd rows = Eigen::MatrixXcd::Zero(std::max(X.rows(), m), m);
+    rows.topRows(X.rows()) = X;
+    const Eigen::HouseholderQR<Eigen::MatrixXcd> qr(rows);
+    R = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>().toDenseMatrix();
+    Q = (qr.householderQ() * Eigen::MatrixXcd::Identity(rows.rows(), m)).topRows(X.rows());
+  }
+  Eigen::MatrixXcd Q, R;
+};
+
+/// X with orthonormal columns and T with an upper triangle, of the same subspace. Each rank has
+/// some rows of X.
+void to_schur_form(const Ranks& ranks, Eigen::MatrixXcd& X, Eigen::MatrixXcd& T) {
   const Index m = X.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXcd> qr(X);
-  const Eigen::MatrixXcd R =
-      qr.matrixQR().topRows(m).triangularView<Eigen::Upper>().toDenseMatrix();
-  const Eigen::MatrixXcd Q = qr.householderQ() * Eigen::MatrixXcd::Identity(X.rows(), m);
-  T = R * T * R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXcd::Identity(m, m));
+  OrthonormalColumns columns(X);
+  if (ranks.size > 1) {  // the triangles of all ranks, one below the other
+    Eigen::MatrixXcd triangles = Eigen::MatrixXcd::Zero(ranks.size * m, m);
+    triangles.middleRows(ranks.rank * m, m) = columns.R;
+    ranks.sum(triangles);
+    const OrthonormalColumns of_all(triangles);
+    columns.R = of_all.R;
+    columns.Q *= of_all.Q.middleRows(ranks.rank * m, m);
+  }
+  T = columns.R * T *
+      columns.R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXcd::Identity(m, m));
   const Eigen::ComplexSchur<Eigen::MatrixXcd> schur(T);
   T = schur.matrixT().triangularView<Eigen::Upper>();
-  X = Q * schur.matrixU();
+  X = columns.Q * schur.matrixU();
 }
 
 }  // namespace
@@ -48,9 +69,10 @@ void HillRefinement::find_residual(Subspace& subspace) {
   subspace.mass.resize(subspace.X.rows(), subspace.X.cols());
   pencil_.multiply(subspace.X, subspace.X * subspace.T, subspace.residual);
   pencil_.multiply_mass(subspace.X, subspace.mass);
+  const Ranks& ranks = pencil_.ranks();
   const double scale =
-      std::max((subspace.mass * subspace.T).norm(), pencil_.speed() * subspace.mass.norm());
-  subspace.size = subspace.residual.norm() / scale;
+      std::max(ranks.norm(subspace.mass * subspace.T), pencil_.speed() * ranks.norm(subspace.mass));
+  subspace.size = ranks.norm(subspace.residual) / scale;
 }
 
 /// Adds C to X and D to T, A C + B (C T + X D) = -residual, X^H C = 0.
@@ -67,7 +89,7 @@ bool HillRefinement::correct(Subspace& subspace, double tolerance) {
   } catch (const ConvergenceError&) {
     return false;
   }
-  to_schur_form(subspace.X, subspace.T);
+  to_schur_form(pencil_.ranks(), subspace.X, subspace.T);
   return true;
 }
 
@@ -76,10 +98,10 @@ HillRefinement::Result HillRefinement::refine(std::vector<HillPair>& pairs, doub
   Subspace subspace{Matrix(pencil_.size(), m), Matrix::Zero(m, m), {}, {}, 0.0};
   for (Index j = 0; j < m; ++j) {
     const HillPair& pair = pairs[static_cast<std::size_t>(j)];
-    subspace.X.col(j) = pencil_.vector_of(pair.series).normalized();
+    subspace.X.col(j) = pencil_.normalized(pencil_.vector_of(pair.series));
     subspace.T(j, j) = pair.exponent;
   }
-  to_schur_form(subspace.X, subspace.T);
+  to_schur_form(pencil_.ranks(), subspace.X, subspace.T);
   const Matrix before = subspace.X;
   Matrix best_X = subspace.X;
   Matrix best_T = subspace.T;
@@ -104,7 +126,8 @@ HillRefinement::Result HillRefinement::refine(std::vector<HillPair>& pairs, doub
   for (Index j = 0; j < m; ++j)
     pairs[static_cast<std::size_t>(j)] = {solver.eigenvalues()(j),
                                           pencil_.series_of(best_X * solver.eigenvectors().col(j))};
-  return {best, Eigen::JacobiSVD<Matrix>(before.adjoint() * best_X).singularValues().minCoeff()};
+  return {best,
+          Eigen::JacobiSVD<Matrix>(pencil_.product(before, best_X)).singularValues().minCoeff()};
 }
 
 }  // namespace samara::analysis

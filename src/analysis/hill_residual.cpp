@@ -5,6 +5,7 @@
 #include <complex>
 #include <map>
 #include <numbers>
+#include <span>
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -18,31 +19,144 @@ namespace {
 using Complex = std::complex<double>;
 using Index = Eigen::Index;
 
-/// `rate`: of the motion [rad/s].
-Eigen::VectorXd row_factors(const system::PeriodicSystem& system, double rate,
-                            const Eigen::SparseMatrix<double>& K,
-                            const Eigen::SparseMatrix<double>& M) {
-  const Eigen::SparseMatrix<double> sizes = K.cwiseAbs() + rate * M.cwiseAbs();
-  const Equilibration scaling = scaling_by_role(system, sizes, rate);
-  const petsc::ReadView view(scaling.rows.get());
-  return Eigen::Map<const Eigen::VectorXd>(view.data(), system.size());
-}
+/// Modes whose loads are found together.
+constexpr std::size_t modes_at_once = 8;
+
+/// The part of the loads that this rank evaluates, and sums over the ranks. Vectors have all
+/// unknowns of the system.
+class Piece {
+ public:
+  /// `mesh`: null, if the rank evaluates all of them.
+  Piece(const system::PeriodicSystem& system, const MeshPartition* mesh)
+      : system_(mesh != nullptr ? mesh->system() : system), mesh_(mesh) {
+    if (mesh_ == nullptr) return;
+    for (std::size_t i = 0; i < mesh_->owners().size(); ++i)
+      if (mesh_->owners()[i] == system::PeriodicSystem::shared)
+        shared_.push_back(static_cast<Index>(i));
+    find_images();
+  }
+
+  const system::PeriodicSystem& system() const { return system_; }
+
+  /// Factors of the rows; zero in those that another rank counts. `rate`: of the motion [rad/s].
+  Eigen::VectorXd row_factors(double rate, const Eigen::SparseMatrix<double>& K,
+                              const Eigen::SparseMatrix<double>& M) const {
+    const Eigen::SparseMatrix<double> sizes = K.cwiseAbs() + rate * M.cwiseAbs();
+    const Equilibration scaling =
+        scaling_by_role(system_, sizes, rate, 0.0, mesh_ != nullptr ? &mesh_->ranks() : nullptr);
+    const petsc::ReadView view(scaling.rows.get());
+    Eigen::VectorXd factors = Eigen::Map<const Eigen::VectorXd>(view.data(), system_.size());
+    for (Index i = 0; i < factors.size() && mesh_ != nullptr; ++i) {
+      const int owner = mesh_->owners()[static_cast<std::size_t>(i)];
+      const int counts = owner == system::PeriodicSystem::shared ? 0 : owner;
+      if (counts != mesh_->ranks().rank) factors(i) = 0.0;
+    }
+    return factors;
+  }
+
+  /// Values of the sums over k of series and waves, k = -H ... H, of all unknowns that this rank
+  /// evaluates; zero for others. A column for each pair and each of its waves.
+  Eigen::MatrixXcd values_of(std::span<const HillPair* const> pairs,
+                             const std::vector<Eigen::MatrixXcd>& waves) const {
+    const Index columns = waves.front().cols();
+    const auto count = static_cast<Index>(pairs.size());
+    if (mesh_ == nullptr) {
+      Eigen::MatrixXcd values(system_.size(), columns * count);
+      for (Index m = 0; m < count; ++m)
+        values.middleCols(m * columns, columns) =
+            pairs[static_cast<std::size_t>(m)]->series.transpose() *
+            waves[static_cast<std::size_t>(m)];
+      return values;
+    }
+    // Each blade has the series of the first one, its harmonics turned.
+    const auto turns = static_cast<Index>(images_.size());
+    const Index harmonics = (waves.front().rows() - 1) / 2;
+    Eigen::MatrixXcd counted(columns * count * turns, static_cast<Index>(mesh_->counted().size()));
+    for (Index m = 0; m < count; ++m) {
+      Eigen::MatrixXcd turned = waves[static_cast<std::size_t>(m)];
+      for (Index turn = 0; turn < turns; ++turn) {
+        counted.middleRows((m * turns + turn) * columns, columns) =
+            turned.transpose() * pairs[static_cast<std::size_t>(m)]->series;
+        for (Index k = -harmonics; k <= harmonics; ++k)
+          turned.row(k + harmonics) *=
+              std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k % turns) /
+                                  static_cast<double>(turns));
+      }
+    }
+    Eigen::MatrixXcd local(counted.rows(), mesh_->size());
+    mesh_->spread(reinterpret_cast<const double*>(counted.data()),
+                  Eigen::Map<Eigen::MatrixXd>(reinterpret_cast<double*>(local.data()),
+                                              2 * local.rows(), local.cols()));
+    Eigen::MatrixXcd values = Eigen::MatrixXcd::Zero(system_.size(), columns * count);
+    for (Index turn = 0; turn < turns; ++turn)
+      for (const Image& image : images_[static_cast<std::size_t>(turn)])
+        for (Index m = 0; m < count; ++m)
+          values.row(image.unknown).segment(m * columns, columns) =
+              image.sign *
+              local.col(image.local).segment((m * turns + turn) * columns, columns).transpose();
+    return values;
+  }
+
+  /// The ranks' parts of shared rows add up.
+  void complete(Eigen::MatrixXcd& loads) const {
+    if (mesh_ == nullptr) return;
+    Eigen::MatrixXcd rows = loads(shared_, Eigen::all);
+    mesh_->ranks().sum(rows);
+    loads(shared_, Eigen::all) = rows;
+  }
+
+  /// The 2-norm of each column.
+  Eigen::VectorXd norms(const Eigen::MatrixXcd& columns) const {
+    Eigen::VectorXd squares = columns.colwise().squaredNorm().transpose();
+    if (mesh_ != nullptr) mesh_->ranks().sum(squares);
+    return squares.cwiseSqrt();
+  }
+
+ private:
+  /// An unknown that has the value of one on this rank, after some turns by a sector.
+  struct Image {
+    Index local;
+    PetscInt unknown;
+    double sign;
+  };
+
+  void find_images() {
+    const system::RotorSymmetry& symmetry = system_.symmetry();
+    images_.resize(static_cast<std::size_t>(mesh_->sector().sectors));
+    for (std::size_t i = 0; i < mesh_->kept().size(); ++i) {
+      Image image{static_cast<Index>(i), mesh_->kept()[i], 1.0};
+      for (std::vector<Image>& turned : images_) {
+        turned.push_back(image);
+        if (images_.size() == 1) break;
+        const auto at = static_cast<std::size_t>(image.unknown);
+        image.sign *= symmetry.sign[at];
+        image.unknown = symmetry.source[at];
+        if (image.unknown == mesh_->kept()[i]) break;
+      }
+    }
+  }
+
+  const system::PeriodicSystem& system_;
+  const MeshPartition* mesh_;
+  std::vector<Index> shared_;
+  std::vector<std::vector<Image>> images_;  ///< for each number of turns
+};
 
 }  // namespace
 
 std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
                                         const PeriodicSolution& solution,
                                         const std::vector<const HillPair*>& pairs,
-                                        const Ranks& ranks) {
+                                        const Ranks& ranks, const MeshPartition* mesh) {
   if (pairs.empty()) return {};
+  const Piece piece(system, mesh);
   const double speed = system::base_rate(system);
-  const auto count = static_cast<Index>(pairs.size());
   const int harmonics = static_cast<int>((pairs.front()->series.rows() - 1) / 2);
   const int instants = system.period() > 0.0 ? 4 * harmonics + 5 : 1;
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
-  const petsc::Handle<Mat> jacobian = system.make_jacobian();
-  const petsc::Handle<Mat> mass = system.make_mass();
+  const petsc::Handle<Mat> jacobian = piece.system().make_jacobian();
+  const petsc::Handle<Mat> mass = piece.system().make_mass();
   std::vector<double> largest(pairs.size(), 0.0);
   std::vector<double> scale(pairs.size(), 0.0);
   // By the tangents at the first instant, on all ranks, for each rate. Loads of constant tangents,
@@ -52,42 +166,48 @@ std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
     if (instants > 1) return speed;
     return speed * std::exp2(std::ceil(std::log2(std::max(1.0, std::abs(exponent) / speed))));
   };
-  Eigen::MatrixXcd values(system.size(), count);
-  Eigen::MatrixXcd rates(system.size(), count);
+  const auto waves_of = [&](const HillPair& pair, double t) {  // and those of the rates
+    Eigen::MatrixXcd waves(2 * harmonics + 1, 2);
+    for (int k = -harmonics; k <= harmonics; ++k) {
+      waves(k + harmonics, 0) = std::polar(1.0, k * speed * t);
+      waves(k + harmonics, 1) = waves(k + harmonics, 0) * (pair.exponent + Complex(0.0, k * speed));
+    }
+    return waves;
+  };
   const auto add_instant = [&](int j) {
     const double t = system.period() * (j + 0.37) / instants;
     solution.evaluate(t, z.get(), z_dot.get());
-    system.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+    piece.system().tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
     const Eigen::SparseMatrix<double> K = to_sparse(jacobian.get());
     const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
     if (rows_of_rates.empty())
       for (const HillPair* pair : pairs)
         if (const double rate = rate_of(pair->exponent); !rows_of_rates.contains(rate))
-          rows_of_rates.emplace(rate, row_factors(system, rate, K, M));
+          rows_of_rates.emplace(rate, piece.row_factors(rate, K, M));
     if (j % ranks.size != ranks.rank) return;
-    for (Index m = 0; m < count; ++m) {
-      const HillPair& pair = *pairs[static_cast<std::size_t>(m)];
-      Eigen::VectorXcd waves(2 * harmonics + 1);
-      Eigen::VectorXcd wave_rates(2 * harmonics + 1);
-      for (int k = -harmonics; k <= harmonics; ++k) {
-        waves(k + harmonics) = std::polar(1.0, k * speed * t);
-        wave_rates(k + harmonics) =
-            waves(k + harmonics) * (pair.exponent + Complex(0.0, k * speed));
+    for (std::size_t first = 0; first < pairs.size(); first += modes_at_once) {
+      const auto some =
+          std::span(pairs).subspan(first, std::min(modes_at_once, pairs.size() - first));
+      const auto count = static_cast<Index>(some.size());
+      std::vector<Eigen::MatrixXcd> waves;
+      for (const HillPair* pair : some) waves.push_back(waves_of(*pair, t));
+      const Eigen::MatrixXcd both = piece.values_of(some, waves);
+      const auto values = both(Eigen::all, Eigen::seqN(0, count, 2));
+      const auto rates = both(Eigen::all, Eigen::seqN(1, count, 2));
+      Eigen::MatrixXcd loads(system.size(), 3 * count);  // residual, inertia, that at the speed
+      loads.middleCols(count, count) = M * Eigen::MatrixXcd(rates);
+      loads.leftCols(count) = loads.middleCols(count, count) + K * Eigen::MatrixXcd(values);
+      loads.rightCols(count) = speed * (M * Eigen::MatrixXcd(values));
+      piece.complete(loads);
+      for (Index m = 0; m < loads.cols(); ++m)
+        loads.col(m).array() *=
+            rows_of_rates.at(rate_of(some[static_cast<std::size_t>(m % count)]->exponent)).array();
+      const Eigen::VectorXd norms = piece.norms(loads);
+      for (Index m = 0; m < count; ++m) {
+        const std::size_t pair = first + static_cast<std::size_t>(m);
+        largest[pair] = std::max(largest[pair], norms(m));
+        scale[pair] = std::max({scale[pair], norms(count + m), norms(2 * count + m)});
       }
-      values.col(m) = pair.series.transpose() * waves;
-      rates.col(m) = pair.series.transpose() * wave_rates;
-    }
-    const Eigen::MatrixXcd inertia = M * rates;
-    const Eigen::MatrixXcd residual = inertia + K * values;
-    const Eigen::MatrixXcd at_speed = speed * (M * values);
-    for (Index m = 0; m < count; ++m) {
-      const auto pair = static_cast<std::size_t>(m);
-      const auto rows = rows_of_rates.at(rate_of(pairs[pair]->exponent)).array();
-      const auto size_of = [&](const Eigen::MatrixXcd& columns) {
-        return (columns.col(m).array() * rows).matrix().norm();
-      };
-      largest[pair] = std::max(largest[pair], size_of(residual));
-      scale[pair] = std::max({scale[pair], size_of(inertia), size_of(at_speed)});
     }
   };
   ranks.attempt([&] {

@@ -216,7 +216,10 @@ ComplexSolver solver_at(HillPencil& pencil, Complex shift, double tolerance) {
                            std::to_string(shift.imag()) + " rad/s");
   return {pencil.size(),
           [&pencil, shift](const Vector& x, Vector& y) { pencil.multiply(x, shift * x, y); },
-          [&pencil](const Vector& x, Vector& y) { pencil.precondition(x, y); }, tolerance, "hill_"};
+          [&pencil](const Vector& x, Vector& y) { pencil.precondition(x, y); },
+          tolerance,
+          "hill_",
+          pencil.ranks().comm};
 }
 
 HillRegion HillSearch::find(double frequency, int count, double known) {
@@ -234,11 +237,13 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   ComplexSolver linear = solver_at(pencil_, shift, tolerances.linear);
   ShiftInvert context{pencil_, linear};
   petsc::Handle<Mat> inverse;
-  petsc::check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &context, inverse.fill()));
+  MPI_Comm comm = pencil_.ranks().comm;
+  petsc::check(
+      MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, &context, inverse.fill()));
   petsc::check(
       MatShellSetOperation(inverse.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply_inverse)));
   petsc::Handle<EPS> solver;
-  petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
+  petsc::check(EPSCreate(comm, solver.fill()));
   petsc::check(EPSSetOptionsPrefix(solver.get(), "hill_"));
   petsc::check(EPSSetOperators(solver.get(), inverse.get(), nullptr));
   petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
@@ -261,14 +266,18 @@ HillRegion HillSearch::find_all(double frequency, int count) {
 
   HillRegion region;
   double least = 0.0;
-  const petsc::Handle<Vec> re = petsc::make_vector(PETSC_COMM_SELF, n, n);
-  const petsc::Handle<Vec> im = petsc::make_vector(PETSC_COMM_SELF, n, n);
+  const petsc::Handle<Vec> re = petsc::make_vector(comm, n, PETSC_DETERMINE);
+  const petsc::Handle<Vec> im = petsc::make_vector(comm, n, PETSC_DETERMINE);
   Vector x(size);
   Vector y(size);
+  double last_im = 0.0;
   for (PetscInt i = 0; i < converged; ++i) {
     PetscScalar value_re = 0.0;
     PetscScalar value_im = 0.0;
+    // How many others have converged depends on the start of the iteration.
+    if (i >= 2 * count && last_im <= 0.0) break;  // not between the two of a pair
     petsc::check(EPSGetEigenpair(solver.get(), i, &value_re, &value_im, re.get(), im.get()));
+    last_im = value_im;
     const double modulus = std::hypot(value_re, value_im);
     if (least == 0.0) least = modulus;
     {
@@ -295,7 +304,7 @@ HillRegion HillSearch::find_all(double frequency, int count) {
     }
     least = std::min(least, modulus);
     if (value_im != 0.0 && exponent.imag() < 0.0) continue;  // its conjugate is kept
-    region.pairs.push_back({exponent, pencil_.series_of(x / x.norm())});
+    region.pairs.push_back({exponent, pencil_.series_of(pencil_.normalized(x))});
   }
   // All eigenvalues with larger moduli have converged.
   double rho = frequency / least * (1.0 - 1e-6);
@@ -311,6 +320,9 @@ HillRegion HillSearch::find_all(double frequency, int count) {
     if (region.decay > beside) break;
   }
   region.growth = region.decay;
+  for (double* value : {&region.low, &region.high, &region.decay, &region.growth})
+    pencil_.ranks().share(0, *value);
+  for (HillPair& pair : region.pairs) pencil_.ranks().share(0, pair.exponent);
   return region;
 }
 
@@ -367,16 +379,19 @@ double HillSearch::find_contraction(Complex s) {
   };
   // The first vector has the components that the preconditioner changes.
   const Vector start = change_of(x);
-  if (!start.allFinite()) return std::numeric_limits<double>::infinity();
-  if (!(start.norm() > 0.0)) return 0.0;
-  Arnoldi space(start, contraction_steps);
+  const Ranks& parts = pencil_.ranks();
+  const double size = parts.norm(start);
+  if (!std::isfinite(size)) return std::numeric_limits<double>::infinity();
+  if (size == 0.0) return 0.0;
+  Arnoldi space(start, contraction_steps, parts);
   double largest = 0.0;
   bool is_last = false;
   while (!is_last) {
     const Vector image = change_of(space.last());
-    if (!image.allFinite()) return std::numeric_limits<double>::infinity();
+    if (!std::isfinite(parts.norm(image))) return std::numeric_limits<double>::infinity();
     is_last = !space.extend(image, least_change) || space.size() == contraction_steps;
     largest = largest_with_residual(space);
+    parts.share(0, largest);
     is_last = is_last || (space.size() >= least_contraction_steps && largest < small_contraction);
   }
   return largest;

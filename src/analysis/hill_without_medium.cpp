@@ -69,7 +69,7 @@ class KrylovSpace {
         is_coupled_(is_coupled),
         right_(pencil.size()),
         image_(pencil.size()),
-        space_(image_of(start), most) {}  // without infinite exponents
+        space_(image_of(start), most, pencil.ranks()) {}  // without infinite exponents
 
   Index size() const { return space_.size(); }
   /// Adds a vector. @returns false where it is in the space

@@ -15,19 +15,23 @@
 namespace samara::analysis {
 
 /// Node blocks of a mesh by ranks. The chains between the border are cut into pieces of equal
-/// lengths, one for each rank; the block behind a cut joins the border. Every rank has its own
-/// piece and the border: no block of a piece is coupled to another piece.
+/// work, one for each rank; the block behind a cut joins the border. Every rank has its own
+/// piece and the border: no block of a piece is coupled to another piece. Where one of identical
+/// blades stands for all, its chain is cut, and the others like it: a rank evaluates the same piece
+/// of each blade.
 ///
 /// A vector on this rank has the unknowns of its piece and of the border, in ascending order. The
 /// first rank counts those of the border where a vector is summed or stored once.
 class MeshPartition {
  public:
   /// With one rank, or where the mesh is too small to be worth a distribution or cannot be divided,
-  /// every rank works for itself: with the whole mesh, or with a sector of the rotor where
-  /// `by_sector` holds and all held coordinates have a mean in it. With fewer ranks than sectors,
-  /// this is the smaller part of the mesh.
+  /// every rank works for itself. The mesh is the whole one, or a sector of the rotor where
+  /// `by_sector` holds and all held coordinates have a mean in it. `least_piece`: smallest piece of
+  /// a chain, in blocks.
   MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, bool by_sector,
-                MPI_Comm comm);
+                MPI_Comm comm, Eigen::Index least_piece = usual_piece);
+
+  static constexpr Eigen::Index usual_piece = 100;
 
   bool is_distributed() const { return ranks_.size > 1; }
   /// Of one rank, if the mesh is not distributed.
@@ -43,6 +47,8 @@ class MeshPartition {
   /// Unknowns of the system on this rank, ascending.
   const std::vector<PetscInt>& kept() const { return sector_.kept; }
   Eigen::Index size() const { return static_cast<Eigen::Index>(sector_.kept.size()); }
+  /// Number of unknowns on all ranks.
+  Eigen::Index size_of_all() const { return size_of_all_; }
   /// Number of an unknown of the system among those on this rank; -1: another rank has it.
   PetscInt number_of(PetscInt unknown) const {
     return sector_.number[static_cast<std::size_t>(unknown)];
@@ -58,6 +64,8 @@ class MeshPartition {
   std::vector<Run> runs() const;
   /// The unknowns of the border, by their numbers in the system.
   std::vector<PetscInt> border_unknowns() const;
+  /// Of a distributed mesh: the rank of each unknown of the system, or PeriodicSystem::shared.
+  const std::vector<int>& owners() const { return owners_; }
   /// Of a distributed mesh: whether each block of the system belongs to the border.
   const std::vector<char>& border() const { return is_border_; }
 
@@ -69,6 +77,11 @@ class MeshPartition {
   Eigen::MatrixXd own(const Eigen::Ref<const Eigen::MatrixXd>& coefficients) const;
   /// The same with the unknowns of all ranks.
   Eigen::MatrixXd whole(const Eigen::Ref<const Eigen::MatrixXd>& values) const;
+  /// From the series, k = -H ... H by row, of the unknowns that this rank counts to those of the
+  /// whole system; zero where another rank counts the unknown.
+  Eigen::MatrixXcd own_series(const Eigen::MatrixXcd& counted) const;
+  /// From the series of the whole system to the unknowns that this rank counts.
+  Eigen::MatrixXcd counted_series(const Eigen::MatrixXcd& whole) const;
   /// From the columns of the whole system to those on this rank.
   Eigen::MatrixXd local(const Eigen::Ref<const Eigen::MatrixXd>& values) const;
   /// From the unknowns that the ranks count to those on this rank.
@@ -77,7 +90,8 @@ class MeshPartition {
   void collect(const Eigen::Ref<const Eigen::MatrixXd>& values, double* counted) const;
 
  private:
-  bool distribute(const TangentPattern& pattern, const Coordinates& held);
+  bool distribute(const TangentPattern& pattern, const Coordinates& held, const RotorSector& sector,
+                  Eigen::Index least_piece);
   RotorSector find_sector(const TangentPattern& pattern, const Coordinates& held) const;
   void work_alone(RotorSector sector);
 
@@ -85,7 +99,9 @@ class MeshPartition {
   Ranks ranks_;
   PetscInt block_size_;
   std::unique_ptr<system::PeriodicSystem> part_;
+  std::vector<int> owners_;
   std::vector<char> is_border_;
+  Eigen::Index size_of_all_ = 0;
   RotorSector sector_;  ///< its numbers are those of the unknowns on this rank
   std::vector<PetscInt> counted_;
   std::vector<PetscInt> border_;  ///< numbers of its unknowns

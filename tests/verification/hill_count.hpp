@@ -24,12 +24,13 @@ struct HillCount {
   }
 
   /// The count misses `count` exponents in a row, from a number on, where they are in the region.
-  /// @returns how many it misses; both of a pair count
+  /// @returns how many it misses; both of a pair count in a region that includes the real axis
   int leave_out(std::size_t first, std::size_t count) {
     int expected = 0;
     for (std::size_t j = first; j < first + count; ++j)
-      if (found[j].imag() <= region.high && std::abs(found[j].real()) <= region.decay)
-        expected += found[j].imag() > 0.0 ? 2 : 1;
+      if (found[j].imag() >= region.low && found[j].imag() <= region.high &&
+          std::abs(found[j].real()) <= region.decay)
+        expected += found[j].imag() > 0.0 && region.low == 0.0 ? 2 : 1;
     std::vector<std::complex<double>> others = found;
     const auto begin = others.begin() + static_cast<std::ptrdiff_t>(first);
     others.erase(begin, begin + static_cast<std::ptrdiff_t>(count));

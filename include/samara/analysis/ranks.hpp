@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <string>
@@ -33,16 +34,31 @@ struct Ranks {
   void sum(Eigen::MatrixXd& values) const { sum(values.data(), values.size()); }
   void sum(Eigen::VectorXd& values) const { sum(values.data(), values.size()); }
 
-  void sum_on(int target, Eigen::MatrixXd& values) const {
+  void sum_on(int target, double* values, Eigen::Index count) const {
     if (size == 1) return;
-    for (Eigen::Index i = 0; i < values.size(); i += most_values)
-      MPI_Reduce(rank == target ? MPI_IN_PLACE : values.data() + i, values.data() + i,
-                 part(values.size() - i), MPI_DOUBLE, MPI_SUM, target, comm);
+    for (Eigen::Index i = 0; i < count; i += most_values)
+      MPI_Reduce(rank == target ? MPI_IN_PLACE : values + i, values + i, part(count - i),
+                 MPI_DOUBLE, MPI_SUM, target, comm);
+  }
+  void sum_on(int target, Eigen::MatrixXd& values) const {
+    sum_on(target, values.data(), values.size());
+  }
+
+  void sum_on(int target, Eigen::MatrixXcd& values) const {
+    sum_on(target, reinterpret_cast<double*>(values.data()), 2 * values.size());
   }
 
   /// Sums of the real and imaginary parts.
   void sum(Eigen::MatrixXcd& values) const {
     sum(reinterpret_cast<double*>(values.data()), 2 * values.size());
+  }
+
+  /// The 2-norm of a vector of which each rank has a part.
+  template <class Values>
+  double norm(const Values& part) const {
+    double square = part.squaredNorm();
+    sum(&square, 1);
+    return std::sqrt(square);
   }
 
   /// Copies a value of one rank to all others; texts, vectors and matrices take its size.
