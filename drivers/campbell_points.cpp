@@ -9,6 +9,7 @@
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
 #include "samara/io/schema.hpp"
+#include "samara/petsc/handle.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/simulation/steady_state.hpp"
 
@@ -22,8 +23,8 @@ using simulation::CampbellPoint;
 using simulation::StabilityEdge;
 using simulation::SweepPlace;
 
-/// Groups of neighbouring points of a rank: points cost unlike time at the ends of a sweep.
-constexpr std::size_t groups_of_rank = 4;
+/// Runs of neighbouring points of a group: points cost unlike time at the ends of a sweep.
+constexpr std::size_t runs_of_group = 4;
 
 /// Keeps notes.
 class Notes final : public analysis::Observer {
@@ -49,7 +50,7 @@ class SweepFinder final : public CampbellPointFinder {
           built.emplace(model::build_turbine(own.turbine), PETSC_COMM_SELF);
       const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
       last_ = simulation::solve_trim(own, system, simulation::trim_options(own), observer,
-                                     PETSC_COMM_SELF, is_near ? &*last_ : nullptr);
+                                     ranks.comm, is_near ? &*last_ : nullptr);
       simulation::require_wake_range(system, *last_);
       simulation::note_roughness(*last_, observer);
     });
@@ -74,7 +75,7 @@ class OperationFinder final : public CampbellPointFinder {
  private:
   CampbellPoint find_modes(const SweepPlace& place, const analysis::Ranks& ranks,
                            analysis::Observer& observer) override {
-    ranks.attempt([&] { finder_->find_at(place.value, observer); });
+    ranks.attempt([&] { finder_->find_at(place.value, observer, ranks.comm); });
     CampbellPoint result = simulation::find_campbell_point(finder_->system(), finder_->trim(),
                                                            input_.floquet, ranks.comm, observer);
     result.wind_speed = place.value;
@@ -95,40 +96,67 @@ CampbellPoint find_or_stop(CampbellPointFinder& finder, const SweepPlace& place,
   return none;
 }
 
-/// Deals tasks to the ranks: some to each, or one task to several ranks.
-class Tasks {
+/// Groups of neighbouring ranks, of equal size but for one rank. The ranks of a group share a task.
+class Groups {
  public:
-  Tasks(std::size_t count, const analysis::Ranks& ranks)
-      : count_(count),
-        all_(ranks),
-        own_(rank_of(static_cast<std::size_t>(all_.rank), count_, all_)) {
-    MPI_Comm_split(all_.comm, own_, all_.rank, &comm_);
-  }
-  Tasks(const Tasks&) = delete;
-  Tasks& operator=(const Tasks&) = delete;
-  ~Tasks() { MPI_Comm_free(&comm_); }
+  /// As many as the user wants, else one for each rank, but not more than `tasks`, of which there
+  /// are some. @throws InputError
+  Groups(std::size_t tasks, const analysis::Ranks& ranks)
+      : size_(ranks.size),
+        count_(static_cast<int>(std::min(tasks, static_cast<std::size_t>(wanted(ranks.size))))) {}
 
-  bool has(std::size_t task) const { return rank_of(task, count_, all_) == own_; }
-  analysis::Ranks ranks() const { return analysis::Ranks(comm_); }
+  std::size_t count() const { return static_cast<std::size_t>(count_); }
+  int of_rank(int rank) const { return static_cast<int>(long{rank} * count_ / size_); }
+  int of_task(std::size_t task) const { return static_cast<int>(task % count()); }
+  int first_rank(int group) const {
+    return static_cast<int>((long{group} * size_ + count_ - 1) / count_);
+  }
 
  private:
-  std::size_t count_;
-  analysis::Ranks all_;
-  int own_;  ///< the first one of the ranks that share the tasks of this one
+  static int wanted(int ranks) {
+    constexpr const char* option = "-samara_groups";
+    PetscInt groups = ranks;
+    PetscBool is_given = PETSC_FALSE;
+    petsc::check(PetscOptionsGetInt(nullptr, nullptr, option, &groups, &is_given));
+    if (groups < 1 || groups > ranks)
+      throw InputError(std::string(option) + " " + std::to_string(groups) + ": the run has " +
+                       samara::count(ranks, "rank") + "; hint: a number of groups from 1 to " +
+                       std::to_string(ranks));
+    return static_cast<int>(groups);
+  }
+
+  int size_;
+  int count_;
+};
+
+/// The ranks of the group of this rank.
+class GroupRanks {
+ public:
+  GroupRanks(const Groups& groups, const analysis::Ranks& all) {
+    MPI_Comm_split(all.comm, groups.of_rank(all.rank), all.rank, &comm_);
+  }
+  GroupRanks(const GroupRanks&) = delete;
+  GroupRanks& operator=(const GroupRanks&) = delete;
+  ~GroupRanks() { MPI_Comm_free(&comm_); }
+
+  analysis::Ranks get() const { return analysis::Ranks(comm_); }
+
+ private:
   MPI_Comm comm_ = MPI_COMM_NULL;
 };
 
-/// Calls `call(task, ranks)` for the tasks of this rank. Ranks that share a task have the same
+/// Calls `call(task, ranks)` for the tasks of this group. Ranks that share a task have the same
 /// steady states. Stops when the user interrupts the run.
 template <class Call>
 void deal(CampbellPointFinder& finder, std::size_t count, const analysis::Ranks& all,
           const std::string& what, analysis::Observer& observer, const Call& call) {
   if (count == 0) return;
-  const Tasks tasks(count, all);
-  const analysis::Ranks ranks = tasks.ranks();
+  const Groups groups(count, all);
+  const GroupRanks sharing(groups, all);
+  const analysis::Ranks ranks = sharing.get();
   if (ranks.size > 1) finder.forget();
   for (std::size_t task = 0; task < count; ++task) {
-    if (!tasks.has(task)) continue;
+    if (groups.of_task(task) != groups.of_rank(all.rank)) continue;
     if (!ranks.all(!Interruption::is_asked())) return;
     observer.progress(what, static_cast<long>(task), static_cast<long>(count));
     call(task, ranks);
@@ -188,23 +216,31 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
 
 void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
                  const analysis::Ranks& ranks, analysis::Observer& observer) {
-  const auto rank = static_cast<std::size_t>(ranks.rank);
-  const auto size = static_cast<std::size_t>(ranks.size);
+  const Groups groups(std::max<std::size_t>(plan.places.size(), 1), ranks);
   std::vector<std::size_t> missing;
   for (std::size_t point = 0; point < plan.places.size(); ++point)
     if (!files.has(point)) missing.push_back(point);
   // No rank writes before all have looked.
   MPI_Barrier(ranks.comm);
-  const std::size_t groups = groups_of_rank * size;
-  const std::size_t in_group = std::max<std::size_t>(1, (missing.size() + groups - 1) / groups);
+  const std::size_t runs = runs_of_group * groups.count();
+  const std::size_t in_run = std::max<std::size_t>(1, (missing.size() + runs - 1) / runs);
   std::vector<std::size_t> own;
   for (std::size_t i = 0; i < missing.size(); ++i)
-    if (i / in_group % size == rank) own.push_back(missing[i]);
-  const analysis::Ranks alone(PETSC_COMM_SELF);
-  for (std::size_t i = 0; i < own.size() && !Interruption::is_asked(); ++i) {
+    if (groups.of_task(i / in_run) == groups.of_rank(ranks.rank)) own.push_back(missing[i]);
+  const GroupRanks sharing(groups, ranks);
+  const analysis::Ranks group = sharing.get();
+  for (std::size_t i = 0; i < own.size() && group.all(!Interruption::is_asked()); ++i) {
     observer.progress("points", static_cast<long>(i), static_cast<long>(own.size()));
-    files.write(own[i], plan.finder->find(plan.places[own[i]], alone));
+    const CampbellPoint point = plan.finder->find(plan.places[own[i]], group);
+    group.attempt([&] {
+      if (group.rank == 0) files.write(own[i], point);
+    });
   }
+}
+
+int rank_of(std::size_t number, std::size_t count, const analysis::Ranks& ranks) {
+  const Groups groups(count, ranks);
+  return groups.first_rank(groups.of_task(number));
 }
 
 void CampbellPlan::insert(const std::vector<double>& values) {

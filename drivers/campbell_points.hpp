@@ -56,30 +56,28 @@ struct CampbellPlan {
 /// `job` and `table`, the rows of operation.table, must outlive the plan.
 CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::ScheduledPoint>& table);
 
-/// Finds the points that no file has, those of this rank. Ranks take neighbouring points in turn.
-/// Stops when the user interrupts the run.
+/// Finds the points that no file has, those of this group of ranks. Groups take neighbouring points
+/// in turn. Stops when the user interrupts the run.
+/// @throws InputError for an option -samara_groups out of range, on all ranks
 void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
                  const analysis::Ranks& ranks, analysis::Observer& observer);
 
 /// Searches bands of instability at resonances. Stops when the user interrupts the run.
-/// @returns for each resonance of this rank a place in a band; not-a-number where there is none
+/// @returns for each resonance of this group a place in a band; not-a-number where there is none
 std::vector<double> search_bands(const CampbellPlan& plan,
                                  const std::vector<simulation::Resonance>& resonances,
                                  const analysis::Ranks& ranks, analysis::Observer& observer);
 
 /// Finds the edges of instability between pairs of points of the plan, which have files. Stops when
 /// the user interrupts the run.
-/// @returns for each pair of this rank its edges, refined to simulation::edge_accuracy relative to
+/// @returns for each pair of this group its edges, refined to simulation::edge_accuracy relative to
 /// the larger value
 std::vector<std::vector<simulation::StabilityEdge>> search_edges(
     const CampbellPlan& plan, const io::CampbellPointFiles& files,
     const std::vector<std::pair<std::size_t, std::size_t>>& pairs, const analysis::Ranks& ranks,
     analysis::Observer& observer);
 
-/// The rank that has the result of a pair or a resonance, of so many. Where there are fewer than
-/// ranks, several share one of them.
-inline int rank_of(std::size_t number, std::size_t count, const analysis::Ranks& ranks) {
-  return static_cast<int>(number % std::min(count, static_cast<std::size_t>(ranks.size)));
-}
+/// The rank that has the result of a pair or a resonance, of so many: the first one of its group.
+int rank_of(std::size_t number, std::size_t count, const analysis::Ranks& ranks);
 
 }  // namespace samara::drivers

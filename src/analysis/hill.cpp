@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -378,7 +379,7 @@ class Analysis {
   Candidate centred_motion(const LeastDampedSearch& search, std::size_t number) {
     const Eigen::MatrixXcd shape = search.shape(number);
     Candidate candidate{search.pair(number, shape, 0, sectors_), {}, {}};
-    describe(shape, candidate);
+    describe_shape(shape, candidate);
     settle_rest(candidate.pair.series, candidate, at_rest);
     int copies = (std::abs(candidate.mode.harmonic) + (sectors_ - 1) / 2) / sectors_;
     if (candidate.mode.harmonic < 0) copies = -copies;
@@ -405,7 +406,7 @@ class Analysis {
         throw ConvergenceError("floquet: Hill's method does not find as many modes in " +
                                std::to_string(most_regions) +
                                " ranges of frequencies; hint: fewer, or all modes");
-      const HillRegion region = search.find(frequency, count, region_.high);
+      HillRegion region = search.find(frequency, count, region_.high);
       if (region.low > region_.high || region.decay <= 0.0) {
         if (region.low > region_.high) frequency = 0.5 * (frequency + region_.high);
         count += least_pairs / 2;
@@ -433,7 +434,7 @@ class Analysis {
       const std::size_t known = all_found_.size();
       found_.clear();
       all_found_.clear();
-      const HillRegion region = search.find(frequency, count);
+      HillRegion region = search.find(frequency, count);
       take(region, region.low, region.high);
       region_ = {region.low, region.high, region.decay, region.growth, region.is_whole, {}};
       if ((centred() >= options_.modes && region.decay > 0.0) || region.is_whole ||
@@ -442,10 +443,11 @@ class Analysis {
     }
   }
 
-  /// Keeps the pairs of a region from `low` to `high`.
-  void take(const HillRegion& region, double low, double high) {
+  /// Takes the pairs of a region from `low` to `high`.
+  void take(HillRegion& region, double low, double high) {
     const auto known = static_cast<std::ptrdiff_t>(all_found_.size());  // of regions before
-    for (const HillPair& pair : region.pairs) {
+    std::vector<Candidate> candidates;
+    for (HillPair& pair : region.pairs) {
       const double frequency = pair.exponent.imag();
       const bool is_new = std::none_of(
           all_found_.begin(), all_found_.begin() + known,
@@ -454,10 +456,15 @@ class Analysis {
       if ((frequency > low || low == 0.0 || known == 0) && is_new)
         all_found_.push_back(pair.exponent);
       if (frequency > high || (frequency <= low && low > 0.0)) continue;
-      Candidate candidate{pair, {}, {}};
-      describe(candidate);
-      if (std::abs(candidate.mode.harmonic) <= nearest_ + 1) found_.push_back(candidate);
+      candidates.push_back({std::move(pair), {}, {}});
     }
+    // With the whole mesh, each rank has searched for itself.
+    if (mesh_)
+      describe(pointers_to(candidates));
+    else
+      for (Candidate& candidate : candidates) describe(candidate.pair.series, at_rest, candidate);
+    for (Candidate& candidate : candidates)
+      if (std::abs(candidate.mode.harmonic) <= nearest_ + 1) found_.push_back(std::move(candidate));
   }
 
   /// Whether the slowest decays are found as all modes of a region are: a medium has many decays of
@@ -665,11 +672,15 @@ class Analysis {
       if (tolerance > tolerances.last) all.refine_further(groups, tolerances.last);
       tolerance = tolerances.last;
       std::vector<std::vector<Candidate>> members;
-      std::vector<char> is_done;
+      std::vector<Candidate*> all_members;
       for (HillGroup& group : groups) {
         members.push_back(take_members(group));
-        is_done.push_back(is_last(group, members.back(), added) ? 1 : 0);
+        std::ranges::copy(pointers_to(members.back()), std::back_inserter(all_members));
       }
+      describe(all_members);
+      std::vector<char> is_done;
+      for (std::size_t g = 0; g < groups.size(); ++g)
+        is_done.push_back(is_last(groups[g], members[g], added) ? 1 : 0);
       // All ranks follow the first one.
       all_ranks_.share(0, is_done);
       double largest = 0.0;
@@ -710,9 +721,11 @@ class Analysis {
         harmonics_ = next;
       }
     }
-    for (Candidate& candidate : doubtful)
-      if (!candidate.is_found || (is_centred(candidate) && !is_copy(candidate)))
-        modes_.push_back(std::move(candidate));
+    for (Candidate& candidate : doubtful) {
+      bool is_kept = !candidate.is_found || (is_centred(candidate) && !is_copy(candidate));
+      all_ranks_.share(0, is_kept);
+      if (is_kept) modes_.push_back(std::move(candidate));
+    }
   }
 
   /// A decay with its error, the change since fewer harmonics.
@@ -775,14 +788,12 @@ class Analysis {
     groups = std::move(others);
   }
 
-  /// Identifies the eigenpairs of a group, and takes them from it.
+  /// Takes the eigenpairs of a group from it.
   std::vector<Candidate> take_members(HillGroup& group) {
     const bool is_found = group.truncated_residual <= of_residual.largest;
     std::vector<Candidate> members;
-    for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+    for (std::size_t i = 0; i < group.pairs.size(); ++i)
       members.push_back({std::move(group.pairs[i]), {}, {}, group.residuals[i], is_found});
-      describe(members.back());
-    }
     group.pairs.clear();
     return members;
   }
@@ -841,15 +852,16 @@ class Analysis {
     all_ranks_.sum(whole);
     return whole;
   }
-  /// The same on the first rank only; empty on the others.
-  Eigen::MatrixXcd first_series(const Eigen::MatrixXcd& series) const {
-    const bool is_first = all_ranks_.rank == 0;
-    if (!mesh_) return is_first ? series : Eigen::MatrixXcd();
+  /// The same on one rank only; empty on the others.
+  Eigen::MatrixXcd series_on(int rank, const Eigen::MatrixXcd& series) const {
+    const bool is_there = all_ranks_.rank == rank;
+    if (!mesh_) return is_there ? series : Eigen::MatrixXcd();
     Eigen::MatrixXcd whole = mesh_->own_series(series);
-    all_ranks_.sum_on(0, whole);
-    if (!is_first) whole.resize(0, 0);
+    all_ranks_.sum_on(rank, whole);
+    if (!is_there) whole.resize(0, 0);
     return whole;
   }
+
   /// Values of a series at equal distances over a period.
   Eigen::MatrixXcd shape_of(const Eigen::MatrixXcd& series) const {
     const Index harmonics = (series.rows() - 1) / 2;
@@ -862,12 +874,40 @@ class Analysis {
     return series.transpose() * waves;
   }
 
-  /// `rest`, relative to the rotor speed: an exponent below it is that of a displacement.
-  void describe(Candidate& candidate, double rest = at_rest) {
-    const Eigen::MatrixXcd series = whole_series(candidate.pair.series);
-    describe(shape_of(series), candidate);
+  static std::vector<Candidate*> pointers_to(std::vector<Candidate>& candidates) {
+    std::vector<Candidate*> pointers;
+    for (Candidate& candidate : candidates) pointers.push_back(&candidate);
+    return pointers;
+  }
+
+  /// Identifies candidates; the ranks share them. `rest`, relative to the rotor speed: an exponent
+  /// below it is that of a displacement.
+  void describe(const std::vector<Candidate*>& candidates, double rest = at_rest) {
+    const auto size = static_cast<std::size_t>(all_ranks_.size);
+    for (std::size_t first = 0; first < candidates.size(); first += size) {
+      const int count = static_cast<int>(std::min(size, candidates.size() - first));
+      Eigen::MatrixXcd own;
+      for (int rank = 0; rank < count; ++rank) {
+        const Candidate& candidate = *candidates[first + static_cast<std::size_t>(rank)];
+        Eigen::MatrixXcd series = series_on(rank, candidate.pair.series);
+        if (rank == all_ranks_.rank) own = std::move(series);
+      }
+      if (all_ranks_.rank < count)
+        describe(own, rest, *candidates[first + static_cast<std::size_t>(all_ranks_.rank)]);
+      for (int rank = 0; rank < count; ++rank) {
+        Candidate& candidate = *candidates[first + static_cast<std::size_t>(rank)];
+        share_mode(all_ranks_, rank, candidate.mode);
+        Eigen::MatrixXd shares = candidate.participation;
+        all_ranks_.share(rank, shares);
+        candidate.participation = shares.reshaped();
+      }
+    }
+  }
+
+  /// By the series of the whole system.
+  void describe(const Eigen::MatrixXcd& series, double rest, Candidate& candidate) {
+    describe_shape(shape_of(series), candidate);
     settle_rest(series, candidate, rest);
-    if (mesh_) all_ranks_.share(0, candidate.mode.harmonic);
   }
 
   /// A displacement at rest has no energy: its harmonic is that of the positions.
@@ -879,7 +919,7 @@ class Analysis {
   }
 
   /// By its shape over a revolution.
-  void describe(const Eigen::MatrixXcd& shape, Candidate& candidate) {
+  void describe_shape(const Eigen::MatrixXcd& shape, Candidate& candidate) {
     Eigen::MatrixXd real(energy_.signals(), shape.cols());
     Eigen::MatrixXd imaginary(energy_.signals(), shape.cols());
     energy_.take(shape.real(), real);
@@ -941,7 +981,7 @@ class Analysis {
     });
     for (Candidate& mode : modes_)  // round-off has split a double zero
       if (std::abs(mode.pair.exponent) < zero_exponent * speed_) mode.pair.exponent.imag(0.0);
-    for (Candidate& mode : modes_) describe(mode, zero_exponent);  // with the samples of all
+    describe(pointers_to(modes_), zero_exponent);  // with the samples of all
     std::vector<Candidate> chosen;
     std::vector<char> taken(modes_.size(), 0);
     for (std::size_t i = 0; i < modes_.size(); ++i) {
@@ -1010,8 +1050,8 @@ class Analysis {
       if (std::abs(exponents[i]) < std::min(split, largest_split * speed_)) exponents[i] = 0.0;
       modes_[i].pair = {exponents[i], mesh_ ? mesh_->counted_series(shapes[i].transpose())
                                             : Eigen::MatrixXcd(shapes[i].transpose())};
-      describe(modes_[i], zero_exponent);
     }
+    describe(pointers_to(modes_), zero_exponent);
   }
 
   /// Whether two pairs have exponents that are equal up to multiples of i Q Omega and up to their
@@ -1063,7 +1103,7 @@ class Analysis {
   Floquet finish() {
     std::vector<Eigen::MatrixXcd> shapes;
     for (Candidate& found : modes_) {
-      const Eigen::MatrixXcd series = first_series(found.pair.series);
+      const Eigen::MatrixXcd series = series_on(0, found.pair.series);
       found.pair.series.resize(0, 0);  // of a large mesh as large as the shape
       if (all_ranks_.rank == 0) shapes.push_back(shape_of(series));
     }

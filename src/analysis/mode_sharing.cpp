@@ -6,47 +6,48 @@
 namespace samara::analysis {
 namespace {
 
-void share_owner(const Ranks& ranks, std::optional<system::Owner>& owner) {
+void share_owner(const Ranks& ranks, int source, std::optional<system::Owner>& owner) {
   bool is_given = owner.has_value();
-  ranks.share(0, is_given);
+  ranks.share(source, is_given);
   if (!is_given) {
     owner.reset();
     return;
   }
   if (!owner) owner.emplace();
-  ranks.share(0, owner->kind);
-  ranks.share(0, owner->part);
-  ranks.share(0, owner->instance);
-}
-
-void share_mode(const Ranks& ranks, Mode& mode) {
-  for (std::complex<double>* value : {&mode.multiplier, &mode.exponent, &mode.step_exponent})
-    ranks.share(0, *value);
-  for (double* value : {&mode.damping_ratio, &mode.fixed_frame_frequency, &mode.step_error,
-                        &mode.mesh_error, &mode.round_off_error, &mode.growth_error,
-                        &mode.mesh_growth_error, &mode.residual, &mode.kinetic_energy})
-    ranks.share(0, *value);
-  for (int* value : {&mode.harmonic, &mode.shape_number, &mode.number}) ranks.share(0, *value);
-  for (bool* value : {&mode.is_mixture, &mode.resolved}) ranks.share(0, *value);
-  for (std::string* text : {&mode.name, &mode.motion, &mode.label}) ranks.share(0, *text);
-  std::size_t parts = mode.parts.size();
-  ranks.share(0, parts);
-  mode.parts.resize(parts);
-  for (PartShare& part : mode.parts) {
-    ranks.share(0, part.part);
-    ranks.share(0, part.share);
-  }
-  share_owner(ranks, mode.state);
+  ranks.share(source, owner->kind);
+  ranks.share(source, owner->part);
+  ranks.share(source, owner->instance);
 }
 
 }  // namespace
+
+void share_mode(const Ranks& ranks, int source, Mode& mode) {
+  if (ranks.size == 1) return;
+  for (std::complex<double>* value : {&mode.multiplier, &mode.exponent, &mode.step_exponent})
+    ranks.share(source, *value);
+  for (double* value : {&mode.damping_ratio, &mode.fixed_frame_frequency, &mode.step_error,
+                        &mode.mesh_error, &mode.round_off_error, &mode.growth_error,
+                        &mode.mesh_growth_error, &mode.residual, &mode.kinetic_energy})
+    ranks.share(source, *value);
+  for (int* value : {&mode.harmonic, &mode.shape_number, &mode.number}) ranks.share(source, *value);
+  for (bool* value : {&mode.is_mixture, &mode.resolved}) ranks.share(source, *value);
+  for (std::string* text : {&mode.name, &mode.motion, &mode.label}) ranks.share(source, *text);
+  std::size_t parts = mode.parts.size();
+  ranks.share(source, parts);
+  mode.parts.resize(parts);
+  for (PartShare& part : mode.parts) {
+    ranks.share(source, part.part);
+    ranks.share(source, part.share);
+  }
+  share_owner(ranks, source, mode.state);
+}
 
 void share_modes(const Ranks& ranks, ModeSet& set) {
   if (ranks.size == 1) return;
   std::size_t count = set.modes.size();
   ranks.share(0, count);
   set.modes.resize(count);
-  for (Mode& mode : set.modes) share_mode(ranks, mode);
+  for (Mode& mode : set.modes) share_mode(ranks, 0, mode);
   for (int* value : {&set.degrees_of_freedom, &set.instances, &set.states, &set.found,
                      &set.medium_states, &set.deflated, &set.first_harmonic})
     ranks.share(0, *value);

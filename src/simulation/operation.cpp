@@ -128,7 +128,8 @@ class OperatingPointFinder::Search {
     scenario_.turbine.controller.reset();
   }
 
-  OperatingPoint find_at(double wind, analysis::Observer& observer) {
+  OperatingPoint find_at(double wind, analysis::Observer& observer, MPI_Comm comm) {
+    comm_ = comm;
     const std::string place = "operation at " + general(wind, 6) + " m/s: ";
     try {
       if (table_.empty()) note_law(observer);
@@ -178,7 +179,7 @@ class OperatingPointFinder::Search {
     if (auto start = memory_.starts.predict(wind, speed, pitch))
       near = analysis::Trim{.solution =
                                 analysis::PeriodicSolution(std::move(*start), system.period())};
-    last_ = solve_trim(scenario, system, options, silent, PETSC_COMM_SELF, near ? &*near : nullptr);
+    last_ = solve_trim(scenario, system, options, silent, comm_, near ? &*near : nullptr);
     memory_.starts.add({wind, speed, pitch, last_->solution.coefficients()});
     system_ = std::move(built);
     if (!is_rough) require_wake_range(system, *last_);
@@ -414,6 +415,7 @@ class OperatingPointFinder::Search {
   bool present_is_rough_ = false;
   bool is_law_noted_ = false;
   OperationMemory memory_;
+  MPI_Comm comm_ = MPI_COMM_SELF;  ///< ranks that share a large mesh
 };
 
 std::string region_name(OperatingRegion region) {
@@ -438,8 +440,9 @@ OperatingPointFinder::OperatingPointFinder(const Scenario& scenario,
 
 OperatingPointFinder::~OperatingPointFinder() = default;
 
-OperatingPoint OperatingPointFinder::find_at(double wind, analysis::Observer& observer) {
-  return search_->find_at(wind, observer);
+OperatingPoint OperatingPointFinder::find_at(double wind, analysis::Observer& observer,
+                                             MPI_Comm comm) {
+  return search_->find_at(wind, observer, comm);
 }
 
 const OperationMemory& OperatingPointFinder::memory() const { return search_->memory(); }

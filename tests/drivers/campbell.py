@@ -113,6 +113,16 @@ class Campbell(ProgramTest):
         for ranks in (2, 3):
             self.require_same(self.diagram("1.h5"), self.diagram(f"{ranks}.h5"))
 
+    def test_ranks_of_a_group_share_a_point(self):
+        sweep = ["campbell", BASELINE, *QUICK, "--sweep", SPEEDS]
+        self.succeed(*sweep, "-o", "1.h5")
+        for ranks, groups in ((2, 1), (3, 2)):
+            self.succeed(*sweep, "-samara_groups", groups, "-o", f"{ranks}.h5", ranks=ranks)
+            self.require_same(self.diagram("1.h5"), self.diagram(f"{ranks}.h5"))
+        for groups in (0, 2):
+            self.refuse(*sweep, "-samara_groups", groups,
+                        words=[f"-samara_groups {groups}: the run has 1 rank"])
+
     def interrupt(self, number, arguments, points):
         run = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <mpi.h>
+
 #include "samara/analysis/observer.hpp"
 #include "samara/analysis/trim.hpp"
 #include "samara/simulation/scenario.hpp"
@@ -83,7 +85,8 @@ class OperatingPointFinder {
 
   /// @throws InputError where no operating point exists: wind speed, and reason
   /// @throws ConvergenceError, DomainError as analysis::find_trim, with the wind speed
-  OperatingPoint find_at(double wind, analysis::Observer& observer);
+  /// `comm`: ranks that share a large mesh; each of them calls it.
+  OperatingPoint find_at(double wind, analysis::Observer& observer, MPI_Comm comm = MPI_COMM_SELF);
 
   /// With the memory of another object behind a point, the next points are the same as of that
   /// one.
