@@ -45,16 +45,15 @@ class SweepFinder final : public CampbellPointFinder {
     std::optional<io::Case> read;
     std::optional<turbine::TurbineSystem> built;
     ranks.attempt([&] {
-      const io::Case& own = read.emplace(sweep_.case_at(place));
-      const turbine::TurbineSystem& system =
-          built.emplace(model::build_turbine(own.turbine), PETSC_COMM_SELF);
-      const bool is_near = last_ && last_->solution.coefficients().rows() == system.size();
-      last_ = simulation::solve_trim(own, system, simulation::trim_options(own), observer,
-                                     ranks.comm, is_near ? &*last_ : nullptr);
-      simulation::require_wake_range(system, *last_);
-      simulation::note_roughness(*last_, observer);
+      read.emplace(sweep_.case_at(place));
+      built.emplace(model::build_turbine(read->turbine), PETSC_COMM_SELF);
     });
     const io::Case& input = *read;
+    const bool is_near = last_ && last_->solution.coefficients().rows() == built->size();
+    last_ = simulation::solve_trim(input, *built, simulation::trim_options(input), observer,
+                                   ranks.comm, is_near ? &*last_ : nullptr);
+    simulation::require_wake_range(*built, *last_);
+    simulation::note_roughness(*last_, observer);
     CampbellPoint result =
         simulation::find_campbell_point(*built, *last_, input.floquet, ranks.comm, observer);
     if (input.turbine.wind && input.turbine.aero) result.wind_speed = input.turbine.wind->speed;
@@ -75,7 +74,7 @@ class OperationFinder final : public CampbellPointFinder {
  private:
   CampbellPoint find_modes(const SweepPlace& place, const analysis::Ranks& ranks,
                            analysis::Observer& observer) override {
-    ranks.attempt([&] { finder_->find_at(place.value, observer, ranks.comm); });
+    finder_->find_at(place.value, observer, ranks.comm);
     CampbellPoint result = simulation::find_campbell_point(finder_->system(), finder_->trim(),
                                                            input_.floquet, ranks.comm, observer);
     result.wind_speed = place.value;
@@ -216,12 +215,14 @@ CampbellPlan plan_campbell(const Job& job, const std::vector<simulation::Schedul
 
 void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
                  const analysis::Ranks& ranks, analysis::Observer& observer) {
-  const Groups groups(std::max<std::size_t>(plan.places.size(), 1), ranks);
   std::vector<std::size_t> missing;
   for (std::size_t point = 0; point < plan.places.size(); ++point)
     if (!files.has(point)) missing.push_back(point);
   // No rank writes before all have looked.
   MPI_Barrier(ranks.comm);
+  ranks.share(0, missing);
+  if (missing.empty()) return;
+  const Groups groups(missing.size(), ranks);
   const std::size_t runs = runs_of_group * groups.count();
   const std::size_t in_run = std::max<std::size_t>(1, (missing.size() + runs - 1) / runs);
   std::vector<std::size_t> own;
@@ -229,6 +230,7 @@ void find_points(const CampbellPlan& plan, const io::CampbellPointFiles& files,
     if (groups.of_task(i / in_run) == groups.of_rank(ranks.rank)) own.push_back(missing[i]);
   const GroupRanks sharing(groups, ranks);
   const analysis::Ranks group = sharing.get();
+  if (group.size > 1) plan.finder->forget();  // other groups may have been before
   for (std::size_t i = 0; i < own.size() && group.all(!Interruption::is_asked()); ++i) {
     observer.progress("points", static_cast<long>(i), static_cast<long>(own.size()));
     const CampbellPoint point = plan.finder->find(plan.places[own[i]], group);

@@ -29,7 +29,7 @@ class CampbellPointFinder {
   virtual ~CampbellPointFinder() = default;
 
   /// The point at a place. Where it has no steady state, or its modes are not found, it has the
-  /// reason. `ranks`: that share the work; each of them finds the steady state.
+  /// reason. `ranks`: that share the work, with the same points before.
   simulation::CampbellPoint find(const simulation::SweepPlace& place, const analysis::Ranks& ranks);
   /// The next steady state does not start from the one before.
   virtual void forget() = 0;

@@ -107,12 +107,12 @@ void run_floquet(const Job& job) {
   const analysis::Floquet floquet = analysis::find_floquet_modes(
       held ? *held : system, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
   std::optional<simulation::AirPart> air;
-  if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr)
-    air = simulation::find_air_part(
-        system, trim.solution, floquet.set,
-        analysis::find_floquet_modes(*still, trim.solution, job.input.floquet, PETSC_COMM_WORLD,
-                                     progress)
-            .set);
+  if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr) {
+    const analysis::Floquet without = analysis::find_floquet_modes(
+        *still, trim.solution, job.input.floquet, PETSC_COMM_WORLD, progress);
+    if (is_first)  // others have no shapes
+      air = simulation::find_air_part(system, trim.solution, floquet.set, without.set);
+  }
   std::optional<Sensitivities> sensitivities;
   std::exception_ptr failure;  // of the sensitivities: the modes are delivered all the same
   std::optional<Interruption> interruption;  // likewise

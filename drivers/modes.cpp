@@ -56,8 +56,10 @@ void run_modes(const Job& job) {
   };
   const analysis::ModeSet set = find(held ? *held : system);
   std::optional<simulation::AirPart> air;
-  if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr)
-    air = simulation::find_air_part(system, trim.solution, set, find(*still));
+  if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr) {
+    const analysis::ModeSet without = find(*still);
+    if (is_first) air = simulation::find_air_part(system, trim.solution, set, without);
+  }
   progress.finish();
   if (!is_first) return;
   const simulation::StabilityAssessment assessment = simulation::assess_stability(set);

@@ -74,8 +74,11 @@ std::string solver_options_text() {
          "  samara transient CASE.yaml -transient_ts_monitor -transient_snes_rtol 1e-9\n"
          "Without a prefix: -options_file FILE, -log_view, -options_left and others of PETSc "
          "itself.\n"
-         "-samara_groups G (campbell): G groups of ranks take the points in turn, and the ranks of a "
-         "group share a point: its mesh, steps or modes. Without it each rank is a group.\n";
+         "-samara_groups G (campbell): G groups of ranks take the points in turn, and the ranks of "
+         "a "
+         "group share a point: its mesh, steps or modes. Without it each rank is a group, where "
+         "there "
+         "are as many points.\n";
 }
 
 std::string prefixed_option(const std::string& option, const std::string& command) {

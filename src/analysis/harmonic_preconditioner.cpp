@@ -386,7 +386,8 @@ bool HarmonicPreconditioner::factor(const Eigen::VectorXd& rows, const Eigen::Ve
   if (present_.empty()) return true;
   eliminate_chains();
   if (partition != nullptr) partition->ranks().sum(schur_);
-  return complement_factors_.factor(std::move(schur_));
+  is_regular = complement_factors_.factor(std::move(schur_));
+  return partition != nullptr ? partition->ranks().all(is_regular) : is_regular;
 }
 
 void HarmonicPreconditioner::solve(const Eigen::Ref<const Eigen::MatrixXcd>& right,

@@ -121,9 +121,11 @@ constexpr double largest_split = 1e-4;
 /// Relative to the rotor speed: an exponent below this, in the search, is that of a displacement.
 constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
-/// Smallest piece of a distributed mesh, in blocks. Each cut adds unknowns with all harmonics to
-/// the border; smaller meshes are faster with groups of modes on each rank.
-constexpr Index least_piece = 300;
+/// Smallest piece of a distributed mesh, in blocks, and more of them for each block at a cut. These
+/// join the border with all harmonics, and smaller meshes are faster with groups of modes on each
+/// rank.
+constexpr Index least_piece = 150;
+constexpr Index of_cut = 150;
 /// Steps a revolution and multipliers of the search for the slowest decays; the factor of steps
 /// where all multipliers were found, but not enough, and that of multipliers; the largest number of
 /// steps, and that of attempts.
@@ -188,8 +190,13 @@ class Analysis {
         system_.unknowns(), [](const system::Unknown& one) { return one.is_of_medium(); });
     if (all_ranks_.size == 1 || is_whole || (options_.least_damped > 0 && !is_constant_))
       return mesh;
-    mesh.emplace(system_, Coordinates{}, !is_constant_, all_ranks_.comm,
-                 is_constant_ ? MeshPartition::usual_piece : least_piece);
+    MeshPartition::Limits limits;
+    limits.is_for_all = true;
+    if (!is_constant_) {
+      limits.least_piece = least_piece;
+      limits.of_cut = of_cut;
+    }
+    mesh.emplace(system_, Coordinates{}, !is_constant_, all_ranks_.comm, limits);
     if (!mesh->is_distributed()) mesh.reset();
     return mesh;
   }
@@ -721,8 +728,10 @@ class Analysis {
         harmonics_ = next;
       }
     }
+    std::vector<Eigen::VectorXcd> of_modes;
     for (Candidate& candidate : doubtful) {
-      bool is_kept = !candidate.is_found || (is_centred(candidate) && !is_copy(candidate));
+      bool is_kept =
+          !candidate.is_found || (is_centred(candidate) && !is_copy(candidate, of_modes));
       all_ranks_.share(0, is_kept);
       if (is_kept) modes_.push_back(std::move(candidate));
     }
@@ -824,8 +833,9 @@ class Analysis {
   }
 
   /// Whether an eigenpair is a copy of a mode at the edge of a series, where its harmonics are cut
-  /// off: the positions in the largest harmonics are the same.
-  bool is_copy(const Candidate& candidate) const {
+  /// off: the positions in the largest harmonics are the same. `of_modes`: those of the modes,
+  /// which are added where they are missing.
+  bool is_copy(const Candidate& candidate, std::vector<Eigen::VectorXcd>& of_modes) const {
     const auto largest = [this](const Eigen::MatrixXcd& series, int harmonic) {
       const Index harmonics = (series.rows() - 1) / 2;
       Eigen::VectorXcd positions = Eigen::VectorXcd::Zero(system_.size());
@@ -839,8 +849,9 @@ class Analysis {
         series.topRows(edge_harmonics).norm() + series.bottomRows(edge_harmonics).norm();
     if (tail < edge_part * series.norm()) return false;
     const Eigen::VectorXcd own = largest(series, candidate.mode.harmonic);
-    return std::any_of(modes_.begin(), modes_.end(), [&](const Candidate& mode) {
-      const Eigen::VectorXcd other = largest(whole_series(mode.pair.series), mode.mode.harmonic);
+    for (std::size_t m = of_modes.size(); m < modes_.size(); ++m)
+      of_modes.push_back(largest(whole_series(modes_[m].pair.series), modes_[m].mode.harmonic));
+    return std::ranges::any_of(of_modes, [&](const Eigen::VectorXcd& other) {
       return std::max(std::abs(other.dot(own)), std::abs(other.conjugate().dot(own))) > same_shape;
     });
   }

@@ -176,10 +176,18 @@ std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
   };
   const auto add_instant = [&](int j) {
     const double t = system.period() * (j + 0.37) / instants;
-    solution.evaluate(t, z.get(), z_dot.get());
-    piece.system().tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-    const Eigen::SparseMatrix<double> K = to_sparse(jacobian.get());
-    const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
+    Eigen::SparseMatrix<double> K;
+    Eigen::SparseMatrix<double> M;
+    const auto evaluate = [&] {
+      solution.evaluate(t, z.get(), z_dot.get());
+      piece.system().tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
+      K = to_sparse(jacobian.get());
+      M = to_sparse(mass.get());
+    };
+    if (mesh != nullptr)
+      mesh->ranks().attempt(evaluate);
+    else
+      evaluate();
     if (rows_of_rates.empty())
       for (const HillPair* pair : pairs)
         if (const double rate = rate_of(pair->exponent); !rows_of_rates.contains(rate))

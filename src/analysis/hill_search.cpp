@@ -322,6 +322,11 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   region.growth = region.decay;
   for (double* value : {&region.low, &region.high, &region.decay, &region.growth})
     pencil_.ranks().share(0, *value);
+  std::size_t pairs = region.pairs.size();
+  pencil_.ranks().share(0, pairs);
+  if (!pencil_.ranks().all(pairs == region.pairs.size()))
+    throw ConvergenceError("floquet: the ranks differ in the number of modes next to " +
+                           std::to_string(frequency) + " rad/s; hint: processors of one kind");
   for (HillPair& pair : region.pairs) pencil_.ranks().share(0, pair.exponent);
   return region;
 }
@@ -343,6 +348,7 @@ std::vector<Complex> HillSearch::logs_at(const std::vector<Complex>& points, con
                                                       std::numeric_limits<double>::quiet_NaN());
   });
   ranks.sum(values);
+  pencil_.ranks().share(0, values);
   for (std::size_t i = 0; i < missing.size(); ++i)
     logs_.emplace(key(missing[i]), values(static_cast<Index>(i)));
   std::vector<Complex> logs;

@@ -121,7 +121,7 @@ std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pie
 }  // namespace
 
 MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordinates& held,
-                             bool by_sector, MPI_Comm comm, Eigen::Index least_piece)
+                             bool by_sector, MPI_Comm comm, const Limits& limits)
     : whole_(system),
       ranks_(comm),
       block_size_(block_size_of(system)),
@@ -129,11 +129,11 @@ MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordin
   RotorSector sector = sector_;
   const bool may_be_sector = by_sector && system.symmetry().sectors > 1 && system.period() > 0.0;
   const bool may_be_distributed =
-      ranks_.size > 1 && block_size_ > 1 && system.size() >= 2 * least_piece * block_size_;
+      ranks_.size > 1 && block_size_ > 1 && system.size() >= 2 * limits.least_piece * block_size_;
   if (may_be_sector || may_be_distributed) {
     const TangentPattern pattern = find_pattern(system, held);
     if (may_be_sector) sector = find_sector(pattern, held);
-    if (may_be_distributed && distribute(pattern, held, sector, least_piece)) return;
+    if (may_be_distributed && distribute(pattern, held, sector, limits)) return;
   }
   work_alone(std::move(sector));
 }
@@ -152,7 +152,7 @@ RotorSector MeshPartition::find_sector(const TangentPattern& pattern,
 
 /// @returns false where every rank has to keep the whole mesh
 bool MeshPartition::distribute(const TangentPattern& pattern, const Coordinates& held,
-                               const RotorSector& sector, Eigen::Index least_piece) {
+                               const RotorSector& sector, const Limits& limits) {
   const Blocks blocks(whole_, sector, block_size_);
   std::vector<char> border = find_border(pattern, block_size_, held);
   for (const PetscInt i : whole_.common_unknowns())
@@ -165,9 +165,14 @@ bool MeshPartition::distribute(const TangentPattern& pattern, const Coordinates&
     return number;
   };
   const Eigen::Index inner = count(border, 0);
-  const auto pieces = static_cast<int>(std::min<Eigen::Index>(ranks_.size, inner / least_piece));
-  if (pieces < 2) return false;
+  const Eigen::Index before = count(border, 1);
+  const auto pieces =
+      static_cast<int>(std::min<Eigen::Index>(ranks_.size, inner / limits.least_piece));
+  if (pieces < (limits.is_for_all ? std::max(ranks_.size, 2) : 2)) return false;
   std::vector<int> owners = cut(pattern, block_size_, pieces, blocks, border);
+  const Eigen::Index of_cuts = count(border, 1) - before;
+  if (inner < pieces * limits.least_piece + pieces * limits.of_cut * of_cuts / (pieces - 1))
+    return false;
   if (static_cast<double>(count(border, 1)) >
       largest_border * static_cast<double>(count(blocks.kept(), 1)))
     return false;

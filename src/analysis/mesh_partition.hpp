@@ -26,12 +26,17 @@ class MeshPartition {
  public:
   /// With one rank, or where the mesh is too small to be worth a distribution or cannot be divided,
   /// every rank works for itself. The mesh is the whole one, or a sector of the rotor where
-  /// `by_sector` holds and all held coordinates have a mean in it. `least_piece`: smallest piece of
-  /// a chain, in blocks.
+  /// `by_sector` holds and all held coordinates have a mean in it.
+  struct Limits {
+    Eigen::Index least_piece = 100;  ///< blocks of a piece, on average
+    Eigen::Index of_cut = 0;         ///< more of them for each block that a cut adds to the border
+    bool is_for_all = false;         ///< no distribution over some of the ranks
+  };
   MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, bool by_sector,
-                MPI_Comm comm, Eigen::Index least_piece = usual_piece);
-
-  static constexpr Eigen::Index usual_piece = 100;
+                MPI_Comm comm, const Limits& limits);
+  MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, bool by_sector,
+                MPI_Comm comm)
+      : MeshPartition(system, held, by_sector, comm, Limits()) {}
 
   bool is_distributed() const { return ranks_.size > 1; }
   /// Of one rank, if the mesh is not distributed.
@@ -40,7 +45,7 @@ class MeshPartition {
   /// What this rank evaluates.
   const system::PeriodicSystem& system() const { return part_ ? *part_ : whole_; }
 
-  /// Unknowns of one of identical blades that stand for all; else the unknowns on this rank.
+  /// The unknowns on this rank, of one of identical blades where this stands for all.
   const RotorSector& sector() const { return sector_; }
 
   PetscInt block_size() const { return block_size_; }  ///< see block_size_of
@@ -91,7 +96,7 @@ class MeshPartition {
 
  private:
   bool distribute(const TangentPattern& pattern, const Coordinates& held, const RotorSector& sector,
-                  Eigen::Index least_piece);
+                  const Limits& limits);
   RotorSector find_sector(const TangentPattern& pattern, const Coordinates& held) const;
   void work_alone(RotorSector sector);
 

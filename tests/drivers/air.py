@@ -75,6 +75,16 @@ class Commands(ProgramTest):
                 i = labels.index(mode)
                 self.assertLess(held[i], 0.5 * group["damping_ratio"][i], mode)
                 self.assertLess(whole[i], 0, mode)  # the air takes energy out
+            # Only the first rank has the shapes.
+            self.succeed("floquet", LAND, *quick, "--air", "-o", "two.h5", ranks=2)
+            with h5py.File(self.folder / "two.h5") as two:
+                numpy.testing.assert_allclose(two["floquet/held_air_damping"][:12], held[:12],
+                                              rtol=1e-6)
+            few = ["modes", LAND, *QUICK, "--parked", "--set", "wind.speed=8", "--set",
+                   "floquet.modes=4", "--air"]
+            self.succeed(*few, "-o", "few.h5", ranks=2)
+            with h5py.File(self.folder / "few.h5") as two:
+                self.assertGreater(numpy.isfinite(two["modes/held_air_damping"][:]).sum(), 3)
         self.refuse("trim", LAND, "--air", words="--air: samara trim lists no modes")
         self.refuse("floquet", LAND, *QUICK, "--set", "aero=none", "--air", words="has no air; hint: wind.speed")
         for key in ("floquet.modes", "floquet.least_damped"):

@@ -20,8 +20,8 @@ namespace samara::analysis {
 ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution);
 
 /// With `options.modes` or `options.least_damped` some of the modes by Hill's method (hill.hpp),
-/// which the ranks of `comm` share; else, and where the mesh is too coarse for it, all of them as
-/// above.
+/// which the ranks of `comm` share, and of which the first one has the shapes; else, and where the
+/// mesh is too coarse for it, all of them as above.
 /// @throws InputError where the tangents depend on time, ConvergenceError
 ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                             const FloquetOptions& options, MPI_Comm comm, Observer& observer);

@@ -8,9 +8,10 @@
 namespace samara::analysis {
 
 /// The `options.modes` slowest modes, those nearest to `options.near_hz`, or the
-/// `options.least_damped` ones of slowest decay, the same on every rank of `comm`. Modes of a
-/// medium alone are left out. The ranks share the refinement and the count of eigenvalues. Empty
-/// where the structure of the system does not serve: chains of nodes with a small border.
+/// `options.least_damped` ones of slowest decay, the same on every rank of `comm`; only the first
+/// one has the shapes. Modes of a medium alone are left out. The ranks share a large mesh, else the
+/// refinement and the count of eigenvalues. Empty where the structure of the system does not serve:
+/// chains of nodes with a small border.
 /// @throws ConvergenceError
 std::optional<Floquet> find_hill_modes(const system::PeriodicSystem& system,
                                        const PeriodicSolution& solution,
