@@ -1,6 +1,7 @@
 #include "campbell_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
+#include "samara/base/number.hpp"
 #include "samara/io/schema.hpp"
 #include "samara/petsc/handle.hpp"
 #include "samara/petsc/session.hpp"
@@ -114,13 +116,18 @@ class Groups {
  private:
   static int wanted(int ranks) {
     constexpr const char* option = "-samara_groups";
-    PetscInt groups = ranks;
     PetscBool is_given = PETSC_FALSE;
-    petsc::check(PetscOptionsGetInt(nullptr, nullptr, option, &groups, &is_given));
-    if (groups < 1 || groups > ranks)
-      throw InputError(std::string(option) + " " + std::to_string(groups) + ": the run has " +
-                       samara::count(ranks, "rank") + "; hint: a number of groups from 1 to " +
-                       std::to_string(ranks));
+    PetscBool has_word = PETSC_FALSE;
+    std::array<char, 64> word{};
+    petsc::check(PetscOptionsHasName(nullptr, nullptr, option, &is_given));
+    if (is_given == PETSC_FALSE) return ranks;
+    petsc::check(
+        PetscOptionsGetString(nullptr, nullptr, option, word.data(), word.size(), &has_word));
+    const double groups = parse_number(word.data()).value_or(0.0);
+    if (groups < 1.0 || groups > ranks || groups != std::floor(groups))
+      throw InputError(std::string(option) + " " + word.data() + ": the run has " +
+                       samara::count(ranks, "rank") +
+                       "; hint: a whole number of groups from 1 to " + std::to_string(ranks));
     return static_cast<int>(groups);
   }
 

@@ -21,6 +21,7 @@
 #include "energy_coordinates.hpp"
 #include "energy_shares.hpp"
 #include "massless_states.hpp"
+#include "mode_sharing.hpp"
 #include "sector_motion.hpp"
 #include "signal_series.hpp"
 #include "state_parts.hpp"
@@ -707,12 +708,7 @@ class Analysis {
   /// Names come from the shapes, which only the first rank has.
   void share_names() {
     ranks_.share(0, set_.instances);
-    for (Mode& mode : set_.modes) {
-      ranks_.share(0, mode.fixed_frame_frequency);
-      ranks_.share(0, mode.name);
-      ranks_.share(0, mode.motion);
-      ranks_.share(0, mode.shape_number);
-    }
+    for (Mode& mode : set_.modes) share_mode(ranks_, 0, mode);
   }
 
   const system::PeriodicSystem& system_;

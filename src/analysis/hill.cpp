@@ -200,14 +200,14 @@ class Analysis {
     if (!mesh->is_distributed()) mesh.reset();
     return mesh;
   }
-  const MeshPartition* mesh() const { return mesh_ ? &*mesh_ : nullptr; }
 
   /// The pencil with a number of harmonics, which is kept until another one is asked for. Shapes
   /// get the samples that it needs.
   HillPencil& pencil_of(int harmonics) {
-    if ((!pencil_ || pencil_->harmonics() != harmonics) && mesh_)
+    if (pencil_ && pencil_->harmonics() != harmonics) pencil_.reset();
+    if (!pencil_ && mesh_)
       pencil_.emplace(*mesh_, solution_, harmonics);
-    else if (!pencil_ || pencil_->harmonics() != harmonics)
+    else if (!pencil_)
       pencil_.emplace(system_, solution_, harmonics, !is_constant_);
     const Index least = is_constant_ ? 1 : std::max(shape_samples, 4 * harmonics + 2);
     samples_ = std::max(samples_, least);
@@ -674,7 +674,7 @@ class Analysis {
     const Tolerance& tolerances = is_by_change() ? of_series_with_medium : of_series;
     double tolerance = is_constant_ ? tolerances.last : tolerances.first;
     while (!groups.empty()) {
-      HillGroups all(system_, solution_, pencil_of(harmonics_), ranks_, mesh());
+      HillGroups all(system_, solution_, pencil_of(harmonics_), ranks_);
       all.refine(groups, tolerance);
       if (tolerance > tolerances.last) all.refine_further(groups, tolerances.last);
       tolerance = tolerances.last;

@@ -280,7 +280,7 @@ void HillGroups::find_residuals(const std::vector<HillGroup*>& groups) const {
   for (const HillGroup* group : groups)
     for (const HillPair& pair : group->pairs) pairs.push_back(&pair);
   const std::vector<double> residuals =
-      find_hill_residuals(system_, solution_, pairs, ranks_, mesh_);
+      find_hill_residuals(system_, solution_, pairs, ranks_, pencil_.mesh());
   auto next = residuals.begin();
   for (HillGroup* group : groups) {
     const auto end = next + static_cast<std::ptrdiff_t>(group->pairs.size());

@@ -49,15 +49,14 @@ void share_groups(const Ranks& ranks, std::vector<HillGroup>& groups);
 /// them; all ranks get the same result.
 class HillGroups {
  public:
-  /// `mesh`: that of the pencil, if it is distributed; `ranks` is one rank then.
+  /// `ranks`: those that share the groups; one, if the mesh of the pencil is distributed.
   HillGroups(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-             HillPencil& pencil, const Ranks& ranks, const MeshPartition* mesh)
+             HillPencil& pencil, const Ranks& ranks)
       : system_(system),
         solution_(solution),
         pencil_(pencil),
         refinement_(pencil),
         ranks_(ranks),
-        mesh_(mesh),
         speed_(pencil.speed()) {}
 
   /// Refines all groups. Where the eigenvectors change much, another eigenpair next to it may have
@@ -83,7 +82,6 @@ class HillGroups {
   HillPencil& pencil_;
   HillRefinement refinement_;
   Ranks ranks_;
-  const MeshPartition* mesh_;
   double speed_;
 };
 

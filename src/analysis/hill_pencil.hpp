@@ -55,6 +55,8 @@ class HillPencil {
   double speed() const { return tangents_.rate(); }
   /// The ranks that have the parts of a vector; one rank, if the mesh is not distributed.
   const Ranks& ranks() const { return ranks_; }
+  /// Null: the mesh is not distributed.
+  const MeshPartition* mesh() const { return tangents_.partition(); }
   /// A^H B.
   template <class A, class B>
   Matrix product(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) const {
@@ -116,8 +118,6 @@ class HillPencil {
   Vector vector_of(const Eigen::MatrixXcd& whole) const;
 
  private:
-  /// Null: the mesh is not distributed.
-  const MeshPartition* mesh() const { return tangents_.partition(); }
   Index number_of(Index unknown) const;
   Eigen::Map<const Matrix> spread(Input x, Matrix& storage) const;
   void give_products(Output y);

@@ -24,14 +24,14 @@ namespace samara::analysis {
 /// first rank counts those of the border where a vector is summed or stored once.
 class MeshPartition {
  public:
-  /// With one rank, or where the mesh is too small to be worth a distribution or cannot be divided,
-  /// every rank works for itself. The mesh is the whole one, or a sector of the rotor where
-  /// `by_sector` holds and all held coordinates have a mean in it.
   struct Limits {
     Eigen::Index least_piece = 100;  ///< blocks of a piece, on average
     Eigen::Index of_cut = 0;         ///< more of them for each block that a cut adds to the border
     bool is_for_all = false;         ///< no distribution over some of the ranks
   };
+  /// With one rank, or where the mesh is too small to be worth a distribution or cannot be divided,
+  /// every rank works for itself. The mesh is the whole one, or a sector of the rotor where
+  /// `by_sector` holds and all held coordinates have a mean in it.
   MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, bool by_sector,
                 MPI_Comm comm, const Limits& limits);
   MeshPartition(const system::PeriodicSystem& system, const Coordinates& held, bool by_sector,

@@ -28,11 +28,10 @@ constexpr int coarse = 1;
 constexpr int fine = 3;
 constexpr int wanted = 8;
 
-/// The eigenpairs of a search, refined; `mesh`: null, or that of a distributed pencil.
+/// The eigenpairs of a search, refined.
 struct Found {
   Found(const turbine::TurbineSystem& system, const analysis::PeriodicSolution& solution,
-        analysis::HillPencil& search_pencil, analysis::HillPencil& pencil,
-        const analysis::MeshPartition* mesh)
+        analysis::HillPencil& search_pencil, analysis::HillPencil& pencil)
       : search(search_pencil) {
     region = search.find(1.5 * pencil.speed(), wanted);
     std::vector<analysis::HillPair> inside;
@@ -42,7 +41,7 @@ struct Found {
         inside.push_back(pair);
     groups = analysis::groups_of(std::move(inside), pencil.speed());
     const analysis::Ranks alone(MPI_COMM_SELF);
-    analysis::HillGroups(system, solution, pencil, alone, mesh).refine(groups, 1e-10);
+    analysis::HillGroups(system, solution, pencil, alone).refine(groups, 1e-10);
     for (const analysis::HillPair& pair : region.pairs) found.push_back(pair.exponent);
   }
 
@@ -72,10 +71,10 @@ void require_same(const model::TurbineDefinition& definition) {
   if (!mesh.is_distributed()) return;
   analysis::HillPencil search_alone(system, trim.solution, coarse);
   analysis::HillPencil refine_alone(system, trim.solution, fine);
-  Found alone(system, trim.solution, search_alone, refine_alone, nullptr);
+  Found alone(system, trim.solution, search_alone, refine_alone);
   analysis::HillPencil search_together(mesh, trim.solution, coarse);
   analysis::HillPencil refine_together(mesh, trim.solution, fine);
-  Found together(system, trim.solution, search_together, refine_together, &mesh);
+  Found together(system, trim.solution, search_together, refine_together);
 
   const double speed = refine_alone.speed();
   std::size_t count = 0;

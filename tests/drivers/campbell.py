@@ -119,7 +119,7 @@ class Campbell(ProgramTest):
         for ranks, groups in ((2, 1), (3, 2)):
             self.succeed(*sweep, "-samara_groups", groups, "-o", f"{ranks}.h5", ranks=ranks)
             self.require_same(self.diagram("1.h5"), self.diagram(f"{ranks}.h5"))
-        for groups in (0, 2):
+        for groups in (0, 2, 0.5, "two"):
             self.refuse(*sweep, "-samara_groups", groups,
                         words=[f"-samara_groups {groups}: the run has 1 rank"])
 
