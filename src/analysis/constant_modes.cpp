@@ -330,7 +330,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
     set.modes.push_back(mode);
     set.shapes.push_back(shape);
   }
-  name_modes(system, find_leading_motions(system, solution, set), set);
+  name_modes(system, separate_motions(system, solution, set), set);
   arrange_modes(set);
   scale_shapes(system, set);
   return set;

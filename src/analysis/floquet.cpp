@@ -55,8 +55,6 @@ constexpr double far_from_zero = std::numeric_limits<double>::infinity();
 /// round-off. The computed exponent of a motion at rest is the square root of round-off, and so is
 /// its speed.
 constexpr double rest_energy = 1e-10;
-/// Harmonics of positions among which that of a motion without energy is.
-constexpr int most_harmonic_of_rest = 4;
 /// Initial states that are advanced at once.
 constexpr Index group_states = 128;
 /// Largest number of instants of the mode shapes per revolution.
@@ -368,31 +366,6 @@ class Analysis {
     find_displacements();
   }
 
-  /// The largest harmonic of the positions over a period: 0 of a displacement at rest, 1 of a rotor
-  /// disc that stays tilted on hinges of the shaft axis, which has no energy in its own axes.
-  int harmonic_of_positions(const Eigen::MatrixXcd& shape) const {
-    const Eigen::Index count = shape.cols();
-    int best = 0;
-    double largest = 0.0;
-    for (int k = 0; k <= std::min<int>(static_cast<int>(count / 2), most_harmonic_of_rest); ++k) {
-      Eigen::VectorXcd wave(count);
-      for (Eigen::Index i = 0; i < count; ++i)
-        wave(i) = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k * i % count) /
-                                      static_cast<double>(count));
-      const Eigen::VectorXcd part = shape * wave;
-      double size = 0.0;
-      for (Eigen::Index i = 0; i < part.size(); ++i)
-        if (const system::Unknown& unknown = system_.unknowns()[static_cast<std::size_t>(i)];
-            unknown.role == system::UnknownRole::position)
-          size += std::norm(part(i) / unknown.scale);
-      if (k > 0) size *= 2.0;  // and its conjugate, of a real motion
-      if (size <= largest) continue;
-      largest = size;
-      best = k;
-    }
-    return best;
-  }
-
   /// Finds displacements at rest that nothing restores: their kinetic energy is round-off, and at
   /// the middle of the first step they have their full size. (This is not so for a decay or a
   /// vibration too fast for the step.)
@@ -513,8 +486,8 @@ class Analysis {
     }
   }
 
-  /// A real growth or decay of the joints alone, or an exponent that counts as zero, is no
-  /// oscillation: its harmonics in rotor axes come from the rotation of these axes, and k is 0. A
+  /// A real growth or decay of the joints alone, a slow drift, or an exponent that counts as zero,
+  /// is no oscillation: its harmonics in rotor axes come from the rotation of these axes. A
   /// motion that changes sign with every step, or nearly so, is excluded: it is a decay too fast
   /// for the step.
   void settle_rigid_body_modes() {
@@ -525,10 +498,11 @@ class Analysis {
         mode.exponent = exponents_[m];
         const bool real = exponents_[m].imag() == 0.0 && !mode.state &&
                           is_rigid_body(system_, set_.shapes[m], mode);
-        if ((!is_zero(exponents_[m]) && !real) || is_too_fast(m))
-          harmonics(static_cast<Eigen::Index>(m)) = set_.modes[m].harmonic;
+        const bool is_slow = !mode.state && is_drift(exponents_[m], speed_);
+        if ((is_zero(exponents_[m]) || real || is_slow) && !is_too_fast(m))
+          harmonics(static_cast<Eigen::Index>(m)) = harmonic_of_positions(system_, set_.shapes[m]);
         else
-          harmonics(static_cast<Eigen::Index>(m)) = harmonic_of_positions(set_.shapes[m]);
+          harmonics(static_cast<Eigen::Index>(m)) = set_.modes[m].harmonic;
       }
     }
     ranks_.sum(harmonics);
@@ -654,8 +628,7 @@ class Analysis {
     for (int q = 0; q < sectors_; ++q)
       for (Eigen::Index k = 0; k < columns; ++k)
         set_.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + offset_) * dt_);
-    const std::vector<LeadingMotion> leading =
-        find_leading_motions(system_, solution_, set_, sectors_);
+    const std::vector<LeadingMotion> leading = separate_motions(system_, solution_, set_, sectors_);
     move_to_leading(leading);
     set_.reach = rule_.reach();
     for (const Mode& mode : set_.modes)

@@ -1148,12 +1148,18 @@ class Analysis {
       if (!is_constant_) set_.participation.row(static_cast<Index>(m)) = found.participation;
       const bool is_real = std::abs(found.pair.exponent.imag()) < zero_exponent * speed_;
       mode.exponent = found.pair.exponent;
-      if (is_real && !mode.state && is_rigid_body(system_, set_.shapes.back(), mode))
-        mode.harmonic = 0;
+      if (is_real) mode.exponent.imag(0.0);
+      if (!is_constant_ && !mode.state &&
+          (is_drift(mode.exponent, speed_) ||
+           (is_real && is_rigid_body(system_, set_.shapes.back(), mode))))
+        mode.harmonic = harmonic_of_positions(system_, set_.shapes.back());
       set_.modes.push_back(mode);
       settle(m);
+      // A displacement has no energy in any part.
+      if (!is_constant_ && std::abs(set_.modes[m].exponent) < zero_exponent * speed_)
+        set_.modes[m].parts.clear();
     }
-    const std::vector<LeadingMotion> leading = find_leading_motions(system_, solution_, set_);
+    const std::vector<LeadingMotion> leading = separate_motions(system_, solution_, set_);
     for (std::size_t m = 0; m < leading.size(); ++m) {
       if (is_constant_ || leading[m].harmonic == set_.modes[m].harmonic) continue;
       set_.modes[m].harmonic = leading[m].harmonic;

@@ -48,6 +48,10 @@ constexpr double least_distance = 0.1;
 constexpr double largest_correction = 0.5;
 constexpr double no_exponent = std::numeric_limits<double>::infinity();
 
+/// Restarts of the eigensolver in which no further pair converges, after which it ends with those
+/// that it has: the others are smaller than the round-off of the largest ones.
+constexpr PetscInt restarts_without_progress = 8;
+
 /// Solves (A + sigma B) y = B x for real x.
 struct ShiftInvert {
   HillPencil& pencil;
@@ -127,6 +131,21 @@ PetscErrorCode apply_inverse(Mat matrix, Vec x, Vec y) {
     context->error = std::current_exception();
     return PETSC_ERR_USER;
   }
+  return 0;
+}
+
+struct Progress {
+  PetscInt pairs = 0;     ///< converged
+  PetscInt restarts = 0;  ///< since then
+};
+
+PetscErrorCode stop_without_progress(EPS solver, PetscInt restart, PetscInt most, PetscInt pairs,
+                                     PetscInt wanted, EPSConvergedReason* reason, void* context) {
+  PetscCall(EPSStoppingBasic(solver, restart, most, pairs, wanted, reason, nullptr));
+  Progress& progress = *static_cast<Progress*>(context);
+  if (pairs > progress.pairs) progress = {pairs, 0};
+  const bool is_last = pairs > 0 && progress.restarts++ >= restarts_without_progress;
+  if (*reason == EPS_CONVERGED_ITERATING && is_last) *reason = EPS_CONVERGED_USER;
   return 0;
 }
 
@@ -250,6 +269,8 @@ HillRegion HillSearch::find_all(double frequency, int count) {
   petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_MAGNITUDE));
   petsc::check(EPSSetDimensions(solver.get(), 2 * count, PETSC_DEFAULT, PETSC_DEFAULT));
   petsc::check(EPSSetTolerances(solver.get(), tolerances.eigenvalues, PETSC_DEFAULT));
+  Progress progress;
+  petsc::check(EPSSetStoppingTestFunction(solver.get(), stop_without_progress, &progress, nullptr));
   petsc::take_options(EPSSetFromOptions, solver.get());
   EPSWhich which = EPS_LARGEST_MAGNITUDE;
   petsc::check(EPSGetWhichEigenpairs(solver.get(), &which));

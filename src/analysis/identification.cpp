@@ -32,6 +32,10 @@ constexpr double same_size = 1e-6;
 /// `many_errors` times their errors by round-off.
 constexpr double degenerate = 1e-7;
 constexpr double many_errors = 4.0;
+/// Relative to the largest one: a smaller singular value of displacements is round-off.
+constexpr double least_displacement = 1e-4;
+/// Distance of a coordinate from the displacements that move it alone.
+constexpr double moves_alone = 1e-6;
 /// Part of the largest strain energy of a place along a part, below which the sign of the load
 /// there has no meaning.
 constexpr double least_energy = 0.05;
@@ -240,6 +244,89 @@ std::vector<int> ranks_of(const std::vector<double>& values, double relative, do
   return ranks;
 }
 
+/// Root of the mean square of all positions, relative to their scales.
+double size_of_positions(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
+  double square = 0.0;
+  for (Eigen::Index i = 0; i < shape.rows(); ++i) {
+    const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
+    if (unknown.role == system::UnknownRole::position)
+      square += (shape.row(i) / unknown.scale).squaredNorm();
+  }
+  return std::sqrt(square / static_cast<double>(shape.cols()));
+}
+
+/// Mean values of the unconstrained coordinates.
+Eigen::VectorXcd displacements(const system::PeriodicSystem& system,
+                               const Eigen::MatrixXcd& shape) {
+  const auto& coordinates = system.unconstrained_coordinates();
+  Eigen::VectorXcd means(static_cast<Eigen::Index>(coordinates.size()));
+  for (Eigen::Index j = 0; j < means.size(); ++j)
+    means(j) = shape.row(coordinates[static_cast<std::size_t>(j)].unknown).mean();
+  return means;
+}
+
+/// Numbers of exponents of each unconstrained coordinate that are not zero: real ones of motions
+/// that it leads.
+std::vector<int> count_drifts(const system::PeriodicSystem& system,
+                              const std::vector<LeadingMotion>& leading, const ModeSet& set) {
+  const auto& coordinates = system.unconstrained_coordinates();
+  std::vector<int> drifts(coordinates.size(), 0);
+  for (std::size_t m = 0; m < leading.size(); ++m) {
+    if (set.modes[m].exponent.imag() != 0.0 || is_at_rest(set.modes[m], set)) continue;
+    for (std::size_t j = 0; j < coordinates.size(); ++j)
+      if (system.unknowns()[static_cast<std::size_t>(coordinates[j].unknown)].owner ==
+          leading[m].motion.owner)
+        ++drifts[j];
+  }
+  return drifts;
+}
+
+/// Replaces modes at rest. Each coordinate has two exponents; `leading` tells which of them are not
+/// zero. False where no mode changes.
+bool separate_displacements(const system::PeriodicSystem& system,
+                            const std::vector<LeadingMotion>& leading, ModeSet& set) {
+  std::vector<std::size_t> at_rest;
+  for (std::size_t m = 0; m < set.shapes.size(); ++m)
+    if (!set.modes[m].state && is_at_rest(set.modes[m], set)) at_rest.push_back(m);
+  const auto coordinates = static_cast<Eigen::Index>(system.unconstrained_coordinates().size());
+  if (at_rest.size() < 2 || coordinates < 2) return false;
+  const auto count = static_cast<Eigen::Index>(at_rest.size());
+  Eigen::MatrixXcd moved(coordinates, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Eigen::MatrixXcd& shape = set.shapes[at_rest[static_cast<std::size_t>(i)]];
+    const double size = size_of_positions(system, shape);
+    if (!(size > 0.0)) return false;
+    shape /= size;
+    moved.col(i) = displacements(system, shape);
+  }
+  Eigen::JacobiSVD<Eigen::MatrixXcd> svd(moved, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  svd.setThreshold(least_displacement);
+  const Eigen::MatrixXcd alone = Eigen::MatrixXcd::Identity(coordinates, coordinates);
+  const Eigen::MatrixXcd factors = svd.solve(alone);
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index j = 0; j < coordinates; ++j)
+    if ((moved * factors.col(j) - alone.col(j)).norm() < moves_alone) moving.push_back(j);
+  if (moving.size() < 2 || static_cast<Eigen::Index>(moving.size()) != svd.rank()) return false;
+  // Each of them once, then those that have not two exponents yet.
+  std::vector<int> has = count_drifts(system, leading, set);
+  std::vector<Eigen::Index> chosen = moving;
+  for (const Eigen::Index j : moving) ++has[static_cast<std::size_t>(j)];
+  while (chosen.size() < at_rest.size()) {
+    const Eigen::Index next = *std::ranges::min_element(
+        moving, {}, [&has](Eigen::Index j) { return has[static_cast<std::size_t>(j)]; });
+    chosen.push_back(next);
+    ++has[static_cast<std::size_t>(next)];
+  }
+  std::vector<Eigen::MatrixXcd> separate(chosen.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    separate[i].setZero(set.shapes[at_rest[0]].rows(), set.shapes[at_rest[0]].cols());
+    for (std::size_t k = 0; k < at_rest.size(); ++k)
+      separate[i] += factors(static_cast<Eigen::Index>(k), chosen[i]) * set.shapes[at_rest[k]];
+  }
+  for (std::size_t i = 0; i < chosen.size(); ++i) set.shapes[at_rest[i]] = std::move(separate[i]);
+  return true;
+}
+
 }  // namespace
 
 bool has_canonical_shapes(const system::PeriodicSystem& system) {
@@ -310,6 +397,15 @@ bool is_rigid_body(const system::PeriodicSystem& system, const Eigen::MatrixXcd&
       strained +=
           (1.0 + group.damping * std::abs(mode.exponent)) * mean_strain_energy(group, shape);
   return strained < elastic_share * (strained + mode.kinetic_energy);
+}
+
+std::vector<LeadingMotion> separate_motions(const system::PeriodicSystem& system,
+                                            const PeriodicSolution& solution, ModeSet& set,
+                                            int sectors) {
+  std::vector<LeadingMotion> leading = find_leading_motions(system, solution, set, sectors);
+  if (separate_displacements(system, leading, set))
+    leading = find_leading_motions(system, solution, set, sectors);
+  return leading;
 }
 
 void conjugate_mode(ModeSet& set, std::size_t m) {

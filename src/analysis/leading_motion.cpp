@@ -33,12 +33,16 @@ constexpr double least_of_turn = 0.1;
 /// Relative difference of equal energies.
 constexpr double round_off = 1e-6;
 
-/// Whether an exponent is zero but for round-off and the error by the step.
-bool is_at_rest(const Mode& mode, const ModeSet& set) {
-  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
-  const double unsure = mode.growth_error - mode.mesh_growth_error;
-  return std::abs(mode.exponent) < zero ||
-         (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure);
+/// Relative to the rotor speed: a real principal exponent below this is that of a slow drift, and
+/// so is a complex one below the second, into which round-off may split a double real one.
+constexpr double slow_drift = 0.02;
+constexpr double slow_pair = 1e-4;
+/// Harmonics of positions among which that of a motion without energy is.
+constexpr int most_harmonic_of_rest = 4;
+
+/// Whether the positions of a mode, in place of their rates, name it.
+bool is_named_by_positions(const Mode& mode, const ModeSet& set) {
+  return is_at_rest(mode, set) || is_drift(mode.exponent, set.rotor_speed);
 }
 
 /// Instant of a column of a shape.
@@ -71,17 +75,17 @@ struct NamedShape {
 };
 
 /// Harmonics about the identified one are fitted, because the instants of several sectors are not
-/// equally spaced. A shape of few instants, or at rest, is used in place of its rate. For a real
-/// exponent the shape keeps all harmonics.
+/// equally spaced. A shape of few instants, at rest or of a slow drift is used in place of its
+/// rate. For a real exponent the shape keeps all harmonics.
 NamedShape named_shape(const ModeSet& set, std::size_t m) {
   const Mode& mode = set.modes[m];
   const Eigen::MatrixXcd& shape = set.shapes[m];
   const Eigen::Index instants = shape.cols();
   NamedShape named;
   const bool is_short = instants != static_cast<Eigen::Index>(set.shape_times.size());
-  if (is_short || instants == 1 || is_at_rest(mode, set)) {
+  if (is_short || instants == 1 || is_named_by_positions(mode, set)) {
     named.shape = shape;
-    named.whole_rate = is_short || is_at_rest(mode, set) ? shape : mode.exponent * shape;
+    named.whole_rate = is_short || is_named_by_positions(mode, set) ? shape : mode.exponent * shape;
     named.shape_rate = named.whole_rate;
     return named;
   }
@@ -222,7 +226,7 @@ Leading find_leading(const system::PeriodicSystem& system,
     }
     return found;
   };
-  if (is_at_rest(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
+  if (is_named_by_positions(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
   // A joint drifts: the parts that bend with it have little of the motion, even if their strain is
   // large.
   const system::Owner& mover = motions[leading().motion].owner;
@@ -325,6 +329,45 @@ int clear_component(const Eigen::VectorXd& shares) {
 }
 
 }  // namespace
+
+bool is_at_rest(const Mode& mode, const ModeSet& set) {
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const double unsure = mode.growth_error - mode.mesh_growth_error;
+  return std::abs(mode.exponent) < zero ||
+         (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure);
+}
+
+bool is_drift(std::complex<double> exponent, double rotor_speed) {
+  const double size = std::abs(exponent);
+  return size < slow_pair * rotor_speed ||
+         (exponent.imag() == 0.0 && size < slow_drift * rotor_speed);
+}
+
+int harmonic_of_positions(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
+  std::vector<Eigen::Index> angles;
+  std::vector<Eigen::Index> positions;
+  for (Eigen::Index i = 0; i < shape.rows(); ++i) {
+    const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
+    if (unknown.role != system::UnknownRole::position) continue;
+    positions.push_back(i);
+    if (unknown.unit == "rad") angles.push_back(i);
+  }
+  const Eigen::MatrixXcd counted = shape(angles.empty() ? positions : angles, Eigen::all);
+  const Eigen::Index count = shape.cols();
+  int best = 0;
+  double largest = 0.0;
+  for (int k = 0; k <= std::min<int>(static_cast<int>(count / 2), most_harmonic_of_rest); ++k) {
+    Eigen::VectorXcd wave(count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      wave(i) = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k * i % count) /
+                                    static_cast<double>(count));
+    const double size = (k > 0 ? 2.0 : 1.0) * (counted * wave).squaredNorm();  // with its conjugate
+    if (size <= largest) continue;
+    largest = size;
+    best = k;
+  }
+  return best;
+}
 
 int count_instances(const std::vector<system::Motion>& motions) {
   int count = 0;

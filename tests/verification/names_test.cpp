@@ -7,6 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <boost/test/unit_test.hpp>
 
+#include "samara/model/masses.hpp"
+
 #include "air_case.hpp"
 #include "cases.hpp"
 
@@ -408,6 +410,67 @@ BOOST_AUTO_TEST_CASE(a_rotor_that_turns_as_a_whole_is_rotor_rotation) {
   BOOST_TEST(set.modes[1].exponent.real() == -65.0 / 1168.0, tolerance(1e-5));
   BOOST_TEST(set.modes[1].exponent.imag() == 0.0);
   BOOST_TEST(set.modes[1].resolved);
+}
+
+BOOST_AUTO_TEST_CASE(a_slow_drift_of_the_rotor_is_rotor_rotation_at_any_rate) {
+  // The weight of the blades bends them once a revolution, and a slow drift changes the phase: its
+  // kinetic energy is that of the bending. The exponent of the speed is -slope N^2 / inertia about
+  // the shaft; the inertia of the generator counts N^2 times. A free yaw has two zero exponents, of
+  // which any combination with those of the azimuth is a mode.
+  struct Drive {
+    const char* input;
+    double own_inertia;  ///< [kg m^2]
+    double ratio;        ///< N
+    std::vector<std::string> mesh;
+    std::vector<double> slopes;  ///< [N m s]
+    std::size_t yaws;
+  };
+  const std::vector<Drive> drives = {{"lee2002/baseline",
+                                      5.0,
+                                      1.0,
+                                      {"blades.elements=3", "tower.elements=2"},
+                                      {1000.0, 3.0, 0.0},
+                                      2},
+                                     {"nrel5mw/land",
+                                      500.0,
+                                      97.0,
+                                      {"blades.elements=2", "blades.order=2", "tower.elements=1"},
+                                      {1000.0, 3.0, 0.0},
+                                      0}};
+  for (const Drive& drive : drives)
+    for (const double slope : drive.slopes)
+      for (const int modes : {0, 6})
+        BOOST_TEST_CONTEXT(drive.input << ", slope " << slope << ", modes " << modes) {
+          std::vector<std::string> settings = drive.mesh;
+          settings.push_back(
+              "shaft.generator={joint: free, own_inertia: " + std::to_string(drive.own_inertia) +
+              ", torque: 0, torque_slope: " + std::to_string(slope) + "}");
+          const io::Case turning = input(drive.input, settings);
+          Run run(turning);
+          analysis::FloquetOptions options;
+          options.modes = modes;
+          const analysis::ModeSet set = find_floquet_modes(run.system, run.trim.solution, options,
+                                                           PETSC_COMM_SELF, run.observer)
+                                            .set;
+          std::vector<double> rotation;
+          std::size_t yaws = 0;
+          for (const analysis::Mode& mode : set.modes) {
+            if (mode.name == "yaw") ++yaws;
+            BOOST_TEST((std::abs(mode.exponent.imag() / set.rotor_speed - 1.0) > 1e-3), mode.label);
+            if (mode.name != "rotor rotation") continue;
+            rotation.push_back(mode.exponent.real());
+            BOOST_TEST(mode.exponent.imag() == 0.0);
+          }
+          BOOST_TEST(yaws == drive.yaws);
+          BOOST_TEST_REQUIRE(rotation.size() == 2U);
+          std::ranges::sort(rotation);
+          BOOST_TEST(std::abs(rotation[1]) < 1e-4 * set.rotor_speed);
+          const double squared = drive.ratio * drive.ratio;
+          const double inertia =
+              model::compute_masses(turning.turbine, run.turbine).rotor.inertia(1, 1);
+          const double decay = slope * squared / (inertia + squared * drive.own_inertia);
+          BOOST_TEST(std::abs(rotation[0] + decay) < 2e-2 * decay + 1e-5 * set.rotor_speed);
+        }
 }
 
 BOOST_AUTO_TEST_CASE(blades_together_move_in_multiblade_components) {

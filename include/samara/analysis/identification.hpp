@@ -31,6 +31,13 @@ void choose_shapes(const system::PeriodicSystem& system,
                    std::vector<std::complex<double>>& exponents,
                    std::vector<Eigen::MatrixXcd>& shapes);
 
+/// The leading motions of all modes (find_leading_motions). Before, modes at rest, whose exponents
+/// are all zero, are replaced by combinations each of which moves one unconstrained coordinate: the
+/// rotor's azimuth, or the yaw angle. They stay where they do not move the coordinates one by one.
+std::vector<LeadingMotion> separate_motions(const system::PeriodicSystem& system,
+                                            const PeriodicSolution& solution, ModeSet& set,
+                                            int sectors = 1);
+
 /// Replaces mode m by its conjugate, which represents the pair from then on.
 void conjugate_mode(ModeSet& set, std::size_t m);
 
