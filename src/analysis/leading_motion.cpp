@@ -34,16 +34,12 @@ constexpr double least_of_turn = 0.1;
 constexpr double round_off = 1e-6;
 
 /// Relative to the rotor speed: a real principal exponent below this is that of a slow drift, and
-/// so is a complex one below the second, into which round-off may split a double real one.
-constexpr double slow_drift = 0.02;
-constexpr double slow_pair = 1e-4;
+/// so is any below the second: round-off may split a double real one, and a joint that drifts so
+/// slowly has next to no energy.
+constexpr double slow_drift = 0.05;
+constexpr double slowest_drift = 1e-3;
 /// Harmonics of positions among which that of a motion without energy is.
 constexpr int most_harmonic_of_rest = 4;
-
-/// Whether the positions of a mode, in place of their rates, name it.
-bool is_named_by_positions(const Mode& mode, const ModeSet& set) {
-  return is_at_rest(mode, set) || is_drift(mode.exponent, set.rotor_speed);
-}
 
 /// Instant of a column of a shape.
 double time_of(const ModeSet& set, const Eigen::MatrixXcd& shape, Eigen::Index column,
@@ -75,17 +71,17 @@ struct NamedShape {
 };
 
 /// Harmonics about the identified one are fitted, because the instants of several sectors are not
-/// equally spaced. A shape of few instants, at rest or of a slow drift is used in place of its
-/// rate. For a real exponent the shape keeps all harmonics.
+/// equally spaced. A shape of few instants, or at rest, is used in place of its rate. For a real
+/// exponent the shape keeps all harmonics.
 NamedShape named_shape(const ModeSet& set, std::size_t m) {
   const Mode& mode = set.modes[m];
   const Eigen::MatrixXcd& shape = set.shapes[m];
   const Eigen::Index instants = shape.cols();
   NamedShape named;
   const bool is_short = instants != static_cast<Eigen::Index>(set.shape_times.size());
-  if (is_short || instants == 1 || is_named_by_positions(mode, set)) {
+  if (is_short || instants == 1 || is_at_rest(mode, set)) {
     named.shape = shape;
-    named.whole_rate = is_short || is_named_by_positions(mode, set) ? shape : mode.exponent * shape;
+    named.whole_rate = is_short || is_at_rest(mode, set) ? shape : mode.exponent * shape;
     named.shape_rate = named.whole_rate;
     return named;
   }
@@ -226,12 +222,21 @@ Leading find_leading(const system::PeriodicSystem& system,
     }
     return found;
   };
-  if (is_named_by_positions(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
+  if (is_at_rest(mode, set) || !(mode.kinetic_energy > 0.0)) return leading();
   // A joint drifts: the parts that bend with it have little of the motion, even if their strain is
   // large.
   const system::Owner& mover = motions[leading().motion].owner;
   const bool is_beam = mover.kind == system::PartKind::beam || mover.instance > 0;
-  if (mode.exponent.imag() == 0.0 && !is_beam) return leading();
+  const bool is_slowest = std::abs(mode.exponent) < slowest_drift * set.rotor_speed;
+  if (mode.exponent.imag() == 0.0 && !is_beam && !is_slowest) return leading();
+  // Parts that move as a slow drift goes on may have most of its energy, once a revolution.
+  if (is_drift(mode.exponent, set.rotor_speed)) {
+    Eigen::VectorXd of_shape = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index c = 0; c < named.shape.cols(); ++c)
+      of_shape += in_time.at(time_of(set, named.shape, c, sectors))
+                      .of(named.shape.col(c), named.shape.col(c));
+    return {leading_of(motions, of_shape), is_dominant};
+  }
   for (const auto& [name, energy] :
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
     shares[name] += energy / (part * mode.kinetic_energy);
@@ -339,7 +344,7 @@ bool is_at_rest(const Mode& mode, const ModeSet& set) {
 
 bool is_drift(std::complex<double> exponent, double rotor_speed) {
   const double size = std::abs(exponent);
-  return size < slow_pair * rotor_speed ||
+  return size < slowest_drift * rotor_speed ||
          (exponent.imag() == 0.0 && size < slow_drift * rotor_speed);
 }
 
