@@ -114,8 +114,10 @@ BOOST_AUTO_TEST_CASE(estimated_errors_are_honest_and_useful) {
       const std::array<analysis::ModeSet, 2> references{
           modes_of(input, input.references[0], reference_rules[0]),
           modes_of(input, input.references[1], reference_rules[1])};
+      std::size_t pairs = 0;
       for (const Mesh& used : input.meshes)
         for (const Rule rule : rules) {
+          if (++pairs % 2 == 0 && !all) continue;  // every other pair, as on a chessboard
           Figures own;
           BOOST_TEST_MESSAGE(input.name << " " << used.elements << " x " << used.order << ", "
                                         << rule.steps << " steps of order " << rule.order);

@@ -429,7 +429,7 @@ BOOST_AUTO_TEST_CASE(a_slow_drift_of_the_rotor_is_rotor_rotation_at_any_rate) {
                                       5.0,
                                       1.0,
                                       {"blades.elements=3", "tower.elements=2"},
-                                      {1000.0, 3.0, 0.0},
+                                      {3.0},
                                       2},
                                      {"nrel5mw/land",
                                       500.0,

@@ -115,7 +115,7 @@ void require_same(const analysis::Floquet& found, const analysis::Floquet& fine)
 
 BOOST_AUTO_TEST_CASE(modes_are_the_same_at_every_time_step) {
   for (const ScanCase& scan : scan_cases()) {
-    const analysis::Floquet fine = run(scan, 600);
+    const analysis::Floquet fine = run(scan, 400);
     for (const int steps : scanned_steps())
       BOOST_TEST_CONTEXT(scan.name << ", " << steps << " steps") {
         require_same(run(scan, steps), fine);
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(modes_are_the_same_at_two_time_steps_with_any_damping) {
     for (const std::string& damping : scanned_damping())
       BOOST_TEST_CONTEXT(scan.name << ", mu " << damping) {
         const std::string setting = "blades.damping=" + damping;
-        require_same(run(scan, 250, {setting}), run(scan, 450, {setting}));
+        require_same(run(scan, 150, {setting}), run(scan, 250, {setting}));
       }
 }
 
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(velocities_that_constraints_forbid_make_no_multiplier) {
         "hub.teeter={joint: prescribed, harmonic: {per_rev: 1, amplitude_deg: 3}}"})
     for (const char* period : {"blade", "full"}) {
       const analysis::Floquet floquet =
-          run(scan_cases().back(), 502, {joint, std::string("floquet.period=") + period});
+          run(scan_cases().back(), 202, {joint, std::string("floquet.period=") + period});
       int at_minus_one = 0;
       for (const analysis::Mode& mode : floquet.set.modes)
         for (const double sign : {1.0, -1.0})
