@@ -5,6 +5,7 @@
 #include <climits>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 
 #include <unistd.h>
 
@@ -19,6 +20,7 @@ std::atomic<int> noted_signal = 0;
 std::atomic<int> has_file = 0;
 std::atomic<int> is_paused = 0;
 std::atomic<int> waiting_signal = 0;
+std::atomic<int> is_silent = 0;
 std::array<char, PATH_MAX> file_at_end{};
 
 // Only functions that a signal handler may call.
@@ -26,7 +28,8 @@ std::array<char, PATH_MAX> file_at_end{};
 [[noreturn]] void leave(int number) {
   if (has_file != 0) ::unlink(file_at_end.data());
   constexpr std::array<char, 21> words{"samara: interrupted\n"};
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, words.data(), words.size() - 1);
+  if (is_silent == 0) [[maybe_unused]]
+    const ssize_t written = ::write(STDERR_FILENO, words.data(), words.size() - 1);
   ::_exit(128 + number);
 }
 
@@ -50,9 +53,24 @@ void take_signal(int number) {
   noted_signal = number;
 }
 
+/// Whether the environment says that this is another rank than the first one. When a rank ends with
+/// an error, mpiexec ends the others by a signal: they have nothing to say.
+[[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] bool is_other_rank(char** environment) {
+  constexpr std::string_view key = "OMPI_COMM_WORLD_RANK=";
+  for (; environment != nullptr && *environment != nullptr; ++environment) {
+    std::size_t same = 0;
+    while (same < key.size() && (*environment)[same] == key[same]) ++same;
+    if (same == key.size()) return (*environment)[same] != '0';
+  }
+  return false;
+}
+
 /// Called before the libraries start, including a sanitizer's: MPI, PETSc and HDF5 need
 /// milliseconds to start. Signals that the parent process ignores stay ignored.
-[[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void prepare() {
+[[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void prepare(int /*count*/,
+                                                                      char** /*arguments*/,
+                                                                      char** environment) {
+  is_silent = is_other_rank(environment) ? 1 : 0;
   for (const int number : handled_signals) {
     struct sigaction action {};
     if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
@@ -66,7 +84,7 @@ void take_signal(int number) {
   }
 }
 
-[[gnu::used, gnu::section(".preinit_array")]] void (*const early)() = prepare;
+[[gnu::used, gnu::section(".preinit_array")]] void (*const early)(int, char**, char**) = prepare;
 
 }  // namespace
 

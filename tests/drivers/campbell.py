@@ -122,6 +122,10 @@ class Campbell(ProgramTest):
         for groups in (0, 2, 0.5, "two"):
             self.refuse(*sweep, "-samara_groups", groups,
                         words=[f"-samara_groups {groups}: the run has 1 rank"])
+        run = self.samara(*sweep, "-samara_groups", 3, ranks=2)
+        self.assertEqual(run.returncode, 2)
+        own = [line for line in run.stderr.splitlines() if line.startswith("samara:")]
+        self.assertEqual(len(own), 1, run.stderr)  # no rank that mpiexec ends adds a line
 
     def interrupt(self, number, arguments, points):
         run = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
