@@ -16,6 +16,7 @@
 #include "samara/petsc/session.hpp"
 
 #include "hill_groups.hpp"
+#include "hill_participation.hpp"
 #include "hill_pencil.hpp"
 #include "hill_search.hpp"
 #include "least_damped_search.hpp"
@@ -66,6 +67,12 @@ constexpr int most_edges = 4;  ///< other places of its end where it cannot be c
 constexpr double narrowest = 0.2;
 constexpr double narrower = 0.6;
 constexpr int most_narrower = 4;
+/// Distance from an exponent of the medium alone, relative to the decay, up to which a mode may be
+/// one of the medium.
+constexpr double next_to_medium = 0.2;
+/// The highest frequency of a mode of the medium, relative to the rotor speed: its parts decay in
+/// axes of the rotor or of the ground.
+constexpr double highest_of_medium = 1.5;
 /// Least decay at which a region in a medium ends, relative to the rotor speed.
 constexpr double least_decay = 0.1;
 /// The slowest decays are known where they have frequencies in this part of the range, or where
@@ -231,6 +238,7 @@ class Analysis {
       return;
     }
     has_medium_ = pencil.has_medium();
+    if (has_medium_) medium_exponents_ = pencil.exponents_of_medium();
     search_harmonics_ = harmonics;
     sectors_ = pencil.sectors();
     nearest_ = sectors_ / 2;
@@ -244,7 +252,7 @@ class Analysis {
     else
       search_upwards(search);
     if (!options_.near_hz) lower_edge();
-    if (has_medium_) lower_decay(pencil);
+    if (has_medium_) lower_decay();
     // Slow modes have no larger decay: those of strong damping are left out.
     region_.decay = std::min(region_.decay, region_.high);
     region_.growth = std::min(region_.growth, region_.high);
@@ -505,13 +513,13 @@ class Analysis {
     return 2 * std::abs(candidate.mode.harmonic) == sectors_ ? 0.5 : 1.0;
   }
   /// Modes that the search has found, with moduli of exponents from the lower edge to `high`, less
-  /// the margin.
+  /// the margin, but not those that may be modes of the medium.
   std::vector<const Candidate*> centred_below(double high) const {
     std::vector<const Candidate*> below;
     for (const Candidate& candidate : found_) {
       const double modulus = modulus_of(candidate);
       if (is_centred(candidate) && is_in_width(candidate) && modulus < high - margin() &&
-          (region_.low == 0.0 || modulus > region_.low + margin()))
+          !may_be_of_medium(candidate) && (region_.low == 0.0 || modulus > region_.low + margin()))
         below.push_back(&candidate);
     }
     return below;
@@ -591,7 +599,7 @@ class Analysis {
 
   /// Lowers the decay of the region to what the modes need, to the middle of the widest gap. (Next
   /// to an exponent of the medium alone, the determinant varies fast.)
-  void lower_decay(const HillPencil& pencil) {
+  void lower_decay() {
     double needed = least_decay * speed_;
     const std::optional<SlowestDecays> slowest =
         options_.least_damped > 0 ? slowest_decays(region_.high) : std::nullopt;
@@ -603,7 +611,7 @@ class Analysis {
     }
     needed_decay_ = std::min(needed, region_.decay / beyond_decays);
     for (const Complex exponent : all_found_) decays_.push_back(-exponent.real());
-    for (const Complex exponent : pencil.exponents_of_medium()) decays_.push_back(-exponent.real());
+    for (const Complex exponent : medium_exponents_) decays_.push_back(-exponent.real());
     std::ranges::sort(decays_);
     region_.decay = middle_of_gap(needed_decay_, beyond_decays * needed_decay_);
   }
@@ -742,11 +750,13 @@ class Analysis {
     double value;
     double error;
     Complex exponent;
-    double weight;  ///< 0: no mode of the range that is reported, or not at its own harmonic
+    /// 0: no mode of the range that is reported, not at its own harmonic, or one of the medium.
+    double weight;
   };
   Decay decay_of(const Candidate& mode) const {
     const Complex exponent = mode.pair.exponent;
-    const bool counts = is_centred(mode) && modulus_of(mode) < region_.high - margin();
+    const bool counts =
+        is_centred(mode) && modulus_of(mode) < region_.high - margin() && !may_be_of_medium(mode);
     return {-exponent.real(), mode.residual * unit_of_change(exponent, speed_), exponent,
             counts ? weight_of(mode) : 0.0};
   }
@@ -1026,8 +1036,44 @@ class Analysis {
       take_refined();
       count_missing();
     }
+    if (has_medium_) leave_modes_of_medium();
     pencil_.reset();
     if (options_.least_damped > 0) leave_slowest_decays();
+  }
+
+  /// Whether a mode may be one of the medium: its exponent is near one of those of the medium
+  /// alone, which are known up to multiples of i Omega.
+  bool may_be_of_medium(const Candidate& mode) const {
+    const Complex exponent = exponent_of(mode);
+    return std::abs(exponent.imag()) < highest_of_medium * speed_ &&
+           std::ranges::any_of(medium_exponents_, [&](Complex other) {
+             const Complex apart = other - exponent;
+             return std::hypot(apart.real(), std::remainder(apart.imag(), speed_)) <
+                    next_to_medium * -exponent.real();
+           });
+  }
+
+  /// Takes out modes of the medium, which the search may find next to those of the parts.
+  void leave_modes_of_medium() {
+    std::vector<char> is_of_medium(modes_.size(), 0);
+    all_ranks_.attempt([&] {
+      HillPencil& pencil = pencil_of(harmonics_);
+      for (std::size_t m = 0; m < modes_.size(); ++m) {
+        if (!may_be_of_medium(modes_[m])) continue;
+        try {
+          const int part = leading_part(pencil, system_, parts_, modes_[m].pair);
+          is_of_medium[m] = part >= 0 && parts_.owners[static_cast<std::size_t>(part)].kind ==
+                                             system::PartKind::medium;
+        } catch (const ConvergenceError&) {
+          continue;  // it stays
+        }
+      }
+    });
+    all_ranks_.share(0, is_of_medium);
+    std::vector<Candidate> kept;
+    for (std::size_t m = 0; m < modes_.size(); ++m)
+      if (is_of_medium[m] == 0) kept.push_back(std::move(modes_[m]));
+    modes_ = std::move(kept);
   }
 
   /// Whether the exponents that the count leaves out are the refined ones. Of several double zeros,
@@ -1220,10 +1266,11 @@ class Analysis {
   double needed_decay_ = 0.0;   ///< of the modes, in a medium
   std::vector<double> decays_;  ///< of exponents by the search and of the medium alone, ascending
   bool region_is_counted_ = false;
-  int expected_ = 0;                ///< modes, by the search, not next to the edge of the region
-  double left_out_ = 0.0;           ///< modes of decays that are not wanted
-  std::vector<Complex> sought_;     ///< exponents of the slowest decays
-  std::vector<Complex> all_found_;  ///< exponents by the search, also outside the region
+  int expected_ = 0;       ///< modes, by the search, not next to the edge of the region
+  double left_out_ = 0.0;  ///< modes of decays that are not wanted
+  std::vector<Complex> medium_exponents_;  ///< with the other parts at rest
+  std::vector<Complex> sought_;            ///< exponents of the slowest decays
+  std::vector<Complex> all_found_;         ///< exponents by the search, also outside the region
   ModeSet set_;
 };
 

@@ -9,6 +9,8 @@
 
 #include <Eigen/QR>
 
+#include "samara/analysis/identification.hpp"
+
 #include "strain_energy.hpp"
 
 namespace samara::analysis {
@@ -229,8 +231,10 @@ Leading find_leading(const system::PeriodicSystem& system,
   const bool is_beam = mover.kind == system::PartKind::beam || mover.instance > 0;
   const bool is_slowest = std::abs(mode.exponent) < slowest_drift * set.rotor_speed;
   if (mode.exponent.imag() == 0.0 && !is_beam && !is_slowest) return leading();
-  // Parts that move as a slow drift goes on may have most of its energy, once a revolution.
-  if (is_drift(mode.exponent, set.rotor_speed)) {
+  // Parts that move as a slow drift goes on may have most of its energy, once a revolution. The
+  // mean of the motion strains an overdamped part, but not those that a joint carries.
+  if (is_drift(mode.exponent, set.rotor_speed) &&
+      is_rigid_body(system, named.shape.rowwise().mean(), mode)) {
     Eigen::VectorXd of_shape = Eigen::VectorXd::Zero(count);
     for (Eigen::Index c = 0; c < named.shape.cols(); ++c)
       of_shape += in_time.at(time_of(set, named.shape, c, sectors))
