@@ -130,13 +130,22 @@ std::string name_growing(const ModeSet& set, const std::vector<std::size_t>& gro
   return text;
 }
 
+std::string names_of(const ModeSet& set, const std::vector<std::size_t>& modes) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(modes.size(), most_names); ++i)
+    text += (text.empty() ? "" : ", ") + set.modes[modes[i]].label;
+  return text;
+}
+
 std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
   const Mode& least = set.modes[*result.least_damped];
   const int decaying = static_cast<int>(result.decaying.size()) - result.of_medium;
   const std::string air =
       result.of_medium == 0 ? "" : " and " + count(result.of_medium, "exponent") + " of the air";
-  return (decaying == 1 && air.empty() ? "the mode decays"
-                                       : "all " + count(decaying, "mode") + air + " decay") +
+  return (decaying == 1 && air.empty() && result.rough == 0
+              ? "the mode decays"
+              : "all " + count(decaying, "mode") + (result.rough > 0 ? " with small errors" : "") +
+                    air + " decay") +
          "; the least damped is " + least.label + ", " + general(100.0 * least.damping_ratio, 3) +
          " %";
 }
@@ -244,6 +253,13 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
              other_search(set);
     case Doubt::growing_alone:
       return "no verdict: the mesh is too coarse" + (rest.empty() ? "" : "; other modes: " + rest);
+    case Doubt::may_grow:
+      return "no verdict: " + count(static_cast<int>(result.may_grow.size()), "mode") +
+             (result.may_grow.size() == 1 ? " may grow, but has" : " may grow, but have") +
+             " too large an error: " + names_of(set, result.may_grow) +
+             "; hint: a higher order of blades and tower, more elements" +
+             (is_periodic(set) ? ", more trim.harmonics" : "") +
+             (is_periodic(set) && !set.searched ? ", more floquet.steps" : "");
     default:
       return "no verdict: every mode has an error above " + general(100.0 * largest_error, 2) +
              " %; hint: a higher order of blades and tower, or more elements" +

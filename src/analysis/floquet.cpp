@@ -630,6 +630,7 @@ class Analysis {
         set_.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + offset_) * dt_);
     const std::vector<LeadingMotion> leading = separate_motions(system_, solution_, set_, sectors_);
     move_to_leading(leading);
+    take_shift_in_time(system_, set_);
     set_.reach = rule_.reach();
     for (const Mode& mode : set_.modes)
       if (!mode.resolved && !is_of_medium(mode))

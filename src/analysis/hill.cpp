@@ -1211,6 +1211,7 @@ class Analysis {
       set_.modes[m].harmonic = leading[m].harmonic;
       settle(m);
     }
+    if (region_.low == 0.0 && !is_constant_) take_shift_in_time(system_, set_);
     const std::vector<system::MeshError> elements = system_.mesh_errors();
     for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       Mode& mode = set_.modes[m];

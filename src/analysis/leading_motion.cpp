@@ -353,15 +353,15 @@ bool is_drift(std::complex<double> exponent, double rotor_speed) {
 }
 
 int harmonic_of_positions(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape) {
-  std::vector<Eigen::Index> angles;
+  std::vector<Eigen::Index> of_joints;
   std::vector<Eigen::Index> positions;
   for (Eigen::Index i = 0; i < shape.rows(); ++i) {
     const system::Unknown& unknown = system.unknowns()[static_cast<std::size_t>(i)];
     if (unknown.role != system::UnknownRole::position) continue;
     positions.push_back(i);
-    if (unknown.unit == "rad") angles.push_back(i);
+    if (unknown.owner.kind == system::PartKind::joint) of_joints.push_back(i);
   }
-  const Eigen::MatrixXcd counted = shape(angles.empty() ? positions : angles, Eigen::all);
+  const Eigen::MatrixXcd counted = shape(of_joints.empty() ? positions : of_joints, Eigen::all);
   const Eigen::Index count = shape.cols();
   int best = 0;
   double largest = 0.0;

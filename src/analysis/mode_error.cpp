@@ -21,6 +21,11 @@ constexpr double growing_part_of_tables = 0.05;
 /// An exponent smaller than this many times its error is not distinguished from zero.
 constexpr double several = 10.0;
 constexpr double least_round_off = 1e-10;
+/// Relative to the rotor speed: a larger exponent is not the zero of a shift in time. And the
+/// distance, relative to this exponent, of others that have its error.
+constexpr double largest_shift = 0.05;
+constexpr double next_to_shift = 30.0;
+constexpr double beyond_zero = 1.01;
 /// Largest |lambda| dt of a resolved mode, by stage.
 constexpr double phase_of_a_stage = 1.4;
 constexpr int most_steps = 30;
@@ -117,6 +122,27 @@ void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<doub
   // time. The error by the step may split it in any direction.
   if (std::abs(principal) < several * spread.modulus)
     mode.growth_error = std::max(mode.growth_error, several * spread.modulus);
+}
+
+void take_shift_in_time(const system::PeriodicSystem& system, ModeSet& set) {
+  const auto& coordinates = system.unconstrained_coordinates();
+  const bool has_shift = std::ranges::any_of(coordinates, [&](const auto& coordinate) {
+    return system.unknowns()[static_cast<std::size_t>(coordinate.unknown)].frame ==
+           system::Frame::rotating;
+  });
+  if (!has_shift || !system.constraints_are_autonomous() || !(set.rotor_speed > 0.0)) return;
+  const auto size_of = [&set](const Mode& mode) {
+    return std::hypot(mode.exponent.real(), std::remainder(mode.exponent.imag(), set.rotor_speed));
+  };
+  Mode* shift = nullptr;
+  for (Mode& mode : set.modes)
+    if (mode.resolved && !mode.state && (shift == nullptr || size_of(mode) < size_of(*shift)))
+      shift = &mode;
+  if (shift == nullptr || size_of(*shift) > largest_shift * set.rotor_speed) return;
+  const double distance = size_of(*shift);
+  for (Mode& mode : set.modes)
+    if (&mode != shift && size_of(mode) < next_to_shift * distance) mode.growth_error += distance;
+  shift->growth_error = std::max(shift->growth_error, beyond_zero * distance);
 }
 
 /// The elements of a mesh describe motions; the states of a medium have no such error.

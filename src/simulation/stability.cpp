@@ -12,6 +12,9 @@ using analysis::ModeSet;
 
 /// A verdict refers to the slowest modes, at least this many.
 constexpr std::size_t first_modes = 10;
+/// Relative to the rotor speed: a real exponent with a larger error is not known to be that of a
+/// motion at rest.
+constexpr double largest_unsure = 0.02;
 
 double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
 
@@ -55,9 +58,11 @@ void sort_modes(const ModeSet& set, StabilityAssessment& result) {
       ++result.unresolved;
     else if (motion == Motion::rigid_body)
       ++result.rigid_body;
-    else if (is_rough(mode))
+    else if (is_rough(mode)) {
       ++result.rough;
-    else if (motion == Motion::growing && set.conservative && !has_partner(set, mode))
+      if (mode.exponent.real() > marked_error * std::abs(mode.exponent))
+        result.may_grow.push_back(m);
+    } else if (motion == Motion::growing && set.conservative && !has_partner(set, mode))
       result.growing_alone.push_back(m);
     else if (motion == Motion::growing)
       result.growing.push_back(m);
@@ -72,6 +77,7 @@ void sort_modes(const ModeSet& set, StabilityAssessment& result) {
   };
   std::ranges::stable_sort(result.growing, grows_faster);
   std::ranges::stable_sort(result.growing_alone, grows_faster);
+  std::ranges::stable_sort(result.may_grow, grows_faster);
   const auto least = std::ranges::min_element(
       result.decaying, {}, [&set](std::size_t m) { return set.modes[m].damping_ratio; });
   if (least != result.decaying.end()) result.least_damped = *least;
@@ -117,7 +123,8 @@ Motion motion_of(const Mode& mode, double rotor_speed) {
   // Step and round-off cause an error of the growth of an exponent near zero; the elements do not.
   const double unsure = mode.growth_error - mode.mesh_growth_error;
   if (std::abs(mode.exponent) < zero ||
-      (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure))
+      (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure &&
+       unsure < largest_unsure * rate_scale(rotor_speed)))
     return Motion::rigid_body;
   if (std::abs(mode.exponent.real()) <= mode.growth_error) return Motion::undamped;
   return mode.exponent.real() > 0.0 ? Motion::growing : Motion::decaying;
@@ -145,6 +152,8 @@ StabilityAssessment assess_stability(const ModeSet& set) {
     result.doubt = Doubt::incomplete;
   else if (!result.growing_alone.empty())
     result.doubt = Doubt::growing_alone;
+  else if (!result.may_grow.empty())
+    result.doubt = Doubt::may_grow;
   else if (result.undamped + result.rigid_body > 0)
     result.stability = Stability::neutral;
   else if (!result.decaying.empty())

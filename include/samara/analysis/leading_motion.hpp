@@ -29,7 +29,7 @@ bool is_at_rest(const Mode& mode, const ModeSet& set);
 /// without a turning rotor, where no motion is one.
 bool is_drift(std::complex<double> exponent, double rotor_speed);
 
-/// The largest harmonic of the angles, or of the positions where there are no angles, of a shape at
+/// The largest harmonic of the joints, or of all positions where there are no joints, of a shape at
 /// equal distances over a period: 0 of a displacement at rest, 1 of a rotor disc that stays tilted
 /// on hinges of the shaft axis, which has no energy in its own axes.
 int harmonic_of_positions(const system::PeriodicSystem& system, const Eigen::MatrixXcd& shape);

@@ -51,6 +51,12 @@ Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
 /// the exponent without multiples of the rotor speed, to be distinguished from zero.
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal);
 
+/// Where a coordinate that nothing restores turns with the rotor (a free generator), and nothing
+/// else depends on the time, a shift of it is a shift in time: one exponent is zero. The smallest
+/// one that was found is taken for it; its distance from zero, by the truncation of the steady
+/// state and by the step, is an error of its growth, and of that of the exponents next to it.
+void take_shift_in_time(const system::PeriodicSystem& system, ModeSet& set);
+
 /// Adds the relative error of the mesh to a mode, and to the error of its growth.
 void add_mesh_error(Mode& mode, const Eigen::Vector2d& relative);
 

@@ -40,6 +40,7 @@ enum class Doubt {
   unresolved,     ///< the slowest modes are not all resolved
   incomplete,     ///< modes may be missing in the part of the spectrum that was searched
   growing_alone,  ///< a mode of a conservative system grows, none decays with it: error of the mesh
+  may_grow,       ///< a mode grows by its exponent, which has too large an error
   rough,          ///< all modes have too large an error
 };
 
@@ -50,6 +51,7 @@ struct StabilityAssessment {
   std::vector<Motion> motions;             ///< one per mode
   std::vector<std::size_t> growing;        ///< fastest growth first
   std::vector<std::size_t> growing_alone;  ///< in a conservative system: error of the mesh
+  std::vector<std::size_t> may_grow;       ///< growing, with too large an error
   std::vector<std::size_t> decaying;
   std::optional<std::size_t> least_damped;  ///< the least damped of the decaying modes
   int undamped = 0;
