@@ -1013,7 +1013,8 @@ class Analysis {
         if (taken[j] || !is_copy_of(modes_[j], modes_[i])) continue;
         taken[j] = 1;
         auto place = std::find_if(places.begin(), places.end(), [&](const auto& other) {
-          return is_same(modes_[other.front()].pair.exponent, exponent);
+          const Candidate& one = modes_[other.front()];
+          return std::abs(one.pair.exponent - exponent) < apart(one, modes_[j]);
         });
         if (place == places.end()) place = places.insert(places.end(), std::vector<std::size_t>{});
         place->push_back(j);
@@ -1116,7 +1117,7 @@ class Analysis {
   bool is_copy_of(const Candidate& a, const Candidate& b) const {
     const Complex first = a.pair.exponent;
     const Complex second = b.pair.exponent;
-    if (is_same(principal(first), principal(second))) return true;
+    if (std::abs(principal(first) - principal(second)) < apart(a, b)) return true;
     if (!is_by_change()) return false;
     const double error = same_with_medium * std::max(std::abs(first), speed_);
     const auto are_copies = [&](const HillPair& one, const HillPair& other) {
@@ -1132,7 +1133,16 @@ class Analysis {
     return are_copies(a.pair, b.pair) || are_copies(a.pair, conjugate_of(b.pair));
   }
 
-  bool is_same(Complex a, Complex b) const { return std::abs(a - b) < same_exponent * speed_; }
+  /// Distance of exponents that are the same, but for multiples of i Q Omega. Round-off splits a
+  /// double zero by its square root, in each copy by another amount.
+  double apart(const Candidate& a, const Candidate& b) const {
+    const auto split = [this](const Candidate& one) {
+      const double most = std::min(most_split * std::sqrt(one.residual), largest_split) * speed_;
+      return std::abs(principal(one.pair.exponent)) < most ? most : 0.0;
+    };
+    const double both = std::min(split(a), split(b));
+    return std::max(both > 0.0 ? 2.0 * std::max(split(a), split(b)) : 0.0, same_exponent * speed_);
+  }
 
   // ---- the result ------------------------------------------------------------------------------
 
