@@ -1,6 +1,11 @@
 // Places and descriptions of the unknowns of the rigid bodies.
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
+#include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
+#include "samara/base/index.hpp"
 #include "samara/components/rigid_bodies.hpp"
 
 namespace samara::components {
@@ -41,6 +46,16 @@ int RigidBodies::joint(int number) const { return joints_ + joint_unknowns * num
 
 int RigidBodies::tower_top() const {
   return setting_.tower == nullptr ? -1 : setting_.tower->placed().tip;
+}
+
+void RigidBodies::require_admissible(const std::vector<double>& z) const {
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  constexpr double largest = 170.0;
+  const double angle = turbine_.chain.teeter.free ? degrees * z[at(joint(teeter))] : 0.0;
+  if (!(std::abs(angle) <= largest))
+    throw DomainError("the teeter angle is " + general(angle, 3) +
+                      " degrees (at most 170 in either direction): nothing stops the rotor; hint: "
+                      "hub.teeter.stops, or hub.teeter.joint: locked");
 }
 
 void RigidBodies::describe(Registry& registry) {

@@ -274,6 +274,7 @@ void TurbineEquations::settle_air(double t, std::vector<double>& z) const {
 }
 
 void TurbineEquations::require_admissible(double t, const std::vector<double>& z) const {
+  bodies_->require_admissible(z);
   if (airs_.empty() || !turbine_.air->rotor.wind.tower.disturbs()) return;
   const std::vector<double> rates(z.size(), 0.0);
   std::vector<double> unused(z.size(), 0.0);  // only the ports count

@@ -50,6 +50,8 @@ class RigidBodies final : public Stated<RigidBodies> {
   void describe(Registry& registry) override;
   bool is_conservative() const override;
   bool has_autonomous_constraints() const override;
+  /// @throws DomainError where the teeter angle of state `z` is beyond 170 degrees
+  void require_admissible(const std::vector<double>& z) const;
 
   /// First of q_y, U1, q_h, U2, q_s, U_s, q_g, U_g.
   int joints() const { return joints_; }
