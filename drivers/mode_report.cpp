@@ -142,10 +142,8 @@ std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
   const int decaying = static_cast<int>(result.decaying.size()) - result.of_medium;
   const std::string air =
       result.of_medium == 0 ? "" : " and " + count(result.of_medium, "exponent") + " of the air";
-  return (decaying == 1 && air.empty() && result.rough == 0
-              ? "the mode decays"
-              : "all " + count(decaying, "mode") + (result.rough > 0 ? " with small errors" : "") +
-                    air + " decay") +
+  return (decaying == 1 && air.empty() ? "the mode decays"
+                                       : "all " + count(decaying, "mode") + air + " decay") +
          "; the least damped is " + least.label + ", " + general(100.0 * least.damping_ratio, 3) +
          " %";
 }

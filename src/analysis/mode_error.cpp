@@ -136,10 +136,11 @@ void take_shift_in_time(const system::PeriodicSystem& system, ModeSet& set) {
   };
   Mode* shift = nullptr;
   for (Mode& mode : set.modes)
-    if (mode.resolved && !mode.state && (shift == nullptr || size_of(mode) < size_of(*shift)))
+    if (mode.resolved && !mode.state &&
+        (shift == nullptr || std::abs(mode.exponent) < std::abs(shift->exponent)))
       shift = &mode;
-  if (shift == nullptr || size_of(*shift) > largest_shift * set.rotor_speed) return;
-  const double distance = size_of(*shift);
+  if (shift == nullptr || std::abs(shift->exponent) > largest_shift * set.rotor_speed) return;
+  const double distance = std::abs(shift->exponent);
   for (Mode& mode : set.modes)
     if (&mode != shift && size_of(mode) < next_to_shift * distance) mode.growth_error += distance;
   shift->growth_error = std::max(shift->growth_error, beyond_zero * distance);
