@@ -281,6 +281,22 @@ std::vector<int> count_drifts(const system::PeriodicSystem& system,
   return drifts;
 }
 
+/// Whether each unconstrained coordinate leads as many of the given modes as it is chosen for.
+bool leads_as_often(const system::PeriodicSystem& system, const std::vector<LeadingMotion>& leading,
+                    const std::vector<std::size_t>& modes,
+                    const std::vector<Eigen::Index>& chosen) {
+  const auto& coordinates = system.unconstrained_coordinates();
+  if (leading.empty()) return false;
+  for (std::size_t j = 0; j < coordinates.size(); ++j) {
+    const system::Owner& owner =
+        system.unknowns()[static_cast<std::size_t>(coordinates[j].unknown)].owner;
+    const auto leads = std::ranges::count_if(
+        modes, [&](std::size_t m) { return leading[m].motion.owner == owner; });
+    if (leads != std::ranges::count(chosen, static_cast<Eigen::Index>(j))) return false;
+  }
+  return true;
+}
+
 /// Replaces modes at rest. Each coordinate has two exponents; `leading` tells which of them are not
 /// zero. False where no mode changes.
 bool separate_displacements(const system::PeriodicSystem& system,
@@ -317,13 +333,17 @@ bool separate_displacements(const system::PeriodicSystem& system,
     chosen.push_back(next);
     ++has[static_cast<std::size_t>(next)];
   }
+  if (leads_as_often(system, leading, at_rest, chosen)) return false;
   std::vector<Eigen::MatrixXcd> separate(chosen.size());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     separate[i].setZero(set.shapes[at_rest[0]].rows(), set.shapes[at_rest[0]].cols());
     for (std::size_t k = 0; k < at_rest.size(); ++k)
       separate[i] += factors(static_cast<Eigen::Index>(k), chosen[i]) * set.shapes[at_rest[k]];
   }
-  for (std::size_t i = 0; i < chosen.size(); ++i) set.shapes[at_rest[i]] = std::move(separate[i]);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    set.shapes[at_rest[i]] = std::move(separate[i]);
+    set.modes[at_rest[i]].parts.clear();  // those of the combination before
+  }
   return true;
 }
 

@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(rates_below_their_error_are_none) {
 
 BOOST_AUTO_TEST_CASE(rough_modes_do_not_count) {
   analysis::ModeSet set = set_of({{-0.1, 2.0}});
-  set.modes.push_back(mode({5.0, 30.0}, 0.2));
+  set.modes.push_back(mode({0.2, 30.0}, 0.2));
   StabilityAssessment result = assess_stability(set);
   BOOST_TEST((result.stability == Stability::stable));
   BOOST_TEST(result.rough == 1);
@@ -68,6 +68,32 @@ BOOST_AUTO_TEST_CASE(rough_modes_do_not_count) {
   result = assess_stability(set);
   BOOST_TEST((result.stability == Stability::unknown));
   BOOST_TEST((result.doubt == Doubt::rough));
+}
+
+BOOST_AUTO_TEST_CASE(a_growing_mode_with_a_large_error_allows_no_verdict) {
+  analysis::ModeSet set = set_of({{-0.1, 2.0}, {0.05, 3.0}});
+  set.modes[1].mesh_error = 0.5;
+  const StabilityAssessment result = assess_stability(set);
+  BOOST_TEST((result.stability == Stability::unknown));
+  BOOST_TEST((result.doubt == Doubt::may_grow));
+  BOOST_TEST(result.may_grow == std::vector<std::size_t>{1}, boost::test_tools::per_element());
+  // Undamped motions have growths of the size of round-off.
+  set.modes[1].exponent.real(1e-4);
+  BOOST_TEST((assess_stability(set).stability == Stability::stable));
+  // One that grows beyond doubt is enough.
+  set = set_of({{0.1, 2.0}, {0.05, 3.0}});
+  set.modes[1].mesh_error = 0.5;
+  BOOST_TEST((assess_stability(set).stability == Stability::unstable));
+}
+
+BOOST_AUTO_TEST_CASE(a_real_exponent_with_a_large_error_is_none_at_rest) {
+  analysis::ModeSet set = set_of({{-0.1, 2.0}, {0.01, 0.0}});
+  set.modes[1].mesh_growth_error = 0.0;
+  set.modes[1].growth_error = 0.015;
+  BOOST_TEST((assess_stability(set).motions[1] == Motion::rigid_body));
+  set.modes[1].growth_error = 0.1;
+  BOOST_TEST((assess_stability(set).motions[1] != Motion::rigid_body));
+  BOOST_TEST((assess_stability(set).doubt == Doubt::may_grow));
 }
 
 BOOST_AUTO_TEST_CASE(the_first_ten_must_be_resolved) {

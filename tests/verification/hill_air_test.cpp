@@ -139,6 +139,25 @@ BOOST_AUTO_TEST_CASE(a_mode_of_the_inflow_is_none_of_the_turbine) {
   require_agreement(slowest, all);
 }
 
+BOOST_AUTO_TEST_CASE(a_shift_in_time_neither_grows_nor_decays) {
+  // With a free generator one exponent is zero, whatever the steady state lacks: few harmonics move
+  // it, and the speed's own decay by as much.
+  for (const char* harmonics : {"2", "4", "12"}) BOOST_TEST_CONTEXT(harmonics << " harmonics") {
+      Steady turbine(io::read_case(
+          input_path("two_bladed/teetering"),
+          {"blades.elements=2", "blades.order=2", "tower.elements=1", "wind.shear.power=0.2",
+           "shaft.generator.joint=free", std::string("trim.harmonics=") + harmonics}));
+      const analysis::ModeSet set = turbine.floquet({60, analysis::FloquetPeriod::automatic, 6});
+      const simulation::StabilityAssessment found = simulation::assess_stability(set);
+      BOOST_TEST(found.rigid_body == 1);
+      BOOST_TEST(found.growing.empty());
+      BOOST_TEST(found.may_grow.empty());
+      const auto slowest = std::ranges::min_element(
+          set.modes, {}, [](const analysis::Mode& mode) { return std::abs(mode.exponent); });
+      BOOST_TEST(slowest->name == "rotor rotation");
+    }
+}
+
 BOOST_AUTO_TEST_CASE(growth_beside_few_wanted_modes_in_wind) {
   // Beyond rated wind without pitch the rotor stalls: a mode grows, and modes of weaker decay lie
   // above the range of frequencies. Neither may take the place of a wanted mode in the range.
