@@ -19,6 +19,7 @@ from program import SOURCE, ProgramTest  # noqa: E402
 
 FOLDER = os.environ.get("SAMARA_PUBLIC_DECKS")
 REFUSED = 2
+NOT_FOUND = 3
 
 
 def read_table():
@@ -73,7 +74,7 @@ class PublicDecks(ProgramTest):
     def analyse(self, reason, *arguments):
         run = self.samara(*arguments, "-o", "result.h5")
         if reason:
-            self.assertEqual(run.returncode, REFUSED)
+            self.assertIn(run.returncode, (REFUSED, NOT_FOUND))
             self.assertIn(reason, run.stderr)
         else:
             self.assertEqual(run.returncode, 0, run.stderr)
