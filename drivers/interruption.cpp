@@ -28,8 +28,8 @@ std::array<char, PATH_MAX> file_at_end{};
 [[noreturn]] void leave(int number) {
   if (has_file != 0) ::unlink(file_at_end.data());
   constexpr std::array<char, 21> words{"samara: interrupted\n"};
-  if (is_silent == 0) [[maybe_unused]]
-    const ssize_t written = ::write(STDERR_FILENO, words.data(), words.size() - 1);
+  [[maybe_unused]] const ssize_t written =
+      is_silent != 0 ? 0 : ::write(STDERR_FILENO, words.data(), words.size() - 1);
   ::_exit(128 + number);
 }
 

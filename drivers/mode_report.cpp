@@ -118,23 +118,24 @@ std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& a
 std::string seconds(double time) { return general(time, 3) + " s"; }
 
 /// "yaw 1 doubles in 2.5 s, ..." for the growing modes, fastest growth first.
-std::string name_growing(const ModeSet& set, const std::vector<std::size_t>& growing) {
+/// The first names of some modes; `words`: what stands behind the name of a mode.
+template <class Words>
+std::string names_of(const ModeSet& set, const std::vector<std::size_t>& modes,
+                     const Words& words) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(growing.size(), most_names); ++i) {
-    const Mode& mode = set.modes[growing[i]];
-    text += (text.empty() ? "" : ", ") + mode.label + " doubles in " +
-            seconds(std::numbers::ln2 / mode.exponent.real());
+  for (std::size_t i = 0; i < std::min(modes.size(), most_names); ++i) {
+    const Mode& mode = set.modes[modes[i]];
+    text += (text.empty() ? "" : ", ") + mode.label + words(mode);
   }
-  if (growing.size() > most_names)
-    text += " and " + std::to_string(growing.size() - most_names) + " more";
+  if (modes.size() > most_names)
+    text += " and " + std::to_string(modes.size() - most_names) + " more";
   return text;
 }
 
-std::string names_of(const ModeSet& set, const std::vector<std::size_t>& modes) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(modes.size(), most_names); ++i)
-    text += (text.empty() ? "" : ", ") + set.modes[modes[i]].label;
-  return text;
+std::string name_growing(const ModeSet& set, const std::vector<std::size_t>& growing) {
+  return names_of(set, growing, [](const Mode& mode) {
+    return " doubles in " + seconds(std::numbers::ln2 / mode.exponent.real());
+  });
 }
 
 std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
@@ -254,7 +255,8 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
     case Doubt::may_grow:
       return "no verdict: " + count(static_cast<int>(result.may_grow.size()), "mode") +
              (result.may_grow.size() == 1 ? " may grow, but has" : " may grow, but have") +
-             " too large an error: " + names_of(set, result.may_grow) +
+             " too large an error: " +
+             names_of(set, result.may_grow, [](const Mode&) { return ""; }) +
              "; hint: a higher order of blades and tower, more elements" +
              (is_periodic(set) ? ", more trim.harmonics" : "") +
              (is_periodic(set) && !set.searched ? ", more floquet.steps" : "");

@@ -1140,8 +1140,10 @@ class Analysis {
       const double most = std::min(most_split * std::sqrt(one.residual), largest_split) * speed_;
       return std::abs(principal(one.pair.exponent)) < most ? most : 0.0;
     };
-    const double both = std::min(split(a), split(b));
-    return std::max(both > 0.0 ? 2.0 * std::max(split(a), split(b)) : 0.0, same_exponent * speed_);
+    const double of_a = split(a);
+    const double of_b = split(b);
+    const bool are_zero = of_a > 0.0 && of_b > 0.0;
+    return std::max(are_zero ? 2.0 * std::max(of_a, of_b) : 0.0, same_exponent * speed_);
   }
 
   // ---- the result ------------------------------------------------------------------------------

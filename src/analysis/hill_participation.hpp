@@ -12,8 +12,8 @@ namespace samara::analysis {
 
 /// The place in `parts.owners` of the part whose states have the largest participation factor in an
 /// eigenpair; -1 where that of the motion is larger, as leading_states() has it. The factor of some
-/// states is the derivative of the exponent to a growth that their rates d/dt - epsilon miss: one
-/// solution of the bordered problem takes the place of a left eigenvector.
+/// states is -d lambda/d epsilon where their rates d/dt become d/dt + epsilon: one solution of the
+/// bordered problem takes the place of a left eigenvector (docs/theory.md, section 5.10).
 /// @throws ConvergenceError
 int leading_part(HillPencil& pencil, const system::PeriodicSystem& system, const StateParts& parts,
                  const HillPair& pair);

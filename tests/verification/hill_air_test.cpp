@@ -26,6 +26,7 @@ struct Example {
   std::string name;
   std::vector<std::string> settings;
   bool is_counted = true;
+  std::size_t least = 5;  ///< modes that a search for six finds
 };
 
 /// Six points a blade.
@@ -46,7 +47,7 @@ std::vector<Example> examples() {
       {"iea15mw/land",
        with_coarse({"wind.speed=15", "shaft.speed_rpm=7.5", "blades.pitch_deg=10"})},
       // Teeter and inflow move together: modes of strong damping cannot be counted.
-      {"two_bladed/teetering", with_coarse({}), false},
+      {"two_bladed/teetering", with_coarse({}), false, 4},
   };
 }
 
@@ -111,7 +112,7 @@ BOOST_AUTO_TEST_CASE(searches_in_wind_agree_with_integration) {
       Steady turbine(io::read_case(input_path(example.name), example.settings));
       const analysis::ModeSet all = turbine.floquet({120, analysis::FloquetPeriod::automatic, 6});
       const analysis::ModeSet first = turbine.floquet(some_modes(6));
-      BOOST_TEST(first.modes.size() >= 4U);
+      BOOST_TEST(first.modes.size() >= example.least);
       require_agreement(first, all);
       if (example.is_counted) BOOST_TEST(first.searched->is_counted);
       const analysis::ModeSet slowest = turbine.floquet(slowest_decays(4));
