@@ -1063,8 +1063,9 @@ class Analysis {
         if (!may_be_of_medium(modes_[m])) continue;
         try {
           const int part = leading_part(pencil, system_, parts_, modes_[m].pair);
-          is_of_medium[m] = part >= 0 && parts_.owners[static_cast<std::size_t>(part)].kind ==
-                                             system::PartKind::medium;
+          if (part < 0) continue;
+          const system::PartKind kind = parts_.owners[static_cast<std::size_t>(part)].kind;
+          is_of_medium[m] = kind == system::PartKind::medium ? 1 : 0;
         } catch (const ConvergenceError&) {
           continue;  // it stays
         }

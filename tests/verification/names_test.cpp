@@ -425,18 +425,14 @@ BOOST_AUTO_TEST_CASE(a_slow_drift_of_the_rotor_is_rotor_rotation_at_any_rate) {
     std::vector<double> slopes;  ///< [N m s]
     std::size_t yaws;
   };
-  const std::vector<Drive> drives = {{"lee2002/baseline",
-                                      5.0,
-                                      1.0,
-                                      {"blades.elements=3", "tower.elements=2"},
-                                      {3.0},
-                                      2},
-                                     {"nrel5mw/land",
-                                      500.0,
-                                      97.0,
-                                      {"blades.elements=2", "blades.order=2", "tower.elements=1"},
-                                      {1000.0, 3.0, 0.0},
-                                      0}};
+  const std::vector<Drive> drives = {
+      {"lee2002/baseline", 5.0, 1.0, {"blades.elements=3", "tower.elements=2"}, {3.0}, 2},
+      {"nrel5mw/land",
+       500.0,
+       97.0,
+       {"blades.elements=2", "blades.order=2", "tower.elements=1"},
+       {1000.0, 3.0, 0.0},
+       0}};
   for (const Drive& drive : drives)
     for (const double slope : drive.slopes)
       for (const int modes : {0, 6})
