@@ -67,25 +67,51 @@ std::string other_harmonics(const ModeSet& set, std::size_t m, std::size_t most)
   return text;
 }
 
+bool has_rate(Motion motion) { return motion == Motion::growing || motion == Motion::decaying; }
+
+/// "error 2.3 %" of a relative error.
+std::string error_words(double error) {
+  constexpr double whole_percents = 0.1;
+  if (error > 1.0) return "error > 100 %";
+  return "error " + (error < whole_percents ? general(100.0 * error, 2) : percent(error)) + " %";
+}
+
+/// Error of the real part of the exponent, relative to this part.
+double relative_growth_error(const Mode& mode) {
+  return mode.growth_error / std::abs(mode.exponent.real());
+}
+
+/// " (error 2.3 %)" behind a number that follows from the real part of the exponent, where its
+/// error shows in the digits.
+std::string growth_error_words(const Mode& mode) {
+  const double error = relative_growth_error(mode);
+  return error > marked_error ? " (" + error_words(error) + ")" : "";
+}
+
+/// Errors that show in the digits, and other harmonics. The error of the growth stands where it is
+/// larger than that of the exponent, which is relative to the modulus or the rotor speed.
 std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
   const Mode& mode = set.modes[m];
   if (!mode.resolved) return "unresolved*";
   if (motion == Motion::rigid_body) return "rigid-body";
-  const bool is_marked = total_error(mode) > marked_error;
+  std::string errors;
+  if (total_error(mode) > marked_error) errors = error_words(total_error(mode));
+  const double of_growth = relative_growth_error(mode);
+  if (has_rate(motion) && of_growth > std::max(marked_error, total_error(mode)))
+    errors += (errors.empty() ? "growth " : ", growth ") + error_words(of_growth);
   std::string harmonics =
-      set.participation.size() > 0 ? other_harmonics(set, m, is_marked ? 1 : most_harmonics) : "";
-  if (!is_marked) return harmonics;
-  const double percents = 100.0 * total_error(mode);
-  return (percents < 100.0 ? "error " + general(percents, 2) + " %" : "error > 100 %") +
-         (harmonics.empty() ? "" : "; " + harmonics);
+      set.participation.size() > 0
+          ? other_harmonics(set, m, errors.empty() ? most_harmonics : std::size_t{1})
+          : "";
+  return errors + (errors.empty() || harmonics.empty() ? "" : "; ") + harmonics;
 }
 
 std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& assessment,
                                 std::size_t m, const simulation::AirPart* air) {
   const Mode& mode = set.modes[m];
   const Motion motion = assessment.motions[m];
-  const bool has_rate = motion == Motion::growing || motion == Motion::decaying;
-  const bool is_known = has_rate || motion == Motion::rigid_body || !simulation::is_rough(mode);
+  const bool is_moving = has_rate(motion);
+  const bool is_known = is_moving || motion == Motion::rigid_body || !simulation::is_rough(mode);
   // Round-off splits equal real exponents into pairs with a small frequency.
   constexpr double real_exponent = 1e-6;
   const bool is_real = mode.exponent.imag() < real_exponent * std::abs(mode.exponent);
@@ -98,15 +124,15 @@ std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& a
                       ? fixed(mode.fixed_frame_frequency / (2.0 * std::numbers::pi), 4)
                       : "-");
   row.push_back(
-      frequency == 0.0 || !is_known ? "-" : fixed(has_rate ? 100.0 * mode.damping_ratio : 0.0, 3));
+      frequency == 0.0 || !is_known ? "-" : fixed(is_moving ? 100.0 * mode.damping_ratio : 0.0, 3));
   if (air != nullptr)
     row.push_back(frequency == 0.0 || !is_known || std::isnan(air->held_damping[m])
                       ? "-"
                       : fixed(100.0 * (mode.damping_ratio - air->held_damping[m]), 3));
   row.push_back(frequency == 0.0 || !is_known
                     ? "-"
-                    : fixed(has_rate ? 100.0 * logarithmic_decrement(mode) : 0.0, 3));
-  row.push_back(!has_rate
+                    : fixed(is_moving ? 100.0 * logarithmic_decrement(mode) : 0.0, 3));
+  row.push_back(!is_moving
                     ? (is_known ? "0" : "-")
                     : (motion == Motion::growing ? "+" : "") + scientific(mode.exponent.real(), 2));
   if (set.participation.size() > 0) row.push_back(std::to_string(mode.harmonic));
@@ -117,7 +143,6 @@ std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& a
 
 std::string seconds(double time) { return general(time, 3) + " s"; }
 
-/// "yaw 1 doubles in 2.5 s, ..." for the growing modes, fastest growth first.
 /// The first names of some modes; `words`: what stands behind the name of a mode.
 template <class Words>
 std::string names_of(const ModeSet& set, const std::vector<std::size_t>& modes,
@@ -132,9 +157,11 @@ std::string names_of(const ModeSet& set, const std::vector<std::size_t>& modes,
   return text;
 }
 
+/// "yaw 1 doubles in 2.5 s, ..." for the growing modes, fastest growth first.
 std::string name_growing(const ModeSet& set, const std::vector<std::size_t>& growing) {
   return names_of(set, growing, [](const Mode& mode) {
-    return " doubles in " + seconds(std::numbers::ln2 / mode.exponent.real());
+    return " doubles in " + seconds(std::numbers::ln2 / mode.exponent.real()) +
+           growth_error_words(mode);
   });
 }
 
@@ -146,7 +173,7 @@ std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
   return (decaying == 1 && air.empty() ? "the mode decays"
                                        : "all " + count(decaying, "mode") + air + " decay") +
          "; the least damped is " + least.label + ", " + general(100.0 * least.damping_ratio, 3) +
-         " %";
+         " %" + growth_error_words(least);
 }
 
 /// Text on the behaviour of the modes that do not grow.

@@ -6,6 +6,8 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <string>
 
 #include <Eigen/QR>
 
@@ -191,19 +193,25 @@ std::optional<int> own_shift(const std::vector<system::Motion>& motions, const M
 /// The motion with the largest sum of kinetic and strain energy. The strain energy equals the
 /// kinetic energy where strain alone restores; it is smaller where rotation stiffens, and larger in
 /// overdamped motions, which hardly move. It does not count at rest, where it is that of another
-/// motion, and for a joint that drifts.
+/// motion, and for a joint that drifts. `left_out`: motions that it is not, by their names.
 Leading find_leading(const system::PeriodicSystem& system,
                      const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t m,
-                     const NamedShape& named, int sectors, MotionsInTime& in_time) {
+                     const NamedShape& named, int sectors, MotionsInTime& in_time,
+                     const std::set<std::string>& left_out) {
   const Mode& mode = set.modes[m];
   const auto count = static_cast<Eigen::Index>(motions.size());
+  Eigen::VectorXd counts = Eigen::VectorXd::Ones(count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (left_out.contains(motions[static_cast<std::size_t>(i)].name())) counts(i) = 0.0;
   Eigen::VectorXd identified = Eigen::VectorXd::Zero(count);
   Eigen::VectorXd all = Eigen::VectorXd::Zero(count);
   for (Eigen::Index c = 0; c < named.shape.cols(); ++c) {
     const system::MotionEnergies& about = in_time.at(time_of(set, named.shape, c, sectors));
-    identified += about.of(named.shape_rate.col(c), named.whole_rate.col(c));
-    all += about.of(named.whole_rate.col(c), named.whole_rate.col(c));
+    identified += counts.cwiseProduct(about.of(named.shape_rate.col(c), named.whole_rate.col(c)));
+    all += counts.cwiseProduct(about.of(named.whole_rate.col(c), named.whole_rate.col(c)));
   }
+  if (!left_out.empty() && !(all.sum() > 0.0))  // nothing else moves
+    return find_leading(system, motions, set, m, named, sectors, in_time, {});
   // The identified harmonic has less of the energy where it is that of blades that the tower moves:
   // the tower moves at another harmonic.
   const bool is_dominant = identified.sum() > dominant_part * all.sum();
@@ -232,18 +240,19 @@ Leading find_leading(const system::PeriodicSystem& system,
   const bool is_slowest = std::abs(mode.exponent) < slowest_drift * set.rotor_speed;
   if (mode.exponent.imag() == 0.0 && !is_beam && !is_slowest) return leading();
   // Parts that move as a slow drift goes on may have most of its energy, once a revolution. The
-  // mean of the motion strains an overdamped part, but not those that a joint carries.
-  if (is_drift(mode.exponent, set.rotor_speed) &&
+  // mean of the motion strains an overdamped part, but not those that a joint carries. The
+  // motion that is next to one left out is that of the energy.
+  if (left_out.empty() && is_drift(mode.exponent, set.rotor_speed) &&
       is_rigid_body(system, named.shape.rowwise().mean(), mode)) {
     Eigen::VectorXd of_shape = Eigen::VectorXd::Zero(count);
     for (Eigen::Index c = 0; c < named.shape.cols(); ++c)
       of_shape += in_time.at(time_of(set, named.shape, c, sectors))
                       .of(named.shape.col(c), named.shape.col(c));
-    return {leading_of(motions, of_shape), is_dominant};
+    return {leading_of(motions, counts.cwiseProduct(of_shape)), is_dominant};
   }
   for (const auto& [name, energy] :
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
-    shares[name] += energy / (part * mode.kinetic_energy);
+    if (!left_out.contains(name)) shares[name] += energy / (part * mode.kinetic_energy);
   Leading found = leading();
   // A joint that makes the largest part of the mean turn of what it carries stands for all of it.
   bool has_joint = false;
@@ -257,6 +266,7 @@ Leading find_leading(const system::PeriodicSystem& system,
       turns += in_time.at(time_of(set, named.shape, c, sectors))
                    .of_mean_turns((is_dominant ? named.shape_rate : named.whole_rate).col(c),
                                   named.whole_rate.col(c));
+    turns = turns.cwiseProduct(counts).eval();
     const std::size_t most = leading_of(motions, turns);
     const auto own = static_cast<Eigen::Index>(most);
     Eigen::VectorXd parts = energies - turns;  // of the mean turn
@@ -337,6 +347,70 @@ int clear_component(const Eigen::VectorXd& shares) {
                                                                       : -1;
 }
 
+LeadingMotion leading_motion_of(const system::PeriodicSystem& system,
+                                const std::vector<system::Motion>& motions, const ModeSet& set,
+                                std::size_t m, int sectors, MotionsInTime& in_time,
+                                const std::set<std::string>& left_out) {
+  const int count = count_instances(motions);
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
+  const bool together = count == 2 || (count > 2 && set.rotor_speed > 0.0);
+  const Mode& mode = set.modes[m];
+  if (mode.state) {
+    LeadingMotion one{{*mode.state}, -1, mode.harmonic, true};
+    if (mode.state->instance > 0 && together && mode.exponent.imag() > zero)
+      one.component = clear_component(
+          multiblade_of(motions_of_states(system, *mode.state), count, one.motion, set.shapes[m])
+              .shares);
+    return one;
+  }
+  const NamedShape named = named_shape(set, m);
+  const Leading found = find_leading(system, motions, set, m, named, sectors, in_time, left_out);
+  const system::Motion& motion = motions[found.motion];
+  const int shift = found.shift.value_or(0);
+  LeadingMotion one{motion, -1, mode.harmonic + shift, found.shift.has_value()};
+  if (motion.owner.instance > 0 && together && mode.exponent.imag() > zero) {
+    one.component = clear_component(
+        multiblade_of(
+            motions, count, motion,
+            shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]))
+            .shares);
+    // The mode will be replaced by its conjugate, in which the blades follow each other in the
+    // opposite order.
+    if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
+      one.component = count - one.component;
+  }
+  if (motion.owner.instance > 0 && count > 2 && set.rotor_speed == 0.0) {
+    const Multiblade components = multiblade_of(motions, count, motion, set.shapes[m]);
+    if (clear_component(components.shares) == 0) one.component = 0;
+    one.cyclic = cyclic_motion(components);
+  }
+  return one;
+}
+
+/// Modes that a joint cannot have: it has one coordinate for each part that it carries, and each
+/// coordinate two exponents. Those of resolved modes and the slowest ones are its own; only real
+/// ones are counted.
+std::vector<std::size_t> surplus_of_joints(const std::vector<system::Motion>& motions,
+                                           const std::vector<LeadingMotion>& leading,
+                                           const ModeSet& set) {
+  std::map<std::string, std::vector<std::size_t>> of_joints;
+  for (std::size_t m = 0; m < leading.size(); ++m)
+    if (!set.modes[m].state && set.modes[m].exponent.imag() == 0.0 &&
+        leading[m].motion.owner.kind == system::PartKind::joint)
+      of_joints[leading[m].motion.name()].push_back(m);
+  std::vector<std::size_t> surplus;
+  for (auto& [name, modes] : of_joints) {
+    const auto coordinates = std::ranges::count_if(
+        motions, [&name = name](const system::Motion& motion) { return motion.name() == name; });
+    std::ranges::stable_sort(modes, {}, [&set](std::size_t m) {
+      return std::pair(!set.modes[m].resolved, std::abs(set.modes[m].exponent));
+    });
+    for (std::size_t i = 2 * static_cast<std::size_t>(coordinates); i < modes.size(); ++i)
+      surplus.push_back(modes[i]);
+  }
+  return surplus;
+}
+
 }  // namespace
 
 bool is_at_rest(const Mode& mode, const ModeSet& set) {
@@ -390,44 +464,13 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
   const std::vector<system::Motion> motions = system.motions();
   std::vector<LeadingMotion> leading;
   if (set.shapes.empty() || motions.empty()) return leading;
-  const int count = count_instances(motions);
-  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
-  const bool together = count == 2 || (count > 2 && set.rotor_speed > 0.0);
   MotionsInTime in_time(system, solution);
-  for (std::size_t m = 0; m < set.shapes.size(); ++m) {
-    const Mode& mode = set.modes[m];
-    if (mode.state) {
-      LeadingMotion one{{*mode.state}, -1, mode.harmonic, true};
-      if (mode.state->instance > 0 && together && mode.exponent.imag() > zero)
-        one.component = clear_component(
-            multiblade_of(motions_of_states(system, *mode.state), count, one.motion, set.shapes[m])
-                .shares);
-      leading.push_back(one);
-      continue;
-    }
-    const NamedShape named = named_shape(set, m);
-    const Leading found = find_leading(system, motions, set, m, named, sectors, in_time);
-    const system::Motion& motion = motions[found.motion];
-    const int shift = found.shift.value_or(0);
-    LeadingMotion one{motion, -1, mode.harmonic + shift, found.shift.has_value()};
-    if (motion.owner.instance > 0 && together && mode.exponent.imag() > zero) {
-      one.component = clear_component(
-          multiblade_of(
-              motions, count, motion,
-              shift != 0 ? named.at(shift) : (found.at_identified ? named.shape : set.shapes[m]))
-              .shares);
-      // The mode will be replaced by its conjugate, in which the blades follow each other in the
-      // opposite order.
-      if (one.component > 0 && mode.exponent.imag() + shift * set.rotor_speed < 0.0)
-        one.component = count - one.component;
-    }
-    if (motion.owner.instance > 0 && count > 2 && set.rotor_speed == 0.0) {
-      const Multiblade components = multiblade_of(motions, count, motion, set.shapes[m]);
-      if (clear_component(components.shares) == 0) one.component = 0;
-      one.cyclic = cyclic_motion(components);
-    }
-    leading.push_back(one);
-  }
+  const auto leading_motion = [&](std::size_t m, const std::set<std::string>& left_out) {
+    return leading_motion_of(system, motions, set, m, sectors, in_time, left_out);
+  };
+  for (std::size_t m = 0; m < set.shapes.size(); ++m) leading.push_back(leading_motion(m, {}));
+  for (const std::size_t m : surplus_of_joints(motions, leading, set))
+    leading[m] = leading_motion(m, {leading[m].motion.name()});
   return leading;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 /// Places of the comparison, as fractions of a revolution; each is moved midway between two
 /// azimuths.
-constexpr std::array<double, 4> places{0.05, 0.33, 0.58, 0.81};
+constexpr std::array<double, AzimuthSeries::comparisons> places{0.05, 0.33, 0.58, 0.81};
 
 void add(StateSpace& sum, double factor, const StateSpace& form) {
   for (const auto& [name, matrix, row, column] : state_space_parts) {
@@ -99,30 +99,38 @@ namespace {
 
 constexpr int first_azimuths = 12;
 /// A residual below the first value that twice as many azimuths do not reduce by the second one is
-/// round-off of the matrices.
+/// round-off of the matrices. More do not reduce any that two doublings
+/// in turn have not reduced, from the third value on (fewer may not see a short change).
 constexpr double largest_round_off = 1e-7;
 constexpr double least_reduction = 0.5;
+constexpr int seeing_azimuths = 96;
 /// Part of the tolerance that harmonics may take which are left out.
 constexpr double part_of_tail = 0.1;
 
 }  // namespace
 
 AzimuthSeries AzimuthSeries::resolve(const std::function<StateSpace(double)>& form,
-                                     const SeriesResolution& resolution) {
+                                     const SeriesResolution& resolution,
+                                     const std::function<void(int)>& begin) {
   const bool all = resolution.automatic_harmonics;
   int azimuths = resolution.azimuths;
   if (resolution.automatic_azimuths) {
     azimuths = first_azimuths;
     while (!all && azimuths < 2 * resolution.harmonics + 1) azimuths *= 2;
   }
+  bool was_reduced = true;
   for (double before = std::numeric_limits<double>::infinity();; azimuths *= 2) {
+    begin(azimuths);
     const int resolved = (azimuths - 1) / 2;
     AzimuthSeries series(form, azimuths, all ? resolved : std::min(resolved, resolution.harmonics));
     const double residual = series.residual();
-    const bool is_round_off = residual <= largest_round_off && residual > least_reduction * before;
+    const bool is_reduced = !(residual > least_reduction * before);
+    const bool is_least = !is_reduced && (residual <= largest_round_off ||
+                                          (!was_reduced && azimuths >= seeing_azimuths));
+    was_reduced = is_reduced;
     before = residual;
     const bool is_enough = !resolution.automatic_azimuths || residual <= resolution.tolerance ||
-                           is_round_off || 2 * azimuths > most_azimuths;
+                           is_least || 2 * azimuths > most_azimuths;
     if (!is_enough) continue;
     const int harmonics =
         all ? series.harmonics_above(part_of_tail * resolution.tolerance) : series.harmonics();

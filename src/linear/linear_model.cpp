@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -39,28 +40,35 @@ struct Jet {
   Matrix value, first, second;
 };
 
-/// Smallest pivot, relative to the largest, of a matrix that has an inverse. (Turbines have 1e-8
+/// Smallest reciprocal condition number of a matrix whose solution has digits. (Turbines have 1e-11
 /// and more, singular matrices 1e-15.)
-constexpr double least_pivot = 1e-13;
+constexpr double least_reciprocal_condition = 1e-13;
 
 /// `moved`: states whose accelerations the first columns belong to.
-/// @throws InputError with the name of the one that moves most where the matrix is singular
+/// @throws InputError with the name of the one that moves most in the direction that the matrix
+/// almost maps to zero
 void require_regular(const Eigen::PartialPivLU<Dense>& lu, std::span<const ModelState> moved) {
-  const auto& U = lu.matrixLU();
-  Eigen::Index at = 0;
-  const Eigen::VectorXd pivots = U.diagonal().cwiseAbs();
-  if (pivots.minCoeff(&at) > least_pivot * pivots.maxCoeff()) return;
-  Eigen::VectorXd null = Eigen::VectorXd::Zero(U.rows());
-  null(at) = 1.0;
-  null.head(at) = -U.topLeftCorner(at, at).triangularView<Eigen::Upper>().solve(U.col(at).head(at));
+  if (lu.rcond() > least_reciprocal_condition) return;
+  // Inverse iteration; a pivot that is zero stands for one of round-off.
+  Dense U = lu.matrixLU();
+  const double tiny = std::numeric_limits<double>::epsilon() * U.diagonal().cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < U.rows(); ++i)
+    if (!(std::abs(U(i, i)) > tiny)) U(i, i) = tiny;
+  Eigen::VectorXd null = Eigen::VectorXd::Ones(U.rows());
+  for (int iteration = 0; iteration < 2; ++iteration) {
+    null = U.triangularView<Eigen::Upper>().transpose().solve(null).normalized();
+    null = U.triangularView<Eigen::Upper>().solve(null).normalized();
+  }
   Eigen::Index largest = 0;
   null.cwiseAbs().maxCoeff(&largest);
   if (largest >= static_cast<Eigen::Index>(moved.size()))
     throw InternalError("the balances do not determine accelerations and reactions");
   throw InputError(
       "linearize: a motion of \"" + moved[static_cast<std::size_t>(largest)].name +
-      "\" has no inertia (so it is with an elastic blade behind a hinge): its acceleration does "
-      "not follow from the state; hint: samara modes and samara floquet leave such a motion out");
+      "\" has no inertia or almost none (so it is with an elastic blade behind a hinge, or with "
+      "blades on a hub without inertia behind shaft torsion): its acceleration does not follow "
+      "from the state; hint: samara modes and samara floquet leave such a motion out, "
+      "hub.inertia gives that of a hub its own");
 }
 
 /// Dense solve with rows and columns of size one, refined once. `moved`: see require_regular.

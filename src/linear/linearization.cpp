@@ -134,7 +134,7 @@ class Linearizer {
                      std::to_string(resolution_.azimuths) + " azimuths" +
                      (!options_.series.automatic_harmonics ? "; hint: linearize.harmonics: auto"
                       : is_most                            ? ", the most that `auto` takes"
-                                                           : ": it is round-off of the matrices"));
+                                : ", which more azimuths do not reduce"));
     }
     result_.azimuths = azimuths();
     result_.is_constant =
@@ -154,10 +154,17 @@ class Linearizer {
 
   StateSpace compute(double psi) const {
     const auto done = static_cast<long>(forms_.size()) + 1;
-    const auto all =
-        static_cast<long>(resolution_.azimuths) + static_cast<long>(options_.at.size());
-    observer_.progress("linearize", done, std::max(done, all));
+    observer_.progress("linearize with " + std::to_string(azimuths_) + " azimuths", done - known_,
+                       std::max(done, expected_) - known_);
     return model_.state_space(time_of(psi));
+  }
+
+  /// A series with so many azimuths begins; those of half as many are known.
+  void expect(int azimuths) {
+    azimuths_ = azimuths;
+    known_ = static_cast<long>(forms_.size());
+    const long own = known_ > 0 ? azimuths / 2 : azimuths;
+    expected_ = known_ + own + AzimuthSeries::comparisons;
   }
 
   bool has_own_azimuths() const { return has_period_ && !options_.at.empty(); }
@@ -172,9 +179,14 @@ class Linearizer {
                          const std::vector<ModelState>& states,
                          const std::vector<system::Signal>& inputs,
                          const std::vector<system::Signal>& outputs,
-                         const std::function<StateSpace(double)>& form_at) const {
-    NamedForm form{name,   description, states,
-                   inputs, outputs,     AzimuthSeries::resolve(form_at, resolution_)};
+                         const std::function<StateSpace(double)>& form_at) {
+    NamedForm form{name,
+                   description,
+                   states,
+                   inputs,
+                   outputs,
+                   AzimuthSeries::resolve(form_at, resolution_, [this](int azimuths) {
+                     expect(azimuths); })};
     if (!has_own_azimuths()) form.at_azimuths = form.series.samples();
     if (has_own_azimuths())
       for (const double psi : options_.at) form.at_azimuths.push_back(form_at(psi));
@@ -260,6 +272,9 @@ class Linearizer {
   bool has_period_;
   double speed_;
   SeriesResolution resolution_;
+  int azimuths_ = 0;   ///< of the series that is being computed
+  long known_ = 0;     ///< forms before it
+  long expected_ = 0;  ///< forms after it
   Remembered forms_;
   NamedForm periodic_;
   Linearization result_;

@@ -241,6 +241,24 @@ class Linearize(ProgramTest):
             exponents = scipy.linalg.eigvals(file["/linearize/lyapunov_floquet/A"][0])
             self.assertEqual(sum(abs(exponents) < 1e-2), 4)
 
+    def test_a_motion_with_next_to_no_inertia_is_refused(self):
+        """Shaft torsion in series with the bending of both blades, on a hub without inertia: the
+        weight that bends the blades gives it next to no inertia, and none twice a revolution."""
+        turbine = ["--set", "shaft.torsion={joint: free, stiffness: 1e6, damping: 1e3}",
+                   "--set", "hub={mass: 400, radius: 0.5, inertia: %s, teeter: {joint: locked}}",
+                   "--set", "gravity=9.81", "--set", "nacelle.yaw.stiffness=1e7",
+                   "--set", "blades.elements=2", "--set", "blades.order=2", "--set",
+                   "blades.sections=[{mass: 67.5772, inertia: [1e-4, 1e-4, 0], stiffness: {EA: "
+                   "rigid, GA2: rigid, GA3: rigid, GJ: 1e7, EI2: 1e7, EI3: 1e7}}]"]
+        for inertia, runs in (("[0, 0, 0]", False), ("[0, 5, 0]", True)):
+            words = [word.replace("%s", inertia) for word in turbine]
+            result = self.samara("linearize", BASELINE, *words, "-o", "linear.h5")
+            self.assertEqual(result.returncode, 0 if runs else 2, result.stderr)
+            self.assertEqual("has no inertia or almost none" in result.stderr, not runs)
+            self.assertEqual((self.folder / "linear.h5").exists(), runs)
+            if not runs:
+                self.assertRegex(result.stderr, r'a motion of "blade \d point \d M3"')
+
     def test_matrices_at_azimuths_of_ones_own(self):
         self.succeed("linearize", BASELINE, *SMALL, "--set",
                      "linearize={azimuths: 25, harmonics: 12, inputs: [yaw_torque], outputs: "

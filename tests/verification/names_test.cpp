@@ -412,6 +412,32 @@ BOOST_AUTO_TEST_CASE(a_rotor_that_turns_as_a_whole_is_rotor_rotation) {
   BOOST_TEST(set.modes[1].resolved);
 }
 
+BOOST_AUTO_TEST_CASE(a_joint_has_no_more_real_exponents_than_states) {
+  // The article's free yaw and teeter on a hub without inertia, where shaft torsion is free: while
+  // the rotor disc drifts, the nacelle yaws below it. The yaw has its two zero exponents already.
+  const io::Case turning =
+      input("lee2002/baseline", {"shaft.torsion={joint: free, stiffness: 1e7, damping: 1e3}",
+                                 "hub.inertia=[0, 0, 0]"});
+  Run run(turning);
+  for (const int modes : {0, 10})
+    BOOST_TEST_CONTEXT("modes " << modes) {
+      analysis::FloquetOptions options;
+      options.modes = modes;
+      const analysis::ModeSet set =
+          find_floquet_modes(run.system, run.trim.solution, options, PETSC_COMM_SELF, run.observer)
+              .set;
+      std::map<std::string, std::vector<double>> real;
+      for (const analysis::Mode& mode : set.modes)
+        if (mode.resolved && mode.exponent.imag() == 0.0)
+          real[mode.name].push_back(std::abs(mode.exponent.real()));
+      BOOST_TEST(real.size() == 2U);
+      BOOST_TEST_REQUIRE(real["yaw"].size() == 2U);
+      for (const double size : real["yaw"]) BOOST_TEST(size < 1e-6);
+      BOOST_TEST_REQUIRE(real["teeter"].size() == 2U);
+      for (const double size : real["teeter"]) BOOST_TEST(size > 1e-3);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_slow_drift_of_the_rotor_is_rotor_rotation_at_any_rate) {
   // The weight of the blades bends them once a revolution, and a slow drift changes the phase: its
   // kinetic energy is that of the bending. The exponent of the speed is -slope N^2 / inertia about

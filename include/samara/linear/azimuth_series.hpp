@@ -30,10 +30,13 @@ class AzimuthSeries {
   /// Chooses what `resolution` leaves open. Azimuths: 12, 24, ... at most `most_azimuths`, until
   /// the residual is at most the tolerance, or round-off. Harmonics: the fewest of those that the
   /// azimuths resolve whose tail is below a tenth of it. `form` is asked for the same azimuths
-  /// again.
-  static AzimuthSeries resolve(const std::function<StateSpace(double)>& form,
-                               const SeriesResolution& resolution);
+  /// again. `begin` is told the azimuths of each series that is tried.
+  static AzimuthSeries resolve(
+      const std::function<StateSpace(double)>& form, const SeriesResolution& resolution,
+      const std::function<void(int)>& begin = [](int) {});
   static constexpr int most_azimuths = 768;
+  /// Places midway between azimuths at which a series is compared with the form.
+  static constexpr int comparisons = 4;
 
   /// Series of given coefficients, A0 Ac_1 As_1 Ac_2 ..., with the residual of their fit.
   explicit AzimuthSeries(std::vector<StateSpace> coefficients, double residual = 0.0)
