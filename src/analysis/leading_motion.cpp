@@ -6,7 +6,6 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <string>
 
 #include <Eigen/QR>
@@ -193,16 +192,18 @@ std::optional<int> own_shift(const std::vector<system::Motion>& motions, const M
 /// The motion with the largest sum of kinetic and strain energy. The strain energy equals the
 /// kinetic energy where strain alone restores; it is smaller where rotation stiffens, and larger in
 /// overdamped motions, which hardly move. It does not count at rest, where it is that of another
-/// motion, and for a joint that drifts. `left_out`: motions that it is not, by their names.
+/// motion, and for a joint that drifts. `left_out`: a motion
+/// that it is not, nor any alike.
 Leading find_leading(const system::PeriodicSystem& system,
                      const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t m,
                      const NamedShape& named, int sectors, MotionsInTime& in_time,
-                     const std::set<std::string>& left_out) {
+                     const system::Motion* left_out) {
   const Mode& mode = set.modes[m];
   const auto count = static_cast<Eigen::Index>(motions.size());
   Eigen::VectorXd counts = Eigen::VectorXd::Ones(count);
   for (Eigen::Index i = 0; i < count; ++i)
-    if (left_out.contains(motions[static_cast<std::size_t>(i)].name())) counts(i) = 0.0;
+    if (left_out != nullptr && motions[static_cast<std::size_t>(i)].is_alike(*left_out))
+      counts(i) = 0.0;
   Eigen::VectorXd identified = Eigen::VectorXd::Zero(count);
   Eigen::VectorXd all = Eigen::VectorXd::Zero(count);
   for (Eigen::Index c = 0; c < named.shape.cols(); ++c) {
@@ -210,8 +211,8 @@ Leading find_leading(const system::PeriodicSystem& system,
     identified += counts.cwiseProduct(about.of(named.shape_rate.col(c), named.whole_rate.col(c)));
     all += counts.cwiseProduct(about.of(named.whole_rate.col(c), named.whole_rate.col(c)));
   }
-  if (!left_out.empty() && !(all.sum() > 0.0))  // nothing else moves
-    return find_leading(system, motions, set, m, named, sectors, in_time, {});
+  if (left_out != nullptr && !(all.sum() > 0.0))  // nothing else moves
+    return find_leading(system, motions, set, m, named, sectors, in_time, nullptr);
   // The identified harmonic has less of the energy where it is that of blades that the tower moves:
   // the tower moves at another harmonic.
   const bool is_dominant = identified.sum() > dominant_part * all.sum();
@@ -242,7 +243,7 @@ Leading find_leading(const system::PeriodicSystem& system,
   // Parts that move as a slow drift goes on may have most of its energy, once a revolution. The
   // mean of the motion strains an overdamped part, but not those that a joint carries. The
   // motion that is next to one left out is that of the energy.
-  if (left_out.empty() && is_drift(mode.exponent, set.rotor_speed) &&
+  if (left_out == nullptr && is_drift(mode.exponent, set.rotor_speed) &&
       is_rigid_body(system, named.shape.rowwise().mean(), mode)) {
     Eigen::VectorXd of_shape = Eigen::VectorXd::Zero(count);
     for (Eigen::Index c = 0; c < named.shape.cols(); ++c)
@@ -252,7 +253,8 @@ Leading find_leading(const system::PeriodicSystem& system,
   }
   for (const auto& [name, energy] :
        strain_energies(system, is_dominant ? named.shape : set.shapes[m]))
-    if (!left_out.contains(name)) shares[name] += energy / (part * mode.kinetic_energy);
+    shares[name] += energy / (part * mode.kinetic_energy);
+  if (left_out != nullptr) shares.erase(left_out->name());
   Leading found = leading();
   // A joint that makes the largest part of the mean turn of what it carries stands for all of it.
   bool has_joint = false;
@@ -350,7 +352,7 @@ int clear_component(const Eigen::VectorXd& shares) {
 LeadingMotion leading_motion_of(const system::PeriodicSystem& system,
                                 const std::vector<system::Motion>& motions, const ModeSet& set,
                                 std::size_t m, int sectors, MotionsInTime& in_time,
-                                const std::set<std::string>& left_out) {
+                                const system::Motion* left_out) {
   const int count = count_instances(motions);
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   const bool together = count == 2 || (count > 2 && set.rotor_speed > 0.0);
@@ -393,15 +395,25 @@ LeadingMotion leading_motion_of(const system::PeriodicSystem& system,
 std::vector<std::size_t> surplus_of_joints(const std::vector<system::Motion>& motions,
                                            const std::vector<LeadingMotion>& leading,
                                            const ModeSet& set) {
-  std::map<std::string, std::vector<std::size_t>> of_joints;
-  for (std::size_t m = 0; m < leading.size(); ++m)
-    if (!set.modes[m].state && set.modes[m].exponent.imag() == 0.0 &&
-        leading[m].motion.owner.kind == system::PartKind::joint)
-      of_joints[leading[m].motion.name()].push_back(m);
+  std::vector<std::vector<std::size_t>> of_joints;
+  for (std::size_t m = 0; m < leading.size(); ++m) {
+    const system::Motion& own = leading[m].motion;
+    if (set.modes[m].state || set.modes[m].exponent.imag() != 0.0 ||
+        own.owner.kind != system::PartKind::joint)
+      continue;
+    const auto found = std::ranges::find_if(of_joints, [&](const std::vector<std::size_t>& modes) {
+      return leading[modes.front()].motion.is_alike(own);
+    });
+    if (found == of_joints.end())
+      of_joints.push_back({m});
+    else
+      found->push_back(m);
+  }
   std::vector<std::size_t> surplus;
-  for (auto& [name, modes] : of_joints) {
+  for (std::vector<std::size_t>& modes : of_joints) {
+    const system::Motion& own = leading[modes.front()].motion;
     const auto coordinates = std::ranges::count_if(
-        motions, [&name = name](const system::Motion& motion) { return motion.name() == name; });
+        motions, [&own](const system::Motion& motion) { return motion.is_alike(own); });
     std::ranges::stable_sort(modes, {}, [&set](std::size_t m) {
       return std::pair(!set.modes[m].resolved, std::abs(set.modes[m].exponent));
     });
@@ -465,12 +477,10 @@ std::vector<LeadingMotion> find_leading_motions(const system::PeriodicSystem& sy
   std::vector<LeadingMotion> leading;
   if (set.shapes.empty() || motions.empty()) return leading;
   MotionsInTime in_time(system, solution);
-  const auto leading_motion = [&](std::size_t m, const std::set<std::string>& left_out) {
-    return leading_motion_of(system, motions, set, m, sectors, in_time, left_out);
-  };
-  for (std::size_t m = 0; m < set.shapes.size(); ++m) leading.push_back(leading_motion(m, {}));
+  for (std::size_t m = 0; m < set.shapes.size(); ++m)
+    leading.push_back(leading_motion_of(system, motions, set, m, sectors, in_time, nullptr));
   for (const std::size_t m : surplus_of_joints(motions, leading, set))
-    leading[m] = leading_motion(m, {leading[m].motion.name()});
+    leading[m] = leading_motion_of(system, motions, set, m, sectors, in_time, &leading[m].motion);
   return leading;
 }
 
