@@ -214,7 +214,8 @@ std::string resolved_words(const ModeSet& set, const StabilityAssessment& result
   const double reach = is_of_slow_decays(set) ? set.searched->high : result.reach;
   std::string text = is_of_slow_decays(set) ? "all of these modes are resolved"
                      : std::isfinite(result.reach)
-                         ? "all modes below " + hertz(result.reach) + " are resolved"
+                         ? "all modes of natural frequency |lambda|/2 pi below " +
+                               hertz(result.reach) + " are resolved"
                          : "all modes are resolved";
   text += deflated;
   const std::string percents = general(100.0 * marked_error, 2) + " %";

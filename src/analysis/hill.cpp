@@ -1081,8 +1081,12 @@ class Analysis {
   /// Whether the exponents that the count leaves out are the refined ones. Of several double zeros,
   /// the search finds some.
   bool counts_refined() const { return is_constant_ && !has_medium_; }
+  /// In the region, these alone: an approximation may be rough, and one that was lost is missing.
   void take_refined() {
     std::erase_if(all_found_, [this](Complex other) {
+      if (region_.low <= other.imag() && other.imag() <= region_.high &&
+          -region_.decay <= other.real() && other.real() <= region_.growth)
+        return true;
       return std::ranges::any_of(modes_, [&](const Candidate& mode) {
         return std::abs(mode.pair.exponent - other) < same_found * unit_of_change(other, speed_);
       });

@@ -177,6 +177,26 @@ BOOST_AUTO_TEST_CASE(searches_of_constant_tangents_agree_with_all_modes) {
 
 /// The steps find energies from time series of the signals of all initial states, Hill's method
 /// from the series of one mode.
+BOOST_AUTO_TEST_CASE(rough_approximations_of_a_search_are_no_further_exponents) {
+  // The first range, about the double zero of the free yaw, ends with exponents that are right to
+  // 1e-3 of themselves.
+  for (const int elements : {47, 51, 55, 60, 65}) BOOST_TEST_CONTEXT(elements << " elements") {
+      const Steady steady(
+          io::read_case(input_path("lee2002/baseline"),
+                        {"shaft.speed=0", "hub.teeter={joint: locked}", "blades.order=2",
+                         "tower.order=2", "blades.elements=" + std::to_string(elements),
+                         "tower.elements=60", "nacelle.mass=" + std::to_string(6860 + elements)}));
+      analysis::Observer observer;
+      analysis::FloquetOptions options;
+      options.modes = 12;
+      const analysis::ModeSet set = analysis::find_constant_modes(
+          steady.system, steady.trim.solution, options, PETSC_COMM_SELF, observer);
+      BOOST_TEST_REQUIRE(set.searched.has_value());
+      BOOST_TEST(set.searched->is_counted);
+      BOOST_TEST(set.modes.size() == 13U);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(energies_of_modes_are_those_of_their_series) {
   for (const auto& [name, order, steps] :
        {std::tuple{"nrel5mw/land", 6, 36}, std::tuple{"nrel5mw/land", 2, 360},
