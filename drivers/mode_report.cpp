@@ -26,6 +26,8 @@ constexpr double visible_share = 0.05;
 constexpr std::size_t most_parts = 2;
 constexpr std::size_t most_harmonics = 2;  // 1 if there is an error
 constexpr std::size_t most_names = 4;
+/// Ratio of two errors of which one stands for both.
+constexpr double alike = 1.05;
 
 /// True if the fixed frame has other frequencies than the rotor, one for each mode.
 bool has_fixed_frame(const ModeSet& set) { return set.rotor_speed > 0.0 && set.instances > 2; }
@@ -97,7 +99,7 @@ std::string remark_on(const ModeSet& set, std::size_t m, Motion motion) {
   std::string errors;
   if (total_error(mode) > marked_error) errors = error_words(total_error(mode));
   const double of_growth = relative_growth_error(mode);
-  if (has_rate(motion) && of_growth > std::max(marked_error, total_error(mode)))
+  if (has_rate(motion) && of_growth > std::max(marked_error, alike * total_error(mode)))
     errors += (errors.empty() ? "growth " : ", growth ") + error_words(of_growth);
   std::string harmonics =
       set.participation.size() > 0
