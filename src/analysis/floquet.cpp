@@ -533,9 +533,10 @@ class Analysis {
   void settle(std::size_t m) {
     Mode& mode = set_.modes[m];
     const bool slow = !is_too_fast(m);
-    const WarpingSpread spread =
+    WarpingSpread spread =
         warping_spread(exponents_[m], set_.participation.row(static_cast<Eigen::Index>(m)),
                        -static_cast<int>(samples_ / 2), mode.harmonic, speed_, rule_);
+    spread.growth += growing_part_of(conditions_[m]) * spread.modulus;
     mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
     mode.exponent = unwarped(mode.step_exponent, rule_);
     if (mode.exponent.imag() < -zero_exponent * speed_) conjugate(m);

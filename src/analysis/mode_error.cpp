@@ -114,6 +114,10 @@ Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
                          growing_part * energy + growing_part_of_tables * between);
 }
 
+double growing_part_of(double condition) {
+  return condition > 1.0 ? std::sqrt(1.0 - 1.0 / (condition * condition)) : 0.0;
+}
+
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal) {
   const double size = std::abs(mode.exponent);
   mode.growth_error = spread.growth + growing_part * spread.modulus +

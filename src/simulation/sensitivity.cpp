@@ -57,6 +57,11 @@ constexpr Stencil one_sided{{0.0, 1.0, 2.0, 3.0, 4.0},
 /// Derivative, by the logarithm of a number, of the error that missing harmonics leave in an
 /// exponent, relative to its change by the last ones (docs/theory.md, section 5.13).
 constexpr double change_caution = 3.0;
+/// The same with a medium: stations pass kinks of the curves of airfoils at azimuths that a small
+/// change of the number moves, and the phases of the missing harmonics with them. A number that is
+/// 0 counts as so many of its unit (degrees of pitch and yaw).
+constexpr double change_caution_in_medium = 1000.0;
+constexpr double zero_in_medium = 10.0;
 
 double first_step(const Parameter& parameter) {
   return parameter.value == 0.0 ? zero_steps.front() : relative_step * std::abs(parameter.value);
@@ -81,7 +86,9 @@ class Differences {
         system_(system),
         trim_(trim),
         scenario_at_(scenario_at),
-        derivatives_(derivatives) {
+        derivatives_(derivatives),
+        has_medium_(std::ranges::any_of(
+            system.unknowns(), [](const system::Unknown& one) { return one.is_of_medium(); })) {
     options_.automatic = false;
     options_.harmonics = trim.solution.harmonics();
     options_.tolerance = std::min(options_.tolerance, trim_tolerance);
@@ -175,9 +182,10 @@ class Differences {
   }
 
   /// Error of a derivative by the harmonics that a series does not have: the exponent's own error
-  /// from them, about its last change, varies over the range of the number.
-  static double of_harmonics(double change, double value) {
-    return value == 0.0 ? 0.0 : change_caution * change / std::abs(value);
+  /// from them, about its last change, varies over a part of the range of the number.
+  double of_harmonics(double change, double value) const {
+    if (!has_medium_) return value == 0.0 ? 0.0 : change_caution * change / std::abs(value);
+    return change_caution_in_medium * change / (value == 0.0 ? zero_in_medium : std::abs(value));
   }
 
   std::vector<Sensitivity> differentiate(const std::vector<Quotients>& quotients) {
@@ -206,6 +214,7 @@ class Differences {
   const analysis::Trim& trim_;
   const ScenarioAt& scenario_at_;
   ExponentDerivatives& derivatives_;
+  bool has_medium_;
   analysis::Observer silent_;
 };
 

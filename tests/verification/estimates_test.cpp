@@ -175,3 +175,58 @@ BOOST_AUTO_TEST_CASE(accuracy_keeps_its_promise) {
   BOOST_REQUIRE(counted > 60);
   BOOST_TEST(kept >= 0.95 * counted);
 }
+
+BOOST_AUTO_TEST_CASE(errors_of_growth_are_honest_where_dampers_couple_harmonics) {
+  // Dampers of hinges that are unlike, or in the nacelle's axes: the multipliers' left and right
+  // eigenvectors differ, and the step changes the growth as much as the frequency.
+  const std::string one_free = "blades.each={1: {hinges: {lag: {damping: 0}}}}";
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases{
+      {"ground_resonance/hammond", {one_free, "shaft.speed=22.02"}},
+      {"ground_resonance/hammond", {one_free, "shaft.speed=32.0"}},
+      {"ground_resonance/hammond", {one_free, "shaft.speed=32.08"}},
+      {"ground_resonance/hammond", {}},
+      {"lee2002/baseline",
+       {"nacelle.yaw.stiffness=2e5", "hub.teeter.damping=1e4", "blades.mass_damping=0.2"}},
+      {"nrel5mw/land",
+       {"blades.elements=2", "blades.order=3", "tower.elements=1",
+        "shaft.generator={joint: free, own_inertia: 534, torque: 0, torque_slope: 500}",
+        "nacelle.yaw={joint: free, stiffness: 1e8, damping: 5e7}"}}};
+  int counted = 0;
+  int honest = 0;
+  for (const auto& [name, settings] : cases) BOOST_TEST_CONTEXT(name) {
+      const io::Case found = structure(name, settings);
+      const turbine::TurbineSystem system(model::build_turbine(found.turbine), PETSC_COMM_SELF);
+      analysis::Observer observer;
+      const analysis::Trim trim = analysis::find_trim(system, found.trim, observer);
+      const auto run = [&](Rule rule) {
+        return analysis::find_floquet_modes(system, trim.solution,
+                                            {rule.steps, found.floquet.period, rule.order, {}},
+                                            PETSC_COMM_SELF, observer)
+            .set;
+      };
+      const analysis::ModeSet reference = run({6, 192});
+      for (const Rule rule : {Rule{2, 24}, Rule{2, 60}, Rule{4, 24}, Rule{6, 24}}) {
+        const analysis::ModeSet set = run(rule);
+        for (const analysis::Mode& mode : set.modes) {
+          if (!mode.resolved || mode.step_error > largest_estimate) continue;
+          const analysis::Mode* nearest = nullptr;
+          for (const analysis::Mode& other : reference.modes)
+            if (other.resolved &&
+                (nearest == nullptr || std::abs(other.exponent - mode.exponent) <
+                                           std::abs(nearest->exponent - mode.exponent)))
+              nearest = &other;
+          const double error = std::abs(nearest->exponent.real() - mode.exponent.real());
+          const double own = mode.growth_error - mode.mesh_growth_error;
+          const double least = round_off * std::max(std::abs(mode.exponent), set.rotor_speed);
+          ++counted;
+          if (error <= own + least) ++honest;
+          BOOST_TEST(error <= 5.0 * own + least, rule.steps << " of order " << rule.order << ": "
+                                                            << mode.label << " " << error << " "
+                                                            << own);
+        }
+      }
+    }
+  BOOST_REQUIRE(counted > 100);
+  BOOST_TEST_MESSAGE(honest << " of " << counted << " honest");
+  BOOST_TEST(honest >= 0.95 * counted);
+}

@@ -47,6 +47,11 @@ Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
                                 const std::vector<system::MeshError>& elements, const Mode& mode,
                                 const Eigen::MatrixXcd& shape);
 
+/// Part of an error by the step that may be growth: sqrt(1 - 1/kappa^2), with the condition number
+/// kappa >= 1 of the multiplier in energy coordinates. Where these make left and right eigenvector
+/// equal, each harmonic has a real share of the error, and its frequency alone is wrong.
+double growing_part_of(double condition);
+
 /// Sets the error of the growth by step and round-off. `spread`: error by the step; `principal`:
 /// the exponent without multiples of the rotor speed, to be distinguished from zero.
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal);
