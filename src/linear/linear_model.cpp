@@ -40,15 +40,31 @@ struct Jet {
   Matrix value, first, second;
 };
 
-/// Smallest reciprocal condition number of a matrix whose solution has digits. (Turbines have 1e-11
-/// and more, singular matrices 1e-15.)
-constexpr double least_reciprocal_condition = 1e-13;
+/// Error of accelerations by round-off above which a motion has no inertia that could be known.
+/// (Turbines have 1e-13 to 1e-10, motions with next to no inertia 1e-4 and more.) And the part of
+/// the largest acceleration below which others are round-off.
+constexpr double largest_error = 1e-5;
+constexpr double least_size = 1e-12;
+
+/// Largest change of an acceleration by a coordinate, the first `d` rows and columns of x, relative
+/// to the geometric mean of the largest ones of its row and column. What is zero but for round-off,
+/// as the column of a free yaw, is compared with all others.
+double relative_change(const Dense& change, const Dense& x, Eigen::Index d) {
+  if (d == 0) return 0.0;
+  const Dense sizes = x.topLeftCorner(d, d).cwiseAbs();
+  const double least = least_size * sizes.maxCoeff();
+  const Eigen::VectorXd of_row = sizes.rowwise().maxCoeff().cwiseMax(least).cwiseSqrt();
+  const Eigen::RowVectorXd of_column = sizes.colwise().maxCoeff().cwiseMax(least).cwiseSqrt();
+  return least > 0.0
+             ? change.topLeftCorner(d, d).cwiseAbs().cwiseQuotient(of_row * of_column).maxCoeff()
+             : 0.0;
+}
 
 /// `moved`: states whose accelerations the first columns belong to.
 /// @throws InputError with the name of the one that moves most in the direction that the matrix
 /// almost maps to zero
-void require_regular(const Eigen::PartialPivLU<Dense>& lu, std::span<const ModelState> moved) {
-  if (lu.rcond() > least_reciprocal_condition) return;
+[[noreturn]] void refuse_singular(const Eigen::PartialPivLU<Dense>& lu,
+                                  std::span<const ModelState> moved) {
   // Inverse iteration; a pivot that is zero stands for one of round-off.
   Dense U = lu.matrixLU();
   const double tiny = std::numeric_limits<double>::epsilon() * U.diagonal().cwiseAbs().maxCoeff();
@@ -71,7 +87,8 @@ void require_regular(const Eigen::PartialPivLU<Dense>& lu, std::span<const Model
       "hub.inertia gives that of a hub its own");
 }
 
-/// Dense solve with rows and columns of size one, refined once. `moved`: see require_regular.
+/// Dense solve with rows and columns of size one, refined once: the change is about the error by
+/// round-off that is left. `moved`: see refuse_singular.
 Dense solve_scaled(const Dense& matrix, const Dense& right, std::span<const ModelState> moved) {
   if (matrix.rows() == 0) return right;
   Eigen::VectorXd rows = matrix.cwiseAbs().rowwise().maxCoeff();
@@ -85,12 +102,14 @@ Dense solve_scaled(const Dense& matrix, const Dense& right, std::span<const Mode
   columns = columns.cwiseInverse();
   scaled = scaled * columns.asDiagonal();
   const Eigen::PartialPivLU<Dense> lu(scaled);
-  require_regular(lu, moved);
+  if (!(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0)) refuse_singular(lu, moved);
   const Dense b = rows.asDiagonal() * right;
   Dense x = lu.solve(b);
-  x += lu.solve(b - multiply(scaled, x));
-  if (!x.allFinite())
-    throw InternalError("the balances do not determine accelerations and reactions");
+  const Dense change = lu.solve(b - multiply(scaled, x));
+  x += change;
+  const auto accelerations = static_cast<Eigen::Index>(moved.size());
+  if (!x.allFinite() || relative_change(change, x, accelerations) > largest_error)
+    refuse_singular(lu, moved);
   return columns.asDiagonal() * x;
 }
 
