@@ -10,7 +10,7 @@ import scipy.io
 import scipy.linalg
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import BASELINE, ProgramTest  # noqa: E402
+from program import BASELINE, SOURCE, ProgramTest  # noqa: E402
 
 SMALL = ["--set", "blades.elements=2", "--set", "tower.elements=2"]
 FASTEST = 60.0  # rad/s: up to here the step of samara floquet is fine enough to extrapolate
@@ -258,6 +258,10 @@ class Linearize(ProgramTest):
             self.assertEqual((self.folder / "linear.h5").exists(), runs)
             if not runs:
                 self.assertRegex(result.stderr, r'a motion of "blade \d point \d M3"')
+        # A fine mesh has a condition as large, but inertia everywhere.
+        self.succeed("linearize", SOURCE / "inputs/nrel5mw/land.yaml", "--set", "aero=none", "--set", "shaft.speed=0",
+                     "--set", "blades.elements=20", "--set", "blades.order=3", "--set", "tower.elements=10",
+                     "--set", "linearize={inputs: [pitch], outputs: [TTDspFA]}", "-o", "fine.h5")
 
     def test_matrices_at_azimuths_of_ones_own(self):
         self.succeed("linearize", BASELINE, *SMALL, "--set",
