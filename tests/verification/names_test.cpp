@@ -416,11 +416,10 @@ BOOST_AUTO_TEST_CASE(a_joint_has_no_more_real_exponents_than_states) {
   // The article's free yaw and teeter on a hub without inertia, where shaft torsion is free: while
   // the rotor disc drifts, the nacelle yaws below it. The yaw has its two zero exponents already.
   const io::Case turning =
-      input("lee2002/baseline", {"shaft.torsion={joint: free, stiffness: 1e7, damping: 1e3}",
-                                 "hub.inertia=[0, 0, 0]"});
+      input("lee2002/baseline",
+            {"shaft.torsion={joint: free, stiffness: 1e7, damping: 1e3}", "hub.inertia=[0, 0, 0]"});
   Run run(turning);
-  for (const int modes : {0, 10})
-    BOOST_TEST_CONTEXT("modes " << modes) {
+  for (const int modes : {0, 10}) BOOST_TEST_CONTEXT("modes " << modes) {
       analysis::FloquetOptions options;
       options.modes = modes;
       const analysis::ModeSet set =
