@@ -533,10 +533,9 @@ class Analysis {
   void settle(std::size_t m) {
     Mode& mode = set_.modes[m];
     const bool slow = !is_too_fast(m);
-    WarpingSpread spread =
+    const WarpingSpread spread =
         warping_spread(exponents_[m], set_.participation.row(static_cast<Eigen::Index>(m)),
                        -static_cast<int>(samples_ / 2), mode.harmonic, speed_, rule_);
-    spread.growth += growing_part_of(conditions_[m]) * spread.modulus;
     mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
     mode.exponent = unwarped(mode.step_exponent, rule_);
     if (mode.exponent.imag() < -zero_exponent * speed_) conjugate(m);
@@ -552,7 +551,7 @@ class Analysis {
       mode.exponent.imag(0.0);
       mode.step_exponent.imag(0.0);
     }
-    set_growth_error(mode, spread, may_be_free(m) ? exponents_[m] : far_from_zero);
+    set_growth_error(mode, spread, may_be_free(m) ? exponents_[m] : far_from_zero, conditions_[m]);
     mode.resolved = slow && in_reach_at(exponents_[m], mode.harmonic) &&
                     mode.residual <= largest_residual && mode.step_error <= accuracy_ &&
                     spread.modulus <= largest_branch_error * sectors_ * speed_;

@@ -193,9 +193,8 @@ class Analysis {
   /// integration and media need it whole.
   std::optional<MeshPartition> divided_mesh() const {
     std::optional<MeshPartition> mesh;
-    const bool is_whole = std::ranges::any_of(
-        system_.unknowns(), [](const system::Unknown& one) { return one.is_of_medium(); });
-    if (all_ranks_.size == 1 || is_whole || (options_.least_damped > 0 && !is_constant_))
+    if (all_ranks_.size == 1 || system::has_medium(system_.unknowns()) ||
+        (options_.least_damped > 0 && !is_constant_))
       return mesh;
     MeshPartition::Limits limits;
     limits.is_for_all = true;
@@ -495,9 +494,11 @@ class Analysis {
     return candidate.pair.exponent + Complex(0.0, candidate.mode.harmonic * speed_);
   }
   /// Whether an exponent is between the largest decay and growth of the region.
+  bool is_in_width(Complex exponent) const {
+    return -exponent.real() <= region_.decay && exponent.real() <= region_.growth;
+  }
   bool is_in_width(const Candidate& candidate) const {
-    const double rate = candidate.pair.exponent.real();
-    return -rate <= region_.decay && rate <= region_.growth;
+    return is_in_width(candidate.pair.exponent);
   }
   /// With a medium, the change from one number of harmonics to the next is the error.
   bool is_by_change() const { return has_medium_ && !is_constant_; }
@@ -1084,8 +1085,7 @@ class Analysis {
   /// In the region, these alone: an approximation may be rough, and one that was lost is missing.
   void take_refined() {
     std::erase_if(all_found_, [this](Complex other) {
-      if (region_.low <= other.imag() && other.imag() <= region_.high &&
-          -region_.decay <= other.real() && other.real() <= region_.growth)
+      if (region_.low <= other.imag() && other.imag() <= region_.high && is_in_width(other))
         return true;
       return std::ranges::any_of(modes_, [&](const Candidate& mode) {
         return std::abs(mode.pair.exponent - other) < same_found * unit_of_change(other, speed_);

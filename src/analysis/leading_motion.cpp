@@ -192,8 +192,8 @@ std::optional<int> own_shift(const std::vector<system::Motion>& motions, const M
 /// The motion with the largest sum of kinetic and strain energy. The strain energy equals the
 /// kinetic energy where strain alone restores; it is smaller where rotation stiffens, and larger in
 /// overdamped motions, which hardly move. It does not count at rest, where it is that of another
-/// motion, and for a joint that drifts. `left_out`: a motion
-/// that it is not, nor any alike.
+/// motion, and for a joint that drifts. `left_out`: this motion and those alike have no part in the
+/// choice; null: all motions have one.
 Leading find_leading(const system::PeriodicSystem& system,
                      const std::vector<system::Motion>& motions, const ModeSet& set, std::size_t m,
                      const NamedShape& named, int sectors, MotionsInTime& in_time,
@@ -349,6 +349,8 @@ int clear_component(const Eigen::VectorXd& shares) {
                                                                       : -1;
 }
 
+/// The motion of mode m, its harmonic and the phase between the blades. `left_out`: see
+/// find_leading.
 LeadingMotion leading_motion_of(const system::PeriodicSystem& system,
                                 const std::vector<system::Motion>& motions, const ModeSet& set,
                                 std::size_t m, int sectors, MotionsInTime& in_time,

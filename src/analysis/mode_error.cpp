@@ -114,13 +114,11 @@ Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
                          growing_part * energy + growing_part_of_tables * between);
 }
 
-double growing_part_of(double condition) {
-  return condition > 1.0 ? std::sqrt(1.0 - 1.0 / (condition * condition)) : 0.0;
-}
-
-void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal) {
+void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal,
+                      double condition) {
   const double size = std::abs(mode.exponent);
-  mode.growth_error = spread.growth + growing_part * spread.modulus +
+  const double coupled = condition > 1.0 ? std::sqrt(1.0 - 1.0 / (condition * condition)) : 0.0;
+  mode.growth_error = spread.growth + (growing_part + coupled) * spread.modulus +
                       size * std::max(mode.round_off_error, least_round_off);
   // A multiplier of one belongs to a motion that nothing restores, or to the same motion shifted in
   // time. The error by the step may split it in any direction.

@@ -53,11 +53,10 @@ double relative_change(const Dense& change, const Dense& x, Eigen::Index d) {
   if (d == 0) return 0.0;
   const Dense sizes = x.topLeftCorner(d, d).cwiseAbs();
   const double least = least_size * sizes.maxCoeff();
+  if (least == 0.0) return 0.0;
   const Eigen::VectorXd of_row = sizes.rowwise().maxCoeff().cwiseMax(least).cwiseSqrt();
   const Eigen::RowVectorXd of_column = sizes.colwise().maxCoeff().cwiseMax(least).cwiseSqrt();
-  return least > 0.0
-             ? change.topLeftCorner(d, d).cwiseAbs().cwiseQuotient(of_row * of_column).maxCoeff()
-             : 0.0;
+  return change.topLeftCorner(d, d).cwiseAbs().cwiseQuotient(of_row * of_column).maxCoeff();
 }
 
 /// `moved`: states whose accelerations the first columns belong to.
@@ -107,8 +106,9 @@ Dense solve_scaled(const Dense& matrix, const Dense& right, std::span<const Mode
   Dense x = lu.solve(b);
   const Dense change = lu.solve(b - multiply(scaled, x));
   x += change;
-  const auto accelerations = static_cast<Eigen::Index>(moved.size());
-  if (!x.allFinite() || relative_change(change, x, accelerations) > largest_error)
+  if (!x.allFinite())
+    throw InternalError("the balances do not determine accelerations and reactions");
+  if (relative_change(change, x, static_cast<Eigen::Index>(moved.size())) > largest_error)
     refuse_singular(lu, moved);
   return columns.asDiagonal() * x;
 }

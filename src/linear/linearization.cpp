@@ -154,17 +154,21 @@ class Linearizer {
 
   StateSpace compute(double psi) const {
     const auto done = static_cast<long>(forms_.size()) + 1;
-    observer_.progress("linearize with " + std::to_string(azimuths_) + " azimuths", done - known_,
-                       std::max(done, expected_) - known_);
+    observer_.progress(stage_, done - known_, std::max(done, expected_) - known_);
     return model_.state_space(time_of(psi));
   }
 
-  /// A series with so many azimuths begins; those of half as many are known.
-  void expect(int azimuths) {
-    azimuths_ = azimuths;
+  /// So many forms will be computed, at most.
+  void begin(const std::string& stage, std::size_t count) {
+    stage_ = stage;
     known_ = static_cast<long>(forms_.size());
-    const long own = known_ > 0 ? azimuths / 2 : azimuths;
-    expected_ = known_ + own + AzimuthSeries::comparisons;
+    expected_ = known_ + static_cast<long>(count);
+  }
+  /// Of a series; a series of half as many azimuths is known, if any.
+  void begin_series(int azimuths) {
+    const int own = forms_.size() > 0 ? azimuths / 2 : azimuths;
+    begin("linearize with " + std::to_string(azimuths) + " azimuths",
+          static_cast<std::size_t>(own + AzimuthSeries::comparisons));
   }
 
   bool has_own_azimuths() const { return has_period_ && !options_.at.empty(); }
@@ -185,11 +189,14 @@ class Linearizer {
                    states,
                    inputs,
                    outputs,
-                   AzimuthSeries::resolve(form_at, resolution_, [this](int azimuths) {
-                     expect(azimuths); })};
-    if (!has_own_azimuths()) form.at_azimuths = form.series.samples();
-    if (has_own_azimuths())
+                   AzimuthSeries::resolve(form_at, resolution_,
+                                          [this](int azimuths) { begin_series(azimuths); })};
+    if (has_own_azimuths()) {
+      begin("linearize at linearize.at_deg", options_.at.size());
       for (const double psi : options_.at) form.at_azimuths.push_back(form_at(psi));
+    } else {
+      form.at_azimuths = form.series.samples();
+    }
     return form;
   }
 
@@ -272,7 +279,7 @@ class Linearizer {
   bool has_period_;
   double speed_;
   SeriesResolution resolution_;
-  int azimuths_ = 0;   ///< of the series that is being computed
+  std::string stage_;  ///< of the progress
   long known_ = 0;     ///< forms before it
   long expected_ = 0;  ///< forms after it
   Remembered forms_;

@@ -87,8 +87,7 @@ class Differences {
         trim_(trim),
         scenario_at_(scenario_at),
         derivatives_(derivatives),
-        has_medium_(std::ranges::any_of(
-            system.unknowns(), [](const system::Unknown& one) { return one.is_of_medium(); })) {
+        has_medium_(system::has_medium(system.unknowns())) {
     options_.automatic = false;
     options_.harmonics = trim.solution.harmonics();
     options_.tolerance = std::min(options_.tolerance, trim_tolerance);

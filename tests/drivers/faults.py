@@ -156,7 +156,7 @@ class Kills(FaultTest):
         blocks = len(list((self.folder / "whole.h5.parts").iterdir()))
         moments = random.Random(4)
         unfinished = 0
-        kills = 12
+        kills = 18
         for i in range(kills):
             name = f"killed{i}.h5"
             run = self.start(*keys, "-o", name)

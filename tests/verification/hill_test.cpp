@@ -175,8 +175,6 @@ BOOST_AUTO_TEST_CASE(searches_of_constant_tangents_agree_with_all_modes) {
     }
 }
 
-/// The steps find energies from time series of the signals of all initial states, Hill's method
-/// from the series of one mode.
 BOOST_AUTO_TEST_CASE(rough_approximations_of_a_search_are_no_further_exponents) {
   // The first range, about the double zero of the free yaw, ends with exponents that are right to
   // 1e-3 of themselves.
@@ -197,6 +195,8 @@ BOOST_AUTO_TEST_CASE(rough_approximations_of_a_search_are_no_further_exponents) 
     }
 }
 
+/// The steps find energies from time series of the signals of all initial states, Hill's method
+/// from the series of one mode.
 BOOST_AUTO_TEST_CASE(energies_of_modes_are_those_of_their_series) {
   for (const auto& [name, order, steps] :
        {std::tuple{"nrel5mw/land", 6, 36}, std::tuple{"nrel5mw/land", 2, 360},

@@ -47,14 +47,12 @@ Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
                                 const std::vector<system::MeshError>& elements, const Mode& mode,
                                 const Eigen::MatrixXcd& shape);
 
-/// Part of an error by the step that may be growth: sqrt(1 - 1/kappa^2), with the condition number
-/// kappa >= 1 of the multiplier in energy coordinates. Where these make left and right eigenvector
-/// equal, each harmonic has a real share of the error, and its frequency alone is wrong.
-double growing_part_of(double condition);
-
 /// Sets the error of the growth by step and round-off. `spread`: error by the step; `principal`:
-/// the exponent without multiples of the rotor speed, to be distinguished from zero.
-void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal);
+/// the exponent without multiples of the rotor speed, to be distinguished from zero; `condition`:
+/// of the multiplier in energy coordinates. It is 1 where left and right eigenvector are equal:
+/// then each harmonic has a real share of the error by the step, which changes the frequency alone.
+void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal,
+                      double condition = 1.0);
 
 /// Where a coordinate that nothing restores turns with the rotor (a free generator), and nothing
 /// else depends on the time, a shift of it is a shift in time: one exponent is zero. The smallest
