@@ -1082,7 +1082,8 @@ class Analysis {
   /// Whether the exponents that the count leaves out are the refined ones. Of several double zeros,
   /// the search finds some.
   bool counts_refined() const { return is_constant_ && !has_medium_; }
-  /// In the region, these alone: an approximation may be rough, and one that was lost is missing.
+  /// In the region only the refined exponents count: approximations may be rough, and one that the
+  /// refinement has lost is missing.
   void take_refined() {
     std::erase_if(all_found_, [this](Complex other) {
       if (region_.low <= other.imag() && other.imag() <= region_.high && is_in_width(other))

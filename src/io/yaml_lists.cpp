@@ -8,7 +8,10 @@ const YamlNode* find_list(MapReader& map, std::string_view key, const std::strin
   const YamlNode* list = map.find(key);
   if (list == nullptr) return nullptr;
   if (list->kind == YamlNode::Kind::list && !list->children.empty()) return list;
-  map.refuse(*list, key, "expected a list of " + items + ", " + describe(*list));
+  const bool is_empty = list->kind == YamlNode::Kind::list;
+  map.refuse(
+      *list, key,
+      "expected a list of " + items + ", " + (is_empty ? "got an empty one" : describe(*list)));
   return nullptr;
 }
 

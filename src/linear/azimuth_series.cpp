@@ -99,8 +99,8 @@ namespace {
 
 constexpr int first_azimuths = 12;
 /// A residual below the first value that twice as many azimuths do not reduce by the second one is
-/// round-off of the matrices. Any residual stays that two doublings in turn have not reduced, from
-/// the third value on: fewer azimuths may miss a short change.
+/// round-off of the matrices. From the third value on, a residual that two doublings in turn have
+/// not reduced is final; fewer azimuths may miss a short change.
 constexpr double largest_round_off = 1e-7;
 constexpr double least_reduction = 0.5;
 constexpr int seeing_azimuths = 96;

@@ -83,7 +83,7 @@ double relative_change(const Dense& change, const Dense& x, Eigen::Index d) {
       "\" has no inertia or almost none (so it is with an elastic blade behind a hinge, or with "
       "blades on a hub without inertia behind shaft torsion): its acceleration does not follow "
       "from the state; hint: samara modes and samara floquet leave such a motion out, "
-      "hub.inertia gives that of a hub its own");
+      "hub.inertia gives a hub its own inertia");
 }
 
 /// Dense solve with rows and columns of size one, refined once: the change is about the error by

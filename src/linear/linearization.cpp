@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -16,6 +17,8 @@ namespace {
 
 /// Relative; smaller changes with the azimuth are round-off.
 constexpr double constant_tolerance = 1e-9;
+/// Round-off of the largest entry of A above which eigenvalues of A are in doubt [1/s].
+constexpr double largest_round_off = 1e-3;
 
 std::vector<std::string> function_names(int harmonics) {
   std::vector<std::string> names{"mean "};
@@ -136,6 +139,7 @@ class Linearizer {
                       : is_most                            ? ", the most that `auto` takes"
                                 : ", which more azimuths do not reduce"));
     }
+    note_round_off();
     result_.azimuths = azimuths();
     result_.is_constant =
         std::max(periodic_.series.variation(), periodic_.series.residual()) < constant_tolerance;
@@ -169,6 +173,21 @@ class Linearizer {
     const int own = forms_.size() > 0 ? azimuths / 2 : azimuths;
     begin("linearize with " + std::to_string(azimuths) + " azimuths",
           static_cast<std::size_t>(own + AzimuthSeries::comparisons));
+  }
+
+  /// Eigenvalues in double precision have at least the round-off of the largest entry.
+  void note_round_off() const {
+    double largest = 0.0;
+    for (const StateSpace& form : periodic_.series.samples())
+      largest = std::max(largest, form.A.cwiseAbs().maxCoeff());
+    const double round_off = std::numeric_limits<double>::epsilon() * largest;
+    if (round_off > largest_round_off)
+      observer_.note("note: the largest entry of A is " + general(largest, 2) +
+                     ": eigenvalues of A in double precision may be wrong by " +
+                     general(round_off, 1) +
+                     " 1/s or more; hint: samara modes and samara floquet do not use A; a motion "
+                     "has little inertia for its stiffness or damping (hub.inertia, inertia of "
+                     "sections)");
   }
 
   bool has_own_azimuths() const { return has_period_ && !options_.at.empty(); }

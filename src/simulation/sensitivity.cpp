@@ -57,9 +57,9 @@ constexpr Stencil one_sided{{0.0, 1.0, 2.0, 3.0, 4.0},
 /// Derivative, by the logarithm of a number, of the error that missing harmonics leave in an
 /// exponent, relative to its change by the last ones (docs/theory.md, section 5.13).
 constexpr double change_caution = 3.0;
-/// The same with a medium: stations pass kinks of the curves of airfoils at azimuths that a small
-/// change of the number moves, and the phases of the missing harmonics with them. A number that is
-/// 0 counts as so many of its unit (degrees of pitch and yaw).
+/// The same with a medium. Curves of airfoils have kinks in their second derivatives. A small
+/// change of the number moves the azimuths at which stations pass them, and so the phases of the
+/// missing harmonics. A number that is 0 counts as so many of its unit (degrees of pitch and yaw).
 constexpr double change_caution_in_medium = 1000.0;
 constexpr double zero_in_medium = 10.0;
 

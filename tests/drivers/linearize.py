@@ -258,6 +258,14 @@ class Linearize(ProgramTest):
             self.assertEqual((self.folder / "linear.h5").exists(), runs)
             if not runs:
                 self.assertRegex(result.stderr, r'a motion of "blade \d point \d M3"')
+        # A little inertia: the matrix is right, but its eigenvalues in double precision are not.
+        for inertia, is_noted in (("[0, 1e-6, 0]", True), ("[0, 5, 0]", False)):
+            words = [word.replace("%s", inertia) for word in turbine]
+            run = self.succeed("linearize", BASELINE, *words, "--set", "shaft.speed=0", "-o", "small.h5")
+            with h5py.File(self.folder / "small.h5") as file:
+                largest = abs(file["linearize/state_space/A"][:]).max()
+            self.assertEqual("eigenvalues of A in double precision" in run.stderr, is_noted, run.stderr)
+            self.assertEqual(largest * 2.2e-16 > 1e-3, is_noted)
         # A fine mesh has a condition as large, but inertia everywhere.
         self.succeed("linearize", SOURCE / "inputs/nrel5mw/land.yaml", "--set", "aero=none", "--set", "shaft.speed=0",
                      "--set", "blades.elements=20", "--set", "blades.order=3", "--set", "tower.elements=10",
@@ -327,6 +335,8 @@ class Linearize(ProgramTest):
                     words='did you mean "NacYaw"')
         self.refuse("check", BASELINE, "--set", "transient={duration: 1, step: 0.1, "
                     "output: {channels: [RotSped]}}", words='did you mean "RotSpeed"')
+        self.refuse("linearize", BASELINE, "--set", "linearize={inputs: []}",
+                    words=["linearize.inputs: expected a list of names, got an empty one"])
         self.refuse("linearize", BASELINE, "--set", "linearize={inputs: [yaw_torqe]}",
                     words='did you mean "yaw_torque"')
         self.refuse("linearize", BASELINE, "--set", "linearize={inputs: [generator_torque]}",
