@@ -166,6 +166,7 @@ class Analysis {
         options_(options),
         all_ranks_(comm),
         is_constant_(is_constant),
+        has_medium_(system::has_medium(system.unknowns())),
         mesh_(divided_mesh()),
         ranks_(mesh_ ? Ranks(MPI_COMM_SELF) : all_ranks_),
         speed_(base_rate(system)),
@@ -190,14 +191,13 @@ class Analysis {
 
  private:
   /// The mesh over the ranks, where it is large enough. The search for the slowest decays by
-  /// integration and media need it whole.
+  /// integration needs it whole.
   std::optional<MeshPartition> divided_mesh() const {
     std::optional<MeshPartition> mesh;
-    if (all_ranks_.size == 1 || system::has_medium(system_.unknowns()) ||
-        (options_.least_damped > 0 && !is_constant_))
-      return mesh;
+    if (all_ranks_.size == 1 || (options_.least_damped > 0 && !is_by_region())) return mesh;
     MeshPartition::Limits limits;
     limits.is_for_all = true;
+    limits.keeps_medium = true;
     if (!is_constant_) {
       limits.least_piece = least_piece;
       limits.of_cut = of_cut;
@@ -236,7 +236,6 @@ class Analysis {
       pencil_.reset();
       return;
     }
-    has_medium_ = pencil.has_medium();
     if (has_medium_) medium_exponents_ = pencil.exponents_of_medium();
     search_harmonics_ = harmonics;
     sectors_ = pencil.sectors();
@@ -1133,8 +1132,7 @@ class Analysis {
                    Complex(0.0, static_cast<double>(shift) * speed_)) > error)
         return false;
       const Eigen::MatrixXcd copy = shifted_series(one.series, shift, other.series.rows());
-      return std::abs(copy.reshaped().dot(other.series.reshaped())) >
-             (shift == 0 ? same_series : same_shape) * one.series.norm() * other.series.norm();
+      return pencil_->correlation(copy, other.series) > (shift == 0 ? same_series : same_shape);
     };
     return are_copies(a.pair, b.pair) || are_copies(a.pair, conjugate_of(b.pair));
   }
@@ -1267,11 +1265,11 @@ class Analysis {
   const FloquetOptions& options_;
   Ranks all_ranks_;
   bool is_constant_;
+  bool has_medium_;
   std::optional<MeshPartition> mesh_;  ///< where it is distributed
   Ranks ranks_;   ///< those that share independent work: one, where the mesh is distributed
   double speed_;  ///< of the rotor; at rest 1 rad/s
   std::optional<HillPencil> pencil_;
-  bool has_medium_ = false;
   int search_harmonics_ = 0;
   HarmonicEnergy energy_;
   StateParts parts_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <Eigen/Eigenvalues>
@@ -17,49 +18,84 @@ constexpr Index largest_group = 100;
 /// Relative to the largest: the inverse of a finite exponent.
 constexpr double least_inverse = 1e-10;
 
+Index leader_of(const std::vector<Index>& leaders, Index i) {
+  while (leaders[static_cast<std::size_t>(i)] != i) i = leaders[static_cast<std::size_t>(i)];
+  return i;
+}
+
+void join(std::vector<Index>& leaders, Index i, Index j) {
+  const Index a = leader_of(leaders, i);
+  const Index b = leader_of(leaders, j);
+  leaders[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+}
+
 }  // namespace
 
 HillMedium::HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& rows,
                        const Eigen::VectorXd& columns)
-    : tangents_(tangents), rows_(rows), columns_(columns) {
-  const Index size = tangents.size();
-  place_in_group_.assign(static_cast<std::size_t>(size), -1);
-  const auto is_of_medium = [&](Index i) { return tangents.unknown(i).is_of_medium(); };
-  for (Index i = 0; i < size; ++i)
-    if (is_of_medium(i) && tangents.unknown(i).role == system::UnknownRole::state)
-      states_.push_back(i);
-  // Unknowns that refer to each other are one group: the smallest number among them leads it.
-  std::vector<Index> leader(static_cast<std::size_t>(size));
-  std::iota(leader.begin(), leader.end(), Index{0});
-  const auto leader_of = [&leader](Index i) {
-    while (leader[static_cast<std::size_t>(i)] != i) i = leader[static_cast<std::size_t>(i)];
-    return i;
-  };
-  for (const HarmonicTangents::Place& place : tangents.places()) {
-    if (!is_of_medium(place.row) || !is_of_medium(place.column)) continue;
-    const Index a = leader_of(place.row);
-    const Index b = leader_of(place.column);
-    leader[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  std::vector<Index> group_of(static_cast<std::size_t>(size), -1);
-  for (Index i = 0; i < size; ++i) {
+    : tangents_(tangents),
+      rows_(rows),
+      columns_(columns),
+      ranks_(tangents.partition() != nullptr ? tangents.partition()->ranks()
+                                             : Ranks(MPI_COMM_SELF)) {
+  const auto size = static_cast<std::size_t>(tangents.size());
+  place_in_group_.assign(size, -1);
+  const Leaders leaders = find_leaders();
+  std::vector<Index> group_of(size, -1);
+  for (Index i = 0; i < tangents.size(); ++i) {
     if (!is_of_medium(i)) continue;
-    const auto first = static_cast<std::size_t>(leader_of(i));
+    const auto first = static_cast<std::size_t>(leaders[static_cast<std::size_t>(i)]);
     if (group_of[first] < 0) {
       group_of[first] = static_cast<Index>(groups_.size());
-      groups_.emplace_back();
+      groups_.emplace_back().is_shared = is_shared(i);
     }
     group_of[static_cast<std::size_t>(i)] = group_of[first];
     Group& group = groups_[static_cast<std::size_t>(group_of[first])];
     place_in_group_[static_cast<std::size_t>(i)] = static_cast<Index>(group.unknowns.size());
     group.unknowns.push_back(i);
+    group.is_of_chains = group.is_of_chains && !tangents_.is_border(i);
   }
-  for (const HarmonicTangents::Place& place : tangents.places()) {
-    if (!is_of_medium(place.row) || !is_of_medium(place.column)) continue;
-    Group& group = groups_[static_cast<std::size_t>(group_of[static_cast<std::size_t>(place.row)])];
-    group.places.push_back(place);
-    group.is_of_chains = group.is_of_chains && is_of_chains(place);
+  for (const HarmonicTangents::Place& place : tangents.places())
+    if (is_of_medium(place.row) && is_of_medium(place.column))
+      groups_[static_cast<std::size_t>(group_of[static_cast<std::size_t>(place.row)])]
+          .places.push_back(place);
+  is_empty_ = ranks_.all(groups_.empty());
+}
+
+/// Unknowns that refer to each other are one group: the smallest number among them leads it.
+HillMedium::Leaders HillMedium::find_leaders() const {
+  Leaders leaders(static_cast<std::size_t>(tangents_.size()));
+  std::iota(leaders.begin(), leaders.end(), Index{0});
+  for (const HarmonicTangents::Place& place : tangents_.places())
+    if (is_of_medium(place.row) && is_of_medium(place.column))
+      join(leaders, place.row, place.column);
+  if (ranks_.size > 1) join_shared(leaders);
+  for (Index i = 0; i < tangents_.size(); ++i)
+    leaders[static_cast<std::size_t>(i)] = leader_of(leaders, i);
+  return leaders;
+}
+
+/// Joins unknowns of the border that refer to each other on any rank. All ranks have them in the
+/// same order.
+void HillMedium::join_shared(Leaders& leaders) const {
+  std::vector<Index> shared;
+  std::vector<Index> place(leaders.size(), -1);
+  for (Index i = 0; i < tangents_.size(); ++i) {
+    if (!is_shared(i) || !is_of_medium(i)) continue;
+    place[static_cast<std::size_t>(i)] = static_cast<Index>(shared.size());
+    shared.push_back(i);
   }
+  const auto count = static_cast<Index>(shared.size());
+  Eigen::MatrixXd references = Eigen::MatrixXd::Zero(count, count);
+  for (Index i = 0; i < count; ++i) {
+    const Index leader = leader_of(leaders, shared[static_cast<std::size_t>(i)]);
+    references(i, place[static_cast<std::size_t>(leader)]) = 1.0;
+  }
+  ranks_.sum(references);
+  for (Index i = 0; i < count; ++i)
+    for (Index j = 0; j < count; ++j)
+      if (references(i, j) > 0.0)
+        join(leaders, shared[static_cast<std::size_t>(i)], shared[static_cast<std::size_t>(j)]);
 }
 
 /// Adds mean tangents in the harmonic k to a square block, whose rows and columns are `stride`
@@ -96,6 +132,7 @@ HillMedium::Matrix HillMedium::block_of(const Group& group, Complex s, bool only
     tangents_.coupling(place, s, part);
     part *= rows_(place.row * width) * columns_(place.column * width);
   }
+  if (group.is_shared) ranks_.sum(block);
   for (std::size_t i = 0; i < group.unknowns.size(); ++i)
     for (Index k = 0; k < width; ++k)
       if (!tangents_.has(group.unknowns[i], static_cast<int>(k) - harmonics)) {
@@ -121,7 +158,7 @@ bool HillMedium::factor(Complex s) {
     group.factors.compute(block_of(group, s, false));
     is_regular = is_regular && group.factors.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
   }
-  return is_regular;
+  return ranks_.all(is_regular);
 }
 
 void HillMedium::solve(Eigen::Ref<Matrix> x) const {
@@ -138,53 +175,63 @@ void HillMedium::solve(Eigen::Ref<Matrix> x) const {
   }
 }
 
-void HillMedium::drop(Eigen::Ref<Matrix> x) const {
-  for (const Group& group : groups_)
-    for (const Index unknown : group.unknowns)
-      x.middleRows(unknown * tangents_.width(), tangents_.width()).setZero();
-}
-
 HillMedium::Complex HillMedium::log_determinant_of_means(Complex s) const {
-  Complex sum = 0.0;
-  const auto add = [&sum](const Matrix& block) {
+  Matrix of_pieces = Matrix::Zero(1, 1);
+  Complex of_border = 0.0;
+  const auto log_of = [](const Matrix& block) -> Complex {
     const Eigen::PartialPivLU<Matrix> factors(block);
-    sum += factors.matrixLU().diagonal().array().log().sum() +
+    return factors.matrixLU().diagonal().array().log().sum() +
            std::log(Complex(static_cast<double>(factors.permutationP().determinant())));
   };
   for (const Group& group : groups_) {
+    Complex& sum = group.is_shared ? of_border : of_pieces(0);
     if (!group.is_of_chains) {
-      add(block_of(group, s, true));
+      sum += log_of(block_of(group, s, true));
       continue;
     }
     for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k)
-      add(block_of_means(group, s, k));
+      sum += log_of(block_of_means(group, s, k));
   }
-  return sum;
+  ranks_.sum(of_pieces);
+  return of_pieces(0) + of_border;
 }
 
-/// A group that is too large for dense eigenvalues has none.
-std::vector<HillMedium::Complex> HillMedium::exponents() const {
-  std::vector<Complex> all;
-  for (const Group& group : groups_) {
-    const auto size = static_cast<Index>(group.unknowns.size());
-    if (size > largest_group) continue;
-    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
-    Eigen::MatrixXd mass = stiffness;
-    for (const HarmonicTangents::Place& place : group.places) {
-      const Index row = place_in_group_[static_cast<std::size_t>(place.row)];
-      const Index column = place_in_group_[static_cast<std::size_t>(place.column)];
-      stiffness(row, column) = tangents_.means()(0, place.number);
-      mass(row, column) = tangents_.means()(1, place.number);
-    }
-    // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
-    const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);
-    const Eigen::MatrixXd product = -factors.solve(mass);
-    if (!product.allFinite()) continue;
-    const Eigen::VectorXcd inverses = product.eigenvalues();
-    const double largest = inverses.cwiseAbs().maxCoeff();
-    for (const Complex inverse : inverses)
-      if (std::abs(inverse) > least_inverse * largest) all.push_back(1.0 / inverse);
+/// Of a group: those of its mean tangents with the other parts at rest. A group that is too large
+/// for dense eigenvalues has none.
+std::vector<HillMedium::Complex> HillMedium::exponents_of(const Group& group) const {
+  const auto size = static_cast<Index>(group.unknowns.size());
+  if (size > largest_group) return {};
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+  Eigen::MatrixXd mass = stiffness;
+  for (const HarmonicTangents::Place& place : group.places) {
+    const Index row = place_in_group_[static_cast<std::size_t>(place.row)];
+    const Index column = place_in_group_[static_cast<std::size_t>(place.column)];
+    stiffness(row, column) = tangents_.means()(0, place.number);
+    mass(row, column) = tangents_.means()(1, place.number);
   }
+  if (group.is_shared) {
+    ranks_.sum(stiffness);
+    ranks_.sum(mass);
+  }
+  // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);
+  const Eigen::MatrixXd product = -factors.solve(mass);
+  if (!product.allFinite()) return {};
+  const Eigen::VectorXcd inverses = product.eigenvalues();
+  const double largest = inverses.cwiseAbs().maxCoeff();
+  std::vector<Complex> exponents;
+  for (const Complex inverse : inverses)
+    if (std::abs(inverse) > least_inverse * largest) exponents.push_back(1.0 / inverse);
+  return exponents;
+}
+
+std::vector<HillMedium::Complex> HillMedium::exponents() const {
+  std::vector<Complex> of_border;
+  std::vector<Complex> all;
+  for (const Group& group : groups_)
+    std::ranges::copy(exponents_of(group), std::back_inserter(group.is_shared ? of_border : all));
+  ranks_.gather(all);
+  std::ranges::copy(of_border, std::back_inserter(all));
   return all;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <complex>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -31,13 +32,18 @@ int leading_part(HillPencil& pencil, const system::PeriodicSystem& system, const
   pencil.multiply_mass(X, mass);
   HillBorderedSolver solver(pencil, X, T, mass, accuracy);
   // A X + B X T = 0 and the same with d/dt + epsilon for some states.
+  std::vector<std::size_t> state_of(system.unknowns().size());  // its number, of each state
+  std::size_t states = 0;
+  for (std::size_t i = 0; i < state_of.size(); ++i)
+    if (system.unknowns()[i].role == system::UnknownRole::state) state_of[i] = states++;
   const auto factor_of = [&](const auto& is_meant) {
     Matrix series = pair.series;
-    std::size_t state = 0;
-    for (Index i = 0; i < series.cols(); ++i) {
-      const bool is_state =
-          system.unknowns()[static_cast<std::size_t>(i)].role == system::UnknownRole::state;
-      if (!is_state || !is_meant(parts.part_of[state++])) series.col(i).setZero();
+    for (Index column = 0; column < series.cols(); ++column) {
+      const auto i = static_cast<std::size_t>(
+          pencil.mesh() != nullptr ? pencil.unknown_of_system(column) : column);
+      if (system.unknowns()[i].role != system::UnknownRole::state ||
+          !is_meant(parts.part_of[state_of[i]]))
+        series.col(column).setZero();
     }
     Matrix right(X.rows(), 1);
     pencil.multiply_mass(pencil.vector_of(series) / size, right);

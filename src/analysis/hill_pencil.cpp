@@ -18,6 +18,7 @@ HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolut
       medium_(tangents_, rows_, columns_) {
   tangents_.sample(solution);
   take_rate(tangents_.highest_rate());
+  list_medium();
 }
 
 HillPencil::HillPencil(const MeshPartition& mesh, const PeriodicSolution& solution, int harmonics)
@@ -27,6 +28,7 @@ HillPencil::HillPencil(const MeshPartition& mesh, const PeriodicSolution& soluti
       medium_(tangents_, rows_, columns_) {
   tangents_.sample(solution);
   take_rate(tangents_.highest_rate());
+  list_medium();
 }
 
 /// That of an unknown of a vector, among those of the tangents.
@@ -142,10 +144,29 @@ void HillPencil::collect(const Matrix& all, Output y) const {
         reinterpret_cast<double*>(y.col(column).data()));
 }
 
-/// Sets the evolution rows of the medium's states to zero.
+void HillPencil::list_medium() {
+  for (Index i = 0; i < unknowns(); ++i) {
+    const system::Unknown& unknown = tangents_.unknown(number_of(i));
+    if (!unknown.is_of_medium()) continue;
+    of_medium_.push_back(i);
+    if (unknown.role == system::UnknownRole::state) states_of_medium_.push_back(i);
+  }
+}
+
+/// Sets unknowns, or rows of the same numbers, to zero.
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
-void HillPencil::drop_states(Output y) const {
-  for (const Index state : medium_.states()) y.middleRows(state * width(), width()).setZero();
+void HillPencil::drop(const std::vector<Index>& unknowns, Output y) const {
+  for (const Index i : unknowns) y.middleRows(i * width(), width()).setZero();
+}
+
+void HillPencil::solve_medium(Vector& x) {
+  if (mesh() == nullptr) {
+    medium_.solve(x);
+    return;
+  }
+  spread(x, spread_x_);
+  medium_.solve(spread_x_);
+  collect(spread_x_, x);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
@@ -174,13 +195,13 @@ void HillPencil::multiply_mass(Input w, Output y) {
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply_mass_of_others(Input w, Output y) {
   multiply_mass(w, y);
-  drop_states(y);
+  drop(states_of_medium_, y);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
 void HillPencil::multiply_uncoupled_mass_of_others(Input w, Output y) {
   multiply_uncoupled(Matrix::Zero(w.rows(), w.cols()), w, y);
-  drop_states(y);
+  drop(states_of_medium_, y);
 }
 
 void HillPencil::multiply_eliminated(const Vector& x, Vector& y) {
@@ -189,16 +210,16 @@ void HillPencil::multiply_eliminated(const Vector& x, Vector& y) {
     multiply(from, *shift_ * from, product);
   };
   multiply_shifted(x);
-  medium_.solve(product);
+  solve_medium(product);
   Vector whole = -product;  // of the medium
-  medium_.drop(product);
+  drop(of_medium_, product);
   whole += product;
   whole += x;
   multiply_shifted(whole);
-  medium_.drop(product);
+  drop(of_medium_, product);
   y.resize(size());
   precondition(product, y);
-  medium_.drop(y);
+  drop(of_medium_, y);
 }
 
 HillPencil::Complex HillPencil::log_determinant() const {

@@ -52,6 +52,14 @@ class HillPencil {
                              : tangents_.size();
   }
   Eigen::Index size() const { return width() * unknowns(); }
+  /// Of the whole system.
+  PetscInt unknown_of_system(Index unknown) const {
+    return tangents_.sector().kept[static_cast<std::size_t>(number_of(unknown))];
+  }
+  /// Of a vector on all ranks.
+  Eigen::Index size_of_all() const {
+    return mesh() != nullptr ? width() * mesh()->size_of_all() : size();
+  }
   double speed() const { return tangents_.rate(); }
   /// The ranks that have the parts of a vector; one rank, if the mesh is not distributed.
   const Ranks& ranks() const { return ranks_; }
@@ -65,6 +73,11 @@ class HillPencil {
     return product;
   }
   Vector normalized(const Vector& x) const { return x / ranks_.norm(x); }
+  /// Cosine of the angle between two vectors, or between two series as series_of() gives them.
+  double correlation(const Matrix& a, const Matrix& b) const {
+    const Matrix between = product(a.reshaped(), b.reshaped());
+    return std::abs(between(0)) / (ranks_.norm(a) * ranks_.norm(b));
+  }
   /// Whether the tangents have the structure that precondition() needs.
   bool is_solvable() const { return preconditioner_.is_useful(); }
 
@@ -87,7 +100,7 @@ class HillPencil {
   bool prepare_elimination() { return shift_ && medium_.factor(*shift_); }
   void multiply_eliminated(const Vector& x, Vector& y);
   std::vector<Complex> exponents_of_medium() const { return medium_.exponents(); }
-  void drop_medium(Vector& x) const { medium_.drop(x); }
+  void drop_medium(Vector& x) const { drop(of_medium_, x); }
   /// The exponent that fits a vector best: (A + lambda B) x is least in the 2-norm.
   Complex exponent_of(const Vector& x);
   /// Without harmonics: scales for motions of this rate [rad/s] from now on, which changes all
@@ -112,7 +125,7 @@ class HillPencil {
   /// Sets the coefficients that an unknown does not have to zero.
   void drop_absent(Output x) const;
   /// Series of all unknowns of the system without scaling, (2 H + 1) x system size; of a
-  /// distributed mesh, those that this rank counts.
+  /// distributed mesh, those that this rank counts, the unknowns of a vector.
   Eigen::MatrixXcd series_of(const Vector& x) const;
   /// The inverse, for a series of any number of harmonics: others are zero or left out.
   Vector vector_of(const Eigen::MatrixXcd& whole) const;
@@ -128,7 +141,9 @@ class HillPencil {
   void to_series(const Eigen::MatrixXd& coefficients, Output y) const;
   void take_coefficients(Input x, Input w);
   void take_rate(double rate);
-  void drop_states(Output y) const;
+  void list_medium();
+  void drop(const std::vector<Index>& unknowns, Output y) const;
+  void solve_medium(Vector& x);
 
   HarmonicTangents tangents_;
   Ranks ranks_;
@@ -137,6 +152,8 @@ class HillPencil {
   double rate_ = 0.0;  ///< of the scales [rad/s]
   Eigen::VectorXd rows_, columns_;
   HillMedium medium_;
+  std::vector<Index> of_medium_;               ///< its unknowns in a vector
+  std::vector<Index> states_of_medium_;        ///< its states
   Eigen::MatrixXd values_, rates_, products_;  ///< real parts, then imaginary parts
   Matrix spread_x_, spread_w_;                 ///< with the unknowns of the border on all ranks
 };

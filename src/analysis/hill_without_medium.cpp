@@ -52,10 +52,6 @@ constexpr int few_vectors = 12;
 constexpr double beside_exponent = 0.02;
 constexpr double last_change = 0.02;
 
-double correlation(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
-  return std::abs(a.reshaped().dot(b.reshaped())) / (a.norm() * b.norm());
-}
-
 /// Arnoldi's method for (A + sigma B)^-1 B', where B' has no rows of the medium's states. Its
 /// eigenvalues are 1 / (sigma - lambda).
 class KrylovSpace {
@@ -75,7 +71,8 @@ class KrylovSpace {
   /// Adds a vector. @returns false where it is in the space
   bool extend() {
     const Vector& image = image_of(space_.last());
-    return space_.extend(image, (is_coupled_ ? 10.0 * linear_tolerance : round_off) * image.norm());
+    return space_.extend(
+        image, (is_coupled_ ? 10.0 * linear_tolerance : round_off) * pencil_.ranks().norm(image));
   }
 
   struct Pair {
@@ -96,12 +93,14 @@ class KrylovSpace {
     return pairs;
   }
   Complex exponent_of(const Pair& pair) const { return shift_ - 1.0 / pair.value; }
-  Vector vector_of(const Pair& pair) const { return space_.vector_of(pair.in_basis).normalized(); }
+  Vector vector_of(const Pair& pair) const {
+    return pencil_.normalized(space_.vector_of(pair.in_basis));
+  }
   /// Relative change of a vector by the coupling of the harmonics in the chains, next to the shift.
   double coupling_of(const Vector& vector) {
     pencil_.multiply(vector, shift_ * vector, right_);
     pencil_.precondition(right_, image_);
-    return (image_ - vector).norm() / vector.norm();
+    return pencil_.ranks().norm(Vector(image_ - vector)) / pencil_.ranks().norm(vector);
   }
   /// Whether a vector belongs to an infinite exponent: it does not fulfil the linear problem.
   bool is_infinite(const Pair& pair, const Vector& vector) {
@@ -111,7 +110,8 @@ class KrylovSpace {
     else
       pencil_.multiply_uncoupled(vector, shift_ * vector, product);
     multiply_mass(vector);
-    const Complex distance = right_.dot(product) / right_.squaredNorm();
+    const Complex distance =
+        pencil_.product(right_, product)(0) / pencil_.product(right_, right_)(0);
     return std::abs(distance * pair.value - 1.0) > 0.5;
   }
 
@@ -139,11 +139,16 @@ class KrylovSpace {
   Arnoldi space_;
 };
 
+/// The same for every distribution of the mesh.
 Vector random_vector(const HillPencil& pencil) {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
-  Vector vector = Vector::NullaryExpr(
-      pencil.size(), [&] { return Complex(normal(generator), normal(generator)); });
+  Vector vector(pencil.size());
+  PetscInt next = 0;  // of the system
+  for (Index i = 0; i < pencil.unknowns(); ++i)
+    for (const PetscInt unknown = pencil.unknown_of_system(i); next <= unknown; ++next)
+      for (Complex& value : vector.segment(i * pencil.width(), pencil.width()))
+        value = Complex(normal(generator), normal(generator));
   pencil.drop_absent(vector);
   return vector;
 }
@@ -180,7 +185,7 @@ void HillWithoutMedium::add(HillPair pair, HillRegion& region) const {
   if (pair.exponent.imag() < 0.0) pair = conjugate_of(pair);
   const bool is_known = std::ranges::any_of(region.pairs, [&](const HillPair& other) {
     return std::abs(other.exponent - pair.exponent) < same_found * pencil_.speed() &&
-           correlation(other.series, pair.series) > same_series;
+           pencil_.correlation(other.series, pair.series) > same_series;
   });
   if (!is_known) region.pairs.push_back(std::move(pair));
 }
@@ -196,8 +201,9 @@ void HillWithoutMedium::add_copies(HillRegion& region) {
       const double height = std::abs(exponent.imag());
       if (height > region.high || height < region.low) continue;
       const Eigen::MatrixXcd series = shifted_series(pair.series, shift, pair.series.rows());
-      if (series.norm() < least_of_copy * pair.series.norm()) continue;
-      Approximation copy{exponent, pencil_.vector_of(series).normalized()};
+      const Ranks& ranks = pencil_.ranks();
+      if (ranks.norm(series) < least_of_copy * ranks.norm(pair.series)) continue;
+      Approximation copy{exponent, pencil_.normalized(pencil_.vector_of(series))};
       if (std::optional<HillPair> result = refined(copy)) add(std::move(*result), region);
     }
 }
@@ -208,8 +214,8 @@ std::optional<HillRegion> HillWithoutMedium::find_linear(double frequency, int c
                                                          bool is_coupled,
                                                          std::vector<Approximation>& pairs) {
   pairs.clear();
-  const Index most =
-      std::min<Index>(pencil_.size(), vectors_of_pair * static_cast<Index>(count) + more_vectors);
+  const Index most = std::min<Index>(pencil_.size_of_all(),
+                                     vectors_of_pair * static_cast<Index>(count) + more_vectors);
   KrylovSpace space(pencil_, {beside_axis * pencil_.speed(), frequency}, random_vector(pencil_),
                     most, is_coupled);
   std::vector<KrylovSpace::Pair> converged;
@@ -239,7 +245,7 @@ std::optional<HillRegion> HillWithoutMedium::find_linear(double frequency, int c
     // Below the axis: it may become a real exponent, or that of a conjugate.
     if (exponent.imag() > -pencil_.speed()) pairs.push_back({exponent, std::move(vector)});
   }
-  region.is_whole = region.is_whole || space.size() == pencil_.size();
+  region.is_whole = region.is_whole || space.size() == pencil_.size_of_all();
   if (region.is_whole)
     radius = std::sqrt(HillRegion::beyond_all) * (radius + 10.0 * pencil_.speed());
   const double half_height = part_of_radius * radius;
@@ -259,7 +265,7 @@ std::optional<HillPair> HillWithoutMedium::corrected(const Approximation& pair) 
 }
 
 std::optional<HillPair> HillWithoutMedium::follow(const HillPair& pair) {
-  Approximation approximation{pair.exponent, pencil_.vector_of(pair.series).normalized()};
+  Approximation approximation{pair.exponent, pencil_.normalized(pencil_.vector_of(pair.series))};
   return approach(approximation) ? refined(approximation) : std::nullopt;
 }
 
@@ -285,7 +291,7 @@ bool HillWithoutMedium::approach(Approximation& pair) {
       double largest = 0.0;
       for (const KrylovSpace::Pair& other : space.pairs()) {
         Vector vector = space.vector_of(other);
-        const double overlap = std::abs(vector.dot(pair.vector)) / pair.vector.norm();
+        const double overlap = pencil_.correlation(vector, pair.vector);
         if (overlap <= largest || space.is_infinite(other, vector)) continue;
         largest = overlap;
         next = {space.exponent_of(other), std::move(vector)};

@@ -118,6 +118,22 @@ std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pie
   return owners;
 }
 
+/// Whether unknowns of a medium that refer to each other have different owners.
+bool parts_medium(const system::PeriodicSystem& system, const TangentPattern& pattern,
+                  const std::vector<int>& owners) {
+  const auto is_of_medium = [&](PetscInt i) {
+    return system.unknowns()[static_cast<std::size_t>(i)].is_of_medium();
+  };
+  for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i) {
+    if (!is_of_medium(i)) continue;
+    for (TangentPattern::InnerIterator it(pattern, i); it; ++it)
+      if (is_of_medium(static_cast<PetscInt>(it.col())) &&
+          owners[static_cast<std::size_t>(i)] != owners[static_cast<std::size_t>(it.col())])
+        return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 MeshPartition::MeshPartition(const system::PeriodicSystem& system, const Coordinates& held,
@@ -183,6 +199,7 @@ bool MeshPartition::distribute(const TangentPattern& pattern, const Coordinates&
   std::vector<int> of_unknowns(static_cast<std::size_t>(whole_.size()));
   for (std::size_t i = 0; i < of_unknowns.size(); ++i)
     of_unknowns[i] = owners[i / static_cast<std::size_t>(block_size_)];
+  if (limits.keeps_medium && parts_medium(whole_, pattern, of_unknowns)) return false;
   part_ = whole_.part_of(ranks_.rank, of_unknowns);
   if (!part_) return false;
   is_border_ = std::move(border);

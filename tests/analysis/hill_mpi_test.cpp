@@ -1,7 +1,6 @@
 // Hill's method on a mesh that is distributed over ranks: every rank also solves it alone.
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
@@ -10,54 +9,15 @@
 #include "samara/analysis/trim.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
-#include "../../src/analysis/hill_groups.hpp"
-#include "../../src/analysis/hill_search.hpp"
-#include "distributed.hpp"
+#include "distributed_hill.hpp"
 
 using namespace samara;
 using namespace samara::test;
 
 namespace {
 
-using Complex = std::complex<double>;
-using Groups = std::vector<analysis::HillGroup>;
-
-/// Relative to the exponent or the rotor speed.
-constexpr double same = 1e-8;
 constexpr int coarse = 1;
 constexpr int fine = 3;
-constexpr int wanted = 8;
-
-/// The eigenpairs of a search, refined.
-struct Found {
-  Found(const turbine::TurbineSystem& system, const analysis::PeriodicSolution& solution,
-        analysis::HillPencil& search_pencil, analysis::HillPencil& pencil)
-      : search(search_pencil) {
-    region = search.find(1.5 * pencil.speed(), wanted);
-    std::vector<analysis::HillPair> inside;
-    for (const analysis::HillPair& pair : region.pairs)
-      if (pair.exponent.imag() < region.high && pair.exponent.imag() > region.low &&
-          std::abs(pair.exponent) > 0.1 * pencil.speed())
-        inside.push_back(pair);
-    groups = analysis::groups_of(std::move(inside), pencil.speed());
-    const analysis::Ranks alone(MPI_COMM_SELF);
-    analysis::HillGroups(system, solution, pencil, alone).refine(groups, 1e-10);
-    for (const analysis::HillPair& pair : region.pairs) found.push_back(pair.exponent);
-  }
-
-  analysis::HillSearch search;
-  analysis::HillRegion region;
-  std::vector<Complex> found;
-  Groups groups;
-};
-
-double distance(Complex exponent, const Groups& groups, double speed) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const analysis::HillGroup& group : groups)
-    for (const analysis::HillPair& pair : group.pairs)
-      least = std::min(least, std::abs(pair.exponent - exponent));
-  return least / std::max(std::abs(exponent), speed);
-}
 
 void require_same(const model::TurbineDefinition& definition) {
   const turbine::TurbineSystem system(model::build_turbine(definition), PETSC_COMM_SELF);
@@ -77,31 +37,15 @@ void require_same(const model::TurbineDefinition& definition) {
   Found together(system, trim.solution, search_together, refine_together);
 
   const double speed = refine_alone.speed();
-  std::size_t count = 0;
-  for (const analysis::HillGroup& group : together.groups) {
-    BOOST_TEST(on_all_ranks(group.truncated_residual <= 1e-10));
-    for (std::size_t i = 0; i < group.pairs.size(); ++i) {
-      BOOST_TEST_INFO("exponent " << group.pairs[i].exponent << ", distance "
-                                  << distance(group.pairs[i].exponent, alone.groups, speed));
-      BOOST_TEST(on_all_ranks(distance(group.pairs[i].exponent, alone.groups, speed) < same));
-      ++count;
-    }
-  }
-  BOOST_TEST(on_all_ranks(count >= 4));
-  BOOST_TEST(
-      on_all_ranks(std::abs(together.region.high - alone.region.high) < 1e-4 * alone.region.high));
+  BOOST_TEST(on_all_ranks(require_same_pairs(together, alone, speed) >= 4));
+  // The residual in time, to the change of the scales of rows at cuts.
   for (const analysis::HillGroup& group : alone.groups)
-    for (std::size_t i = 0; i < group.pairs.size(); ++i) {
-      const Complex exponent = group.pairs[i].exponent;
-      BOOST_TEST(on_all_ranks(distance(exponent, together.groups, speed) < same));
-      // The residual in time, to the change of the scales of rows at cuts.
-      for (const analysis::HillGroup& other : together.groups)
+    for (const analysis::HillGroup& other : together.groups)
+      if (group.pairs.size() == 1 && group.residuals[0] > 1e-8)
         for (std::size_t j = 0; j < other.pairs.size(); ++j)
-          if (std::abs(other.pairs[j].exponent - exponent) < same * speed &&
-              group.pairs.size() == 1 && group.residuals[i] > 1e-8)
-            BOOST_TEST(on_all_ranks(std::abs(std::log(other.residuals[j] / group.residuals[i])) <
+          if (std::abs(other.pairs[j].exponent - group.pairs[0].exponent) < same * speed)
+            BOOST_TEST(on_all_ranks(std::abs(std::log(other.residuals[j] / group.residuals[0])) <
                                     std::log(2.0)));
-    }
 
   const analysis::Ranks one(MPI_COMM_SELF);
   analysis::HillSearch::Missing missing =

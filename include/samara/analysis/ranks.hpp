@@ -8,6 +8,7 @@
 #include <exception>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -76,6 +77,18 @@ struct Ranks {
     share(source, shape);
     values.resize(shape[0], shape[1]);
     share(source, values.data(), values.size());
+  }
+
+  /// Puts the values of all ranks one after the other, on all of them.
+  template <class T>
+  void gather(std::vector<T>& values) const {
+    std::vector<T> all;
+    for (int source = 0; source < size; ++source) {
+      std::vector<T> part = values;
+      share(source, part);
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    values = std::move(all);
   }
 
   /// The largest value of all ranks, for each place.
