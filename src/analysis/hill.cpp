@@ -130,7 +130,7 @@ constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
 /// Smallest piece of a distributed mesh, in blocks, and more of them for each block at a cut. These
 /// join the border with all harmonics, and smaller meshes are faster with groups of modes on each
-/// rank.
+/// rank. (With a medium, searches and counts take most of the time, and gain on all meshes.)
 constexpr Index least_piece = 150;
 constexpr Index of_cut = 150;
 /// Steps a revolution and multipliers of the search for the slowest decays; the factor of steps
@@ -198,7 +198,7 @@ class Analysis {
     MeshPartition::Limits limits;
     limits.is_for_all = true;
     limits.keeps_medium = true;
-    if (!is_constant_) {
+    if (!is_constant_ && !has_medium_) {
       limits.least_piece = least_piece;
       limits.of_cut = of_cut;
     }
