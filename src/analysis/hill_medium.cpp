@@ -47,7 +47,7 @@ HillMedium::HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& 
     const auto first = static_cast<std::size_t>(leaders[static_cast<std::size_t>(i)]);
     if (group_of[first] < 0) {
       group_of[first] = static_cast<Index>(groups_.size());
-      groups_.emplace_back().is_shared = is_shared(i);
+      groups_.emplace_back();
     }
     group_of[static_cast<std::size_t>(i)] = group_of[first];
     Group& group = groups_[static_cast<std::size_t>(group_of[first])];
@@ -69,33 +69,9 @@ HillMedium::Leaders HillMedium::find_leaders() const {
   for (const HarmonicTangents::Place& place : tangents_.places())
     if (is_of_medium(place.row) && is_of_medium(place.column))
       join(leaders, place.row, place.column);
-  if (ranks_.size > 1) join_shared(leaders);
   for (Index i = 0; i < tangents_.size(); ++i)
     leaders[static_cast<std::size_t>(i)] = leader_of(leaders, i);
   return leaders;
-}
-
-/// Joins unknowns of the border that refer to each other on any rank. All ranks have them in the
-/// same order.
-void HillMedium::join_shared(Leaders& leaders) const {
-  std::vector<Index> shared;
-  std::vector<Index> place(leaders.size(), -1);
-  for (Index i = 0; i < tangents_.size(); ++i) {
-    if (!is_shared(i) || !is_of_medium(i)) continue;
-    place[static_cast<std::size_t>(i)] = static_cast<Index>(shared.size());
-    shared.push_back(i);
-  }
-  const auto count = static_cast<Index>(shared.size());
-  Eigen::MatrixXd references = Eigen::MatrixXd::Zero(count, count);
-  for (Index i = 0; i < count; ++i) {
-    const Index leader = leader_of(leaders, shared[static_cast<std::size_t>(i)]);
-    references(i, place[static_cast<std::size_t>(leader)]) = 1.0;
-  }
-  ranks_.sum(references);
-  for (Index i = 0; i < count; ++i)
-    for (Index j = 0; j < count; ++j)
-      if (references(i, j) > 0.0)
-        join(leaders, shared[static_cast<std::size_t>(i)], shared[static_cast<std::size_t>(j)]);
 }
 
 /// Adds mean tangents in the harmonic k to a square block, whose rows and columns are `stride`
@@ -132,7 +108,6 @@ HillMedium::Matrix HillMedium::block_of(const Group& group, Complex s, bool only
     tangents_.coupling(place, s, part);
     part *= rows_(place.row * width) * columns_(place.column * width);
   }
-  if (group.is_shared) ranks_.sum(block);
   for (std::size_t i = 0; i < group.unknowns.size(); ++i)
     for (Index k = 0; k < width; ++k)
       if (!tangents_.has(group.unknowns[i], static_cast<int>(k) - harmonics)) {
@@ -176,24 +151,22 @@ void HillMedium::solve(Eigen::Ref<Matrix> x) const {
 }
 
 HillMedium::Complex HillMedium::log_determinant_of_means(Complex s) const {
-  Matrix of_pieces = Matrix::Zero(1, 1);
-  Complex of_border = 0.0;
-  const auto log_of = [](const Matrix& block) -> Complex {
+  Matrix sum = Matrix::Zero(1, 1);
+  const auto add = [&sum](const Matrix& block) {
     const Eigen::PartialPivLU<Matrix> factors(block);
-    return factors.matrixLU().diagonal().array().log().sum() +
-           std::log(Complex(static_cast<double>(factors.permutationP().determinant())));
+    sum(0) += factors.matrixLU().diagonal().array().log().sum() +
+              std::log(Complex(static_cast<double>(factors.permutationP().determinant())));
   };
   for (const Group& group : groups_) {
-    Complex& sum = group.is_shared ? of_border : of_pieces(0);
     if (!group.is_of_chains) {
-      sum += log_of(block_of(group, s, true));
+      add(block_of(group, s, true));
       continue;
     }
     for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k)
-      sum += log_of(block_of_means(group, s, k));
+      add(block_of_means(group, s, k));
   }
-  ranks_.sum(of_pieces);
-  return of_pieces(0) + of_border;
+  ranks_.sum(sum);
+  return sum(0);
 }
 
 /// Of a group: those of its mean tangents with the other parts at rest. A group that is too large
@@ -209,10 +182,6 @@ std::vector<HillMedium::Complex> HillMedium::exponents_of(const Group& group) co
     stiffness(row, column) = tangents_.means()(0, place.number);
     mass(row, column) = tangents_.means()(1, place.number);
   }
-  if (group.is_shared) {
-    ranks_.sum(stiffness);
-    ranks_.sum(mass);
-  }
   // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
   const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);
   const Eigen::MatrixXd product = -factors.solve(mass);
@@ -226,12 +195,10 @@ std::vector<HillMedium::Complex> HillMedium::exponents_of(const Group& group) co
 }
 
 std::vector<HillMedium::Complex> HillMedium::exponents() const {
-  std::vector<Complex> of_border;
   std::vector<Complex> all;
   for (const Group& group : groups_)
-    std::ranges::copy(exponents_of(group), std::back_inserter(group.is_shared ? of_border : all));
+    std::ranges::copy(exponents_of(group), std::back_inserter(all));
   ranks_.gather(all);
-  std::ranges::copy(of_border, std::back_inserter(all));
   return all;
 }
 

@@ -16,8 +16,8 @@ namespace samara::analysis {
 /// The block of A + s B in the rows and columns of a medium's unknowns (states and auxiliaries):
 /// its answer to a motion of the other parts. The block falls into one group for each station of a
 /// blade, or one for a rotor whose stations are coupled. Of a distributed mesh, each rank has the
-/// groups of its piece; those of the border are on all ranks (MeshPartition::Limits::keeps_medium),
-/// and all ranks call the same functions.
+/// groups of its piece (MeshPartition::Limits::keeps_medium), and all ranks call the same
+/// functions.
 class HillMedium {
  public:
   using Complex = std::complex<double>;
@@ -34,7 +34,7 @@ class HillMedium {
   /// Factors the block for solve(), exact. @returns false where it is singular
   bool factor(Complex s);
   /// Solves the block for its part of a vector of all unknowns of the tangents, in place; the
-  /// others are not touched. On each rank, the border is complete.
+  /// others are not touched.
   void solve(Eigen::Ref<Matrix> x) const;
   /// Logarithm of the determinant of the block as it is in HarmonicPreconditioner: chains have the
   /// mean tangents in each harmonic. Up to multiples of 2 pi i.
@@ -49,15 +49,12 @@ class HillMedium {
     std::vector<Index> unknowns;
     std::vector<HarmonicTangents::Place> places;
     bool is_of_chains = true;  ///< none of its unknowns is in the border
-    bool is_shared = false;    ///< the ranks have terms of it that add up
     Eigen::PartialPivLU<Matrix> factors;
   };
   using Leaders = std::vector<Index>;  ///< of each unknown, the first one of its group
 
   bool is_of_medium(Index unknown) const { return tangents_.unknown(unknown).is_of_medium(); }
-  bool is_shared(Index unknown) const { return ranks_.size > 1 && tangents_.is_border(unknown); }
   Leaders find_leaders() const;
-  void join_shared(Leaders& leaders) const;
   bool is_of_chains(const HarmonicTangents::Place& place) const;
   void add_means(const HarmonicTangents::Place& place, Complex s, int k, Index first, Index stride,
                  Matrix& block) const;
@@ -69,7 +66,7 @@ class HillMedium {
   const Eigen::VectorXd& rows_;
   const Eigen::VectorXd& columns_;
   Ranks ranks_;
-  std::vector<Group> groups_;  ///< shared ones in the same order on all ranks
+  std::vector<Group> groups_;
   bool is_empty_ = true;
   std::vector<Index> place_in_group_;  ///< of each unknown; -1: not of the medium
 };

@@ -118,7 +118,7 @@ std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pie
   return owners;
 }
 
-/// Whether unknowns of a medium that refer to each other have different owners.
+/// Whether some unknowns of a medium that refer to each other are not in one piece.
 bool parts_medium(const system::PeriodicSystem& system, const TangentPattern& pattern,
                   const std::vector<int>& owners) {
   const auto is_of_medium = [&](PetscInt i) {
@@ -126,9 +126,11 @@ bool parts_medium(const system::PeriodicSystem& system, const TangentPattern& pa
   };
   for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i) {
     if (!is_of_medium(i)) continue;
+    const int owner = owners[static_cast<std::size_t>(i)];
+    if (owner == system::PeriodicSystem::shared) return true;
     for (TangentPattern::InnerIterator it(pattern, i); it; ++it)
       if (is_of_medium(static_cast<PetscInt>(it.col())) &&
-          owners[static_cast<std::size_t>(i)] != owners[static_cast<std::size_t>(it.col())])
+          owners[static_cast<std::size_t>(it.col())] != owner)
         return true;
   }
   return false;

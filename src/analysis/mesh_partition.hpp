@@ -28,8 +28,8 @@ class MeshPartition {
     Eigen::Index least_piece = 100;  ///< blocks of a piece, on average
     Eigen::Index of_cut = 0;         ///< more of them for each block that a cut adds to the border
     bool is_for_all = false;         ///< no distribution over some of the ranks
-    /// No distribution where unknowns of a medium that refer to each other would be parted: they
-    /// stay in one piece, or in the border.
+    /// No distribution where unknowns of a medium that refer to each other would not be in one
+    /// piece.
     bool keeps_medium = false;
   };
   /// With one rank, or where the mesh is too small to be worth a distribution or cannot be divided,
