@@ -13,8 +13,8 @@ using Index = Eigen::Index;
 
 namespace {
 
-/// Unknowns of a group whose exponents are found.
-constexpr Index largest_group = 100;
+/// Unknowns of a matrix whose eigenvalues are found.
+constexpr Index largest_matrix = 100;
 /// Relative to the largest: the inverse of a finite exponent.
 constexpr double least_inverse = 1e-10;
 
@@ -38,149 +38,194 @@ HillMedium::HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& 
       columns_(columns),
       ranks_(tangents.partition() != nullptr ? tangents.partition()->ranks()
                                              : Ranks(MPI_COMM_SELF)) {
-  const auto size = static_cast<std::size_t>(tangents.size());
-  place_in_group_.assign(size, -1);
-  const Leaders leaders = find_leaders();
-  std::vector<Index> group_of(size, -1);
-  for (Index i = 0; i < tangents.size(); ++i) {
-    if (!is_of_medium(i)) continue;
-    const auto first = static_cast<std::size_t>(leaders[static_cast<std::size_t>(i)]);
-    if (group_of[first] < 0) {
-      group_of[first] = static_cast<Index>(groups_.size());
-      groups_.emplace_back();
-    }
-    group_of[static_cast<std::size_t>(i)] = group_of[first];
-    Group& group = groups_[static_cast<std::size_t>(group_of[first])];
-    place_in_group_[static_cast<std::size_t>(i)] = static_cast<Index>(group.unknowns.size());
-    group.unknowns.push_back(i);
-    group.is_of_chains = group.is_of_chains && !tangents_.is_border(i);
-  }
-  for (const HarmonicTangents::Place& place : tangents.places())
-    if (is_of_medium(place.row) && is_of_medium(place.column))
-      groups_[static_cast<std::size_t>(group_of[static_cast<std::size_t>(place.row)])]
-          .places.push_back(place);
-  is_empty_ = ranks_.all(groups_.empty());
+  list_parts();
+  is_empty_ = ranks_.all(parts_.empty() && border_.unknowns.empty());
 }
 
-/// Unknowns that refer to each other are one group: the smallest number among them leads it.
-HillMedium::Leaders HillMedium::find_leaders() const {
-  Leaders leaders(static_cast<std::size_t>(tangents_.size()));
+void HillMedium::list_parts() {
+  const auto size = static_cast<std::size_t>(tangents_.size());
+  const auto is_between = [this](Index i) { return is_of_medium(i) && !tangents_.is_border(i); };
+  // Unknowns that refer to each other are one part: the smallest number among them leads it.
+  std::vector<Index> leaders(size);
   std::iota(leaders.begin(), leaders.end(), Index{0});
-  for (const HarmonicTangents::Place& place : tangents_.places())
-    if (is_of_medium(place.row) && is_of_medium(place.column))
-      join(leaders, place.row, place.column);
-  for (Index i = 0; i < tangents_.size(); ++i)
-    leaders[static_cast<std::size_t>(i)] = leader_of(leaders, i);
-  return leaders;
-}
-
-/// Adds mean tangents in the harmonic k to a square block, whose rows and columns are `stride`
-/// apart.
-void HillMedium::add_means(const HarmonicTangents::Place& place, Complex s, int k, Index first,
-                           Index stride, Matrix& block) const {
-  if (!tangents_.has(place.row, k) || !tangents_.has(place.column, k)) return;
-  const Eigen::MatrixXd& means = tangents_.means();
-  block(place_in_group_[static_cast<std::size_t>(place.row)] * stride + first,
-        place_in_group_[static_cast<std::size_t>(place.column)] * stride + first) =
-      rows_(place.row * tangents_.width()) * columns_(place.column * tangents_.width()) *
-      (means(0, place.number) + (s + Complex(0.0, k * tangents_.rate())) * means(1, place.number));
-}
-
-bool HillMedium::is_of_chains(const HarmonicTangents::Place& place) const {
-  return !tangents_.is_border(place.row) && !tangents_.is_border(place.column);
-}
-
-/// All harmonics; `only_means`: those of chains are not coupled.
-HillMedium::Matrix HillMedium::block_of(const Group& group, Complex s, bool only_means) const {
-  const Index width = tangents_.width();
-  const int harmonics = tangents_.harmonics();
-  const auto size = static_cast<Index>(group.unknowns.size()) * width;
-  Matrix block = Matrix::Zero(size, size);
-  for (const HarmonicTangents::Place& place : group.places) {
-    if (only_means && is_of_chains(place)) {
-      for (int k = -harmonics; k <= harmonics; ++k)
-        add_means(place, s, k, k + harmonics, width, block);
+  for (const Place& place : tangents_.places())
+    if (is_between(place.row) && is_between(place.column)) join(leaders, place.row, place.column);
+  number_in_part_.assign(size, -1);
+  std::vector<std::size_t> part_of(size, 0);
+  for (Index i = 0; i < tangents_.size(); ++i) {
+    if (!is_of_medium(i)) continue;
+    Part* part = &border_;
+    if (is_between(i)) {
+      const Index leader = leader_of(leaders, i);
+      if (leader == i) {
+        part_of[static_cast<std::size_t>(i)] = parts_.size();
+        parts_.emplace_back();
+      }
+      part_of[static_cast<std::size_t>(i)] = part_of[static_cast<std::size_t>(leader)];
+      part = &parts_[part_of[static_cast<std::size_t>(i)]];
+    }
+    number_in_part_[static_cast<std::size_t>(i)] = static_cast<Index>(part->unknowns.size());
+    part->unknowns.push_back(i);
+  }
+  for (const Place& place : tangents_.places()) {
+    if (!is_of_medium(place.row) || !is_of_medium(place.column)) continue;
+    const bool has_row = is_between(place.row);
+    const bool has_column = is_between(place.column);
+    if (!has_row && !has_column) {
+      border_.places.push_back(place);
       continue;
     }
-    auto part =
-        block.block(place_in_group_[static_cast<std::size_t>(place.row)] * width,
-                    place_in_group_[static_cast<std::size_t>(place.column)] * width, width, width);
-    tangents_.coupling(place, s, part);
-    part *= rows_(place.row * width) * columns_(place.column * width);
+    Part& part = parts_[part_of[static_cast<std::size_t>(has_row ? place.row : place.column)]];
+    (has_row && has_column ? part.places
+     : has_row             ? part.to_border
+                           : part.of_border)
+        .push_back(place);
   }
-  for (std::size_t i = 0; i < group.unknowns.size(); ++i)
-    for (Index k = 0; k < width; ++k)
-      if (!tangents_.has(group.unknowns[i], static_cast<int>(k) - harmonics)) {
-        const Index at = static_cast<Index>(i) * width + k;
-        block(at, at) = 1.0;
-      }
+}
+
+double HillMedium::scale(const Place& place) const {
+  return rows_(place.row * tangents_.width()) * columns_(place.column * tangents_.width());
+}
+
+/// Of all harmonics.
+HillMedium::Matrix HillMedium::couplings(const Places& places, Complex s, Index rows,
+                                         Index columns) const {
+  const Index width = tangents_.width();
+  Matrix block = Matrix::Zero(rows, columns);
+  for (const Place& place : places) {
+    auto at =
+        block.block(number_in_part_[static_cast<std::size_t>(place.row)] * width,
+                    number_in_part_[static_cast<std::size_t>(place.column)] * width, width, width);
+    tangents_.coupling(place, s, at);
+    at *= scale(place);
+  }
   return block;
 }
 
-/// Of a group in the chains, in one harmonic.
-HillMedium::Matrix HillMedium::block_of_means(const Group& group, Complex s, int k) const {
-  const auto size = static_cast<Index>(group.unknowns.size());
+/// All harmonics, exact.
+HillMedium::Matrix HillMedium::block_of(const Part& part, Complex s) const {
+  const Index width = tangents_.width();
+  Matrix block = couplings(part.places, s, rows_of(part), rows_of(part));
+  for (Index i = 0; i < block.rows(); ++i)
+    if (!tangents_.has(part.unknowns[static_cast<std::size_t>(i / width)],
+                       static_cast<int>(i % width) - tangents_.harmonics()))
+      block(i, i) = 1.0;
+  return block;
+}
+
+/// Mean tangents in the harmonic k.
+HillMedium::Matrix HillMedium::block_of_means(const Part& part, Complex s, int k) const {
+  const auto size = static_cast<Index>(part.unknowns.size());
+  const Complex rate = s + Complex(0.0, k * tangents_.rate());
   Matrix block = Matrix::Zero(size, size);
-  for (const HarmonicTangents::Place& place : group.places) add_means(place, s, k, 0, 1, block);
+  for (const Place& place : part.places)
+    if (tangents_.has(place.row, k) && tangents_.has(place.column, k)) {
+      const auto means = tangents_.means().col(place.number);
+      block(number_in_part_[static_cast<std::size_t>(place.row)],
+            number_in_part_[static_cast<std::size_t>(place.column)]) =
+          scale(place) * (means(0) + rate * means(1));
+    }
   for (Index i = 0; i < size; ++i)
-    if (!tangents_.has(group.unknowns[static_cast<std::size_t>(i)], k)) block(i, i) = 1.0;
+    if (!tangents_.has(part.unknowns[static_cast<std::size_t>(i)], k)) block(i, i) = 1.0;
   return block;
 }
 
 bool HillMedium::factor(Complex s) {
   bool is_regular = true;
-  for (Group& group : groups_) {
-    group.factors.compute(block_of(group, s, false));
-    is_regular = is_regular && group.factors.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
+  const auto take = [&is_regular](Part& part, const Matrix& block) {
+    part.factors.compute(block);
+    is_regular = is_regular && part.factors.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
+  };
+  const Index of_border = rows_of(border_);
+  Matrix complement = block_of(border_, s);
+  for (Part& part : parts_) {
+    take(part, block_of(part, s));
+    if (of_border == 0) continue;
+    part.border_rows = couplings(part.of_border, s, of_border, rows_of(part));
+    part.solved_columns =
+        part.factors.solve(couplings(part.to_border, s, rows_of(part), of_border));
+    complement.noalias() -= part.border_rows * part.solved_columns;
   }
+  if (of_border > 0) take(border_, complement);
   return ranks_.all(is_regular);
 }
 
 void HillMedium::solve(Eigen::Ref<Matrix> x) const {
   const Index width = tangents_.width();
-  for (const Group& group : groups_) {
-    Matrix part(static_cast<Index>(group.unknowns.size()) * width, x.cols());
-    for (std::size_t i = 0; i < group.unknowns.size(); ++i)
-      part.middleRows(static_cast<Index>(i) * width, width) =
-          x.middleRows(group.unknowns[i] * width, width);
-    part = group.factors.solve(part).eval();
-    for (std::size_t i = 0; i < group.unknowns.size(); ++i)
-      x.middleRows(group.unknowns[i] * width, width) =
-          part.middleRows(static_cast<Index>(i) * width, width);
+  const auto taken = [&](const Part& part) {
+    Matrix values(rows_of(part), x.cols());
+    for (std::size_t i = 0; i < part.unknowns.size(); ++i)
+      values.middleRows(static_cast<Index>(i) * width, width) =
+          x.middleRows(part.unknowns[i] * width, width);
+    return values;
+  };
+  const auto give = [&](const Part& part, const Matrix& values) {
+    for (std::size_t i = 0; i < part.unknowns.size(); ++i)
+      x.middleRows(part.unknowns[i] * width, width) =
+          values.middleRows(static_cast<Index>(i) * width, width);
+  };
+  Matrix of_border = taken(border_);
+  for (const Part& part : parts_) {
+    const Matrix values = part.factors.solve(taken(part));
+    give(part, values);
+    if (of_border.rows() > 0) of_border.noalias() -= part.border_rows * values;
   }
+  if (of_border.rows() == 0) return;
+  of_border = border_.factors.solve(of_border).eval();
+  give(border_, of_border);
+  for (const Part& part : parts_) give(part, taken(part) - part.solved_columns * of_border);
 }
 
 HillMedium::Complex HillMedium::log_determinant_of_means(Complex s) const {
+  const Index width = tangents_.width();
+  const Index of_border = rows_of(border_);
   Matrix sum = Matrix::Zero(1, 1);
-  const auto add = [&sum](const Matrix& block) {
-    const Eigen::PartialPivLU<Matrix> factors(block);
+  const auto add = [&sum](const Factors& factors) {
     sum(0) += factors.matrixLU().diagonal().array().log().sum() +
               std::log(Complex(static_cast<double>(factors.permutationP().determinant())));
   };
-  for (const Group& group : groups_) {
-    if (!group.is_of_chains) {
-      add(block_of(group, s, true));
-      continue;
+  Matrix complement = block_of(border_, s);
+  for (const Part& part : parts_) {
+    const Matrix rows = couplings(part.of_border, s, of_border, rows_of(part));
+    const Matrix columns = couplings(part.to_border, s, rows_of(part), of_border);
+    for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k) {
+      const Factors factors(block_of_means(part, s, k));
+      add(factors);
+      if (of_border == 0) continue;
+      const auto of_harmonic = Eigen::seqN(k + tangents_.harmonics(), part.unknowns.size(), width);
+      complement.noalias() -= Matrix(rows(Eigen::all, of_harmonic)) *
+                              factors.solve(Matrix(columns(of_harmonic, Eigen::all)));
     }
-    for (int k = -tangents_.harmonics(); k <= tangents_.harmonics(); ++k)
-      add(block_of_means(group, s, k));
   }
+  if (of_border > 0) add(Factors(complement));
   ranks_.sum(sum);
   return sum(0);
 }
 
-/// Of a group: those of its mean tangents with the other parts at rest. A group that is too large
-/// for dense eigenvalues has none.
-std::vector<HillMedium::Complex> HillMedium::exponents_of(const Group& group) const {
-  const auto size = static_cast<Index>(group.unknowns.size());
-  if (size > largest_group) return {};
+/// Of parts with their mean tangents and the other parts at rest.
+std::vector<HillMedium::Complex> HillMedium::exponents_of(
+    const std::vector<const Part*>& parts) const {
+  std::vector<Index> first;  // of each part
+  Index size = 0;
+  for (const Part* part : parts) {
+    first.push_back(size);
+    size += static_cast<Index>(part->unknowns.size());
+  }
+  if (size > largest_matrix) return {};
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
   Eigen::MatrixXd mass = stiffness;
-  for (const HarmonicTangents::Place& place : group.places) {
-    const Index row = place_in_group_[static_cast<std::size_t>(place.row)];
-    const Index column = place_in_group_[static_cast<std::size_t>(place.column)];
-    stiffness(row, column) = tangents_.means()(0, place.number);
-    mass(row, column) = tangents_.means()(1, place.number);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const auto add = [&](const Places& places, Index of_rows, Index of_columns) {
+      for (const Place& place : places) {
+        const Index row = of_rows + number_in_part_[static_cast<std::size_t>(place.row)];
+        const Index column = of_columns + number_in_part_[static_cast<std::size_t>(place.column)];
+        stiffness(row, column) = tangents_.means()(0, place.number);
+        mass(row, column) = tangents_.means()(1, place.number);
+      }
+    };
+    add(parts[p]->places, first[p], first[p]);
+    add(parts[p]->to_border, first[p], first.back());
+    add(parts[p]->of_border, first.back(), first[p]);
   }
   // 1 / lambda are the eigenvalues of -K^-1 M; those of auxiliaries are zero.
   const Eigen::PartialPivLU<Eigen::MatrixXd> factors(stiffness);
@@ -194,10 +239,20 @@ std::vector<HillMedium::Complex> HillMedium::exponents_of(const Group& group) co
   return exponents;
 }
 
+/// All parts with the border are one matrix; where it is too large for dense eigenvalues, there are
+/// none.
 std::vector<HillMedium::Complex> HillMedium::exponents() const {
   std::vector<Complex> all;
-  for (const Group& group : groups_)
-    std::ranges::copy(exponents_of(group), std::back_inserter(all));
+  std::vector<const Part*> together;
+  for (const Part& part : parts_)
+    if (border_.unknowns.empty())
+      std::ranges::copy(exponents_of({&part}), std::back_inserter(all));
+    else
+      together.push_back(&part);
+  if (!border_.unknowns.empty()) {
+    together.push_back(&border_);
+    all = exponents_of(together);
+  }
   ranks_.gather(all);
   return all;
 }

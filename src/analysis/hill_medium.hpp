@@ -14,10 +14,10 @@
 namespace samara::analysis {
 
 /// The block of A + s B in the rows and columns of a medium's unknowns (states and auxiliaries):
-/// its answer to a motion of the other parts. The block falls into one group for each station of a
-/// blade, or one for a rotor whose stations are coupled. Of a distributed mesh, each rank has the
-/// groups of its piece (MeshPartition::Limits::keeps_medium), and all ranks call the same
-/// functions.
+/// its answer to a motion of the other parts. It falls into one part for each station of a blade,
+/// and those of the border (the wake of a whole rotor), by whose complement it is solved. Of a
+/// distributed mesh, each rank has the stations of its piece, the border has no unknowns of the
+/// medium (MeshPartition::Limits::keeps_medium), and all ranks call the same functions.
 class HillMedium {
  public:
   using Complex = std::complex<double>;
@@ -45,30 +45,39 @@ class HillMedium {
 
  private:
   using Index = Eigen::Index;
-  struct Group {
+  using Place = HarmonicTangents::Place;
+  using Places = std::vector<Place>;
+  using Factors = Eigen::PartialPivLU<Matrix>;
+  /// Unknowns that refer to each other, but for those of the border.
+  struct Part {
     std::vector<Index> unknowns;
-    std::vector<HarmonicTangents::Place> places;
-    bool is_of_chains = true;  ///< none of its unknowns is in the border
-    Eigen::PartialPivLU<Matrix> factors;
+    Places places;     ///< among them
+    Places of_border;  ///< columns of the part in rows of the border
+    Places to_border;  ///< rows of the part in columns of the border
+    Factors factors;
+    Matrix border_rows;     ///< its columns in rows of the border
+    Matrix solved_columns;  ///< its rows in columns of the border, solved for
   };
-  using Leaders = std::vector<Index>;  ///< of each unknown, the first one of its group
 
   bool is_of_medium(Index unknown) const { return tangents_.unknown(unknown).is_of_medium(); }
-  Leaders find_leaders() const;
-  bool is_of_chains(const HarmonicTangents::Place& place) const;
-  void add_means(const HarmonicTangents::Place& place, Complex s, int k, Index first, Index stride,
-                 Matrix& block) const;
-  Matrix block_of(const Group& group, Complex s, bool only_means) const;
-  Matrix block_of_means(const Group& group, Complex s, int k) const;
-  std::vector<Complex> exponents_of(const Group& group) const;
+  void list_parts();
+  Index rows_of(const Part& part) const {
+    return static_cast<Index>(part.unknowns.size()) * tangents_.width();
+  }
+  double scale(const Place& place) const;
+  Matrix couplings(const Places& places, Complex s, Index rows, Index columns) const;
+  Matrix block_of(const Part& part, Complex s) const;
+  Matrix block_of_means(const Part& part, Complex s, int k) const;
+  std::vector<Complex> exponents_of(const std::vector<const Part*>& parts) const;
 
   const HarmonicTangents& tangents_;
   const Eigen::VectorXd& rows_;
   const Eigen::VectorXd& columns_;
   Ranks ranks_;
-  std::vector<Group> groups_;
+  std::vector<Part> parts_;
+  Part border_;  ///< its factors are those of the complement
   bool is_empty_ = true;
-  std::vector<Index> place_in_group_;  ///< of each unknown; -1: not of the medium
+  std::vector<Index> number_in_part_;  ///< of each unknown; -1: not of the medium
 };
 
 }  // namespace samara::analysis
