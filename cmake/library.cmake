@@ -31,7 +31,7 @@ target_link_libraries(
 # Components: the packages of cmake/packages.cmake. `cmake --install` installs all of them, and the Python
 # package where the program finds it under any prefix.
 set(samara_package ${CMAKE_INSTALL_LIBDIR}/cmake/Samara)
-install(TARGETS samara samara_controller_host RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+install(TARGETS samara samara_program samara_controller_host RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
         COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/samara
         COMPONENT program)

@@ -1,5 +1,5 @@
 # Debian packages of the library's components, made by cpack (scripts/package):
-#   samara          the program, the helper program of controller libraries, inputs, templates, completion, manual page
+#   samara          the program, its launcher, the helper program of controller libraries, inputs, templates, completion, manual page
 #   libsamara-dev   the shared library, its headers, the package for CMake, the examples
 #   python3-samara  the Python package, for Debian's own interpreter
 # Only cpack installs the files that are marked EXCLUDE_FROM_ALL.

@@ -21,23 +21,26 @@ function(samara_add_room room)
   target_link_libraries(${target} ${public} ${arg_PUBLIC} ${private} ${arg_PRIVATE})
 endfunction()
 
-# The program `samara` of drivers/*.cpp: the only place that may use every room.
+# The program of drivers/*.cpp: the only place that may use every room. Users start `samara`, which
+# becomes `samara-program`.
 function(samara_add_program)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/drivers/*.cpp)
   if(sources)
-    add_executable(samara ${sources})
-    target_link_libraries(samara PRIVATE samara::decks samara::io samara::simulation samara::fields samara::linear samara::loads
+    add_executable(samara_program ${sources})
+    set_target_properties(samara_program PROPERTIES OUTPUT_NAME samara-program)
+    target_link_libraries(samara_program PRIVATE samara::decks samara::io samara::simulation samara::fields samara::linear samara::loads
                                          samara::analysis samara::turbine samara::components
                                          samara::system samara::model samara::elements samara::math samara::petsc
                                          samara::base)
   endif()
-  # It uses the C library alone, and is found beside the program.
+  # Both use the C library alone, and stand beside the program.
   add_executable(samara_controller_host
                  ${PROJECT_SOURCE_DIR}/drivers/controller_host/controller_host.cpp)
   set_target_properties(samara_controller_host PROPERTIES OUTPUT_NAME samara-controller-host)
   target_include_directories(samara_controller_host PRIVATE ${PROJECT_SOURCE_DIR}/include)
   target_link_libraries(samara_controller_host PRIVATE ${CMAKE_DL_LIBS})
-  if(TARGET samara)
-    add_dependencies(samara samara_controller_host)
+  add_executable(samara ${PROJECT_SOURCE_DIR}/drivers/launcher/launcher.cpp)
+  if(TARGET samara_program)
+    add_dependencies(samara samara_program samara_controller_host)
   endif()
 endfunction()

@@ -65,8 +65,16 @@ void take_signal(int number) {
   return false;
 }
 
+void change_mask(int how) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);
+  ::sigprocmask(how, &signals, nullptr);
+}
+
 /// Called before the libraries start, including a sanitizer's: MPI, PETSc and HDF5 need
-/// milliseconds to start. Signals that the parent process ignores stay ignored.
+/// milliseconds to start. Signals that the parent process ignores stay ignored. Those that the
+/// launcher has held back arrive at the end.
 [[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void prepare(int /*count*/,
                                                                       char** /*arguments*/,
                                                                       char** environment) {
@@ -82,6 +90,7 @@ void take_signal(int number) {
     sigaddset(&action.sa_mask, SIGTERM);
     ::sigaction(number, &action, nullptr);
   }
+  change_mask(SIG_UNBLOCK);
 }
 
 [[gnu::used, gnu::section(".preinit_array")]] void (*const early)(int, char**, char**) = prepare;
@@ -100,6 +109,8 @@ SignalPause::~SignalPause() {
   is_paused = 0;
   if (const int number = waiting_signal.exchange(0); number != 0) std::raise(number);
 }
+
+void Interruption::hold_for_next() { change_mask(SIG_BLOCK); }
 
 void Interruption::remove_at_end(const std::string& path) {
   has_file = 0;

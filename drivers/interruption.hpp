@@ -1,4 +1,5 @@
-// SIGINT, SIGTERM and SIGHUP end the program in good order, from its first instruction on.
+// SIGINT, SIGTERM and SIGHUP end the program in good order, from its first instruction on. While
+// its libraries are loaded, the launcher (drivers/launcher) has held them back.
 //
 // A signal ends the process at once with exit code 128 + its number (130, 143, 129). All files are
 // complete at any moment, so no file is left half written. During a time series the first signal is
@@ -21,6 +22,9 @@ class Interruption {
   /// The exit code for the noted signal; 0: no signal.
   static int noted();
   static bool is_asked() { return noted() != 0; }
+
+  /// Holds signals back for the program that takes the place of this one.
+  static void hold_for_next();
 
   /// A file that is removed when a signal ends the process; empty: none.
   static void remove_at_end(const std::string& path);

@@ -11,13 +11,14 @@
 
 #include "commands.hpp"
 #include "installation.hpp"
+#include "interruption.hpp"
 
 namespace samara::drivers {
 namespace {
 
 constexpr char interpreter[] = "/usr/bin/python3";
-/// As "-m samara", but Ctrl-C ends with its code also while modules are loaded: a module in C may
-/// turn it into an error of its own.
+/// As "-m samara", but Ctrl-C ends with its code also while the interpreter starts, when it is held
+/// back, and while modules are loaded: a module in C may turn it into an error of its own.
 constexpr char start[] =
     "import sys\n"
     "asked = []\n"
@@ -26,7 +27,10 @@ constexpr char start[] =
     "    raise KeyboardInterrupt\n"
     "try:\n"
     "    import signal\n"
-    "    signal.signal(signal.SIGINT, stop)\n"
+    "    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:\n"
+    "        signal.signal(signal.SIGINT, stop)\n"
+    "    held = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)\n"
+    "    signal.pthread_sigmask(signal.SIG_UNBLOCK, held)\n"
     "    import runpy\n"
     "    runpy.run_module('samara', run_name='__main__', alter_sys=True)\n"
     "except BaseException as error:\n"
@@ -50,6 +54,7 @@ void run_python(const std::string& command, const std::vector<std::string>& argu
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
+  Interruption::hold_for_next();
   ::execvp(pointers.front(), pointers.data());
   throw InputError(words.front() +
                    " cannot be started; hint: apt install python3, or SAMARA_PYTHON "

@@ -304,6 +304,7 @@ class Process(ProgramTest):
         alone = self.folder / "bin/samara"
         alone.parent.mkdir()
         shutil.copy2(PROGRAM, alone)
+        shutil.copy2(f"{PROGRAM}-program", alone.parent)
         path = self.write("case.yaml", ROTOR % "")
         self.write("law.txt", LAW)
         run = subprocess.run([alone, "transient", path, "-o", "a.h5", *transient(library("pi", "law.txt"))],

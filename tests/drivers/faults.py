@@ -528,14 +528,14 @@ class Touched(FaultTest):
 
 class Signals(FaultTest):
     def send(self, arguments, number, delay):
-        """Sends a signal so long after the program stands; its exit code and what it said."""
+        """Sends a signal so long after the launcher holds signals back; its exit code and what it said."""
         run = self.start(*arguments)
         end = time.monotonic() + LONGEST_RUN
         while run.poll() is None and time.monotonic() < end:
             status = pathlib.Path(f"/proc/{run.pid}/status").read_text(encoding="utf-8")
-            caught = [line.split()[1] for line in status.splitlines() if line.startswith("SigCgt")]
+            held = [line.split()[1] for line in status.splitlines() if line.startswith(("SigBlk", "SigCgt"))]
             name = [line.split()[1] for line in status.splitlines() if line.startswith("Name")]
-            if name == ["samara"] and caught and int(caught[0], 16) >> (number - 1) & 1:
+            if name[0].startswith("samara") and any(int(mask, 16) >> (number - 1) & 1 for mask in held):
                 break
         time.sleep(delay)
         run.send_signal(number)
@@ -564,6 +564,26 @@ class Signals(FaultTest):
                         self.assertTrue(numpy.isfinite(values).all())
                     self.assertFalse([name for name in self.names()
                                       if name.endswith((".tmp", ".lock", ".room"))])
+
+    def test_a_signal_while_libraries_are_loaded_waits_for_them(self):
+        for words in (["trim", "case.yaml", "-o", "x.h5"], ["--version"], ["plot", "x.h5"]):
+            for milliseconds in (5, 10, 20, 40, 60):
+                with self.subTest(words=words, milliseconds=milliseconds):
+                    run = self.start(*words)
+                    time.sleep(1e-3 * milliseconds)
+                    run.send_signal(signal.SIGINT)
+                    error = run.communicate(timeout=LONGEST_RUN)[1]
+                    if (words[0], run.returncode) != ("--version", 0):  # it may have ended
+                        self.assertEqual((run.returncode, error), (130, "samara: interrupted\n"))
+                    self.assertEqual(self.names(), ["case.yaml"])
+
+    def test_a_launcher_without_its_program_says_so(self):
+        alone = self.folder / "samara"
+        shutil.copy2(PROGRAM, alone)
+        run = subprocess.run([alone, "--version"], capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 1)
+        self.assertEqual(run.stderr, f"samara: {alone}-program: No such file or directory; "
+                                     "hint: the program is installed beside samara\n")
 
     def test_other_commands_end_at_once_and_write_nothing(self):
         for command in ("trim", "floquet"):

@@ -48,8 +48,8 @@ class Library(unittest.TestCase):
         text = run(self.built / example)
         return [tuple(map(float, groups)) for groups in re.findall(pattern, text)], text
 
-    def test_the_helper_of_controller_libraries_stands_beside_the_program(self):
-        for name in ("samara", "samara-controller-host"):
+    def test_the_programs_stand_beside_each_other(self):
+        for name in ("samara", "samara-program", "samara-controller-host"):
             self.assertTrue(os.access(self.tree / "bin" / name, os.X_OK), name)
 
     def test_the_installed_program_has_its_templates_and_its_pictures(self):

@@ -84,15 +84,11 @@ class Operate(ProgramTest):
         random.seed(5)
         for _ in range(6):
             (self.folder / "run.h5").unlink(missing_ok=True)
-            before = self.files()
-            moment = random.uniform(0.0, duration)
+            moment = random.uniform(0.02, duration)  # the launcher stands
             with self.subTest(moment=moment):
                 code, _, errors = self.end(signal.SIGINT, seconds=moment)
                 if code == 0:  # it had ended before
                     self.assertEqual(errors, "")
-                elif code == -signal.SIGINT:  # its libraries were still loaded
-                    self.assertEqual(errors, "")
-                    self.assertEqual(self.files(), before)
                 else:
                     self.assertEqual(code, 130, errors)
                     self.assertEqual(len(errors.splitlines()), 1, errors)

@@ -105,7 +105,7 @@ class Packages(unittest.TestCase):
 
     def test_files(self):
         program = self.installed("samara")
-        wanted = {"bin/samara", "bin/samara-controller-host", "share/bash-completion/completions/samara",
+        wanted = {"bin/samara", "bin/samara-program", "bin/samara-controller-host", "share/bash-completion/completions/samara",
                   "share/doc/samara/copyright", "share/doc/samara/changelog.gz"}
         for folder in ("inputs", "templates"):
             wanted |= {f"share/samara/{path.relative_to(SOURCE)}" for path in (SOURCE / folder).rglob("*.yaml")}
