@@ -8,14 +8,14 @@
 #   tests/fuzz/<name>_harness.cpp               -> fuzz_<name>, a little of scripts/fuzz
 #   tests/controllers/<name>.c                  -> libraries of controllers for tests/drivers
 #   tests/dump/                                 -> dump_system, for scripts/compare_trees
-set(samara_program ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/samara)
+set(samara_launcher ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/samara)
 
 # Debian's own interpreter, which has h5py and numpy, whatever else is first in PATH.
 set(SAMARA_PYTHON /usr/bin/python3 CACHE FILEPATH "Python with h5py, numpy and scipy")
 
 set(samara_test_environment
     SAMARA_SOURCE_DIR=${PROJECT_SOURCE_DIR}
-    SAMARA_PROGRAM=${samara_program}
+    SAMARA_PROGRAM=${samara_launcher}
     SAMARA_MPIEXEC=${MPIEXEC_EXECUTABLE}
     SAMARA_PYTHON=${SAMARA_PYTHON}
     SAMARA_CONTROLLERS=${PROJECT_BINARY_DIR}/tests/controllers
@@ -32,7 +32,7 @@ function(samara_add_boost_test target libraries)
   target_link_libraries(${target} PRIVATE ${libraries} Boost::unit_test_framework)
   target_compile_definitions(
     ${target} PRIVATE BOOST_TEST_DYN_LINK SAMARA_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-                      SAMARA_PROGRAM="${samara_program}")
+                      SAMARA_PROGRAM="${samara_launcher}")
 endfunction()
 
 function(samara_add_ctest name label)
@@ -191,6 +191,6 @@ endforeach()
 add_executable(dump_system ${PROJECT_SOURCE_DIR}/tests/dump/dump.cpp)
 target_link_libraries(dump_system PRIVATE samara::io samara_external_files)
 samara_add_scripts(layering tree "")
-if(TARGET samara)
+if(TARGET samara_program)
   samara_add_scripts(drivers program program_)
 endif()

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string_view>
 
+#include <sys/prctl.h>
 #include <unistd.h>
 
 namespace samara::drivers {
@@ -65,7 +66,7 @@ void take_signal(int number) {
   return false;
 }
 
-void change_mask(int how) {
+[[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void change_mask(int how) {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);
@@ -74,7 +75,7 @@ void change_mask(int how) {
 
 /// Called before the libraries start, including a sanitizer's: MPI, PETSc and HDF5 need
 /// milliseconds to start. Signals that the parent process ignores stay ignored. Those that the
-/// launcher has held back arrive at the end.
+/// launcher has held back arrive at the end. Lists of processes have the launcher's name.
 [[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void prepare(int /*count*/,
                                                                       char** /*arguments*/,
                                                                       char** environment) {
@@ -90,6 +91,7 @@ void change_mask(int how) {
     sigaddset(&action.sa_mask, SIGTERM);
     ::sigaction(number, &action, nullptr);
   }
+  ::prctl(PR_SET_NAME, "samara");
   change_mask(SIG_UNBLOCK);
 }
 
@@ -110,7 +112,9 @@ SignalPause::~SignalPause() {
   if (const int number = waiting_signal.exchange(0); number != 0) std::raise(number);
 }
 
-void Interruption::hold_for_next() { change_mask(SIG_BLOCK); }
+void Interruption::hold() { change_mask(SIG_BLOCK); }
+
+void Interruption::release() { change_mask(SIG_UNBLOCK); }
 
 void Interruption::remove_at_end(const std::string& path) {
   has_file = 0;

@@ -23,8 +23,9 @@ class Interruption {
   static int noted();
   static bool is_asked() { return noted() != 0; }
 
-  /// Holds signals back for the program that takes the place of this one.
-  static void hold_for_next();
+  /// Holds signals back for the program that takes the place of this one, until it releases them.
+  static void hold();
+  static void release();
 
   /// A file that is removed when a signal ends the process; empty: none.
   static void remove_at_end(const std::string& path);

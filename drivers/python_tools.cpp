@@ -17,28 +17,30 @@ namespace samara::drivers {
 namespace {
 
 constexpr char interpreter[] = "/usr/bin/python3";
-/// As "-m samara", but Ctrl-C ends with its code also while the interpreter starts, when it is held
-/// back, and while modules are loaded: a module in C may turn it into an error of its own.
+/// As "-m samara", but a signal ends with its code also while the interpreter starts, when it is
+/// held back, and while modules are loaded: a module in C may turn it into an error of its own.
 constexpr char start[] =
     "import sys\n"
     "asked = []\n"
-    "def stop(*_):\n"
-    "    asked.append(True)\n"
+    "def stop(number, _):\n"
+    "    asked.append(number)\n"
     "    raise KeyboardInterrupt\n"
     "try:\n"
     "    import signal\n"
-    "    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:\n"
-    "        signal.signal(signal.SIGINT, stop)\n"
     "    held = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)\n"
+    "    for number in held:\n"
+    "        if signal.getsignal(number) != signal.SIG_IGN:\n"
+    "            signal.signal(number, stop)\n"
     "    signal.pthread_sigmask(signal.SIG_UNBLOCK, held)\n"
     "    import runpy\n"
     "    runpy.run_module('samara', run_name='__main__', alter_sys=True)\n"
     "except BaseException as error:\n"
     "    is_said = isinstance(error, SystemExit) and error.code == 130\n"
-    "    if is_said or not (asked or isinstance(error, KeyboardInterrupt)):\n"
+    "    if not (is_said or asked or isinstance(error, KeyboardInterrupt)):\n"
     "        raise\n"
-    "    sys.stderr.write('samara: interrupted\\n')\n"
-    "    sys.exit(130)\n";
+    "    if not is_said:\n"
+    "        sys.stderr.write('samara: interrupted\\n')\n"
+    "    sys.exit(128 + (asked[0] if asked else signal.SIGINT))\n";
 
 /// Replaces the process by the Python package's command line.
 void run_python(const std::string& command, const std::vector<std::string>& arguments) {
@@ -54,8 +56,9 @@ void run_python(const std::string& command, const std::vector<std::string>& argu
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  Interruption::hold_for_next();
+  Interruption::hold();
   ::execvp(pointers.front(), pointers.data());
+  Interruption::release();
   throw InputError(words.front() +
                    " cannot be started; hint: apt install python3, or SAMARA_PYTHON "
                    "names another interpreter");

@@ -1,7 +1,7 @@
 // The program `samara` as users start it. It holds signals back and becomes `samara-program`, which
-// does the work: the libraries of that program need 60 to 80 ms to load, and a signal in this time
-// would end it without a word (drivers/interruption.hpp). It links the C library alone and stands
-// in a millisecond.
+// does the work: the libraries of that program need 40 ms and more to load, and a signal in this
+// time would end it without a word (drivers/interruption.hpp). It links the C library alone and
+// stands in a millisecond.
 #include <cerrno>
 #include <csignal>
 #include <cstring>

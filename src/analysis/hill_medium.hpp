@@ -28,7 +28,7 @@ class HillMedium {
   HillMedium(const HarmonicTangents& tangents, const Eigen::VectorXd& rows,
              const Eigen::VectorXd& columns);
 
-  /// Whether no rank has groups.
+  /// Whether no rank has parts.
   bool is_empty() const { return is_empty_; }
 
   /// Factors the block for solve(), exact. @returns false where it is singular

@@ -80,14 +80,20 @@ class KrylovSpace {
     Vector in_basis;
     double residual;  ///< relative
   };
-  /// Those next to the shift first.
+  /// Those next to the shift first. The first rank finds them for all.
   std::vector<Pair> pairs() const {
     const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(space_.projected());
+    Eigen::MatrixXcd values = solver.eigenvalues();
+    Eigen::MatrixXcd vectors = solver.eigenvectors();
+    pencil_.ranks().share(0, values);
+    pencil_.ranks().share(0, vectors);
     std::vector<Pair> pairs;
     for (Index i = 0; i < size(); ++i) {
-      const Complex value = solver.eigenvalues()(i);
-      const Vector vector = solver.eigenvectors().col(i);
-      pairs.push_back({value, vector, space_.residual(vector) / std::abs(value)});
+      const Complex value = values(i);
+      const Vector vector = vectors.col(i);
+      double residual = space_.residual(vector) / std::abs(value);
+      pencil_.ranks().share(0, residual);
+      pairs.push_back({value, vector, residual});
     }
     std::ranges::sort(pairs, {}, [](const Pair& pair) { return -std::abs(pair.value); });
     return pairs;

@@ -17,7 +17,11 @@ class Blocks {
       : symmetry_(system.symmetry()),
         size_(block_size),
         is_kept_(static_cast<std::size_t>(system.size() / block_size), 0),
-        is_partly_kept_(is_kept_) {
+        is_partly_kept_(is_kept_),
+        is_of_medium_(is_kept_) {
+    for (std::size_t i = 0; i < system.unknowns().size(); ++i)
+      if (system.unknowns()[i].is_of_medium())
+        is_of_medium_[i / static_cast<std::size_t>(size_)] = 1;
     std::vector<PetscInt> kept(is_kept_.size(), 0);
     for (const PetscInt i : sector.kept) ++kept[static_cast<std::size_t>(i / size_)];
     for (std::size_t block = 0; block < kept.size(); ++block) {
@@ -37,6 +41,7 @@ class Blocks {
   }
 
   const std::vector<char>& kept() const { return is_kept_; }
+  bool is_of_medium(std::size_t block) const { return is_of_medium_[block] != 0; }
   /// Those of which the sector has a part join the border, and all that turn into one of it.
   void complete(std::vector<char>& border) const {
     for (std::size_t block = 0; block < border.size(); ++block)
@@ -83,11 +88,13 @@ class Blocks {
   PetscInt size_;
   std::vector<char> is_kept_;
   std::vector<char> is_partly_kept_;
+  std::vector<char> is_of_medium_;
   std::vector<std::vector<std::size_t>> images_;  ///< empty: the mesh has no sectors
 };
 
-/// Owners of the blocks, whose pieces have equal weights. Blocks behind a cut join the border;
-/// those that are not kept belong to the first rank.
+/// Owners of the blocks, whose pieces have equal weights. Of two blocks that a cut would part, one
+/// joins the border: the one behind the cut, but for blocks of a medium. Blocks that are not kept
+/// belong to the first rank.
 std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pieces,
                      const Blocks& blocks, std::vector<char>& border) {
   const std::vector<char>& kept = blocks.kept();
@@ -111,9 +118,12 @@ std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pie
       if (owners[row] == owners[column] || border[row] || border[column] || !kept[row] ||
           !kept[column])
         continue;
-      const std::size_t behind = std::max(row, column);
-      border[behind] = 1;
-      owners[behind] = system::PeriodicSystem::shared;
+      std::size_t joins = std::max(row, column);
+      if (const std::size_t other = std::min(row, column);
+          blocks.is_of_medium(joins) && !blocks.is_of_medium(other))
+        joins = other;
+      border[joins] = 1;
+      owners[joins] = system::PeriodicSystem::shared;
     }
   return owners;
 }

@@ -12,7 +12,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import LONGEST_RUN, PROGRAM, SOURCE, ProgramTest  # noqa: E402
+from program import LONGEST_RUN, PROGRAM, SOURCE, ProgramTest, wait_until_it_stands  # noqa: E402
 
 LAND = SOURCE / "inputs/nrel5mw/land.yaml"
 WINDS = [6, 8, 9, 11, 12, 14]
@@ -40,6 +40,7 @@ class Operate(ProgramTest):
         """Ends a run after some time and with some points."""
         run = subprocess.Popen([PROGRAM, *map(str, ARGUMENTS)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE)
+        wait_until_it_stands(run)
         time.sleep(seconds)
         until = time.monotonic() + LONGEST_RUN
         while (len(list((self.folder / "run.h5.points").glob("*.h5"))) < points and run.poll() is None
@@ -84,7 +85,7 @@ class Operate(ProgramTest):
         random.seed(5)
         for _ in range(6):
             (self.folder / "run.h5").unlink(missing_ok=True)
-            moment = random.uniform(0.02, duration)  # the launcher stands
+            moment = random.uniform(0.0, duration)
             with self.subTest(moment=moment):
                 code, _, errors = self.end(signal.SIGINT, seconds=moment)
                 if code == 0:  # it had ended before

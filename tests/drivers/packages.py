@@ -80,7 +80,7 @@ class Packages(unittest.TestCase):
 
     def binaries(self):
         found = [path for name in NAMES for path in self.contents(name) if not path.is_symlink() and is_binary(path)]
-        self.assertEqual(len(found), 3)  # program, its helper, library
+        self.assertEqual(len(found), 4)  # program, its launcher and helper, library
         return found
 
     def test_names_versions_and_architectures(self):

@@ -14,7 +14,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
-from program import BASELINE, PROGRAM, SOURCE, ProgramTest  # noqa: E402
+from program import BASELINE, PROGRAM, SOURCE, ProgramTest, wait_until_it_stands  # noqa: E402
 
 os.environ["SAMARA"] = PROGRAM
 sys.path.insert(0, str(SOURCE / "python"))
@@ -100,10 +100,11 @@ class Package(ProgramTest):
             label = next(found for found in names if name in found)
             numpy.testing.assert_array_equal(drawn[label].get_ydata(), own[names.index(label)])
         # While the program and then the interpreter start, while modules are loaded, and while it draws.
-        for delay in (0.02, 0.06, 0.1, 0.12, 0.15, 0.3, 0.6, 1.0):
+        for delay in (0.0, 0.04, 0.08, 0.1, 0.15, 0.3, 0.6, 1.0):
             with self.subTest(delay=delay):
                 run = subprocess.Popen([PROGRAM, "plot", "c.h5", "-o", "late.svg"], cwd=self.folder,
                                        stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+                wait_until_it_stands(run)
                 time.sleep(delay)
                 run.send_signal(signal.SIGINT)
                 error = run.communicate()[1]

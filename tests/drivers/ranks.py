@@ -79,6 +79,26 @@ class Ranks(ProgramTest):
             self.assertLess((abs(exponents - found[0][0]) / abs(found[0][0])).max(), EXPONENTS)
             self.assertEqual(labels, found[0][1])
 
+    def test_a_search_in_wind_on_a_distributed_mesh_finds_the_same(self):
+        """The mesh is that of test_verification_mpi.hill_air, which is distributed."""
+        settings = ["blades.elements=40", f"blades.element_lengths={[1] * 40}", "blades.order=2", "tower.elements=40",
+                    "tower.order=2", "floquet.least_damped=5"]
+        words = [part for setting in settings for part in ("--set", setting)]
+        found = []
+        for ranks in (1, 2):
+            self.succeed("floquet", SOURCE / "inputs/nrel5mw/land.yaml", *words, "-o", "some.h5", ranks=ranks)
+            with h5py.File(self.folder / "some.h5") as file:
+                group = file["/floquet"]
+                self.assertEqual(group.attrs["searched_is_counted"], 1)
+                found.append((group["exponents"][:] @ [1, 1j] / group.attrs["rotor_speed"],
+                              list(group["label"].asstr()[:]),
+                              [group.attrs[f"searched_{end}"] for end in ("from_hz", "to_hz", "decay", "growth")]))
+        self.assertGreaterEqual(len(found[0][0]), 5)
+        self.assertEqual(found[1][1], found[0][1])
+        # Changes of exponents with more harmonics are below 3e-4; on one number of ranks and another they are the same.
+        self.assertLess((abs(found[1][0] - found[0][0]) / numpy.maximum(1, abs(found[0][0]))).max(), 1e-7)
+        numpy.testing.assert_allclose(found[1][2], found[0][2], rtol=1e-3)
+
     def test_a_distributed_trim_has_the_table_of_one_rank(self):
         case = [SOURCE / "inputs/beam/rotating.yaml", "--set", "blades.elements=320", "--set",
                 "blades.order=1", "--set", "gravity=9.81", "--set", "trim.harmonics=3"]

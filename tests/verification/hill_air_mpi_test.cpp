@@ -16,23 +16,23 @@ using namespace samara::test;
 namespace {
 
 /// With enough elements for a distribution over the ranks.
-std::vector<std::string> fine_mesh(const std::string& setting) {
-  const int count = 10 + 35 * ranks();  // a node of a blade has two blocks
+std::vector<std::string> fine_mesh(const std::string& setting, int order = 1) {
+  const int count = (10 + 35 * ranks()) / order;  // a node of a blade has two blocks
   std::string lengths = "1";
   for (int i = 1; i < count; ++i) lengths += ", 1";
   const std::string elements = std::to_string(count);
   return {"blades.elements=" + elements,
           "blades.element_lengths=[" + lengths + "]",
-          "blades.order=1",
+          "blades.order=" + std::to_string(order),
           "tower.elements=" + elements,
-          "tower.order=1",
+          "tower.order=" + std::to_string(order),
           "trim={harmonics: 2}",
           setting};
 }
 
-analysis::MeshPartition divided(const turbine::TurbineSystem& system) {
+analysis::MeshPartition divided(const turbine::TurbineSystem& system, bool keeps_medium = true) {
   analysis::MeshPartition::Limits limits;
-  limits.keeps_medium = true;
+  limits.keeps_medium = keeps_medium;
   return {system, {}, true, PETSC_COMM_WORLD, limits};
 }
 
@@ -41,12 +41,9 @@ std::vector<Complex> sorted(std::vector<Complex> exponents) {
   return exponents;
 }
 
-}  // namespace
-
 /// Oye's wake and stall are states of stations.
-BOOST_AUTO_TEST_CASE(a_rotor_in_wind_has_the_eigenpairs_of_one_rank) {
-  if (ranks() == 1) return;
-  Steady turbine(io::read_case(input_path("nrel5mw/land"), fine_mesh("wind.shear.power=0.2")));
+void require_same(const std::string& setting, int order) {
+  Steady turbine(io::read_case(input_path("nrel5mw/land"), fine_mesh(setting, order)));
   const analysis::PeriodicSolution& solution = turbine.trim.solution;
   const analysis::MeshPartition mesh = divided(turbine.system);
   BOOST_TEST_REQUIRE(on_all_ranks(mesh.is_distributed()));
@@ -84,10 +81,32 @@ BOOST_AUTO_TEST_CASE(a_rotor_in_wind_has_the_eigenpairs_of_one_rank) {
   }
 }
 
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_rotor_in_wind_has_the_eigenpairs_of_one_rank) {
+  if (ranks() > 1) require_same("wind.shear.power=0.2", 1);
+  if (ranks() == 2) require_same("wind.shear.power=0.2", 3);
+}
+
+/// Wherever the cut falls within an element, stations stay in the pieces.
+BOOST_AUTO_TEST_CASE(meshes_in_wind_are_divided) {
+  if (ranks() == 1) return;
+  for (const int order : {1, 2, 3, 5})
+    for (int more = 0; more < order; ++more) {
+      std::vector<std::string> settings = fine_mesh("wind.speed=9", order);
+      const int tower = (10 + 35 * ranks()) / order + more;
+      settings.push_back("tower.elements=" + std::to_string(tower));
+      const io::Case input = io::read_case(input_path("nrel5mw/land"), settings);
+      const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+      BOOST_TEST(on_all_ranks(divided(system).is_distributed()), order << " " << more);
+    }
+}
+
 /// The states of the wake are those of the whole rotor, and stations in all pieces refer to them.
 BOOST_AUTO_TEST_CASE(a_wake_of_the_whole_rotor_is_not_divided) {
   const io::Case input =
       io::read_case(input_path("nrel5mw/land"), fine_mesh("aero.inflow=peters_he"));
   const turbine::TurbineSystem system(model::build_turbine(input.turbine), PETSC_COMM_SELF);
+  BOOST_TEST(on_all_ranks(divided(system, false).is_distributed() == (ranks() > 1)));
   BOOST_TEST(on_all_ranks(!divided(system).is_distributed()));
 }

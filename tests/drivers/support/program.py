@@ -2,8 +2,10 @@
 
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 SOURCE = pathlib.Path(os.environ["SAMARA_SOURCE_DIR"])
@@ -26,6 +28,17 @@ blades:
       inertia: [2e-4, 1e-4, 1e-4]
       stiffness: {EA: 1e8, GA2: 4e7, GA3: 4e7, GJ: 8e3, EI2: 1e4, EI3: 1e4}
 """
+
+
+def wait_until_it_stands(run):
+    """Until the program of a process holds signals back or catches them."""
+    end = time.monotonic() + LONGEST_RUN
+    while run.poll() is None and time.monotonic() < end:
+        status = pathlib.Path(f"/proc/{run.pid}/status").read_text(encoding="utf-8")
+        fields = dict(line.split(":", 1) for line in status.splitlines())
+        if fields["Name"].strip().startswith("samara") and any(
+                int(fields.get(key, "0"), 16) >> (signal.SIGINT - 1) & 1 for key in ("SigBlk", "SigCgt")):
+            return
 
 
 class ProgramTest(unittest.TestCase):
