@@ -130,9 +130,13 @@ constexpr double at_rest = 2e-3;
 constexpr int shape_samples = 24;
 /// Smallest piece of a distributed mesh, in blocks, and more of them for each block at a cut. These
 /// join the border with all harmonics, and smaller meshes are faster with groups of modes on each
-/// rank. (With a medium, searches and counts take most of the time, and gain on all meshes.)
+/// rank. In a medium, searches and counts take most of the time and gain from smaller meshes on,
+/// but a mode has more harmonics.
 constexpr Index least_piece = 150;
 constexpr Index of_cut = 150;
+constexpr Index least_piece_in_medium = 100;
+constexpr Index of_cut_in_medium = 450;
+constexpr Index free_of_cut_in_medium = 3;
 /// Steps a revolution and multipliers of the search for the slowest decays; the factor of steps
 /// where all multipliers were found, but not enough, and that of multipliers; the largest number of
 /// steps, and that of attempts.
@@ -198,9 +202,10 @@ class Analysis {
     MeshPartition::Limits limits;
     limits.is_for_all = true;
     limits.keeps_medium = true;
-    if (!is_constant_ && !has_medium_) {
-      limits.least_piece = least_piece;
-      limits.of_cut = of_cut;
+    if (!is_constant_) {
+      limits.least_piece = has_medium_ ? least_piece_in_medium : least_piece;
+      limits.of_cut = has_medium_ ? of_cut_in_medium : of_cut;
+      limits.free_of_cut = has_medium_ ? free_of_cut_in_medium : 0;
     }
     mesh.emplace(system_, Coordinates{}, !is_constant_, all_ranks_.comm, limits);
     if (!mesh->is_distributed()) mesh.reset();

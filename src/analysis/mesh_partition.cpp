@@ -199,8 +199,9 @@ bool MeshPartition::distribute(const TangentPattern& pattern, const Coordinates&
   if (pieces < (limits.is_for_all ? std::max(ranks_.size, 2) : 2)) return false;
   std::vector<int> owners = cut(pattern, block_size_, pieces, blocks, border);
   const Eigen::Index of_cuts = count(border, 1) - before;
-  if (inner < pieces * limits.least_piece + pieces * limits.of_cut * of_cuts / (pieces - 1))
-    return false;
+  const Eigen::Index of_a_cut =
+      std::max<Eigen::Index>(of_cuts / (pieces - 1) - limits.free_of_cut, 0);
+  if (inner < pieces * (limits.least_piece + limits.of_cut * of_a_cut)) return false;
   if (static_cast<double>(count(border, 1)) >
       largest_border * static_cast<double>(count(blocks.kept(), 1)))
     return false;

@@ -27,6 +27,7 @@ class MeshPartition {
   struct Limits {
     Eigen::Index least_piece = 100;  ///< blocks of a piece, on average
     Eigen::Index of_cut = 0;         ///< more of them for each block that a cut adds to the border
+    Eigen::Index free_of_cut = 0;    ///< but for so many of these
     bool is_for_all = false;         ///< no distribution over some of the ranks
     /// No distribution where unknowns of a medium that refer to each other would not be in one
     /// piece.
