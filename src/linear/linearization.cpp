@@ -1,12 +1,15 @@
 #include "samara/linear/linearization.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <random>
 #include <utility>
 
+#include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
 #include "samara/linear/hill.hpp"
@@ -17,8 +20,12 @@ namespace {
 
 /// Relative; smaller changes with the azimuth are round-off.
 constexpr double constant_tolerance = 1e-9;
-/// Round-off of the largest entry of A above which eigenvalues of A are in doubt [1/s].
-constexpr double largest_round_off = 1e-3;
+/// Round-off of the largest entry of A below which eigenvalues of A are not in doubt.
+constexpr double least_round_off = 1e-3;
+/// Change of an eigenvalue by round-off that is noted, relative to it or to a slow one [1/s].
+constexpr double largest_change = 1e-4;
+constexpr double slowest = 0.1;
+constexpr int samples_of_round_off = 4;
 
 std::vector<std::string> function_names(int harmonics) {
   std::vector<std::string> names{"mean "};
@@ -175,18 +182,36 @@ class Linearizer {
           static_cast<std::size_t>(own + AzimuthSeries::comparisons));
   }
 
-  /// Eigenvalues in double precision have at least the round-off of the largest entry.
+  /// Notes where changes of A by round-off, of each entry, change an eigenvalue.
   void note_round_off() const {
-    double largest = 0.0;
-    for (const StateSpace& form : periodic_.series.samples())
-      largest = std::max(largest, form.A.cwiseAbs().maxCoeff());
-    const double round_off = std::numeric_limits<double>::epsilon() * largest;
-    if (round_off > largest_round_off)
-      observer_.note("note: the largest entry of A is " + general(largest, 2) +
-                     ": eigenvalues of A in double precision may be wrong by " +
-                     general(round_off, 1) +
-                     " 1/s or more; hint: samara modes and samara floquet do not use A; a motion "
-                     "has little inertia for its stiffness or damping (hub.inertia, inertia of "
+    constexpr double round_off = std::numeric_limits<double>::epsilon();
+    const Eigen::MatrixXd& A = periodic_.series.samples().front().A;
+    const double largest = A.cwiseAbs().maxCoeff();
+    if (round_off * largest < least_round_off) return;
+    const std::vector<std::complex<double>> own = analysis::dense_eigenvalues(A);
+    std::mt19937_64 generator(1);
+    double most = 0.0;
+    double modulus = 0.0;
+    for (int sample = 0; sample < samples_of_round_off; ++sample) {
+      Eigen::MatrixXd changed = A;
+      for (double& entry : changed.reshaped())
+        entry *= generator() % 2 == 0 ? 1.0 + round_off : 1.0 - round_off;
+      const std::vector<std::complex<double>> others = analysis::dense_eigenvalues(changed);
+      for (const std::complex<double> one : own) {
+        double change = std::numeric_limits<double>::infinity();
+        for (const std::complex<double> other : others)
+          change = std::min(change, std::abs(other - one));
+        change /= std::max(std::abs(one), slowest);
+        if (change > most) modulus = std::abs(one);
+        most = std::max(most, change);
+      }
+    }
+    if (most > largest_change)
+      observer_.note("note: round-off of A, whose largest entry is " + general(largest, 2) +
+                     ", changes its eigenvalues by up to " + general(100.0 * most, 2) +
+                     " % (that of modulus " + general(modulus, 3) +
+                     " 1/s); hint: samara modes and samara floquet do not use A; a motion has "
+                     "little inertia for its stiffness or damping (hub.inertia, inertia of "
                      "sections)");
   }
 
