@@ -3,11 +3,11 @@
 // time would end it without a word (drivers/interruption.hpp). It links the C library alone and
 // stands in a millisecond.
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstring>
 #include <initializer_list>
 
-#include <limits.h>
 #include <unistd.h>
 
 namespace {
