@@ -40,7 +40,9 @@ constexpr char start[] =
     "        raise\n"
     "    if not is_said:\n"
     "        sys.stderr.write('samara: interrupted\\n')\n"
-    "    sys.exit(128 + (asked[0] if asked else signal.SIGINT))\n";
+    "    sys.exit(128 + (asked[0] if asked else signal.SIGINT))\n"
+    "finally:\n"  // the work is done, and the interpreter has no handlers while it ends
+    "    signal.pthread_sigmask(signal.SIG_BLOCK, held)\n";
 
 /// Replaces the process by the Python package's command line.
 void run_python(const std::string& command, const std::vector<std::string>& arguments) {

@@ -99,6 +99,14 @@ class Package(ProgramTest):
         for name in ("tower fore-aft", "blade flap symmetric"):
             label = next(found for found in names if name in found)
             numpy.testing.assert_array_equal(drawn[label].get_ydata(), own[names.index(label)])
+        # Pictures are drawn whatever becomes of the lines that name them.
+        for end, code, said in ((">/dev/full", 1, "samara: standard output cannot be written\n"),
+                                (">&-", 1, "samara: standard output cannot be written\n"),
+                                ("| true; exit ${PIPESTATUS[0]}", 141, "")):
+            done = subprocess.run(["bash", "-c", f"{PROGRAM} plot c.h5 -o said.svg {end}"], cwd=self.folder,
+                                  capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stderr), (code, said), end)
+            (self.folder / "said.svg").unlink()
         # While the program and then the interpreter start, while modules are loaded, and while it draws.
         for delay in (0.0, 0.04, 0.08, 0.1, 0.15, 0.3, 0.6, 1.0):
             with self.subTest(delay=delay):
