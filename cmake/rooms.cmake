@@ -40,6 +40,7 @@ function(samara_add_program)
   target_include_directories(samara_controller_host PRIVATE ${PROJECT_SOURCE_DIR}/include)
   target_link_libraries(samara_controller_host PRIVATE ${CMAKE_DL_LIBS})
   add_executable(samara ${PROJECT_SOURCE_DIR}/drivers/launcher/launcher.cpp)
+  target_include_directories(samara PRIVATE ${PROJECT_SOURCE_DIR}/drivers)
   if(SAMARA_SANITIZE)  # whose library would need milliseconds to start
     target_compile_options(samara PRIVATE -fno-sanitize=all)
     target_link_options(samara PRIVATE -fno-sanitize=all)

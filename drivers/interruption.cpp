@@ -10,6 +10,8 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include "held_signals.hpp"
+
 namespace samara::drivers {
 namespace {
 
@@ -66,13 +68,6 @@ void take_signal(int number) {
   return false;
 }
 
-[[gnu::no_sanitize_address, gnu::no_sanitize_undefined]] void change_mask(int how) {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);
-  ::sigprocmask(how, &signals, nullptr);
-}
-
 /// Called before the libraries start, including a sanitizer's: MPI, PETSc and HDF5 need
 /// milliseconds to start. Signals that the parent process ignores stay ignored. Those that the
 /// launcher has held back arrive at the end. Lists of processes have the launcher's name.
@@ -92,7 +87,7 @@ void take_signal(int number) {
     ::sigaction(number, &action, nullptr);
   }
   ::prctl(PR_SET_NAME, "samara");
-  change_mask(SIG_UNBLOCK);
+  change_held_signals(SIG_UNBLOCK);
 }
 
 [[gnu::used, gnu::section(".preinit_array")]] void (*const early)(int, char**, char**) = prepare;
@@ -112,9 +107,9 @@ SignalPause::~SignalPause() {
   if (const int number = waiting_signal.exchange(0); number != 0) std::raise(number);
 }
 
-void Interruption::hold() { change_mask(SIG_BLOCK); }
+void Interruption::hold() { change_held_signals(SIG_BLOCK); }
 
-void Interruption::release() { change_mask(SIG_UNBLOCK); }
+void Interruption::release() { change_held_signals(SIG_UNBLOCK); }
 
 void Interruption::remove_at_end(const std::string& path) {
   has_file = 0;

@@ -6,9 +6,10 @@
 #include <climits>
 #include <csignal>
 #include <cstring>
-#include <initializer_list>
 
 #include <unistd.h>
+
+#include "held_signals.hpp"
 
 namespace {
 
@@ -19,10 +20,7 @@ void say(const char* text) {
 }  // namespace
 
 int main(int /*count*/, char** arguments) {
-  sigset_t held;
-  sigemptyset(&held);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, number);
-  ::sigprocmask(SIG_BLOCK, &held, nullptr);
+  samara::drivers::change_held_signals(SIG_BLOCK);
   constexpr char ending[] = "-program";
   char path[PATH_MAX + sizeof ending];
   const ssize_t length = ::readlink("/proc/self/exe", path, PATH_MAX);

@@ -128,20 +128,17 @@ std::vector<int> cut(const TangentPattern& pattern, PetscInt block_size, int pie
   return owners;
 }
 
-/// Whether some unknowns of a medium that refer to each other are not in one piece.
-bool parts_medium(const system::PeriodicSystem& system, const TangentPattern& pattern,
+/// Whether some blocks of a medium that refer to each other are not in one piece.
+bool parts_medium(const TangentPattern& pattern, PetscInt block_size, const Blocks& blocks,
                   const std::vector<int>& owners) {
-  const auto is_of_medium = [&](PetscInt i) {
-    return system.unknowns()[static_cast<std::size_t>(i)].is_of_medium();
-  };
   for (PetscInt i = 0; i < static_cast<PetscInt>(pattern.rows()); ++i) {
-    if (!is_of_medium(i)) continue;
-    const int owner = owners[static_cast<std::size_t>(i)];
-    if (owner == system::PeriodicSystem::shared) return true;
-    for (TangentPattern::InnerIterator it(pattern, i); it; ++it)
-      if (is_of_medium(static_cast<PetscInt>(it.col())) &&
-          owners[static_cast<std::size_t>(it.col())] != owner)
-        return true;
+    const auto row = static_cast<std::size_t>(i / block_size);
+    if (!blocks.is_of_medium(row)) continue;
+    if (owners[row] == system::PeriodicSystem::shared) return true;
+    for (TangentPattern::InnerIterator it(pattern, i); it; ++it) {
+      const auto column = static_cast<std::size_t>(it.col() / block_size);
+      if (blocks.is_of_medium(column) && owners[column] != owners[row]) return true;
+    }
   }
   return false;
 }
@@ -209,10 +206,10 @@ bool MeshPartition::distribute(const TangentPattern& pattern, const Coordinates&
   for (std::size_t block = 0; block < border.size(); ++block)
     if (border[block]) owners[block] = system::PeriodicSystem::shared;
   if (!blocks.spread(owners)) return false;
+  if (limits.keeps_medium && parts_medium(pattern, block_size_, blocks, owners)) return false;
   std::vector<int> of_unknowns(static_cast<std::size_t>(whole_.size()));
   for (std::size_t i = 0; i < of_unknowns.size(); ++i)
     of_unknowns[i] = owners[i / static_cast<std::size_t>(block_size_)];
-  if (limits.keeps_medium && parts_medium(whole_, pattern, of_unknowns)) return false;
   part_ = whole_.part_of(ranks_.rank, of_unknowns);
   if (!part_) return false;
   is_border_ = std::move(border);

@@ -20,12 +20,39 @@ namespace {
 
 /// Relative; smaller changes with the azimuth are round-off.
 constexpr double constant_tolerance = 1e-9;
+constexpr double round_off = std::numeric_limits<double>::epsilon();
 /// Round-off of the largest entry of A below which eigenvalues of A are not in doubt.
 constexpr double least_round_off = 1e-3;
 /// Change of an eigenvalue by round-off that is noted, relative to it or to a slow one [1/s].
 constexpr double largest_change = 1e-4;
 constexpr double slowest = 0.1;
 constexpr int samples_of_round_off = 4;
+
+struct EigenvalueChange {
+  double relative = 0.0;
+  double modulus = 0.0;  ///< [1/s]
+};
+
+/// The largest change of an eigenvalue of A where each entry changes by its round-off, up or down.
+EigenvalueChange change_by_round_off(const Eigen::MatrixXd& A) {
+  const std::vector<std::complex<double>> own = analysis::dense_eigenvalues(A);
+  std::mt19937_64 generator(1);
+  EigenvalueChange most;
+  for (int sample = 0; sample < samples_of_round_off; ++sample) {
+    Eigen::MatrixXd changed = A;
+    for (double& entry : changed.reshaped())
+      entry *= generator() % 2 == 0 ? 1.0 + round_off : 1.0 - round_off;
+    const std::vector<std::complex<double>> others = analysis::dense_eigenvalues(changed);
+    for (const std::complex<double> one : own) {
+      double change = std::numeric_limits<double>::infinity();
+      for (const std::complex<double> other : others)
+        change = std::min(change, std::abs(other - one));
+      change /= std::max(std::abs(one), slowest);
+      if (change > most.relative) most = {change, std::abs(one)};
+    }
+  }
+  return most;
+}
 
 std::vector<std::string> function_names(int harmonics) {
   std::vector<std::string> names{"mean "};
@@ -182,34 +209,16 @@ class Linearizer {
           static_cast<std::size_t>(own + AzimuthSeries::comparisons));
   }
 
-  /// Notes where changes of A by round-off, of each entry, change an eigenvalue.
+  /// Notes where round-off of A changes an eigenvalue.
   void note_round_off() const {
-    constexpr double round_off = std::numeric_limits<double>::epsilon();
     const Eigen::MatrixXd& A = periodic_.series.samples().front().A;
     const double largest = A.cwiseAbs().maxCoeff();
     if (round_off * largest < least_round_off) return;
-    const std::vector<std::complex<double>> own = analysis::dense_eigenvalues(A);
-    std::mt19937_64 generator(1);
-    double most = 0.0;
-    double modulus = 0.0;
-    for (int sample = 0; sample < samples_of_round_off; ++sample) {
-      Eigen::MatrixXd changed = A;
-      for (double& entry : changed.reshaped())
-        entry *= generator() % 2 == 0 ? 1.0 + round_off : 1.0 - round_off;
-      const std::vector<std::complex<double>> others = analysis::dense_eigenvalues(changed);
-      for (const std::complex<double> one : own) {
-        double change = std::numeric_limits<double>::infinity();
-        for (const std::complex<double> other : others)
-          change = std::min(change, std::abs(other - one));
-        change /= std::max(std::abs(one), slowest);
-        if (change > most) modulus = std::abs(one);
-        most = std::max(most, change);
-      }
-    }
-    if (most > largest_change)
+    const EigenvalueChange most = change_by_round_off(A);
+    if (most.relative > largest_change)
       observer_.note("note: round-off of A, whose largest entry is " + general(largest, 2) +
-                     ", changes its eigenvalues by up to " + general(100.0 * most, 2) +
-                     " % (that of modulus " + general(modulus, 3) +
+                     ", changes its eigenvalues by up to " + general(100.0 * most.relative, 2) +
+                     " % (that of modulus " + general(most.modulus, 3) +
                      " 1/s); hint: samara modes and samara floquet do not use A; a motion has "
                      "little inertia for its stiffness or damping (hub.inertia, inertia of "
                      "sections)");
