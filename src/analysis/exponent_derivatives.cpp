@@ -49,25 +49,62 @@ bool is_single(const Eigen::VectorXcd& exponents, Index i, double speed) {
   return true;
 }
 
+/// Times that the tangents are sampled with a medium, each time between the instants before.
+/// Curves of airfoils have kinks in their second derivatives, and tangents differentiated by a
+/// number have them in time: what these leave in a derivative falls with the second power of the
+/// number of samples.
+constexpr int passes_in_medium = 8;
+/// Columns that are multiplied together.
+constexpr Index columns_at_once = 8;
+
 /// A mode as an eigenpair next to its own harmonic.
 struct Start {
   HillPair pair;
+  HillPair before;   ///< with fewer harmonics
   int harmonic = 0;  ///< of the mode, from the exponent of the pair
-  double change = std::numeric_limits<double>::quiet_NaN();  ///< of the exponent, the last one
 };
+
+/// The coefficients of vectors of one pencil in those of another with as many or more harmonics.
+Matrix with_harmonics(const Matrix& vectors, Index width, Index wanted) {
+  const Index unknowns = vectors.rows() / width;
+  Matrix result = Matrix::Zero(unknowns * wanted, vectors.cols());
+  for (Index i = 0; i < unknowns; ++i)
+    result.middleRows(i * wanted + (wanted - width) / 2, width) =
+        vectors.middleRows(i * width, width);
+  return result;
+}
+
+void append(Matrix& to, const Matrix& columns) {
+  to.conservativeResize(columns.rows(), to.cols() + columns.cols());
+  to.rightCols(columns.cols()) = columns;
+}
+
+/// The inverse of with_harmonics(), of the harmonics that the other pencil has.
+Matrix without_harmonics(const Matrix& vectors, Index width, Index wanted) {
+  const Index unknowns = vectors.rows() / width;
+  Matrix result(unknowns * wanted, vectors.cols());
+  for (Index i = 0; i < unknowns; ++i)
+    result.middleRows(i * wanted, wanted) =
+        vectors.middleRows(i * width + (width - wanted) / 2, wanted);
+  return result;
+}
 
 }  // namespace
 
 /// Eigenpairs of all modes, each in a pencil with as many harmonics as it needs.
 class ExponentDerivatives::Basis {
  public:
-  /// Neighbouring eigenpairs.
-  struct Group {
+  /// Neighbouring eigenpairs of a pencil.
+  struct Subspace {
     std::size_t level = 0;             ///< of its pencil
     std::vector<std::size_t> members;  ///< numbers of starts; beyond them: a conjugate
     Matrix X, T, mass;
     Matrix vectors;              ///< eigenvectors of T
     Eigen::VectorXcd exponents;  ///< eigenvalues of T
+  };
+  /// With the last number of harmonics, and with the one before.
+  struct Group {
+    Subspace now, before;
   };
 
   Basis(const system::PeriodicSystem& system, const PeriodicSolution& solution, const ModeSet& set,
@@ -85,6 +122,22 @@ class ExponentDerivatives::Basis {
   HillPencil& pencil(std::size_t level) { return *pencils_[level]; }
   std::size_t levels() const { return pencils_.size(); }
   const std::vector<Group>& groups() const { return groups_; }
+  /// The subspaces of a level.
+  struct Place {
+    std::size_t group = 0;
+    bool is_now = true;
+  };
+  std::vector<Place> places(std::size_t level) const {
+    std::vector<Place> places;
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (const bool is_now : {true, false})
+        if (subspace({g, is_now}).level == level) places.push_back({g, is_now});
+    return places;
+  }
+  const Subspace& subspace(const Place& place) const {
+    const Group& group = groups_[place.group];
+    return place.is_now ? group.now : group.before;
+  }
   const std::vector<Start>& starts() const { return starts_; }
   double speed() const { return pencils_.front()->speed(); }
 
@@ -99,7 +152,7 @@ class ExponentDerivatives::Basis {
   /// rest or without a shape.
   Start start_of(const ModeSet& set, std::size_t m) const {
     const Mode& mode = set.modes[m];
-    Start start{{mode.exponent, {}}, 0};
+    Start start{{mode.exponent, {}}, {}, 0};
     if (set.shapes[m].size() == 0 || std::abs(mode.exponent) < zero_exponent * speed())
       return start;
     const int harmonics = harmonics_of_samples(set.shape_times.size(), most_start_harmonics);
@@ -114,7 +167,7 @@ class ExponentDerivatives::Basis {
           (pencil().series_of(pencil().vector_of(copy)) - copy).norm() / copy.norm();
       if (missing >= least) continue;
       least = missing;
-      start = {{mode.exponent + Complex(0.0, shift * speed()), copy}, -shift};
+      start = {{mode.exponent + Complex(0.0, shift * speed()), copy}, {}, -shift};
     }
     return start;
   }
@@ -131,6 +184,7 @@ class ExponentDerivatives::Basis {
     const double wanted = pencil().has_medium() ? wanted_in_medium : wanted_change;
     std::vector<Complex> before(starts_.size(), std::numeric_limits<double>::infinity());
     while (true) {
+      for (const std::size_t i : active) starts_[i].before = starts_[i].pair;
       refine_once(active);
       const bool is_last = pencil().harmonics() >= most_harmonics;
       std::vector<std::size_t> left;
@@ -146,11 +200,9 @@ class ExponentDerivatives::Basis {
         }
         if (change > wanted && !is_last)
           left.insert(left.end(), group.begin(), group.end());
-        else if (change <= largest_change && distance <= largest_distance) {
-          for (const std::size_t i : group)
-            starts_[i].change = change * unit_of_change(starts_[i].pair.exponent, speed());
-          add_group(group);
-        }
+        else if (change <= largest_change && distance <= largest_distance)
+          groups_.push_back({subspace_of(group, &Start::pair, pencils_.size() - 1),
+                             subspace_of(group, &Start::before, pencils_.size() - 2)});
       }
       active = left;
       if (active.empty()) return;
@@ -182,7 +234,7 @@ class ExponentDerivatives::Basis {
   void refine_once(const std::vector<std::size_t>& active) {
     HillRefinement refinement(pencil());
     for (const std::vector<std::size_t>& numbers : groups_among(active)) {
-      std::vector<HillPair> pairs = pairs_of(numbers);
+      std::vector<HillPair> pairs = pairs_of(numbers, &Start::pair);
       refinement.refine(pairs, pair_tolerance);
       // Eigenpairs come in any order: each mode takes the one that it resembles most.
       for (const std::size_t i : numbers) starts_[i].pair = closest(starts_[i].pair, pairs);
@@ -190,9 +242,10 @@ class ExponentDerivatives::Basis {
   }
 
   /// Those of a group, with the conjugates of slow ones.
-  std::vector<HillPair> pairs_of(const std::vector<std::size_t>& numbers) const {
+  std::vector<HillPair> pairs_of(const std::vector<std::size_t>& numbers,
+                                 HillPair Start::*which) const {
     std::vector<HillPair> pairs;
-    for (const std::size_t i : numbers) pairs.push_back(starts_[i].pair);
+    for (const std::size_t i : numbers) pairs.push_back(starts_[i].*which);
     return groups_of(pairs, speed()).front().pairs;
   }
 
@@ -204,21 +257,23 @@ class ExponentDerivatives::Basis {
     return *std::ranges::max_element(pairs, {}, likeness);
   }
 
-  void add_group(const std::vector<std::size_t>& numbers) {
-    const std::vector<HillPair> pairs = pairs_of(numbers);
+  Subspace subspace_of(const std::vector<std::size_t>& numbers, HillPair Start::*which,
+                       std::size_t level) {
+    HillPencil& own = pencil(level);
+    const std::vector<HillPair> pairs = pairs_of(numbers, which);
     const auto count = static_cast<Index>(pairs.size());
-    Group group;
-    group.level = pencils_.size() - 1;
+    Subspace group;
+    group.level = level;
     group.members.assign(pairs.size(), starts_.size());
-    Matrix X(pencil().size(), count);
+    Matrix X(own.size(), count);
     Matrix T = Matrix::Zero(count, count);
     for (Index j = 0; j < count; ++j) {
       const HillPair& pair = pairs[static_cast<std::size_t>(j)];
-      X.col(j) = pencil().vector_of(pair.series).normalized();
+      X.col(j) = own.vector_of(pair.series).normalized();
       T(j, j) = pair.exponent;
       // A conjugate is no member.
       for (const std::size_t i : numbers)
-        if (starts_[i].pair.exponent == pair.exponent &&
+        if ((starts_[i].*which).exponent == pair.exponent &&
             std::ranges::find(group.members, i) == group.members.end()) {
           group.members[static_cast<std::size_t>(j)] = i;
           break;
@@ -232,8 +287,8 @@ class ExponentDerivatives::Basis {
     group.exponents = T.diagonal();
     group.T = group.vectors * T * group.vectors.inverse();
     group.mass.resize(group.X.rows(), count);
-    pencil().multiply_mass(group.X, group.mass);
-    groups_.push_back(std::move(group));
+    own.multiply_mass(group.X, group.mass);
+    return group;
   }
 
   const system::PeriodicSystem& system_;
@@ -262,55 +317,115 @@ ExponentDerivatives::Residuals ExponentDerivatives::residuals(const system::Peri
   Basis& own = basis(by_sector);
   Residuals residuals;
   residuals.by_sector = by_sector;
-  std::vector<std::unique_ptr<HillPencil>> pencils(own.levels());
-  for (const Basis::Group& group : own.groups()) {
-    std::unique_ptr<HillPencil>& pencil = pencils[group.level];
-    if (!pencil) {
-      HillPencil& reference = own.pencil(group.level);
-      pencil = std::make_unique<HillPencil>(other, solution, reference.harmonics(), by_sector);
-      pencil->take_scales(reference);
+  const HillPencil& last = own.pencil(own.levels() - 1);
+  HillPencil pencil(other, solution, last.harmonics(), by_sector, true);
+  residuals.speed = pencil.speed();
+  // The motions of each level and their residuals, with the harmonics of the last one.
+  struct Level {
+    Matrix X, W;  ///< A X + B W
+    Matrix of_all, of_half;
+  };
+  std::vector<Level> levels;
+  for (std::size_t level = 0; level < own.levels(); ++level) {
+    const Index width = own.pencil(level).width();
+    Matrix X, W;
+    for (const Basis::Place& place : own.places(level)) {
+      const Basis::Subspace& subspace = own.subspace(place);
+      append(X, subspace.X);
+      append(W, subspace.X * subspace.T);
     }
-    residuals.speed = pencil->speed();
-    Matrix product(group.X.rows(), group.X.cols());
-    pencil->multiply(group.X, group.X * group.T, product);
-    residuals.groups.push_back(std::move(product));
+    const Matrix none = Matrix::Zero(pencil.size(), X.cols());
+    levels.push_back({with_harmonics(X, width, pencil.width()),
+                      with_harmonics(W, width, pencil.width()), none, none});
+  }
+  const int passes = pencil.has_medium() ? passes_in_medium : 1;
+  Matrix product;
+  for (int pass = 0; pass < passes; ++pass) {
+    if (pass > 0) pencil.sample(solution, static_cast<double>(pass) / passes);
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+      pencil.take_scales(own.pencil(level));
+      auto& [X, W, of_all, of_half] = levels[level];
+      for (Index first = 0; first < X.cols(); first += columns_at_once) {
+        const Index count = std::min(columns_at_once, X.cols() - first);
+        product.resize(X.rows(), count);
+        pencil.multiply(X.middleCols(first, count), W.middleCols(first, count), product);
+        pencil.drop_deferred(product);
+        of_all.middleCols(first, count) += product / passes;
+        if (pass % 2 == 0) of_half.middleCols(first, count) += 2.0 * product / passes;
+      }
+    }
+  }
+  residuals.groups.resize(own.groups().size());
+  residuals.before.resize(own.groups().size());
+  if (pencil.has_medium()) residuals.of_half.resize(own.groups().size());
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    Index first = 0;
+    for (const auto& [group, is_now] : own.places(level)) {
+      const Index count = own.subspace({group, is_now}).X.cols();
+      const auto part = [&](const Matrix& all) {
+        return without_harmonics(all.middleCols(first, count), pencil.width(),
+                                 own.pencil(level).width());
+      };
+      (is_now ? residuals.groups : residuals.before)[group] = part(levels[level].of_all);
+      if (is_now && pencil.has_medium()) residuals.of_half[group] = part(levels[level].of_half);
+      first += count;
+    }
   }
   return residuals;
 }
 
-Eigen::VectorXd ExponentDerivatives::last_changes(bool by_sector) {
-  const std::vector<Start>& starts = basis(by_sector).starts();
-  Eigen::VectorXd changes(static_cast<Index>(starts.size()));
-  for (std::size_t m = 0; m < starts.size(); ++m) changes(static_cast<Index>(m)) = starts[m].change;
-  return changes;
-}
-
-Eigen::MatrixXcd ExponentDerivatives::derivatives(const std::vector<Residuals>& rates) {
+std::vector<ExponentDerivatives::Derivatives> ExponentDerivatives::derivatives(
+    const std::vector<Residuals>& rates) {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  Matrix result = Matrix::Constant(static_cast<Index>(set_.modes.size()),
-                                   static_cast<Index>(rates.size()), Complex(none, none));
+  const auto count = static_cast<Index>(set_.modes.size());
+  std::vector<Derivatives> result(
+      rates.size(),
+      {Eigen::VectorXcd::Constant(count, Complex(none, none)), Eigen::VectorXd::Zero(count)});
   for (const bool by_sector : {true, false}) {
     if (std::ranges::none_of(
             rates, [by_sector](const Residuals& one) { return one.by_sector == by_sector; }))
       continue;
     Basis& own = basis(by_sector);
+    const double speed = own.speed();
+    // Of the members of a group, from a residual.
+    const auto find = [&](HillBorderedSolver& solver, const Basis::Subspace& subspace,
+                          const Matrix& rate) {
+      // In the basis of the eigenvectors, T is diagonal; the diagonal of its change is that of
+      // the exponents, where these are different.
+      const Matrix change = subspace.vectors.inverse() * solver.solve(-rate).D * subspace.vectors;
+      Eigen::VectorXcd found = Eigen::VectorXcd::Constant(count, Complex(none, none));
+      for (std::size_t j = 0; j < subspace.members.size(); ++j) {
+        const auto at = static_cast<Index>(j);
+        const auto member = static_cast<Index>(subspace.members[j]);
+        if (member < count && is_single(subspace.exponents, at, speed))
+          found(member) = change(at, at);
+      }
+      return found;
+    };
+    const auto solver_of = [&](const Basis::Subspace& subspace) {
+      return HillBorderedSolver(own.pencil(subspace.level), subspace.X, subspace.T, subspace.mass,
+                                solve_accuracy);
+    };
     for (std::size_t g = 0; g < own.groups().size(); ++g) {
       const Basis::Group& group = own.groups()[g];
-      HillBorderedSolver solver(own.pencil(group.level), group.X, group.T, group.mass,
-                                solve_accuracy);
+      HillBorderedSolver now = solver_of(group.now);
+      HillBorderedSolver before = solver_of(group.before);
       for (std::size_t p = 0; p < rates.size(); ++p) {
-        if (rates[p].by_sector != by_sector) continue;
-        // In the basis of the eigenvectors, T is diagonal; the diagonal of its change is that of
-        // the exponents, where these are different.
-        const Matrix change =
-            group.vectors.inverse() * solver.solve(-rates[p].groups[g]).D * group.vectors;
-        for (std::size_t j = 0; j < group.members.size(); ++j) {
-          const auto at = static_cast<Index>(j);
-          const std::size_t member = group.members[j];
-          if (member >= set_.modes.size() || !is_single(group.exponents, at, own.speed())) continue;
-          result(static_cast<Index>(member), static_cast<Index>(p)) =
-              change(at, at) + Complex(0.0, own.starts()[member].harmonic * rates[p].speed);
+        const Residuals& rate = rates[p];
+        if (rate.by_sector != by_sector) continue;
+        const Eigen::VectorXcd found = find(now, group.now, rate.groups[g]);
+        for (const std::size_t member : group.now.members) {
+          const auto m = static_cast<Index>(member);
+          if (m >= count || std::isnan(found(m).real())) continue;
+          result[p].values(m) = found(m) + Complex(0.0, own.starts()[member].harmonic * rate.speed);
         }
+        const auto add_errors = [&](const Eigen::VectorXcd& other) {
+          for (const std::size_t member : group.now.members)
+            if (const auto m = static_cast<Index>(member); m < count)
+              result[p].errors(m) += std::abs(found(m) - other(m));
+        };
+        if (!rate.of_half.empty()) add_errors(find(now, group.now, rate.of_half[g]));
+        if (!rate.before.empty()) add_errors(find(before, group.before, rate.before[g]));
       }
     }
   }
@@ -319,11 +434,18 @@ Eigen::MatrixXcd ExponentDerivatives::derivatives(const std::vector<Residuals>& 
 
 ExponentDerivatives::Residuals combine(double a, const ExponentDerivatives::Residuals& R, double b,
                                        const ExponentDerivatives::Residuals& S) {
-  ExponentDerivatives::Residuals sum;
+  using Residuals = ExponentDerivatives::Residuals;
+  Residuals sum;
   sum.by_sector = R.by_sector;
   sum.speed = a * R.speed + b * S.speed;
-  for (std::size_t g = 0; g < R.groups.size(); ++g)
-    sum.groups.push_back(a * R.groups[g] + b * S.groups[g]);
+  const auto add = [a, b](const Residuals::Groups& r, const Residuals::Groups& s) {
+    Residuals::Groups groups;
+    for (std::size_t g = 0; g < r.size(); ++g) groups.push_back(a * r[g] + b * s[g]);
+    return groups;
+  };
+  sum.groups = add(R.groups, S.groups);
+  sum.of_half = add(R.of_half, S.of_half);
+  sum.before = add(R.before, S.before);
   return sum;
 }
 

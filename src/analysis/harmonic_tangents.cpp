@@ -58,7 +58,7 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t, int samp
 }
 
 HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, int harmonics,
-                                   bool by_sector)
+                                   bool by_sector, bool may_defer)
     : system_(system),
       harmonics_(harmonics),
       width_(2 * harmonics + 1),
@@ -66,6 +66,7 @@ HarmonicTangents::HarmonicTangents(const system::PeriodicSystem& system, int har
       sector_(static_cast<PetscInt>(system.size())) {
   TangentPattern whole = find_pattern(system, {});
   if (by_sector) sector_ = RotorSector(system, whole, block_size_);
+  repeats_ = may_defer && sector_.sectors > 1;
   mark_border(find_border(whole, block_size_, {}));
   make_map(whole);
 }
@@ -106,24 +107,28 @@ void HarmonicTangents::make_map(TangentPattern& whole) {
     pattern_.resize(size_, size_);
     pattern_.setFromTriplets(places.begin(), places.end());
   }
-  const int samples = sample_count(system_, harmonics_);
-  values_of_.resize(samples, width_);
-  projection_.resize(width_, samples);
-  to_series_.resize(2 * width_, samples);
-  for (int k = 0; k < samples; ++k) {
-    const double t = period() * k / samples;
-    values_of_.row(k) = PeriodicSolution::basis(harmonics_, period(), t);
-    projection_.col(k) = fourier_weights(harmonics_, period(), t, samples);
-    for (int m = 0; m < width_; ++m) {
-      const double angle = 2.0 * std::numbers::pi * m * k / samples;
-      to_series_(m, k) = std::cos(angle) / samples;
-      to_series_(width_ + m, k) = -std::sin(angle) / samples;
-    }
-  }
-  sampled_.resize(2 * samples, pattern_.nonZeros());
+  sampled_.resize(2 * Eigen::Index{sample_count(system_, harmonics_)}, pattern_.nonZeros());
+  set_instants(0.0);
   for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i)
     for (PetscInt e = pattern_.outerIndexPtr()[i]; e < pattern_.outerIndexPtr()[i + 1]; ++e)
       places_.push_back({i, pattern_.innerIndexPtr()[e], e});
+}
+
+void HarmonicTangents::set_instants(double offset) {
+  offset_ = offset;
+  values_of_.resize(samples(), width_);
+  projection_.resize(width_, samples());
+  to_series_.resize(2 * width_, samples());
+  for (int k = 0; k < samples(); ++k) {
+    const double t = instant(k);
+    values_of_.row(k) = PeriodicSolution::basis(harmonics_, period(), t);
+    projection_.col(k) = fourier_weights(harmonics_, period(), t, samples());
+    for (int m = 0; m < width_; ++m) {
+      const double angle = 2.0 * std::numbers::pi * m * (k + offset) / samples();
+      to_series_(m, k) = std::cos(angle) / samples();
+      to_series_(width_ + m, k) = -std::sin(angle) / samples();
+    }
+  }
 }
 
 /// `blocks`: whether each block of the system belongs to the border. A block of which a part is
@@ -157,7 +162,8 @@ bool HarmonicTangents::holds(PetscInt row, PetscInt unknown) const {
   });
 }
 
-void HarmonicTangents::sample(const PeriodicSolution& solution) {
+void HarmonicTangents::sample(const PeriodicSolution& solution, double offset) {
+  if (offset != offset_) set_instants(offset);
   const auto take = [&](int turns) {
     Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(4, size_);
     const auto work = [&] { sample_all(solution, turns, likeness); };
@@ -241,10 +247,9 @@ void HarmonicTangents::sample_all(const PeriodicSolution& solution, int turns,
   const petsc::Handle<Vec> z_dot = system_.make_state();
   const petsc::Handle<Mat> jacobian = system_.make_jacobian();
   const petsc::Handle<Mat> mass = system_.make_mass();
-  const int samples = sample_count(system_, harmonics_);
-  const int evaluated = samples / turns;
+  const int evaluated = samples() / turns;
   const auto evaluate = [&](int sample) {
-    const double t = system_.period() * sample / samples;
+    const double t = system_.period() == 0.0 ? 0.0 : instant(sample);
     solution.evaluate(t, z.get(), z_dot.get());
     system_.tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
   };
@@ -282,7 +287,7 @@ void HarmonicTangents::sample_all(const PeriodicSolution& solution, int turns,
       const int begin = turn * evaluated + first;
       const int from = turn * samples_at_once;
       sampled_.middleRows(begin, count) = K.middleCols(from, count).transpose();
-      sampled_.middleRows(samples + begin, count) = M.middleCols(from, count).transpose();
+      sampled_.middleRows(samples() + begin, count) = M.middleCols(from, count).transpose();
     }
   }
 }
@@ -501,16 +506,15 @@ void HarmonicTangents::add_products(const EntriesOfBoth& both, int part,
 
 /// Coefficients of values at the samples.
 void HarmonicTangents::project(const Eigen::MatrixXd& values, Eigen::MatrixXd& y) const {
-  y.noalias() = projection_ * values;
-  PetscLogFlops(2.0 * static_cast<double>(values.rows()) * static_cast<double>(y.size()));
+  analysis::multiply(projection_, values, y);
 }
 
 /// Coefficients of the products of some entries with x and w.
 void HarmonicTangents::multiply(const EntriesOfBoth& entries, const Eigen::MatrixXd& x,
                                 const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
-  add_products(entries, 0, values_of_ * x, sums);
-  add_products(entries, 1, values_of_ * w, sums);
+  add_products(entries, 0, analysis::multiply(values_of_, x), sums);
+  add_products(entries, 1, analysis::multiply(values_of_, w), sums);
   project(sums, y);
 }
 
@@ -522,7 +526,7 @@ void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd&
 
 void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), w.cols());
-  add_products(all_, 1, values_of_ * w, sums);
+  add_products(all_, 1, analysis::multiply(values_of_, w), sums);
   project(sums, y);
   sector_.drop_absent(y);
 }

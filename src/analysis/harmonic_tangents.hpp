@@ -35,17 +35,19 @@ Eigen::VectorXd fourier_weights(int harmonics, double period, double t, int samp
 /// much as the first one. (The fast Floquet theory of docs/theory.md, section 5.4, for series.)
 class HarmonicTangents {
  public:
-  /// `by_sector`: motions as above, if the system has identical blades.
-  HarmonicTangents(const system::PeriodicSystem& system, int harmonics, bool by_sector);
+  /// `by_sector`: motions as above, if the system has identical blades. `may_defer`: rows of
+  /// followers may be taken out of the map, see deferred(); fewer instants are evaluated then.
+  HarmonicTangents(const system::PeriodicSystem& system, int harmonics, bool by_sector,
+                   bool may_defer = false);
   /// The map of the unknowns on this rank, with the terms that this rank evaluates. Sums over the
-  /// ranks are those of the whole system. `may_defer`: rows of followers may be taken out of it,
-  /// see deferred(); fewer instants are evaluated then.
+  /// ranks are those of the whole system. `may_defer`: as above.
   HarmonicTangents(const MeshPartition& partition, const Coordinates& held, int harmonics,
                    bool may_defer);
 
-  /// Evaluates K and M along `solution`; collective. Of a sector in a MeshPartition, all blades are
-  /// evaluated at the instants of one sector where the solution repeats from blade to blade.
-  void sample(const PeriodicSolution& solution);
+  /// Evaluates K and M along `solution`; collective. With `may_defer`, all blades are evaluated at
+  /// the instants of one sector where the solution repeats from blade to blade. `offset`: of the
+  /// instants from the start of the period, in distances between them.
+  void sample(const PeriodicSolution& solution, double offset = 0.0);
 
   /// The row of a follower that has only its own unknown in the map, with the factor 1. (In the
   /// system it has others.)
@@ -127,6 +129,9 @@ class HarmonicTangents {
  private:
   double period() const;
   void make_map(TangentPattern& whole);
+  void set_instants(double offset);
+  int samples() const { return static_cast<int>(sampled_.rows() / 2); }
+  double instant(int sample) const { return period() * (sample + offset_) / samples(); }
   void mark_border(const std::vector<char>& blocks);
   void find_followers();
   void list_entries();
@@ -183,6 +188,7 @@ class HarmonicTangents {
   Coordinates held_;  ///< with numbers of the map
   int harmonics_;
   int width_;
+  double offset_ = 0.0;  ///< of the instants, in distances between them
   Eigen::Index size_ = 0;
   PetscInt block_size_ = 1;
   RotorSector sector_;    ///< the unknowns of the map

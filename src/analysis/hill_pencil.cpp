@@ -11,8 +11,8 @@ constexpr double most_unlike = 2.0;
 }  // namespace
 
 HillPencil::HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                       int harmonics, bool by_sector)
-    : tangents_(system, harmonics, by_sector),
+                       int harmonics, bool by_sector, bool may_defer)
+    : tangents_(system, harmonics, by_sector, may_defer),
       ranks_(MPI_COMM_SELF),
       preconditioner_(tangents_),
       medium_(tangents_, rows_, columns_) {
@@ -29,6 +29,11 @@ HillPencil::HillPencil(const MeshPartition& mesh, const PeriodicSolution& soluti
   tangents_.sample(solution);
   take_rate(tangents_.highest_rate());
   list_medium();
+}
+
+void HillPencil::sample(const PeriodicSolution& solution, double offset) {
+  tangents_.sample(solution, offset);
+  shift_.reset();
 }
 
 /// That of an unknown of a vector, among those of the tangents.
@@ -159,6 +164,13 @@ void HillPencil::drop(const std::vector<Index>& unknowns, Output y) const {
   for (const Index i : unknowns) y.middleRows(i * width(), width()).setZero();
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a reference to the columns
+void HillPencil::drop_deferred(Output y) const {
+  std::vector<Index> deferred;
+  for (const HarmonicTangents::Deferred& one : tangents_.deferred()) deferred.push_back(one.number);
+  drop(deferred, y);
+}
+
 void HillPencil::solve_medium(Vector& x) {
   if (mesh() == nullptr) {
     medium_.solve(x);
@@ -237,8 +249,10 @@ HillPencil::Complex HillPencil::exponent_of(const Vector& x) {
 }
 
 void HillPencil::take_scales(const HillPencil& other) {
-  rows_ = other.rows_;
-  columns_ = other.columns_;
+  for (Index i = 0; i < tangents_.size(); ++i) {
+    rows_.segment(i * width(), width()).setConstant(other.rows_(i * other.width()));
+    columns_.segment(i * width(), width()).setConstant(other.columns_(i * other.width()));
+  }
 }
 
 bool HillPencil::set_shift(Complex s) {

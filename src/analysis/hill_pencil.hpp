@@ -35,14 +35,18 @@ class HillPencil {
   using Input = const Eigen::Ref<const Matrix>&;
   using Output = Eigen::Ref<Matrix>;
 
-  /// `by_sector`: of one blade among identical ones, if there are such.
+  /// `by_sector`: of one blade among identical ones, if there are such. `may_defer`: as in
+  /// HarmonicTangents; such a pencil can only be multiplied with.
   HillPencil(const system::PeriodicSystem& system, const PeriodicSolution& solution, int harmonics,
-             bool by_sector = true);
+             bool by_sector = true, bool may_defer = false);
   /// Of a distributed mesh, which must outlive the object.
   HillPencil(const MeshPartition& mesh, const PeriodicSolution& solution, int harmonics);
   HillPencil(const HillPencil&) = delete;
   HillPencil& operator=(const HillPencil&) = delete;
   ~HillPencil() = default;
+
+  /// Tangents at other instants, see HarmonicTangents::sample(). Scales remain.
+  void sample(const PeriodicSolution& solution, double offset);
 
   int harmonics() const { return tangents_.harmonics(); }
   Eigen::Index width() const { return tangents_.width(); }
@@ -106,7 +110,8 @@ class HillPencil {
   /// Without harmonics: scales for motions of this rate [rad/s] from now on, which changes all
   /// vectors. Loads of fast motions are much larger than those of slow ones.
   void fit_scales(double rate);
-  /// Takes the scales of another pencil, of a system with the same unknowns.
+  /// Takes the scales of another pencil, of a system with the same unknowns, with any number of
+  /// harmonics.
   void take_scales(const HillPencil& other);
 
   /// Approximates (A + s B)^-1 from now on.
@@ -124,6 +129,8 @@ class HillPencil {
   int sectors() const { return tangents_.sectors(); }
   /// Sets the coefficients that an unknown does not have to zero.
   void drop_absent(Output x) const;
+  /// Sets the rows that HarmonicTangents defers to zero.
+  void drop_deferred(Output y) const;
   /// Series of all unknowns of the system without scaling, (2 H + 1) x system size; of a
   /// distributed mesh, those that this rank counts, the unknowns of a vector.
   Eigen::MatrixXcd series_of(const Vector& x) const;

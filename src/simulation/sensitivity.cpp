@@ -54,15 +54,6 @@ constexpr Stencil one_sided{{0.0, 1.0, 2.0, 3.0, 4.0},
                             5,
                             25.0 / 3.0};
 
-/// Derivative, by the logarithm of a number, of the error that missing harmonics leave in an
-/// exponent, relative to its change by the last ones (docs/theory.md, section 5.13).
-constexpr double change_caution = 3.0;
-/// The same with a medium. Curves of airfoils have kinks in their second derivatives. A small
-/// change of the number moves the azimuths at which stations pass them, and so the phases of the
-/// missing harmonics. A number that is 0 counts as so many of its unit (degrees of pitch and yaw).
-constexpr double change_caution_in_medium = 1000.0;
-constexpr double zero_in_medium = 10.0;
-
 double first_step(const Parameter& parameter) {
   return parameter.value == 0.0 ? zero_steps.front() : relative_step * std::abs(parameter.value);
 }
@@ -86,8 +77,7 @@ class Differences {
         system_(system),
         trim_(trim),
         scenario_at_(scenario_at),
-        derivatives_(derivatives),
-        has_medium_(system::has_medium(system.unknowns())) {
+        derivatives_(derivatives) {
     options_.automatic = false;
     options_.harmonics = trim.solution.harmonics();
     options_.tolerance = std::min(options_.tolerance, trim_tolerance);
@@ -112,7 +102,6 @@ class Differences {
     std::optional<Residuals> better;
     std::optional<Residuals> simple;
     double caution = 1.0;  ///< of Stencil
-    double value = 0.0;    ///< of the number
   };
 
   /// With the step that has the smallest error.
@@ -167,24 +156,19 @@ class Differences {
     }
     Quotients quotients;
     quotients.caution = stencil.caution;
-    quotients.value = parameter.value;
     const auto add = [](std::optional<Residuals>& sum, double factor, const Residuals& residuals) {
       sum =
           sum ? combine(1.0, *sum, factor, residuals) : combine(factor, residuals, 0.0, residuals);
     };
     for (std::size_t i = 0; i < stencil.count; ++i) {
-      const Residuals residuals = derivatives_.residuals(*systems[i], trims[i].solution, by_sector);
+      Residuals residuals = derivatives_.residuals(*systems[i], trims[i].solution, by_sector);
       add(quotients.better, stencil.better.at(i) / step, residuals);
-      add(quotients.simple, stencil.simple.at(i) / step, residuals);
+      Residuals plain = std::move(residuals);
+      plain.of_half.clear();
+      plain.before.clear();
+      add(quotients.simple, stencil.simple.at(i) / step, plain);
     }
     return quotients;
-  }
-
-  /// Error of a derivative by the harmonics that a series does not have: the exponent's own error
-  /// from them, about its last change, varies over a part of the range of the number.
-  double of_harmonics(double change, double value) const {
-    if (!has_medium_) return value == 0.0 ? 0.0 : change_caution * change / std::abs(value);
-    return change_caution_in_medium * change / (value == 0.0 ? zero_in_medium : std::abs(value));
   }
 
   std::vector<Sensitivity> differentiate(const std::vector<Quotients>& quotients) {
@@ -193,16 +177,16 @@ class Differences {
       rates.push_back(*one.better);
       rates.push_back(*one.simple);
     }
-    const Eigen::MatrixXcd found = derivatives_.derivatives(rates);
+    const std::vector<ExponentDerivatives::Derivatives> found = derivatives_.derivatives(rates);
     std::vector<Sensitivity> result(quotients.size());
     for (std::size_t p = 0; p < result.size(); ++p) {
-      const Eigen::VectorXd changes = derivatives_.last_changes(quotients[p].better->by_sector);
-      for (Eigen::Index m = 0; m < found.rows(); ++m) {
-        const auto at = static_cast<Eigen::Index>(2 * p);
-        result[p].rates.push_back(found(m, at));
+      const ExponentDerivatives::Derivatives& better = found[2 * p];
+      const ExponentDerivatives::Derivatives& simple = found[2 * p + 1];
+      for (Eigen::Index m = 0; m < better.values.size(); ++m) {
+        result[p].rates.push_back(better.values(m));
         result[p].errors.push_back(quotients[p].caution *
-                                       std::abs(found(m, at) - found(m, at + 1)) +
-                                   of_harmonics(changes(m), quotients[p].value));
+                                       std::abs(better.values(m) - simple.values(m)) +
+                                   better.errors(m));
       }
     }
     return result;
@@ -213,7 +197,6 @@ class Differences {
   const analysis::Trim& trim_;
   const ScenarioAt& scenario_at_;
   ExponentDerivatives& derivatives_;
-  bool has_medium_;
   analysis::Observer silent_;
 };
 

@@ -108,22 +108,25 @@ class Sensitivity(ProgramTest):
             self.assertIn("exponents", file["floquet"])
             self.assertNotIn("sensitivity", file["floquet"])
 
-    def test_stated_errors_in_wind_cover_the_differences_of_runs(self):
-        """Missing harmonics next to kinks of the polars change a derivative more than an exponent."""
-        case = [SOURCE / "inputs/nrel5mw/land.yaml", "--set", "floquet.steps=72"]
-        self.succeed("floquet", *case, "--set", "wind.speed=9", "--first", 3, "--sensitivity", "wind.speed", "-o", "s.h5")
+    def test_derivatives_in_wind_agree_with_differences_of_runs(self):
+        """Kinks of the polars pass stations at azimuths that move with the wind: few samples of the tangents in a revolution
+        leave 2 % in the growth of the tower."""
+        case = [SOURCE / "inputs/nrel5mw/land.yaml", "--set", "floquet.steps=108"]
+        self.succeed("floquet", *case, "--set", "wind.speed=9", "--first", 6, "--sensitivity", "wind.speed", "-o", "s.h5")
         rates, errors = self.rates_of("s.h5")[2:4]
         exponents = {}
         for wind in (9.001, 8.999):
             self.succeed("floquet", *case, "--set", f"wind.speed={wind}", "-o", "d.h5")
             with h5py.File(self.folder / "d.h5") as file:
-                exponents[wind] = file["floquet/exponents"][:3] @ [1, 1j]
+                exponents[wind] = file["floquet/exponents"][:6] @ [1, 1j]
         difference = (exponents[9.001] - exponents[8.999]) / 0.002
-        for mode in range(3):
+        for mode in range(6):
             rate, error = rates[mode][0], errors[mode][0]
-            self.assertLess(abs(rate - difference[mode]), error + 2e-3 * abs(difference[mode]))
-            self.assertLess(abs(rate.real - difference[mode].real), error + 1e-3 * abs(rate.real))
-            self.assertLess(error, 0.1 * abs(rate))
+            # To 1e-5 of the exponent by the number, and with four digits of the growth's derivative but for what is left by
+            # the steps of the runs.
+            self.assertLess(abs(rate - difference[mode]), 1e-5 * abs(exponents[9.001][mode]) / 9.0)
+            self.assertLess(abs(rate.real - difference[mode].real), 2e-3 * abs(rate.real))
+            self.assertLess(error, 1e-3 * abs(rate))
 
     def test_errors_name_the_key(self):
         for keys, words in (("blades.hinge", 'no "hinge"; did you mean "hinges"?'),

@@ -31,7 +31,13 @@ class ExponentDerivatives {
 
   /// r of all modes.
   struct Residuals {
-    std::vector<Eigen::MatrixXcd> groups;
+    using Groups = std::vector<Eigen::MatrixXcd>;
+    Groups groups;
+    /// From every second sample of the tangents; empty without a medium, whose equations alone are
+    /// no polynomials.
+    Groups of_half;
+    /// Of the eigenpairs with fewer harmonics.
+    Groups before;
     double speed = 0.0;  ///< of the rotor [rad/s]
     bool by_sector = true;
   };
@@ -40,15 +46,18 @@ class ExponentDerivatives {
   Residuals residuals(const system::PeriodicSystem& other, const PeriodicSolution& solution,
                       bool by_sector);
 
-  /// Derivatives of the modes' exponents [1/s per unit of p], with their identified harmonics, for
-  /// each of `rates`, derivatives of the residuals: modes x rates. Not-a-number for a mode whose
-  /// eigenpair was not found, for one at rest, and for equal exponents.
+  /// Derivatives of the modes' exponents [1/s per unit of p], with their identified harmonics, by
+  /// mode; not-a-number for a mode whose eigenpair was not found, for one at rest, and for equal
+  /// exponents.
+  struct Derivatives {
+    Eigen::VectorXcd values;
+    /// How far they differ from those of fewer harmonics and of fewer samples, if `rates` have
+    /// these.
+    Eigen::VectorXd errors;
+  };
+  /// For each of `rates`, derivatives of the residuals.
   /// @throws ConvergenceError
-  Eigen::MatrixXcd derivatives(const std::vector<Residuals>& rates);
-
-  /// Change of each mode's exponent by the last harmonics that its series got [1/s]; not-a-number
-  /// for a mode whose eigenpair was not found. `by_sector`: as in Residuals.
-  Eigen::VectorXd last_changes(bool by_sector);
+  std::vector<Derivatives> derivatives(const std::vector<Residuals>& rates);
 
  private:
   class Basis;
