@@ -171,11 +171,13 @@ std::string decay_words(const ModeSet& set, const StabilityAssessment& result) {
   const Mode& least = set.modes[*result.least_damped];
   const int decaying = static_cast<int>(result.decaying.size()) - result.of_medium;
   const std::string air =
-      result.of_medium == 0 ? "" : " and " + count(result.of_medium, "exponent") + " of the air";
-  return (decaying == 1 && air.empty() ? "the mode decays"
-                                       : "all " + count(decaying, "mode") + air + " decay") +
-         "; the least damped is " + least.label + ", " + general(100.0 * least.damping_ratio, 3) +
-         " %" + growth_error_words(least);
+      result.of_medium == 0 ? "" : count(result.of_medium, "exponent") + " of the air";
+  const std::string modes = decaying == 1 ? "the mode" : "all " + count(decaying, "mode");
+  std::string words = modes + (decaying == 1 && air.empty() ? " decays" : " decay");
+  if (decaying > 0 && !air.empty()) words = modes + " and " + air + " decay";
+  if (decaying == 0) words = "all " + air + " decay";
+  return words + "; the least damped is " + least.label + ", " +
+         general(100.0 * least.damping_ratio, 3) + " %" + growth_error_words(least);
 }
 
 /// Text on the behaviour of the modes that do not grow.
@@ -257,6 +259,15 @@ std::string deflated_words(const ModeSet& set) {
 
 bool is_periodic(const ModeSet& set) { return set.participation.size() > 0; }
 
+/// That too few of the slowest modes are known.
+std::string rough_words(const StabilityAssessment& result) {
+  if (result.first_rough < result.first)
+    return std::to_string(result.first_rough) + " of the " + std::to_string(result.first) +
+           " slowest modes have too large an error";
+  return result.first == 1 ? "the mode has too large an error"
+                           : "the slowest modes have too large an error";
+}
+
 /// The first line of the verdict; for growing modes also a second line on the other modes.
 std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   const std::string rest = rest_words(result);
@@ -291,8 +302,8 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
              (is_periodic(set) ? ", more trim.harmonics" : "") +
              (is_periodic(set) && !set.searched ? ", more floquet.steps" : "");
     default:
-      return "no verdict: every mode has an error above " + general(100.0 * largest_error, 2) +
-             " %; hint: a higher order of blades and tower, or more elements" +
+      return "no verdict: " + rough_words(result) +
+             "; hint: a higher order of blades and tower, or more elements" +
              (is_periodic(set) && !set.searched ? ", or more floquet.steps" : "");
   }
 }

@@ -741,7 +741,8 @@ double choose_steps(const system::PeriodicSystem& system, const PeriodicSolution
 /// asked for; 1 where they are.
 double increase_of(const ModeSet& set, const FloquetOptions& options) {
   std::vector<const Mode*> modes;
-  for (const Mode& mode : set.modes) modes.push_back(&mode);
+  for (const Mode& mode : set.modes)
+    if (!is_of_medium(mode)) modes.push_back(&mode);
   std::sort(modes.begin(), modes.end(), [](const Mode* a, const Mode* b) {
     return std::abs(a->exponent) < std::abs(b->exponent);
   });

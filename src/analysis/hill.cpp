@@ -113,9 +113,13 @@ constexpr double above_last = 2.0;
 constexpr double edge_slack = 1.0;
 constexpr double same_copy = 0.25;
 constexpr double same_exponent = 1e-6;
-/// Distance of copies of a mode with a medium, relative to the exponent, or to the rotor speed
-/// where both are next to their own harmonic.
+/// Largest distance of copies of a mode with a medium, relative to the exponent or to the rotor
+/// speed; their distance relative to their errors, the changes since fewer harmonics.
 constexpr double same_with_medium = 1e-2;
+constexpr double beyond_errors = 10.0;
+/// A pair is a copy of its own conjugate where these are next to each other, compared with the
+/// distance from other pairs.
+constexpr double clearly_nearer = 0.1;
 /// Relative to the rotor speed: distance of two exponents between which the edge of a region may
 /// be.
 constexpr double least_gap = 0.01;
@@ -157,7 +161,8 @@ struct Candidate {
   Mode mode;
   Eigen::VectorXd participation;
   double residual = std::numeric_limits<double>::infinity();
-  bool is_found = false;  ///< an eigenpair of the truncated series
+  bool is_found = false;     ///< an eigenpair of the truncated series
+  bool is_own_copy = false;  ///< see Analysis::mark_own_copies()
 };
 
 class Analysis {
@@ -483,6 +488,7 @@ class Analysis {
       for (Candidate& candidate : candidates) describe(candidate.pair.series, at_rest, candidate);
     for (Candidate& candidate : candidates)
       if (std::abs(candidate.mode.harmonic) <= nearest_ + 1) found_.push_back(std::move(candidate));
+    mark_own_copies(pointers_to(found_));
   }
 
   /// Whether the slowest decays are found as all modes of a region are: a medium has many decays of
@@ -642,7 +648,34 @@ class Analysis {
   /// Whether a pair is that of its copies that is identified next to its own harmonic. (With an
   /// even number of blades there are two of them if the blades move in opposite directions.)
   bool is_centred(const Candidate& candidate) const {
+    return is_next_to_own(candidate) || candidate.is_own_copy;
+  }
+  bool is_next_to_own(const Candidate& candidate) const {
     return std::abs(candidate.mode.harmonic) <= nearest_;
+  }
+  /// The exponent of the copy of a pair that is next to its own harmonic.
+  Complex centred_exponent(const Candidate& candidate) const {
+    const int harmonic = candidate.mode.harmonic;
+    const int copies = (std::abs(harmonic) + (sectors_ - 1) / 2) / sectors_;
+    return candidate.pair.exponent +
+           Complex(0.0, (harmonic < 0 ? -copies : copies) * sectors_ * speed_);
+  }
+  /// Motions whose multiplier is real and negative are copies of their own conjugates: two of them,
+  /// one that may grow and one that decays, have one frequency, half of Q Omega but for multiples
+  /// of it. Both harmonics have the same energy, and round-off decides which of them is identified.
+  void mark_own_copies(const std::vector<Candidate*>& candidates) const {
+    if (is_constant_) return;
+    for (Candidate* one : candidates) {
+      one->is_own_copy = false;
+      if (is_next_to_own(*one)) continue;
+      const Complex copy = std::conj(centred_exponent(*one));
+      const double distance = std::abs(copy - one->pair.exponent);
+      one->is_own_copy = distance < same_copy * speed_ &&
+                         std::ranges::none_of(candidates, [&](const Candidate* other) {
+                           return other != one && is_next_to_own(*other) &&
+                                  clearly_nearer * std::abs(copy - other->pair.exponent) < distance;
+                         });
+    }
   }
 
   /// Refines the eigenpairs that are identified at their own harmonic, and those that should have a
@@ -657,14 +690,16 @@ class Analysis {
           (region_.low > 0.0 && modulus < region_.low + margin() - slack()))
         return false;
       if (is_centred(candidate)) return true;
-      const int shift = candidate.mode.harmonic > 0 ? sectors_ : -sectors_;
-      const Complex copy = candidate.pair.exponent + Complex(0.0, shift * speed_);
-      return std::abs(copy.imag()) < region_.high - same_copy * speed_ &&
+      const Complex own = candidate.pair.exponent;
+      const Complex copy = centred_exponent(candidate);
+      const double same = same_copy * speed_;
+      return std::abs(copy.imag()) < region_.high - same &&
              std::none_of(found_.begin(), found_.end(), [&](const Candidate& other) {
                const Complex exponent = other.pair.exponent;
-               return is_centred(other) &&
+               // At the same place may be another motion.
+               return is_centred(other) && std::abs(own - exponent) >= same &&
                       std::min(std::abs(copy - exponent), std::abs(copy - std::conj(exponent))) <
-                          same_copy * speed_;
+                          same;
              });
     };
     std::vector<HillPair> pairs;
@@ -698,6 +733,8 @@ class Analysis {
         std::ranges::copy(pointers_to(members.back()), std::back_inserter(all_members));
       }
       describe(all_members);
+      std::ranges::copy(pointers_to(modes_), std::back_inserter(all_members));
+      mark_own_copies(all_members);
       std::vector<char> is_done;
       for (std::size_t g = 0; g < groups.size(); ++g)
         is_done.push_back(is_last(groups[g], members[g], added) ? 1 : 0);
@@ -824,6 +861,9 @@ class Analysis {
 
   /// Whether more harmonics are not needed, or of no use. `added`: since the attempt before.
   bool is_last(const HillGroup& group, const std::vector<Candidate>& members, int added) const {
+    if (harmonics_ < most_harmonics && is_by_change() &&
+        std::ranges::any_of(members, [this](const Candidate& one) { return lacks_partner(one); }))
+      return false;
     const double residual = group.residual();
     if ((residual <= accuracy().wanted && (!is_by_change() || know_growth(members))) ||
         harmonics_ == most_harmonics || is_constant_)
@@ -836,6 +876,12 @@ class Analysis {
     return (!is_own && is_known) || !members.front().is_found ||
            (residual <= accuracy().largest &&
             residual > std::pow(slowest_decay, added) * group.before);
+  }
+
+  /// Whether a motion next to the copy of its conjugate needs more harmonics to be coupled with it.
+  bool lacks_partner(const Candidate& one) const {
+    const int shift = std::abs(neighbouring_conjugate(one.pair.exponent, sectors_, speed_));
+    return is_centred(one) && shift >= harmonics_ && shift < most_harmonics;
   }
 
   /// Whether the changes of exponents are small beside their growth.
@@ -1124,12 +1170,17 @@ class Analysis {
 
   /// Whether two pairs have exponents that are equal up to multiples of i Q Omega and up to their
   /// conjugates, or with a medium, where these have larger errors, also series with this property.
+  /// At one place, series of two motions may be similar.
   bool is_copy_of(const Candidate& a, const Candidate& b) const {
     const Complex first = a.pair.exponent;
     const Complex second = b.pair.exponent;
     if (std::abs(principal(first) - principal(second)) < apart(a, b)) return true;
     if (!is_by_change()) return false;
-    const double error = same_with_medium * std::max(std::abs(first), speed_);
+    const auto error_of = [this](const Candidate& one) {
+      return std::max(one.residual, accuracy().wanted) * unit_of_change(one.pair.exponent, speed_);
+    };
+    const double error = std::min(same_with_medium * std::max(std::abs(first), speed_),
+                                  beyond_errors * (error_of(a) + error_of(b)));
     const auto are_copies = [&](const HillPair& one, const HillPair& other) {
       const double between = (other.exponent.imag() - one.exponent.imag()) / speed_;
       const auto shift = static_cast<Index>(std::lround(between / sectors_)) * sectors_;
@@ -1137,7 +1188,8 @@ class Analysis {
                    Complex(0.0, static_cast<double>(shift) * speed_)) > error)
         return false;
       const Eigen::MatrixXcd copy = shifted_series(one.series, shift, other.series.rows());
-      return pencil_->correlation(copy, other.series) > (shift == 0 ? same_series : same_shape);
+      const bool is_one_place = shift == 0 || std::abs(first - second) < same_copy * speed_;
+      return pencil_->correlation(copy, other.series) > (is_one_place ? same_series : same_shape);
     };
     return are_copies(a.pair, b.pair) || are_copies(a.pair, conjugate_of(b.pair));
   }

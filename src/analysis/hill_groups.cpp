@@ -35,6 +35,9 @@ constexpr double same_vector = 0.9;
 /// Relative to the rotor speed: distance of exponents that are refined together.
 constexpr double same_group = 0.03;
 
+/// Relative to the rotor speed: distance of an exponent from the copy of its conjugate.
+constexpr double next_to_conjugate = 0.03;
+
 void share_pair(const Ranks& ranks, int owner, HillPair& pair) {
   ranks.share(owner, pair.exponent);
   ranks.share(owner, pair.series);
@@ -53,6 +56,12 @@ Eigen::MatrixXcd shifted_series(const Eigen::MatrixXcd& series, Index shift, Ind
     if (row + offset >= 0 && row + offset < series.rows())
       shifted.row(row) = series.row(row + offset);
   return shifted;
+}
+
+int neighbouring_conjugate(std::complex<double> exponent, int sectors, double speed) {
+  const double twice = 2.0 * exponent.imag() / speed;
+  const int shift = sectors * static_cast<int>(std::lround(twice / sectors));
+  return std::abs(twice - shift) < next_to_conjugate ? shift : 0;
 }
 
 std::vector<HillGroup> groups_of(std::vector<HillPair> pairs, double speed) {
@@ -151,9 +160,53 @@ void HillGroups::refine(std::vector<HillGroup>& groups, double tolerance) {
     share_groups(ranks_, kept);
   }
   groups = std::move(kept);
+  if (pencil_.has_medium() && pencil_.harmonics() > 0) add_partners(groups, tolerance);
   all.clear();
   for (HillGroup& group : groups) all.push_back(&group);
   find_residuals(all);
+}
+
+/// A pair that is next to the copy of its conjugate: with fewer harmonics, which do not couple
+/// both, the search has found one motion where there may be two of one frequency. Both are
+/// combinations of the pair's part of positive frequencies and of the conjugate of this part.
+void HillGroups::add_partners(std::vector<HillGroup>& groups, double tolerance) {
+  std::vector<std::size_t> alone;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].pairs.size() != 1) continue;
+    const std::complex<double> exponent = groups[g].pairs.front().exponent;
+    const int shift = neighbouring_conjugate(exponent, pencil_.sectors(), speed_);
+    if (shift == 0 || std::abs(shift) >= pencil_.harmonics()) continue;
+    const auto is_near = [&](const HillPair& other) {
+      return std::abs(other.exponent - exponent) < next_to_conjugate * speed_;
+    };
+    const auto count = std::ranges::count_if(
+        groups, [&](const HillGroup& other) { return std::ranges::any_of(other.pairs, is_near); });
+    if (count == 1) alone.push_back(g);
+  }
+  if (alone.empty()) return;
+  ranks_.attempt([&] {
+    if (ranks_.rank > 0) return;
+    for (const std::size_t g : alone) {
+      const HillPair& own = groups[g].pairs.front();
+      const int shift = neighbouring_conjugate(own.exponent, pencil_.sectors(), speed_);
+      HillPair positive = own;
+      const Index harmonics = (own.series.rows() - 1) / 2;
+      for (Index row = 0; row < own.series.rows(); ++row)
+        if (2 * (row - harmonics) < -shift) positive.series.row(row).setZero();
+      const HillPair conjugate = conjugate_of(positive);
+      std::vector<HillPair> both{positive,
+                                 {conjugate.exponent + std::complex<double>(0.0, shift * speed_),
+                                  shifted_series(conjugate.series, shift, own.series.rows())}};
+      const double residual = refinement_.refine(both, tolerance).residual;
+      const bool is_found = std::ranges::all_of(both, [&](const HillPair& pair) {
+        return std::abs(pair.exponent - own.exponent) < neighbourhood * speed_;
+      });
+      if (!is_found || !(residual <= std::max(groups[g].truncated_residual, tolerance))) continue;
+      groups[g].pairs = std::move(both);
+      groups[g].truncated_residual = residual;
+    }
+  });
+  share_groups(ranks_, groups);
 }
 
 /// Adds the neighbours of eigenpairs, or where there are none, the group that came of them, to

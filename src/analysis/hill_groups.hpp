@@ -34,6 +34,11 @@ HillPair conjugate_of(const HillPair& pair);
 Eigen::MatrixXcd shifted_series(const Eigen::MatrixXcd& series, Eigen::Index shift,
                                 Eigen::Index rows);
 
+/// The copy of a pair's conjugate next to the pair has the exponent conj(lambda) + i s Omega, s a
+/// multiple of Q. @returns s where both are so close to each other that two motions of one
+/// frequency may be in their place, whose multipliers are real and negative; else 0
+int neighbouring_conjugate(std::complex<double> exponent, int sectors, double speed);
+
 /// The change of an exponent from one number of harmonics to another is relative to this [rad/s].
 inline double unit_of_change(std::complex<double> exponent, double speed) {
   return std::max(std::abs(exponent), speed);
@@ -71,6 +76,7 @@ class HillGroups {
   void replace(std::vector<HillGroup>& kept, const std::vector<HillPair>& before, HillGroup after,
                double tolerance);
   void follow(std::vector<HillGroup>& kept, const std::vector<HillPair>& before, double tolerance);
+  void add_partners(std::vector<HillGroup>& groups, double tolerance);
   bool is_other(const HillRefinement::Result& result) const;
   std::vector<HillGroup> neighbours_of(const std::vector<HillPair>& pairs);
   bool has(const HillGroup& group, const HillPair& pair) const;

@@ -60,7 +60,8 @@ void sort_modes(const ModeSet& set, StabilityAssessment& result) {
       ++result.rigid_body;
     else if (is_rough(mode)) {
       ++result.rough;
-      if (mode.exponent.real() > marked_error * std::abs(mode.exponent))
+      if (motion == Motion::growing ||
+          mode.exponent.real() > marked_error * std::abs(mode.exponent))
         result.may_grow.push_back(m);
     } else if (motion == Motion::growing && set.conservative && !has_partner(set, mode))
       result.growing_alone.push_back(m);
@@ -102,6 +103,18 @@ bool knows_first_modes(const ModeSet& set) {
   return below >= first_modes || others == 0;
 }
 
+/// Of the first modes, those with too large an error. Modes of a medium say nothing about others.
+void count_first_modes(const ModeSet& set, StabilityAssessment& result) {
+  std::vector<const Mode*> modes;
+  for (const Mode& mode : set.modes)
+    if (!is_of_medium(mode) && mode.resolved) modes.push_back(&mode);
+  std::ranges::sort(modes, {}, [](const Mode* mode) { return std::abs(mode->exponent); });
+  modes.resize(std::min(modes.size(), first_modes));
+  result.first = static_cast<int>(modes.size());
+  for (const Mode* mode : modes)
+    if (motion_in(set, *mode) != Motion::rigid_body && is_rough(*mode)) ++result.first_rough;
+}
+
 }  // namespace
 
 const char* word_of(Stability stability) {
@@ -139,21 +152,24 @@ bool is_rough(const Mode& mode) {
 StabilityAssessment assess_stability(const ModeSet& set) {
   StabilityAssessment result;
   sort_modes(set, result);
+  count_first_modes(set, result);
   result.reach = set.reach;
   for (const Mode& mode : set.modes)
     if (mode.resolved && !is_of_medium(mode) && total_error(mode) > marked_error &&
         motion_of(mode, set.rotor_speed) != Motion::rigid_body)
       result.accurate_reach = std::min(result.accurate_reach, std::abs(mode.exponent));
-  if (!knows_first_modes(set))
-    result.doubt = Doubt::unresolved;
-  else if (!result.growing.empty())
+  if (!result.growing.empty())  // one that is known suffices
     result.stability = Stability::unstable;
+  else if (!knows_first_modes(set))
+    result.doubt = Doubt::unresolved;
   else if (set.searched && !set.searched->is_counted)
     result.doubt = Doubt::incomplete;
   else if (!result.growing_alone.empty())
     result.doubt = Doubt::growing_alone;
   else if (!result.may_grow.empty())
     result.doubt = Doubt::may_grow;
+  else if (2 * result.first_rough > result.first)
+    result.doubt = Doubt::rough;
   else if (result.undamped + result.rigid_body > 0)
     result.stability = Stability::neutral;
   else if (!result.decaying.empty())

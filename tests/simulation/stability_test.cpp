@@ -77,13 +77,46 @@ BOOST_AUTO_TEST_CASE(a_growing_mode_with_a_large_error_allows_no_verdict) {
   BOOST_TEST((result.stability == Stability::unknown));
   BOOST_TEST((result.doubt == Doubt::may_grow));
   BOOST_TEST(result.may_grow == std::vector<std::size_t>{1}, boost::test_tools::per_element());
-  // Undamped motions have growths of the size of round-off.
+  // Undamped motions have growths of the size of round-off, below their errors.
   set.modes[1].exponent.real(1e-4);
+  set.modes[1].growth_error = 1e-3;
   BOOST_TEST((assess_stability(set).stability == Stability::stable));
+  set.modes[1].growth_error = 0.8e-4;
+  BOOST_TEST((assess_stability(set).doubt == Doubt::may_grow));
   // One that grows beyond doubt is enough.
   set = set_of({{0.1, 2.0}, {0.05, 3.0}});
   set.modes[1].mesh_error = 0.5;
   BOOST_TEST((assess_stability(set).stability == Stability::unstable));
+}
+
+BOOST_AUTO_TEST_CASE(half_of_the_slowest_modes_count) {
+  analysis::ModeSet set;
+  for (int i = 0; i < 12; ++i) set.modes.push_back(mode({-0.1, 1.0 + i}, i < 5 ? 0.2 : 1e-6));
+  BOOST_TEST((assess_stability(set).stability == Stability::stable));
+  set.modes[5].mesh_error = 0.2;
+  const StabilityAssessment result = assess_stability(set);
+  BOOST_TEST((result.doubt == Doubt::rough));
+  BOOST_TEST(result.first == 10);
+  BOOST_TEST(result.first_rough == 6);
+}
+
+BOOST_AUTO_TEST_CASE(exponents_of_a_medium_say_nothing_about_the_others) {
+  analysis::ModeSet set;
+  set.modes.push_back(mode({-0.1, 2.0}, 0.2));
+  for (int i = 0; i < 20; ++i) {
+    set.modes.push_back(mode({-0.5, 0.0}));
+    set.modes.back().state.emplace().kind = system::PartKind::medium;
+  }
+  BOOST_TEST((assess_stability(set).doubt == Doubt::rough));
+}
+
+BOOST_AUTO_TEST_CASE(one_mode_that_grows_suffices) {
+  analysis::ModeSet set = set_of({{0.1, 2.0}, {-0.1, 30.0}});
+  set.modes[1].resolved = false;
+  set.reach = 10.0;
+  BOOST_TEST((assess_stability(set).stability == Stability::unstable));
+  set.modes[0].exponent.real(-0.1);
+  BOOST_TEST((assess_stability(set).doubt == Doubt::unresolved));
 }
 
 BOOST_AUTO_TEST_CASE(a_real_exponent_with_a_large_error_is_none_at_rest) {

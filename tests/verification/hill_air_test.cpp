@@ -187,6 +187,56 @@ BOOST_AUTO_TEST_CASE(search_in_wind_next_to_a_frequency) {
   require_agreement(found, turbine.floquet({120, analysis::FloquetPeriod::automatic, 6}));
 }
 
+/// Where the multiplier of a mode is real and negative, two motions have one frequency, half of the
+/// rotor speed (of three of them with three blades) but for multiples of it. One may grow.
+void require_both_motions(Steady& turbine, const analysis::FloquetOptions& options, int sectors) {
+  const auto of_half_speed = [sectors](const analysis::ModeSet& set) {
+    std::vector<Complex> exponents;
+    for (const analysis::Mode& mode : set.modes) {
+      const double turns = 2.0 * mode.exponent.imag() / set.rotor_speed;
+      const double odd = std::remainder(turns - sectors, 2.0 * sectors);
+      if (mode.resolved && !is_of_medium(mode) && mode.exponent.imag() > 0.1 * set.rotor_speed &&
+          std::abs(sectors == 1 ? odd : std::remainder(turns - 1.0, 2.0)) < 1e-3)
+        exponents.push_back(mode.exponent);
+    }
+    std::ranges::sort(exponents, {}, [](Complex one) { return one.real(); });
+    return exponents;
+  };
+  const analysis::ModeSet all = turbine.floquet({120, analysis::FloquetPeriod::automatic, 6});
+  const analysis::ModeSet found = turbine.floquet(options);
+  const std::vector<Complex> expected = of_half_speed(all);
+  const std::vector<Complex> exponents = of_half_speed(found);
+  BOOST_TEST(expected.size() == 2U);
+  BOOST_REQUIRE(exponents.size() == expected.size());
+  for (std::size_t i = 0; i < exponents.size(); ++i)
+    BOOST_TEST(std::abs(exponents[i] - expected[i]) < 1e-3 * std::abs(expected[i]),
+               exponents[i] << " " << expected[i]);
+  BOOST_TEST(std::abs(expected[0].real() - expected[1].real()) > 5e-3 * std::abs(expected[0]));
+  BOOST_TEST((simulation::assess_stability(found).stability ==
+              simulation::assess_stability(all).stability));
+}
+
+BOOST_AUTO_TEST_CASE(two_motions_of_one_frequency_in_wind) {
+  // A rotating beam with weight and thin air: one motion at half the speed grows.
+  io::Case beam = io::read_case(input_path("beam/rotating"), {});
+  std::string text = beam.file_text();
+  text += R"(
+  airfoils: {flat: {polars: [{table: [[-180, 0, 0.01, 0], [-90, 0, 1, 0], [-15, -1.5, 0.02, 0],
+    [15, 1.5, 0.02, 0], [90, 0, 1, 0], [180, 0, 0.01, 0]]}]}}
+  aero_sections: [{chord: 0.3, airfoil: flat}]
+)";
+  for (const char* speed : {"10.05", "10.1"}) {
+    Steady turbine(io::parse_case(
+        beam.path, text,
+        {"wind.speed=5", "wind.density=0.02", "gravity=5", std::string("shaft.speed=") + speed}));
+    BOOST_TEST_CONTEXT(speed << " rad/s") require_both_motions(turbine, some_modes(4), 1);
+  }
+  // Three blades: the search has too few harmonics to couple a motion with its conjugate.
+  Steady turbine(io::read_case(input_path("nrel5mw/land"),
+                               with_coarse({"wind.direction_deg=-60", "wind.shear.power=-0.5"})));
+  BOOST_TEST_CONTEXT("three blades") require_both_motions(turbine, some_modes(6), 3);
+}
+
 /// In axial wind the tangents are constant in axes of the rotor: no harmonics are left out.
 BOOST_AUTO_TEST_CASE(searches_in_axial_wind_are_exact) {
   Steady turbine(rotor_in_axial_wind({}));

@@ -41,7 +41,7 @@ enum class Doubt {
   incomplete,     ///< modes may be missing in the part of the spectrum that was searched
   growing_alone,  ///< a mode of a conservative system grows, none decays with it: error of the mesh
   may_grow,       ///< a mode grows by its exponent, which has too large an error
-  rough,          ///< all modes have too large an error
+  rough,          ///< most of the slowest modes, or all modes, have too large an error
 };
 
 /// Modes are given by their index in ModeSet::modes.
@@ -56,18 +56,20 @@ struct StabilityAssessment {
   std::optional<std::size_t> least_damped;  ///< the least damped of the decaying modes
   int undamped = 0;
   int rigid_body = 0;
-  int of_medium = 0;   ///< decaying modes of a medium, also in `decaying`
-  int rough = 0;       ///< resolved by the step, with an error above `largest_error`
-  int unresolved = 0;  ///< not resolved, not counted
+  int of_medium = 0;    ///< decaying modes of a medium, also in `decaying`
+  int rough = 0;        ///< resolved by the step, with an error above `largest_error`
+  int first = 0;        ///< the ten slowest of the resolved modes, or all of them
+  int first_rough = 0;  ///< of these, those with too large an error
+  int unresolved = 0;   ///< not resolved, not counted
   /// All modes below this are resolved, except those that are deflated [rad/s].
   double reach = std::numeric_limits<double>::infinity();
   /// Modes below this have errors below `marked_error` [rad/s].
   double accurate_reach = std::numeric_limits<double>::infinity();
 };
 
-/// Only resolved modes with small errors count. A verdict is given if the ten slowest modes, or all
-/// modes, are known. Where not all modes were searched, the verdict is that of the modes in
-/// ModeSet::searched.
+/// Only resolved modes with small errors count. One that grows suffices for a verdict; others are
+/// given if the ten slowest modes, or all modes, are known, and at least half of them count. Where
+/// not all modes were searched, the verdict is that of the modes in ModeSet::searched.
 StabilityAssessment assess_stability(const analysis::ModeSet& set);
 
 }  // namespace samara::simulation
