@@ -206,12 +206,12 @@ void require_both_motions(Steady& turbine, const analysis::FloquetOptions& optio
   const analysis::ModeSet found = turbine.floquet(options);
   const std::vector<Complex> expected = of_half_speed(all);
   const std::vector<Complex> exponents = of_half_speed(found);
-  BOOST_TEST(expected.size() == 2U);
+  BOOST_REQUIRE(expected.size() == 2U);
   BOOST_REQUIRE(exponents.size() == expected.size());
   for (std::size_t i = 0; i < exponents.size(); ++i)
     BOOST_TEST(std::abs(exponents[i] - expected[i]) < 1e-3 * std::abs(expected[i]),
                exponents[i] << " " << expected[i]);
-  BOOST_TEST(std::abs(expected[0].real() - expected[1].real()) > 5e-3 * std::abs(expected[0]));
+  BOOST_TEST(std::abs(expected[0].real() - expected[1].real()) > 3e-3 * std::abs(expected[0]));
   BOOST_TEST((simulation::assess_stability(found).stability ==
               simulation::assess_stability(all).stability));
 }
@@ -225,15 +225,13 @@ BOOST_AUTO_TEST_CASE(two_motions_of_one_frequency_in_wind) {
     [15, 1.5, 0.02, 0], [90, 0, 1, 0], [180, 0, 0.01, 0]]}]}}
   aero_sections: [{chord: 0.3, airfoil: flat}]
 )";
-  for (const char* speed : {"10.05", "10.1"}) {
-    Steady turbine(io::parse_case(
-        beam.path, text,
-        {"wind.speed=5", "wind.density=0.02", "gravity=5", std::string("shaft.speed=") + speed}));
-    BOOST_TEST_CONTEXT(speed << " rad/s") require_both_motions(turbine, some_modes(4), 1);
-  }
+  Steady rotating(io::parse_case(
+      beam.path, text, {"wind.speed=5", "wind.density=0.02", "gravity=5", "shaft.speed=10.1"}));
+  BOOST_TEST_CONTEXT("one blade") require_both_motions(rotating, some_modes(4), 1);
   // Three blades: the search has too few harmonics to couple a motion with its conjugate.
-  Steady turbine(io::read_case(input_path("nrel5mw/land"),
-                               with_coarse({"wind.direction_deg=-60", "wind.shear.power=-0.5"})));
+  Steady turbine(io::read_case(
+      input_path("nrel5mw/land"),
+      with_coarse({"wind.direction_deg=-60", "wind.shear.power=-0.5", "shaft.speed_rpm=12.2"})));
   BOOST_TEST_CONTEXT("three blades") require_both_motions(turbine, some_modes(6), 3);
 }
 
