@@ -81,7 +81,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   std::string text = title_of(input) + "\n";
   text += "loads        gravity " + general(definition.gravity, 6) + " m/s^2, " +
           count(static_cast<int>(definition.loads.size()), "prescribed load") +
-          "; all times the load factor\n";
+          (system.turbine().air ? ", wind" : "") + "; all times the load factor\n";
   text += std::string("method       ") + (by_arc ? "arc length" : "prescribed load factors") +
           ", " + count(static_cast<int>(path.states.size()) - 1, "step") +
           (path.cuts > 0 ? ", cut " + count(path.cuts, "time") : "") + "\n";

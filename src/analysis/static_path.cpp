@@ -199,8 +199,10 @@ class Equilibrium {
 
   /// Largest change relative to the largest value, of positions and of internal loads, and of
   /// first-order states relative to their own value or scale. Rigid parts move by round-off
-  /// only.
-  double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x) const {
+  /// only. `applied`: size of the applied loads [N, N m]; without loads, in a medium that does not
+  /// act yet, internal loads are round-off.
+  double relative_change(const Eigen::VectorXd& change, const Eigen::VectorXd& x,
+                         double applied) const {
     double worst = 0.0;
     for (const std::vector<Eigen::Index>* unknowns : {&positions_, &loads_}) {
       double moved = 0.0;
@@ -211,7 +213,8 @@ class Equilibrium {
       }
       if (!(moved <= std::numeric_limits<double>::max())) return moved;
       if (moved > (unknowns == &positions_ ? round_off : 0.0))
-        worst = std::max(worst, moved / std::max(size, moved));
+        worst =
+            std::max(worst, moved / std::max({size, moved, unknowns == &loads_ ? applied : 0.0}));
     }
     for (const Eigen::Index i : states_) {
       const double scale = loaded_.unknowns()[static_cast<std::size_t>(i)].scale;
@@ -349,7 +352,8 @@ class PathFollower {
         point.factor += factor_change;
       }
       point.x += change;
-      const double size = equilibrium_->relative_change(change, point.x);
+      const double size =
+          equilibrium_->relative_change(change, point.x, by_factor.lpNorm<Eigen::Infinity>());
       if (size <= options_.tolerance) return step;
       if (!std::isfinite(size) || (step > patient_newton_steps && size > largest_growth * last))
         throw ConvergenceError("Newton's iteration diverges");

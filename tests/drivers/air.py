@@ -57,6 +57,26 @@ class Commands(ProgramTest):
         with h5py.File(self.folder / "strike.h5") as file:  # the rows before are kept
             self.assertGreater(file["transient/time"][-1], 3)
 
+    def test_static_equilibria_in_wind_are_the_steady_states_at_rest(self):
+        """The loads of the air have the load factor; at its end, both commands solve the same equations."""
+        for name, settings in (("nrel5mw/land", ["wind.speed=50", "blades.pitch_deg=90"]),
+                               ("nrel5mw/land", ["wind.speed=11.4", "static.method=arc_length"]),
+                               ("two_bladed/teetering", ["wind.direction_deg=30", "hub.teeter.joint=locked"])):
+            with self.subTest(name=name, settings=settings):
+                case = [SOURCE / f"inputs/{name}.yaml", "--set", "shaft.speed=0"]
+                for setting in settings:
+                    case += ["--set", setting]
+                run = self.succeed("static", *case, "-o", "static.h5")
+                self.assertIn("wind; all times the load factor", run.stdout)
+                self.succeed("trim", *case, "-o", "trim.h5")
+                with h5py.File(self.folder / "static.h5") as path, h5py.File(self.folder / "trim.h5") as steady:
+                    self.assertEqual(path["static/factor"][-1], 1.0)
+                    found, expected = path["static/states"][-1], steady["trim/harmonics"][:, 0]
+                    roles = path["model/unknowns/role"].asstr()[:]
+                for role in sorted(set(roles)):
+                    own = roles == role
+                    self.assertLess(abs(found - expected)[own].max(), 1e-6 * abs(expected[own]).max() + 1e-12, role)
+
     def test_the_part_of_the_air_in_the_damping(self):
         quick = [*QUICK, "--set", "trim.harmonics=6"]
         text = self.succeed("floquet", LAND, *quick, "--air", "-o", "air.h5").stdout
