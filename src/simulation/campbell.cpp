@@ -186,18 +186,29 @@ std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
   const auto point_of = [&](std::size_t i) -> const CampbellPoint& {
     return points[line.modes[i].point];
   };
+  // A line may end before the sweep: where two modes of one frequency become one.
+  const std::vector<std::pair<std::size_t, std::size_t>> neighbours = find_neighbours(points);
+  const auto before = [&](std::size_t i) {
+    const auto pair = std::ranges::find(neighbours, line.modes[i].point,
+                                        &std::pair<std::size_t, std::size_t>::second);
+    return pair == neighbours.end() ? nullptr : &points[pair->first];
+  };
+  const auto behind = [&](std::size_t i) {
+    const auto pair = std::ranges::find(neighbours, line.modes[i].point,
+                                        &std::pair<std::size_t, std::size_t>::first);
+    return pair == neighbours.end() ? nullptr : &points[pair->second];
+  };
   for (std::size_t i = 0; i < line.modes.size(); ++i) {
     if (!grows(i)) continue;
     const std::size_t first = i;
     while (i + 1 < line.modes.size() && grows(i + 1)) ++i;
     GrowthRange range{point_of(first).place.value, point_of(i).place.value};
-    if (first > 0)
-      range.from =
-          edge_between(point_of(first - 1), point_of(first), true, line.modes[first].mode, edges)
-              .value_or(range.from);
-    if (i + 1 < line.modes.size())
-      range.to = edge_between(point_of(i), point_of(i + 1), false, line.modes[i].mode, edges)
-                     .value_or(range.to);
+    if (const CampbellPoint* other = before(first))
+      range.from = edge_between(*other, point_of(first), true, line.modes[first].mode, edges)
+                       .value_or(range.from);
+    if (const CampbellPoint* other = behind(i))
+      range.to =
+          edge_between(point_of(i), *other, false, line.modes[i].mode, edges).value_or(range.to);
     ranges.push_back(range);
   }
   return ranges;

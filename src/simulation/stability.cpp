@@ -168,7 +168,7 @@ StabilityAssessment assess_stability(const ModeSet& set) {
     result.doubt = Doubt::growing_alone;
   else if (!result.may_grow.empty())
     result.doubt = Doubt::may_grow;
-  else if (2 * result.first_rough > result.first)
+  else if (set.medium_states > 0 && 2 * result.first_rough > result.first)
     result.doubt = Doubt::rough;
   else if (result.undamped + result.rigid_body > 0)
     result.stability = Stability::neutral;

@@ -149,4 +149,16 @@ BOOST_AUTO_TEST_CASE(an_edge_stays_wide_where_a_point_has_no_modes) {
   BOOST_TEST(simulation::find_growth({from, to}, line, edges).at(0).from == 2.0);
 }
 
+BOOST_AUTO_TEST_CASE(growth_ends_at_the_edge_where_the_line_of_the_mode_ends) {
+  // Two modes of one frequency, one of which grows, become one that does not: its line goes on.
+  const Rates rates{before(2.3), decaying};
+  Diagram diagram({1.0, 2.0, 3.0}, rates);
+  const CampbellLine line{"", {{0, 0}, {1, 0}}};
+  const auto found = simulation::find_growth(diagram.points, line, diagram.edges);
+  BOOST_TEST_REQUIRE(found.size() == 1U);
+  BOOST_TEST(found[0].to == 2.3, tolerance(1e-4));
+  const CampbellLine later{"", {{1, 0}}};  // begins at a point, where another one ended
+  BOOST_TEST(simulation::find_growth(diagram.points, later, diagram.edges).at(0).from == 2.0);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

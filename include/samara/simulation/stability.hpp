@@ -41,7 +41,7 @@ enum class Doubt {
   incomplete,     ///< modes may be missing in the part of the spectrum that was searched
   growing_alone,  ///< a mode of a conservative system grows, none decays with it: error of the mesh
   may_grow,       ///< a mode grows by its exponent, which has too large an error
-  rough,          ///< most of the slowest modes, or all modes, have too large an error
+  rough,          ///< all modes, or in a medium most of the slowest, have too large an error
 };
 
 /// Modes are given by their index in ModeSet::modes.
@@ -68,7 +68,8 @@ struct StabilityAssessment {
 };
 
 /// Only resolved modes with small errors count. One that grows suffices for a verdict; others are
-/// given if the ten slowest modes, or all modes, are known, and at least half of them count. Where
+/// given if the ten slowest modes, or all modes, are known. In a medium, whose loads decide about
+/// growth, at least half of them must count. Where
 /// not all modes were searched, the verdict is that of the modes in ModeSet::searched.
 StabilityAssessment assess_stability(const analysis::ModeSet& set);
 
