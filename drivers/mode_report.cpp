@@ -215,8 +215,12 @@ std::string other_search(const ModeSet& set) {
 /// Frequencies below which all modes are resolved, and below which their errors are small.
 std::string resolved_words(const ModeSet& set, const StabilityAssessment& result,
                            const std::string& deflated) {
-  const double reach = is_of_slow_decays(set) ? set.searched->high : result.reach;
-  std::string text = is_of_slow_decays(set) ? "all of these modes are resolved"
+  const double reach = set.searched ? set.searched->high : result.reach;
+  const bool has_all = is_of_slow_decays(set) ||
+                       (set.searched && std::ranges::all_of(set.modes, [](const Mode& mode) {
+                          return mode.resolved;
+                        }));
+  std::string text = has_all ? "all of these modes are resolved"
                      : std::isfinite(result.reach)
                          ? "all modes of natural frequency |lambda|/2 pi below " +
                                hertz(result.reach) + " are resolved"

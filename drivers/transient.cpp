@@ -75,15 +75,20 @@ std::string summary(const io::Case& input, const simulation::TransientSummary& d
   return text;
 }
 
-/// An event that never occurred is an input error.
+/// Events that never occurred are an input error.
 void require_fired(const simulation::TransientSetup& transient, const std::vector<double>& fired) {
+  std::string text;
+  int count = 0;
   for (std::size_t i = 0; i < fired.size(); ++i) {
     if (std::isfinite(fired[i])) continue;
     const turbine::EventTrigger& trigger = transient.events[i].trigger;
-    throw InputError("transient.events[" + std::to_string(i) + "] never came: " + trigger.channel +
-                     " was never " + (trigger.above ? "above " : "below ") +
-                     general(trigger.level, 6) + "; the result is complete without it");
+    text += "transient.events[" + std::to_string(i) + "] never came: " + trigger.channel +
+            " was never " + (trigger.above ? "above " : "below ") + general(trigger.level, 6) +
+            "; ";
+    ++count;
   }
+  if (count > 0)
+    throw InputError(text + "the result is complete without " + (count == 1 ? "it" : "them"));
 }
 
 void start(const Job& job, simulation::TransientSimulation& simulation, Progress& progress) {

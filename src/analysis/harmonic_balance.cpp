@@ -417,8 +417,9 @@ void fail(SNES solver, const SolverContext& context) {
       text << " (" << error.what() << ")";
     }
   }
-  text << "; hint: -trim_snes_monitor shows the steps, -trim_snes_max_it raises their number; a "
-          "smaller load or a stiffer blade shows whether a steady state exists";
+  text << "; hint: more or fewer trim.harmonics; -trim_snes_monitor shows the steps, "
+          "-trim_snes_max_it raises their number; a smaller load or a stiffer blade shows whether "
+          "a steady state exists";
   throw ConvergenceError(text.str());
 }
 

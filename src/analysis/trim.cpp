@@ -1,6 +1,7 @@
 #include "samara/analysis/trim.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <optional>
 #include <sstream>
 
@@ -24,6 +25,9 @@ constexpr double changing = 1e-6;
 double allowed_residual(const Trim& trim, double relative) {
   return relative * std::max(trim.load_level, 1.0);
 }
+
+/// Numbers of harmonics that may fail before a solution with more of them is given up.
+constexpr int most_failures = 5;
 
 /// Residual of evolution and definition rows, relative to their terms, below which a constant state
 /// is the solution.
@@ -155,8 +159,20 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
   std::vector<std::pair<int, double>> attempts;
   if (constant) attempts = constant->attempts;
   std::optional<Trim> last;
+  int failed = 0;
+  std::exception_ptr failure;
   for (const int harmonics : harmonics_to_try(options.least_harmonics, system.symmetry().sectors)) {
-    Trim trim = solve_from(system, harmonics, options.tolerance, last, comm);
+    std::optional<Trim> solved;
+    try {
+      solved = solve_from(system, harmonics, options.tolerance, last, comm);
+    } catch (const ConvergenceError&) {
+      // More harmonics may have a solution where few have none.
+      if (!failure) failure = std::current_exception();
+      if (++failed == most_failures) std::rethrow_exception(failure);
+      observer.note("trim: " + std::to_string(harmonics) + " harmonics, not converged");
+      continue;
+    }
+    Trim& trim = *solved;
     attempts.emplace_back(harmonics, trim.residual_between);
     trim.attempts = attempts;
     std::ostringstream text;
@@ -166,6 +182,7 @@ Trim raise_harmonics(const system::PeriodicSystem& system, const TrimOptions& op
     if (is_enough(trim, options)) return trim;
     last = std::move(trim);
   }
+  if (!last) std::rethrow_exception(failure);
   throw ConvergenceError("trim: harmonics: auto reached " + std::to_string(auto_harmonics) +
                          " and the residual between the samples is still too large; hint: give "
                          "trim.harmonics or a larger trim.auto_tolerance");

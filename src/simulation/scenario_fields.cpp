@@ -84,7 +84,8 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
           "modes", "", integers(1, most_modes),
           "number of modes to find by Hill's method, for large meshes, also by `samara modes`: the "
           "slowest ones, or those nearest to `near_hz`. In the air, modes of the air alone are "
-          "left out. Other keys of `floquet` then do not count")
+          "left out, and slow ones of strong damping may be: the output states up to which decay "
+          "the range was searched. Other keys of `floquet` then do not count")
           .none_at_zero("all modes"),
       floquet.modes);
   fields.number({"near_hz", "Hz", positive, "frequency next to which `modes` are searched"},
