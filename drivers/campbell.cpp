@@ -168,7 +168,7 @@ void run_campbell(const Job& job) {
   CampbellPlan plan = plan_campbell(job, table);
   io::CampbellPointFiles files(job.result_path, plan.origins);
   Progress progress(is_first);
-  const Interruption interruption;
+  const Interruption interruption("samara: ends after the present point; again to end at once\n");
   const analysis::Ranks ranks(PETSC_COMM_WORLD);
   // A rank that fails waits for the others, which may work on their points for long.
   ranks.attempt([&] { find_points(plan, files, ranks, progress); });

@@ -118,7 +118,7 @@ void run_floquet(const Job& job) {
   std::optional<Interruption> interruption;  // likewise
   try {
     if (!groups.empty()) {
-      interruption.emplace();
+      interruption.emplace("samara: ends after the present derivatives; again to end at once\n");
       sensitivities =
           find_sensitivities(job, std::move(groups), system, trim, floquet.set, progress);
     }

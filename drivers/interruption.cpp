@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<int, 4> handled_signals{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 // A signal may arrive on any thread.
-std::atomic<int> is_noting = 0;
+std::atomic<const char*> noting = nullptr;  // the words for the first signal
 std::atomic<int> noted_signal = 0;
 std::atomic<int> has_file = 0;
 std::atomic<int> is_paused = 0;
@@ -28,11 +28,14 @@ std::array<char, PATH_MAX> file_at_end{};
 
 // Only functions that a signal handler may call.
 
+void say(const char* words) {
+  [[maybe_unused]] const ssize_t written =
+      is_silent != 0 ? 0 : ::write(STDERR_FILENO, words, std::strlen(words));
+}
+
 [[noreturn]] void leave(int number) {
   if (has_file != 0) ::unlink(file_at_end.data());
-  constexpr std::array<char, 21> words{"samara: interrupted\n"};
-  [[maybe_unused]] const ssize_t written =
-      is_silent != 0 ? 0 : ::write(STDERR_FILENO, words.data(), words.size() - 1);
+  say("samara: interrupted\n");
   ::_exit(128 + number);
 }
 
@@ -52,8 +55,10 @@ void take_signal(int number) {
     waiting_signal = number;
     return;
   }
-  if (is_noting == 0 || noted_signal != 0) leave(number);
+  const char* words = noting;
+  if (words == nullptr || noted_signal != 0) leave(number);
   noted_signal = number;
+  say(words);
 }
 
 /// Whether the environment says that this is another rank than the first one. When a rank ends with
@@ -94,9 +99,9 @@ void take_signal(int number) {
 
 }  // namespace
 
-Interruption::Interruption() { is_noting = 1; }
+Interruption::Interruption(const char* words) { noting = words; }
 
-Interruption::~Interruption() { is_noting = 0; }
+Interruption::~Interruption() { noting = nullptr; }
 
 int Interruption::noted() { return noted_signal == 0 ? 0 : 128 + noted_signal; }
 

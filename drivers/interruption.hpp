@@ -11,10 +11,11 @@
 
 namespace samara::drivers {
 
-/// While an object exists, the first signal is only noted.
+/// While an object exists, the first signal is only noted, and `words` are written to the standard
+/// error: they outlive the object.
 class Interruption {
  public:
-  Interruption();
+  explicit Interruption(const char* words);
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

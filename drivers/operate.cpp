@@ -132,7 +132,7 @@ void run_operate(const Job& job) {
   const std::vector<double> winds = simulation::operating_winds(job.input, table);
   const bool is_first = petsc::Session::rank() == 0;
   Progress progress(is_first);
-  const Interruption interruption;
+  const Interruption interruption("samara: ends after the present point; again to end at once\n");
   const analysis::Ranks ranks(PETSC_COMM_WORLD);
   // The first rank works. A signal may come to any of them.
   std::optional<Points> points;

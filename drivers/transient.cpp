@@ -168,7 +168,7 @@ void run_transient(const Job& job) {
     if (is_first) file = create_file(job, simulation);
   });
   TimeSeriesOutput output(file.get(), progress);
-  const Interruption interruption;
+  const Interruption interruption("samara: ends after the present step; again to end at once\n");
   const Clock::time_point began = Clock::now();
   try {
     const simulation::TransientSummary done = simulation.run(output, controller.get());

@@ -115,6 +115,12 @@ void count_first_modes(const ModeSet& set, StabilityAssessment& result) {
     if (motion_in(set, *mode) != Motion::rigid_body && is_rough(*mode)) ++result.first_rough;
 }
 
+/// True if no mode counts, or too few of the first ones in a medium.
+bool knows_too_few(const ModeSet& set, const StabilityAssessment& result) {
+  return (set.medium_states > 0 && 2 * result.first_rough > result.first) ||
+         (result.undamped + result.rigid_body == 0 && result.decaying.empty());
+}
+
 }  // namespace
 
 const char* word_of(Stability stability) {
@@ -168,14 +174,11 @@ StabilityAssessment assess_stability(const ModeSet& set) {
     result.doubt = Doubt::growing_alone;
   else if (!result.may_grow.empty())
     result.doubt = Doubt::may_grow;
-  else if (set.medium_states > 0 && 2 * result.first_rough > result.first)
+  else if (knows_too_few(set, result))
     result.doubt = Doubt::rough;
-  else if (result.undamped + result.rigid_body > 0)
-    result.stability = Stability::neutral;
-  else if (!result.decaying.empty())
-    result.stability = Stability::stable;
   else
-    result.doubt = Doubt::rough;
+    result.stability =
+        result.undamped + result.rigid_body > 0 ? Stability::neutral : Stability::stable;
   return result;
 }
 
