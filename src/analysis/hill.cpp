@@ -117,6 +117,9 @@ constexpr double same_exponent = 1e-6;
 /// speed; their distance relative to their errors, the changes since fewer harmonics.
 constexpr double same_with_medium = 1e-2;
 constexpr double beyond_errors = 10.0;
+/// Distance from the copy of a conjugate up to which both may be coupled, relative to the last
+/// change of the exponent.
+constexpr double beyond_change = 100.0;
 /// A pair is a copy of its own conjugate where these are next to each other, compared with the
 /// distance from other pairs.
 constexpr double clearly_nearer = 0.1;
@@ -879,9 +882,14 @@ class Analysis {
   }
 
   /// Whether a motion next to the copy of its conjugate needs more harmonics to be coupled with it.
+  /// Couplings fall with the harmonic: those of missing ones are no larger than the last change.
   bool lacks_partner(const Candidate& one) const {
-    const int shift = std::abs(neighbouring_conjugate(one.pair.exponent, sectors_, speed_));
-    return is_centred(one) && shift >= harmonics_ && shift < most_harmonics;
+    const Complex exponent = one.pair.exponent;
+    const int shift = neighbouring_conjugate(exponent, sectors_, speed_);
+    if (!is_centred(one) || std::abs(shift) < harmonics_ || std::abs(shift) >= most_harmonics)
+      return false;
+    const double apart = std::abs(exponent.imag() - 0.5 * shift * speed_);
+    return apart < beyond_change * one.residual * unit_of_change(exponent, speed_);
   }
 
   /// Whether the changes of exponents are small beside their growth.

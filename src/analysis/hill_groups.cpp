@@ -37,6 +37,9 @@ constexpr double same_group = 0.03;
 
 /// Relative to the rotor speed: distance of an exponent from the copy of its conjugate.
 constexpr double next_to_conjugate = 0.03;
+/// Two motions of one frequency have equal parts of positive and negative frequencies. A pair with
+/// a smaller part of negative ones is one motion.
+constexpr double least_coupled = 0.3;
 
 void share_pair(const Ranks& ranks, int owner, HillPair& pair) {
   ranks.share(owner, pair.exponent);
@@ -190,9 +193,17 @@ void HillGroups::add_partners(std::vector<HillGroup>& groups, double tolerance) 
       const HillPair& own = groups[g].pairs.front();
       const int shift = neighbouring_conjugate(own.exponent, pencil_.sectors(), speed_);
       HillPair positive = own;
+      Eigen::MatrixXcd negative = own.series;
       const Index harmonics = (own.series.rows() - 1) / 2;
       for (Index row = 0; row < own.series.rows(); ++row)
-        if (2 * (row - harmonics) < -shift) positive.series.row(row).setZero();
+        if (2 * (row - harmonics) < -shift)
+          positive.series.row(row).setZero();
+        else
+          negative.row(row).setZero();
+      const Ranks& parts = pencil_.ranks();
+      if (parts.norm(pencil_.vector_of(negative)) <
+          least_coupled * parts.norm(pencil_.vector_of(own.series)))
+        continue;
       const HillPair conjugate = conjugate_of(positive);
       std::vector<HillPair> both{positive,
                                  {conjugate.exponent + std::complex<double>(0.0, shift * speed_),
