@@ -74,11 +74,6 @@ Matrix with_harmonics(const Matrix& vectors, Index width, Index wanted) {
   return result;
 }
 
-void append(Matrix& to, const Matrix& columns) {
-  to.conservativeResize(columns.rows(), to.cols() + columns.cols());
-  to.rightCols(columns.cols()) = columns;
-}
-
 /// The inverse of with_harmonics(), of the harmonics that the other pencil has.
 Matrix without_harmonics(const Matrix& vectors, Index width, Index wanted) {
   const Index unknowns = vectors.rows() / width;
@@ -87,6 +82,11 @@ Matrix without_harmonics(const Matrix& vectors, Index width, Index wanted) {
     result.middleRows(i * wanted, wanted) =
         vectors.middleRows(i * width + (width - wanted) / 2, wanted);
   return result;
+}
+
+void append(Matrix& to, const Matrix& columns) {
+  to.conservativeResize(columns.rows(), to.cols() + columns.cols());
+  to.rightCols(columns.cols()) = columns;
 }
 
 }  // namespace
@@ -262,9 +262,9 @@ class ExponentDerivatives::Basis {
     HillPencil& own = pencil(level);
     const std::vector<HillPair> pairs = pairs_of(numbers, which);
     const auto count = static_cast<Index>(pairs.size());
-    Subspace group;
-    group.level = level;
-    group.members.assign(pairs.size(), starts_.size());
+    Subspace subspace;
+    subspace.level = level;
+    subspace.members.assign(pairs.size(), starts_.size());
     Matrix X(own.size(), count);
     Matrix T = Matrix::Zero(count, count);
     for (Index j = 0; j < count; ++j) {
@@ -274,21 +274,21 @@ class ExponentDerivatives::Basis {
       // A conjugate is no member.
       for (const std::size_t i : numbers)
         if ((starts_[i].*which).exponent == pair.exponent &&
-            std::ranges::find(group.members, i) == group.members.end()) {
-          group.members[static_cast<std::size_t>(j)] = i;
+            std::ranges::find(subspace.members, i) == subspace.members.end()) {
+          subspace.members[static_cast<std::size_t>(j)] = i;
           break;
         }
     }
     // Of an orthonormal basis of the same subspace, X = Q R: T becomes R T R^-1, and the columns of
     // R are its eigenvectors.
     const Eigen::HouseholderQR<Matrix> qr(X);
-    group.vectors = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>().toDenseMatrix();
-    group.X = qr.householderQ() * Matrix::Identity(X.rows(), count);
-    group.exponents = T.diagonal();
-    group.T = group.vectors * T * group.vectors.inverse();
-    group.mass.resize(group.X.rows(), count);
-    own.multiply_mass(group.X, group.mass);
-    return group;
+    subspace.vectors = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>().toDenseMatrix();
+    subspace.X = qr.householderQ() * Matrix::Identity(X.rows(), count);
+    subspace.exponents = T.diagonal();
+    subspace.T = subspace.vectors * T * subspace.vectors.inverse();
+    subspace.mass.resize(subspace.X.rows(), count);
+    own.multiply_mass(subspace.X, subspace.mass);
+    return subspace;
   }
 
   const system::PeriodicSystem& system_;
@@ -422,7 +422,8 @@ std::vector<ExponentDerivatives::Derivatives> ExponentDerivatives::derivatives(
         const auto add_errors = [&](const Eigen::VectorXcd& other) {
           for (const std::size_t member : group.now.members)
             if (const auto m = static_cast<Index>(member); m < count)
-              result[p].errors(m) += std::abs(found(m) - other(m));
+              result[p].errors(m) +=
+                  std::isnan(other(m).real()) ? std::abs(found(m)) : std::abs(found(m) - other(m));
         };
         if (!rate.of_half.empty()) add_errors(find(now, group.now, rate.of_half[g]));
         if (!rate.before.empty()) add_errors(find(before, group.before, rate.before[g]));

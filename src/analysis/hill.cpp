@@ -407,9 +407,7 @@ class Analysis {
     Candidate candidate{search.pair(number, shape, 0, sectors_), {}, {}};
     describe_shape(shape, candidate);
     settle_rest(candidate.pair.series, candidate, at_rest);
-    int copies = (std::abs(candidate.mode.harmonic) + (sectors_ - 1) / 2) / sectors_;
-    if (candidate.mode.harmonic < 0) copies = -copies;
-    const int shift = copies * sectors_;
+    const int shift = shift_to_own(candidate.mode.harmonic);
     candidate.mode.harmonic -= shift;
     candidate.pair = search.pair(number, shape, shift, least_harmonics);
     if (candidate.pair.exponent.imag() < 0.0) {
@@ -656,12 +654,14 @@ class Analysis {
   bool is_next_to_own(const Candidate& candidate) const {
     return std::abs(candidate.mode.harmonic) <= nearest_;
   }
-  /// The exponent of the copy of a pair that is next to its own harmonic.
-  Complex centred_exponent(const Candidate& candidate) const {
-    const int harmonic = candidate.mode.harmonic;
+  /// Harmonics from a pair to its copy next to its own harmonic.
+  int shift_to_own(int harmonic) const {
     const int copies = (std::abs(harmonic) + (sectors_ - 1) / 2) / sectors_;
-    return candidate.pair.exponent +
-           Complex(0.0, (harmonic < 0 ? -copies : copies) * sectors_ * speed_);
+    return (harmonic < 0 ? -copies : copies) * sectors_;
+  }
+  /// The exponent of this copy.
+  Complex centred_exponent(const Candidate& candidate) const {
+    return candidate.pair.exponent + Complex(0.0, shift_to_own(candidate.mode.harmonic) * speed_);
   }
   /// Motions whose multiplier is real and negative are copies of their own conjugates: two of them,
   /// one that may grow and one that decays, have one frequency, half of Q Omega but for multiples
@@ -798,12 +798,15 @@ class Analysis {
     /// 0: no mode of the range that is reported, not at its own harmonic, or one of the medium.
     double weight;
   };
+  /// Of an exponent in a medium, since fewer harmonics [1/s].
+  double last_change(const Candidate& mode) const {
+    return mode.residual * unit_of_change(mode.pair.exponent, speed_);
+  }
   Decay decay_of(const Candidate& mode) const {
     const Complex exponent = mode.pair.exponent;
     const bool counts =
         is_centred(mode) && modulus_of(mode) < region_.high - margin() && !may_be_of_medium(mode);
-    return {-exponent.real(), mode.residual * unit_of_change(exponent, speed_), exponent,
-            counts ? weight_of(mode) : 0.0};
+    return {-exponent.real(), last_change(mode), exponent, counts ? weight_of(mode) : 0.0};
   }
 
   /// Takes out groups of one mode that decays faster than the wanted ones, and than the range that
@@ -889,7 +892,7 @@ class Analysis {
     if (!is_centred(one) || std::abs(shift) < harmonics_ || std::abs(shift) >= most_harmonics)
       return false;
     const double apart = std::abs(exponent.imag() - 0.5 * shift * speed_);
-    return apart < beyond_change * one.residual * unit_of_change(exponent, speed_);
+    return apart < beyond_change * last_change(one);
   }
 
   /// Whether the changes of exponents are small beside their growth.
@@ -1185,7 +1188,8 @@ class Analysis {
     if (std::abs(principal(first) - principal(second)) < apart(a, b)) return true;
     if (!is_by_change()) return false;
     const auto error_of = [this](const Candidate& one) {
-      return std::max(one.residual, accuracy().wanted) * unit_of_change(one.pair.exponent, speed_);
+      return std::max(last_change(one),
+                      accuracy().wanted * unit_of_change(one.pair.exponent, speed_));
     };
     const double error = std::min(same_with_medium * std::max(std::abs(first), speed_),
                                   beyond_errors * (error_of(a) + error_of(b)));

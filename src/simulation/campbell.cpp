@@ -188,25 +188,20 @@ std::vector<GrowthRange> find_growth(const std::vector<CampbellPoint>& points,
   };
   // A line may end before the sweep: where two modes of one frequency become one.
   const std::vector<std::pair<std::size_t, std::size_t>> neighbours = find_neighbours(points);
-  const auto before = [&](std::size_t i) {
-    const auto pair = std::ranges::find(neighbours, line.modes[i].point,
-                                        &std::pair<std::size_t, std::size_t>::second);
-    return pair == neighbours.end() ? nullptr : &points[pair->first];
-  };
-  const auto behind = [&](std::size_t i) {
-    const auto pair = std::ranges::find(neighbours, line.modes[i].point,
-                                        &std::pair<std::size_t, std::size_t>::first);
-    return pair == neighbours.end() ? nullptr : &points[pair->second];
+  using Pair = std::pair<std::size_t, std::size_t>;
+  const auto neighbour = [&](std::size_t i, std::size_t Pair::*own, std::size_t Pair::*other) {
+    const auto pair = std::ranges::find(neighbours, line.modes[i].point, own);
+    return pair == neighbours.end() ? nullptr : &points[(*pair).*other];
   };
   for (std::size_t i = 0; i < line.modes.size(); ++i) {
     if (!grows(i)) continue;
     const std::size_t first = i;
     while (i + 1 < line.modes.size() && grows(i + 1)) ++i;
     GrowthRange range{point_of(first).place.value, point_of(i).place.value};
-    if (const CampbellPoint* other = before(first))
+    if (const CampbellPoint* other = neighbour(first, &Pair::second, &Pair::first))
       range.from = edge_between(*other, point_of(first), true, line.modes[first].mode, edges)
                        .value_or(range.from);
-    if (const CampbellPoint* other = behind(i))
+    if (const CampbellPoint* other = neighbour(i, &Pair::first, &Pair::second))
       range.to =
           edge_between(point_of(i), *other, false, line.modes[i].mode, edges).value_or(range.to);
     ranges.push_back(range);

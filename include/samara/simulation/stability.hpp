@@ -69,8 +69,8 @@ struct StabilityAssessment {
 
 /// Only resolved modes with small errors count. One that grows suffices for a verdict; others are
 /// given if the ten slowest modes, or all modes, are known. In a medium, whose loads decide about
-/// growth, at least half of them must count. Where
-/// not all modes were searched, the verdict is that of the modes in ModeSet::searched.
+/// growth, at least half of them must count. Where not all modes were searched, the verdict is that
+/// of the modes in ModeSet::searched.
 StabilityAssessment assess_stability(const analysis::ModeSet& set);
 
 }  // namespace samara::simulation
