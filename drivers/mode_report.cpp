@@ -242,10 +242,12 @@ std::string searched_words(const ModeSet& set) {
          hertz(region.high) + ", " +
          (region.growth == region.decay ? "growth" : "growth up to " + general(region.growth, 3)) +
          " and decay up to " + general(region.decay, 3) + " 1/s" +
-         (!region.is_counted      ? ""
-          : set.medium_states > 0 ? "; none with a damping below 90 % is missing there"
-                                  : "; none is missing there") +
-         "; other modes are not known" +
+         (!region.is_counted ? ""
+          : region.largest_damping < 1.0
+              ? "; none with a damping below " + percent(region.largest_damping) +
+                    " % is missing there"
+              : "; none is missing there") +
+         (region.is_of_all ? "; other modes are not listed" : "; other modes are not known") +
          (set.medium_states > 0 ? "; exponents of the air are left out" : "") +
          (static_cast<std::size_t>(region.wanted) > set.modes.size()
               ? "\n" + std::to_string(region.wanted) + " modes were asked for; the others " +

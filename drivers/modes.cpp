@@ -27,8 +27,9 @@ std::string headline(const io::Case& input, const analysis::ModeSet& set, PetscI
                                       " rad/s, frequencies in the rotor's axes (--parked: at rest)"
                                 : "parked rotor";
   const std::string size =
-      set.searched ? std::to_string(unknowns) + " unknowns; Hill's method without harmonics"
-                   : count(set.degrees_of_freedom, "degree") + " of freedom";
+      set.searched && !set.searched->is_of_all
+          ? std::to_string(unknowns) + " unknowns; Hill's method without harmonics"
+          : count(set.degrees_of_freedom, "degree") + " of freedom";
   return title_of(input) + "\n" + rotor + "; " + size + "\n\n";
 }
 

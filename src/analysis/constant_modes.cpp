@@ -18,6 +18,7 @@
 
 #include "energy_coordinates.hpp"
 #include "massless_states.hpp"
+#include "mode_selection.hpp"
 #include "state_parts.hpp"
 
 namespace samara::analysis {
@@ -338,13 +339,15 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
 
 ModeSet find_constant_modes(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                             const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
-  if (options.modes > 0 || options.least_damped > 0) {
+  if (asks_for_some(options) && options.search != ModeSearch::all) {
     require_constant(system, solution);
     if (std::optional<ModeSet> found = find_hill_constant_modes(system, solution, options, comm))
       return std::move(*found);
     observer.note("modes: all modes, because the mesh is too coarse for Hill's method");
   }
-  return find_constant_modes(system, solution);
+  ModeSet set = find_constant_modes(system, solution);
+  if (asks_for_some(options)) leave_wanted(set, options);
+  return set;
 }
 
 }  // namespace samara::analysis

@@ -21,6 +21,7 @@
 #include "energy_coordinates.hpp"
 #include "energy_shares.hpp"
 #include "massless_states.hpp"
+#include "mode_selection.hpp"
 #include "mode_sharing.hpp"
 #include "sector_motion.hpp"
 #include "signal_series.hpp"
@@ -62,8 +63,8 @@ constexpr int shape_samples = 24;
 /// Instants per sector for the name of a mode that is not resolved.
 constexpr Eigen::Index label_samples = 3;
 
-/// Modes that a chosen number of steps resolves, those of a verdict.
-constexpr std::size_t first_modes = 10;
+/// Modes that a chosen number of steps resolves where all modes are asked for, those of a verdict.
+constexpr int first_modes = 10;
 /// Limits of a number of steps that is chosen.
 constexpr int least_steps = 36;
 constexpr double most_steps = 2000.0;
@@ -79,6 +80,28 @@ constexpr double usual_increase = 1.6;
 /// An estimated number of steps is raised by this factor.
 constexpr double step_margin = 1.05;
 constexpr int most_attempts = 5;
+
+/// Seconds of one core for each unknown, as measured (docs/performance.md): of a step with its part
+/// of the identification, the same for each state; of Hill's method, and for each mode. The
+/// eigenproblem takes seconds for each state to the third power.
+constexpr double step_of_unknown = 2.5e-5;
+constexpr double step_of_unknown_and_state = 2.3e-7;
+constexpr double eigenproblem_of_state = 1e-9;
+struct HillTime {
+  double of_unknown;
+  double of_unknown_and_mode;
+};
+constexpr HillTime hill_in_medium{1.3e-3, 6e-5};
+constexpr HillTime hill_of_slow_modes{5e-4, 1e-4};
+constexpr HillTime hill_of_slow_decays{0.0, 5e-4};
+/// The same without three equal parts or more, where more harmonics are coupled.
+constexpr HillTime hill_in_medium_of_few{0.0, 1.5e-3};
+constexpr HillTime hill_of_slow_modes_of_few{0.0, 8e-4};
+constexpr HillTime hill_of_slow_decays_of_few{0.0, 2e-3};
+/// Factor of the steps for the slowest decays, which are not the slowest modes.
+constexpr double steps_of_slow_decays = 1.5;
+/// Beyond this number of unknowns, Hill's method always takes less.
+constexpr PetscInt most_unknowns = 10000;
 
 /// Instants of a step at which the motion is identified: its middle for order 2, its start and
 /// others for higher orders. They are more than the stages and show motions that are too fast for
@@ -724,21 +747,51 @@ class Analysis {
 
 namespace {
 
+/// Number of the slowest modes that the steps are to resolve.
+int count_to_resolve(const FloquetOptions& options) {
+  return asks_for_some(options) ? std::max(options.modes, options.least_damped) : first_modes;
+}
+
 /// Number of steps in a revolution whose reach is beyond the slowest modes, as the tangents at the
 /// start have them.
 double choose_steps(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                    int order) {
-  const std::vector<double> moduli = find_moduli_at_start(system, solution, first_modes);
+                    const FloquetOptions& options) {
+  const int count = count_to_resolve(options);
+  const std::vector<double> moduli = find_moduli_at_start(system, solution, count);
   if (moduli.empty()) return least_steps;
   const double speed = 2.0 * std::numbers::pi / system.period();
-  const double last = moduli[std::min(moduli.size(), first_modes) - 1];
+  const double last = moduli[std::min(moduli.size(), static_cast<std::size_t>(count)) - 1];
   const double reach = reach_factor * (last + reach_harmonics * speed);
-  const double steps = reach / TimeRule{order, system.period()}.reach();
+  const double factor = options.least_damped > 0 ? steps_of_slow_decays : 1.0;
+  const double steps = factor * reach / TimeRule{options.order, system.period()}.reach();
   return std::clamp(steps, static_cast<double>(least_steps), most_steps);
 }
 
+HillTime hill_time(const system::PeriodicSystem& system, const FloquetOptions& options) {
+  const bool has_few = system.symmetry().sectors < 3;
+  if (system::has_medium(system.unknowns()))
+    return has_few ? hill_in_medium_of_few : hill_in_medium;
+  if (options.least_damped > 0) return has_few ? hill_of_slow_decays_of_few : hill_of_slow_decays;
+  return has_few ? hill_of_slow_modes_of_few : hill_of_slow_modes;
+}
+
+/// Whether all modes by integration take less time than some by Hill's method, as far as it can be
+/// foreseen.
+bool all_modes_take_less(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                         const FloquetOptions& options, int sectors) {
+  if (options.near_hz || system.size() > most_unknowns) return false;
+  const auto states = static_cast<double>(ConsistentSubspace(system, solution).size());
+  const double steps = options.steps > 0 ? options.steps : choose_steps(system, solution, options);
+  const auto unknowns = static_cast<double>(system.size());
+  const double integration =
+      steps / sectors * unknowns * (step_of_unknown + step_of_unknown_and_state * states) +
+      eigenproblem_of_state * states * states * states;
+  const auto [of_unknown, of_unknown_and_mode] = hill_time(system, options);
+  return integration < unknowns * (of_unknown + of_unknown_and_mode * count_to_resolve(options));
+}
+
 /// Factor of the number of steps that resolves the slowest modes, with the accuracy where one is
-/// asked for; 1 where they are.
+/// asked for, or so many that those asked for are among them; 1 where they are.
 double increase_of(const ModeSet& set, const FloquetOptions& options) {
   std::vector<const Mode*> modes;
   for (const Mode& mode : set.modes)
@@ -746,8 +799,10 @@ double increase_of(const ModeSet& set, const FloquetOptions& options) {
   std::sort(modes.begin(), modes.end(), [](const Mode* a, const Mode* b) {
     return std::abs(a->exponent) < std::abs(b->exponent);
   });
-  modes.resize(std::min(modes.size(), first_modes));
+  modes.resize(std::min(modes.size(), static_cast<std::size_t>(count_to_resolve(options))));
   double factor = 1.0;
+  if (const std::optional<double> reach = lacking_reach(set, options))
+    factor = std::clamp(*reach / set.reach, least_increase, most_increase);
   for (const Mode* mode : modes) {
     if (mode->resolved) continue;
     const bool is_known =
@@ -766,11 +821,6 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
                            const FloquetOptions& options, MPI_Comm comm, Observer& observer) {
   if (system.period() == 0.0)
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
-  if (options.modes > 0 || options.least_damped > 0) {
-    if (std::optional<Floquet> found = find_hill_modes(system, solution, options, comm))
-      return std::move(*found);
-    observer.note("floquet: all modes, because the mesh is too coarse for Hill's method");
-  }
   const int repeats = system.symmetry().sectors;
   if (options.period == FloquetPeriod::blade && repeats < 2)
     throw InputError(
@@ -781,8 +831,23 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   if (options.period == FloquetPeriod::automatic && !broken_by.empty())
     observer.note("floquet: full period, because " + broken_by);
   const int sectors = options.period == FloquetPeriod::full ? 1 : repeats;
+  const Ranks ranks(comm);
+  if (asks_for_some(options) && options.search != ModeSearch::all) {
+    bool takes_less = options.search == ModeSearch::automatic &&
+                      all_modes_take_less(system, solution, options, sectors);
+    ranks.share(0, takes_less);  // estimates may differ by round-off
+    if (!takes_less) {
+      if (std::optional<Floquet> found = find_hill_modes(system, solution, options, comm))
+        return std::move(*found);
+      observer.note("floquet: all modes, because the mesh is too coarse for Hill's method");
+    }
+  }
   const auto run = [&](int steps) {
-    return Analysis(system, solution, sectors, steps, options, Ranks(comm), observer).run();
+    return Analysis(system, solution, sectors, steps, options, ranks, observer).run();
+  };
+  const auto wanted_of = [&options](Floquet found) {
+    if (asks_for_some(options)) leave_wanted(found.set, options);
+    return found;
   };
   const auto whole = [sectors](double steps) { return whole_sectors(steps, sectors); };
   if (options.steps > 0) {
@@ -791,16 +856,18 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
       observer.note("floquet: " + std::to_string(steps) +
                     " steps a revolution, a multiple of the " + std::to_string(sectors) +
                     " blades");
-    return run(steps);
+    return wanted_of(run(steps));
   }
-  int steps = whole(choose_steps(system, solution, options.order));
+  int steps = whole(choose_steps(system, solution, options));
   for (int attempt = 1;; ++attempt) {
     Floquet found = run(steps);
     const double factor = increase_of(found.set, options);
-    if (factor <= 1.0 || attempt == most_attempts || steps * factor > most_steps) return found;
+    if (factor <= 1.0 || attempt == most_attempts || steps * factor > most_steps)
+      return wanted_of(std::move(found));
     steps = std::max(whole(steps * factor), steps + sectors);
-    observer.note("floquet: the ten slowest modes need more steps, " + std::to_string(steps) +
-                  " a revolution");
+    observer.note("floquet: the " +
+                  (asks_for_some(options) ? "wanted" : std::string("ten slowest")) +
+                  " modes need more steps, " + std::to_string(steps) + " a revolution");
   }
 }
 

@@ -73,6 +73,8 @@ constexpr double next_to_medium = 0.2;
 /// The highest frequency of a mode of the medium, relative to the rotor speed: its parts decay in
 /// axes of the rotor or of the ground.
 constexpr double highest_of_medium = 1.5;
+/// Damping ratio up to which modes are told from those of the medium.
+constexpr double largest_damping_with_medium = 0.9;
 /// Least decay at which a region in a medium ends, relative to the rotor speed.
 constexpr double least_decay = 0.1;
 /// The slowest decays are known where they have frequencies in this part of the range, or where
@@ -1325,7 +1327,8 @@ class Analysis {
                        region_.growth,
                        region_is_counted_ && (kept >= expected_ || options_.least_damped > 0),
                        std::max(options_.modes, options_.least_damped),
-                       options_.least_damped > 0};
+                       options_.least_damped > 0,
+                       has_medium_ ? largest_damping_with_medium : 1.0};
     for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;
   }
 

@@ -80,25 +80,31 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
                  "the ten slowest modes are below it"},
                 floquet.accuracy);
   fields.integer(
-      Field(
-          "modes", "", integers(1, most_modes),
-          "number of modes to find by Hill's method, for large meshes, also by `samara modes`: the "
-          "slowest ones, or those nearest to `near_hz`. In the air, modes of the air alone are "
-          "left out, and slow ones of strong damping may be: the output states up to which decay "
-          "the range was searched. Other keys of `floquet` then do not count")
+      Field("modes", "", integers(1, most_modes),
+            "number of modes to report, also by `samara modes`: the slowest ones, or those nearest "
+            "to `near_hz`, and other ones that are known to grow. Modes of the air alone are left "
+            "out. The output states the range in which they are complete")
           .none_at_zero("all modes"),
       floquet.modes);
   fields.number({"near_hz", "Hz", positive, "frequency next to which `modes` are searched"},
                 floquet.near_hz);
   fields.integer(
       Field("least_damped", "", integers(1, most_modes),
-            "number of modes that decay slowest or grow, in a range of frequencies that the output "
-            "states, for large meshes. They are found by integration of a block of columns, in the "
-            "air and by `samara modes` by Hill's method without the modes of the air alone, and "
-            "refined by Hill's method. `steps`, `period`, `time_order` and `accuracy` then do not "
-            "count")
+            "number of modes that decay slowest, and of those that grow, in a range of frequencies "
+            "that the output states; without modes of the air alone")
           .none_at_zero("all modes"),
       floquet.least_damped);
+  fields.choice(
+      Field(
+          "search",
+          "the way to `modes` or `least_damped`: `all` computes all modes, and reports those; "
+          "`hill` is Hill's method for these alone, for large meshes, where `steps`, `period`, "
+          "`time_order` and `accuracy` do not count, and, in the air, slow modes of strong damping "
+          "may be left out; `auto` takes the one that is likely to take less time"),
+      floquet.search,
+      {{"auto", analysis::ModeSearch::automatic},
+       {"all", analysis::ModeSearch::all},
+       {"hill", analysis::ModeSearch::hill}});
 }
 
 void declare_static(Visitor& fields, analysis::StaticOptions& statics) {

@@ -192,6 +192,9 @@ class Validation {
     if (scenario_.floquet.least_damped > 0 && scenario_.floquet.modes > 0)
       add("floquet.least_damped",
           "and floquet.modes exclude each other; hint: leave one of them out");
+    if (scenario_.floquet.search != analysis::ModeSearch::automatic &&
+        !analysis::asks_for_some(scenario_.floquet))
+      add("floquet.search", "needs floquet.modes or floquet.least_damped");
     check_count("floquet.modes", scenario_.floquet.modes);
     check_count("floquet.least_damped", scenario_.floquet.least_damped);
   }

@@ -99,6 +99,7 @@ BOOST_AUTO_TEST_CASE(constant_tangents_have_the_modes_of_one_rank) {
   const analysis::Trim trim = analysis::find_trim(system, {}, observer);
   analysis::FloquetOptions options;
   options.modes = 12;
+  options.search = analysis::ModeSearch::hill;
   const auto find = [&](MPI_Comm comm) {
     return analysis::find_constant_modes(system, trim.solution, options, comm, observer);
   };

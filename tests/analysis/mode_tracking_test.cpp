@@ -269,6 +269,7 @@ BOOST_AUTO_TEST_CASE(integration_and_hill_find_the_same_shapes) {
   analysis::Observer observer;
   analysis::FloquetOptions options;
   options.modes = 4;
+  options.search = analysis::ModeSearch::hill;
   const analysis::ModeSet some =
       find_floquet_modes(system, rest(system), options, PETSC_COMM_SELF, observer).set;
   const std::vector<analysis::ModeLink> links =

@@ -375,7 +375,8 @@ class Inputs(ProgramTest):
         case = SOURCE / "inputs/nrel5mw/land.yaml"
         coarse = [part for key in ("blades.elements=1", "blades.order=3", "tower.elements=1",
                                    "tower.order=3", "aero=none") for part in ("--set", key)]
-        text = self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", "-o",
+        hill = ("--set", "floquet.search=hill")
+        text = self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", *hill, "-o",
                             "some.h5").stdout
         self.assertRegex(text, r"(?m)^rotor speed .*; 324 unknowns; Hill's method, ")
         self.assertRegex(text, r"(?m)^stable: all \d+ modes decay; ")
@@ -398,27 +399,28 @@ class Inputs(ProgramTest):
             below = others[abs(others.imag) < 2 * numpy.pi * group.attrs["searched_to_hz"]]
             self.assertTrue(all(abs(found - one).min() < 1e-4 * abs(one) for one in below))
         for ranks in (2, 3):
-            self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", "-o", "ranks.h5",
+            self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", *hill, "-o", "ranks.h5",
                          ranks=ranks)
             with h5py.File(self.folder / "ranks.h5") as file:
                 other = file["/floquet/exponents"][:] @ [1, 1j]
             self.assertLess((abs(other - found) / abs(found)).max(), 1e-9)
         # Far from all modes; few eigenpairs a shift.
-        self.assertIn(self.samara("floquet", case, *coarse, "--set", "floquet.modes=4", "--set",
+        self.assertIn(self.samara("floquet", case, *coarse, "--set", "floquet.modes=4", *hill, "--set",
                                   "floquet.near_hz=1000").returncode, (0, 3))
-        text = self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4",
+        text = self.succeed("floquet", case, *coarse, "--set", "floquet.modes=4", *hill,
                             "-hill_eps_ncv", "60").stdout
         self.assertIn("none is missing there", text)
         self.refuse("floquet", case, *coarse, "--set", "floquet.near_hz=2",
                     words=["floquet.near_hz", "needs floquet.modes"])
-        self.refuse("floquet", case, *coarse, "--set", "floquet.modes=4",
+        self.refuse("floquet", case, *coarse, "--set", "floquet.modes=4", *hill,
                     "-hill_eps_smallest_magnitude", words=["largest eigenvalues"])
 
     def test_slowest_decays(self):
         case = SOURCE / "inputs/nrel5mw/land.yaml"
         coarse = ("--set", "blades.elements=1", "--set", "blades.order=3", "--set",
                   "tower.elements=1", "--set", "tower.order=3", "--set", "aero=none")
-        text = self.succeed("floquet", case, *coarse, "--set", "floquet.least_damped=5", "-o",
+        hill = ("--set", "floquet.search=hill")
+        text = self.succeed("floquet", case, *coarse, "--set", "floquet.least_damped=5", *hill, "-o",
                             "some.h5").stdout
         self.assertIn("none is missing there", text)
         self.assertIn("all of these modes are resolved", text)

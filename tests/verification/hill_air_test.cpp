@@ -93,12 +93,14 @@ void require_agreement(const analysis::ModeSet& some, const analysis::ModeSet& a
 analysis::FloquetOptions some_modes(int modes) {
   analysis::FloquetOptions options;
   options.modes = modes;
+  options.search = analysis::ModeSearch::hill;
   return options;
 }
 
 analysis::FloquetOptions slowest_decays(int modes) {
   analysis::FloquetOptions options;
   options.least_damped = modes;
+  options.search = analysis::ModeSearch::hill;
   return options;
 }
 

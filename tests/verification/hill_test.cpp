@@ -160,6 +160,7 @@ BOOST_AUTO_TEST_CASE(searches_of_constant_tangents_agree_with_all_modes) {
       };
       analysis::FloquetOptions options;
       options.modes = count;
+      options.search = analysis::ModeSearch::hill;
       const analysis::ModeSet slowest = find(options);
       require_agreement(slowest, all, "slowest");
       BOOST_TEST(slowest.modes.size() >= static_cast<std::size_t>(count));
@@ -187,6 +188,7 @@ BOOST_AUTO_TEST_CASE(rough_approximations_of_a_search_are_no_further_exponents) 
       analysis::Observer observer;
       analysis::FloquetOptions options;
       options.modes = 12;
+      options.search = analysis::ModeSearch::hill;
       const analysis::ModeSet set = analysis::find_constant_modes(
           steady.system, steady.trim.solution, options, PETSC_COMM_SELF, observer);
       BOOST_TEST_REQUIRE(set.searched.has_value());

@@ -388,6 +388,7 @@ BOOST_AUTO_TEST_CASE(bending_without_inertia_behind_a_hinge_has_no_exponent) {
                  2 * count * of_element + (is_damped ? count : 0) + first_order);
       analysis::FloquetOptions some;
       some.modes = 3 * count;
+      some.search = analysis::ModeSearch::hill;
       const std::vector<double> searched = moduli_of(analysis::find_constant_modes(
           turning.system, turning.trim.solution, some, PETSC_COMM_SELF, turning.observer));
       for (std::size_t i = 0; i < searched.size(); ++i)

@@ -422,6 +422,7 @@ BOOST_AUTO_TEST_CASE(a_joint_has_no_more_real_exponents_than_states) {
   for (const int modes : {0, 10}) BOOST_TEST_CONTEXT("modes " << modes) {
       analysis::FloquetOptions options;
       options.modes = modes;
+      options.search = analysis::ModeSearch::hill;
       const analysis::ModeSet set =
           find_floquet_modes(run.system, run.trim.solution, options, PETSC_COMM_SELF, run.observer)
               .set;
@@ -470,6 +471,7 @@ BOOST_AUTO_TEST_CASE(a_slow_drift_of_the_rotor_is_rotor_rotation_at_any_rate) {
           Run run(turning);
           analysis::FloquetOptions options;
           options.modes = modes;
+          options.search = analysis::ModeSearch::hill;
           const analysis::ModeSet set = find_floquet_modes(run.system, run.trim.solution, options,
                                                            PETSC_COMM_SELF, run.observer)
                                             .set;
@@ -599,7 +601,7 @@ BOOST_AUTO_TEST_CASE(modes_keep_their_numbers_where_others_are_left_out) {
   const analysis::ModeSet all = modes_of({});
   std::set<std::string> found;
   for (const std::vector<std::string>& more :
-       {std::vector<std::string>{"floquet.least_damped=16"},
+       {std::vector<std::string>{"floquet.least_damped=16", "floquet.search=hill"},
         std::vector<std::string>{"floquet.near_hz=7", "floquet.modes=2"}}) {
     const analysis::ModeSet some = modes_of(more);
     for (const analysis::Mode& mode : some.modes) {

@@ -27,6 +27,7 @@ struct Turning {
   analysis::Floquet by_hill(int count, std::optional<double> near_hz = {}) {
     analysis::FloquetOptions options;
     options.modes = count;
+    options.search = analysis::ModeSearch::hill;
     options.near_hz = near_hz;
     return modes(options);
   }
@@ -34,6 +35,7 @@ struct Turning {
   analysis::Floquet by_least_damped(int count) {
     analysis::FloquetOptions options;
     options.least_damped = count;
+    options.search = analysis::ModeSearch::hill;
     return modes(options);
   }
 

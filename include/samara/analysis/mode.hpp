@@ -86,6 +86,8 @@ struct SearchedRegion {
   bool is_counted = false;
   int wanted = 0;                  ///< number of modes that were asked for
   bool is_of_slow_decays = false;  ///< those of slowest decay, not those next to a frequency
+  double largest_damping = 1.0;    ///< ratio up to which the modes are counted
+  bool is_of_all = false;          ///< taken from all modes; others are known, too
 };
 
 struct ModeSet {

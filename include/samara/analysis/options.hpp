@@ -24,6 +24,9 @@ struct TrimOptions {
 
 enum class FloquetPeriod { automatic, full, blade };
 
+/// The way to some modes: Hill's method for these alone, or all modes, of which they are taken.
+enum class ModeSearch { automatic, all, hill };
+
 struct FloquetOptions {
   /// Per revolution; 0: as many as the ten slowest modes need, and at least some (theory 5.1).
   int steps = 0;
@@ -31,13 +34,18 @@ struct FloquetOptions {
   int order = 6;  ///< of the steps: 2, 4 or 6; 2 is (19)
   /// Largest error by the time steps of a resolved mode, relative.
   std::optional<double> accuracy = {};
-  /// Number of modes, by Hill's method; 0: all modes, by integration over a period.
-  int modes = 0;
+  int modes = 0;                       ///< number of modes; 0: all, by integration over a period
   std::optional<double> near_hz = {};  ///< the modes nearest to this frequency, not the slowest
-  /// Number of modes of slowest decay, found by integration (in a medium by Hill's method) and
-  /// refined by Hill's method.
+  /// Number of modes of slowest decay. Hill's method alone finds them by integration of a block of
+  /// columns, but in a medium by a search without its states.
   int least_damped = 0;
+  ModeSearch search = ModeSearch::automatic;  ///< of `modes` or `least_damped`
 };
+
+/// Whether not all modes are asked for.
+inline bool asks_for_some(const FloquetOptions& options) {
+  return options.modes > 0 || options.least_damped > 0;
+}
 
 enum class StaticMethod { load, arc_length };
 

@@ -1,0 +1,184 @@
+// Some modes that are taken from all modes, on turbines.
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+#include <boost/test/unit_test.hpp>
+
+#include "samara/simulation/stability.hpp"
+
+#include "turning.hpp"
+
+using namespace samara;
+using namespace samara::test;
+
+namespace {
+
+using analysis::Mode;
+using analysis::ModeSet;
+
+constexpr double hertz = 2.0 * std::numbers::pi;
+
+const std::vector<std::string> coarse{"blades.elements=1", "blades.order=3", "tower.elements=1",
+                                      "tower.order=3"};
+/// Fine enough for all modes that the examples compare.
+constexpr int fine_steps = 180;
+
+/// Three and two blades, unlike blades, a rigid tower under gravity, free yaw.
+const std::vector<std::pair<std::string, std::vector<std::string>>> examples{
+    {"nrel5mw/land", coarse},
+    {"nrel5mw/land", with(coarse, {"nacelle.yaw={joint: free}", "trim.harmonics=6"})},
+    {"two_bladed/teetering", coarse},
+    {"lee2002/rigid_tower", {"blades.elements=2", "gravity=9.81", "trim.harmonics=6"}},
+    {"ground_resonance/hammond", {}},
+    {"ground_resonance/hammond", {"blades.each={1: {hinges: {lag: {damping: 0}}}}"}},
+};
+
+analysis::FloquetOptions of_all(int modes, int least_damped) {
+  analysis::FloquetOptions options;
+  options.modes = modes;
+  options.least_damped = least_damped;
+  options.search = analysis::ModeSearch::all;
+  return options;
+}
+
+/// The resolved modes of a fine integration, ascending by a key.
+template <class Key>
+std::vector<const Mode*> sorted(const ModeSet& all, Key key) {
+  std::vector<const Mode*> modes;
+  for (const Mode& mode : all.modes)
+    if (mode.resolved && !is_of_medium(mode)) modes.push_back(&mode);
+  std::ranges::stable_sort(modes, {}, [&](const Mode* mode) { return key(*mode); });
+  return modes;
+}
+
+/// Whether a mode is among others, with the errors of both by their steps.
+bool is_among(const Mode& mode, const ModeSet& others, double speed) {
+  return std::ranges::any_of(others.modes, [&](const Mode& other) {
+    const double error = mode.step_error + other.step_error + 1e-8;
+    // A double zero is known up to the square root of round-off.
+    return std::abs(mode.exponent - other.exponent) <
+           error * std::max(std::abs(mode.exponent), speed) + 1e-5 * speed;
+  });
+}
+
+/// Takes modes of each example and requires that the first `count` of all modes by `key` are among
+/// them, where this differs from the next one, and all others below `edge`.
+template <class Key, class Edge>
+void require_first(int count, double near_hz, const analysis::FloquetOptions& wanted, Key key,
+                   Edge edge) {
+  for (const auto& [name, settings] : examples) {
+    Turning turbine(name, settings);
+    const ModeSet all = turbine.by_steps(fine_steps);
+    analysis::FloquetOptions options = wanted;
+    if (near_hz > 0.0) options.near_hz = near_hz;
+    const analysis::Floquet found = turbine.modes(options);
+    BOOST_TEST_CONTEXT(name << " " << (settings.empty() ? "" : settings.back())) {
+      BOOST_TEST(found.harmonics == 0);
+      BOOST_REQUIRE(found.set.searched);
+      BOOST_TEST(found.set.searched->is_of_all);
+      const double speed = all.rotor_speed;
+      BOOST_TEST(found.set.modes.size() >= static_cast<std::size_t>(count));
+      BOOST_TEST(static_cast<std::size_t>(found.set.participation.rows()) ==
+                 found.set.modes.size());
+      BOOST_TEST(found.set.shapes.size() == found.set.modes.size());
+      for (const Mode& mode : found.set.modes) {
+        BOOST_TEST(mode.resolved, mode.label);
+        BOOST_TEST(is_among(mode, all, speed), mode.label << " is in none of the others");
+      }
+      const std::vector<const Mode*> order = sorted(all, key);
+      const double end = edge(*found.set.searched);
+      std::size_t inside = 0;
+      for (const Mode* mode : order) {
+        // Those at the edge may be on either side.
+        if (key(*mode) > end - 1e-3 * std::abs(end) ||
+            std::abs(mode->exponent) > 0.999 * found.set.searched->high)
+          continue;
+        ++inside;
+        BOOST_TEST(is_among(*mode, found.set, speed),
+                   mode->label << " " << mode->exponent << " is missing");
+      }
+      BOOST_TEST(inside >= static_cast<std::size_t>(count));
+    }
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(slowest_of_all_modes) {
+  for (const int count : {3, 5})
+    require_first(
+        count, 0.0, of_all(count, 0), [](const Mode& mode) { return std::abs(mode.exponent); },
+        [](const analysis::SearchedRegion& region) { return region.high; });
+}
+
+BOOST_AUTO_TEST_CASE(modes_next_to_a_frequency_of_all_modes) {
+  constexpr double frequency = 1.5;
+  require_first(
+      2, frequency, of_all(2, 0),
+      [](const Mode& mode) { return std::abs(std::abs(mode.exponent) - hertz * frequency); },
+      [](const analysis::SearchedRegion& region) {
+        return std::min(region.high - hertz * frequency, hertz * frequency - region.low);
+      });
+}
+
+BOOST_AUTO_TEST_CASE(slowest_decays_of_all_modes) {
+  require_first(
+      4, 0.0, of_all(0, 4), [](const Mode& mode) { return -mode.exponent.real(); },
+      [](const analysis::SearchedRegion& region) { return region.decay; });
+}
+
+BOOST_AUTO_TEST_CASE(a_growing_mode_is_never_left_out) {
+  // The motion that grows is faster than the slowest one.
+  Turning turbine("ground_resonance/hammond", {"blades.each={1: {hinges: {lag: {damping: 0}}}}"});
+  const ModeSet all = turbine.by_steps(fine_steps);
+  const auto grows = [](const Mode& mode) { return mode.exponent.real() > 0.01; };
+  const std::vector<const Mode*> order =
+      sorted(all, [](const Mode& mode) { return std::abs(mode.exponent); });
+  BOOST_REQUIRE(!grows(*order.front()));
+  BOOST_REQUIRE(std::ranges::any_of(all.modes, grows));
+  const ModeSet some = turbine.modes(of_all(1, 0)).set;
+  BOOST_TEST(some.modes.size() < all.modes.size());
+  BOOST_TEST(std::ranges::any_of(some.modes, grows));
+  BOOST_TEST((simulation::assess_stability(some).stability == simulation::Stability::unstable));
+}
+
+BOOST_AUTO_TEST_CASE(a_growth_keeps_the_decay_that_belongs_to_it) {
+  // Without damping, a growth alone would be an error of the mesh.
+  Turning turbine("lee2002/rigid_tower", {"blades.elements=2", "gravity=9.81", "trim.harmonics=6"});
+  for (const analysis::FloquetOptions& options : {of_all(1, 0), of_all(0, 3)}) {
+    const ModeSet some = turbine.modes(options).set;
+    BOOST_TEST(some.conservative);
+    BOOST_TEST((simulation::assess_stability(some).stability == simulation::Stability::unstable));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_way_to_some_modes_follows_the_size) {
+  const auto harmonics_of = [](const std::string& name, const std::vector<std::string>& settings) {
+    Turning turbine(name, settings);
+    return turbine.modes(turbine.input.floquet).harmonics;
+  };
+  BOOST_TEST(harmonics_of("two_bladed/teetering", with(coarse, {"floquet.modes=6"})) == 0);
+  BOOST_TEST(harmonics_of("two_bladed/teetering",
+                          with(coarse, {"floquet.modes=6", "floquet.search=hill"})) > 0);
+  BOOST_TEST(harmonics_of("nrel5mw/land", with(coarse, {"floquet.modes=2", "floquet.near_hz=2"})) >
+             0);
+  std::string lengths = "[1";
+  for (int i = 1; i < 40; ++i) lengths += ", 1";
+  BOOST_TEST(
+      harmonics_of("nrel5mw/land", {"blades.elements=40", "blades.element_lengths=" + lengths + "]",
+                                    "blades.order=2", "tower.elements=40", "floquet.modes=4"}) > 0);
+}
+
+BOOST_AUTO_TEST_CASE(given_steps_resolve_what_they_can) {
+  Turning turbine("nrel5mw/land", coarse);
+  analysis::FloquetOptions options = of_all(40, 0);
+  options.steps = 36;
+  const analysis::Floquet found = turbine.modes(options);
+  BOOST_TEST(found.steps == 36);
+  BOOST_REQUIRE(found.set.searched);
+  BOOST_TEST(found.set.searched->wanted == 40);
+  BOOST_TEST(found.set.modes.size() < 40U);
+  BOOST_TEST(found.set.modes.size() > 5U);
+  for (const Mode& mode : found.set.modes) BOOST_TEST(mode.resolved);
+}
