@@ -206,6 +206,13 @@ bool is_of_slow_decays(const ModeSet& set) {
   return set.searched && set.searched->is_of_slow_decays;
 }
 
+bool is_periodic(const ModeSet& set) { return set.participation.size() > 0; }
+
+/// True if more time steps resolve more.
+bool has_steps(const ModeSet& set) {
+  return is_periodic(set) && (!set.searched || set.searched->is_of_all);
+}
+
 /// Hint where a search has not led to a verdict.
 std::string other_search(const ModeSet& set) {
   return is_of_slow_decays(set) ? "all modes, without floquet.least_damped"
@@ -251,8 +258,9 @@ std::string searched_words(const ModeSet& set) {
          (set.medium_states > 0 ? "; exponents of the air are left out" : "") +
          (static_cast<std::size_t>(region.wanted) > set.modes.size()
               ? "\n" + std::to_string(region.wanted) + " modes were asked for; the others " +
-                    (region.is_of_slow_decays ? "decay too fast, or are too fast for the search"
-                                              : "were not found")
+                    (region.is_of_all           ? "are not resolved"
+                     : region.is_of_slow_decays ? "decay too fast, or are too fast for the search"
+                                                : "were not found")
               : "");
 }
 
@@ -262,8 +270,6 @@ std::string deflated_words(const ModeSet& set) {
          (set.deflated == 1 ? " that decays" : " that decay") + " faster than " +
          general(set.deflated_rate, 3) + " 1/s";
 }
-
-bool is_periodic(const ModeSet& set) { return set.participation.size() > 0; }
 
 /// That too few of the slowest modes are known.
 std::string rough_words(const StabilityAssessment& result) {
@@ -292,8 +298,9 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   switch (result.doubt) {
     case Doubt::unresolved:
       return "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
-             (set.searched ? "; hint: " + other_search(set)
-                           : (is_periodic(set) ? "; hint: more floquet.steps" : ""));
+             (has_steps(set) ? "; hint: more floquet.steps"
+              : set.searched ? "; hint: " + other_search(set)
+                             : "");
     case Doubt::incomplete:
       return "no verdict: modes may be missing in the range that was searched; hint: " +
              other_search(set);
@@ -306,11 +313,11 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
              names_of(set, result.may_grow, [](const Mode&) { return ""; }) +
              "; hint: a higher order of blades and tower, more elements" +
              (is_periodic(set) ? ", more trim.harmonics" : "") +
-             (is_periodic(set) && !set.searched ? ", more floquet.steps" : "");
+             (has_steps(set) ? ", more floquet.steps" : "");
     default:
       return "no verdict: " + rough_words(result) +
              "; hint: a higher order of blades and tower, or more elements" +
-             (is_periodic(set) && !set.searched ? ", or more floquet.steps" : "");
+             (has_steps(set) ? ", or more floquet.steps" : "");
   }
 }
 
@@ -328,13 +335,13 @@ std::string doubtful_words(const ModeSet& set, const StabilityAssessment& result
     text += count(result.rough, "mode") + (result.rough == 1 ? " has" : " have") +
             " too large an error and " + (result.rough == 1 ? "does" : "do") +
             " not count for the verdict\n(hint: a higher order of blades and tower, more elements" +
-            (is_periodic(set) && !set.searched ? ", more floquet.steps" : "") + ")\n";
+            (has_steps(set) ? ", more floquet.steps" : "") + ")\n";
   if (result.unresolved > 0)
     text +=
         (all ? "* " : "") + std::to_string(result.unresolved) + " unresolved, " +
         (all ? "left out of the verdict: "
              : "not listed (--all lists them) and left out of the verdict:\n") +
-        (is_periodic(set) && !set.searched
+        (has_steps(set)
              ? "too fast for the time step (hint: more floquet.steps), or a residual too large\n"
              : "a residual too large\n");
   if (result.of_medium > 0 && !all)
@@ -393,6 +400,16 @@ std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment
                              ? "the first " + std::to_string(rows.size()) + " of " +
                                    count(static_cast<int>(all), "mode") + " (--first)\n"
                              : "");
+}
+
+analysis::FloquetOptions options_of_held_air(const ModeSet& set,
+                                             const analysis::FloquetOptions& options) {
+  analysis::FloquetOptions of_held = options;
+  if (set.searched && set.searched->is_of_all) {
+    of_held.modes = of_held.least_damped = 0;
+    of_held.near_hz.reset();
+  }
+  return of_held;
 }
 
 void write_air_part(io::ResultFile& file, const std::string& group, const simulation::AirPart& part,

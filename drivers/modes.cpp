@@ -51,14 +51,13 @@ void run_modes(const Job& job) {
         "azimuth; hint: samara floquet, or samara modes --parked for the rotor at rest");
   simulation::note_roughness(trim, progress);
   const auto held = simulation::hold_wake(system);
-  const auto find = [&](const turbine::TurbineSystem& of) {
-    return analysis::find_constant_modes(of, trim.solution, job.input.floquet, PETSC_COMM_WORLD,
-                                         progress);
+  const auto find = [&](const turbine::TurbineSystem& of, const analysis::FloquetOptions& options) {
+    return analysis::find_constant_modes(of, trim.solution, options, PETSC_COMM_WORLD, progress);
   };
-  const analysis::ModeSet set = find(held ? *held : system);
+  const analysis::ModeSet set = find(held ? *held : system, job.input.floquet);
   std::optional<simulation::AirPart> air;
   if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr) {
-    const analysis::ModeSet without = find(*still);
+    const analysis::ModeSet without = find(*still, options_of_held_air(set, job.input.floquet));
     if (is_first) air = simulation::find_air_part(system, trim.solution, set, without);
   }
   progress.finish();

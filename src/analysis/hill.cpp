@@ -53,6 +53,8 @@ constexpr Accuracy of_change{3e-4, 1e-2};
 constexpr double increase_with_medium = 2.0;
 /// Wanted change of a growth, relative to itself or to this part of the exponent.
 constexpr double wanted_change = 1e-3;
+/// Relative to an exponent: a smaller imaginary part is less than its changes.
+constexpr double least_imaginary = 1e-4;
 constexpr double least_growth = 0.01;
 /// The first shift, relative to the rotor speed: a medium has decays at 0 and 1, where its answer
 /// varies fast.
@@ -1231,9 +1233,11 @@ class Analysis {
       modes_[m].pair.exponent = std::conj(modes_[m].pair.exponent);
       conjugate_mode(set_, m);
     }
-    if (std::abs(mode.exponent.imag()) < zero_exponent * speed_) mode.exponent.imag(0.0);
-    mode.step_exponent = mode.exponent;
     const double size = std::abs(mode.exponent);
+    const double noise = is_by_change() ? least_imaginary * size : 0.0;
+    if (std::abs(mode.exponent.imag()) < std::max(zero_exponent * speed_, noise))
+      mode.exponent.imag(0.0);
+    mode.step_exponent = mode.exponent;
     const bool is_zero = size < zero_exponent * speed_;
     mode.damping_ratio = is_zero ? 0.0 : -mode.exponent.real() / size;
     // A change is relative to the exponent of the pair, or to the rotor speed.

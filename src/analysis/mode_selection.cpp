@@ -7,6 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "samara/base/error.hpp"
+#include "samara/base/format.hpp"
+
 namespace samara::analysis {
 namespace {
 
@@ -14,6 +17,11 @@ namespace {
 /// where this many times as many modes are resolved.
 constexpr double part_of_slowest = 0.6;
 constexpr double most_of_slowest = 3.0;
+/// Parts of the largest modulus that the frequency and the decay of a range may have: 0.8^2 + 0.6^2
+/// = 1. The decay of a range is no less than the third of these.
+constexpr double farthest_part = 0.8;
+constexpr double largest_decay = 0.6;
+constexpr double least_decay = 0.1;
 /// Factor of the resolved frequencies where fewer modes are resolved than are asked for.
 constexpr double usual_increase = 1.5;
 /// Relative to an exponent: a difference that is none.
@@ -39,22 +47,29 @@ class Selection {
 
   bool has_fewer() const { return known_.size() < wanted_; }
   bool is_empty() const { return known_.empty(); }
-  bool is_by_decay() const { return by_decay_; }
-  double centre() const { return centre_; }
-  int wanted() const { return static_cast<int>(wanted_); }
 
   /// Modulus up to which all modes are to be resolved, since modes beyond the reach may be among
   /// those that are wanted; 0 where they are not.
   double lacking_reach() const {
-    if (!by_decay_) {
-      const double end = centre_ > 0.0 ? centre_ + key_of(known_[wanted_ - 1]) : 0.0;
-      return end > set_.reach ? end : 0.0;
+    if (centre_ > 0.0) {
+      const double end = centre_ + key_of(known_[wanted_ - 1]);
+      return end > farthest_part * set_.reach ? end / farthest_part : 0.0;
     }
+    if (!by_decay_) return 0.0;
     double highest = 0.0;
     for (std::size_t i = 0; i < wanted_; ++i) highest = std::max(highest, modulus_of(known_[i]));
     const bool has_many =
         static_cast<double>(known_.size()) >= most_of_slowest * static_cast<double>(wanted_);
     return has_many || highest <= part_of_slowest * set_.reach ? 0.0 : highest / part_of_slowest;
+  }
+
+  /// @throws ConvergenceError if the frequency next to which modes are wanted is beyond the reach
+  void require_reach() const {
+    if (centre_ <= set_.reach) return;
+    throw ConvergenceError("floquet.near_hz: modes from " +
+                           general(set_.reach / (2.0 * std::numbers::pi), 3) +
+                           " Hz on are not resolved; hint: floquet.search: hill" +
+                           (set_.step > 0.0 ? ", or more floquet.steps" : ""));
   }
 
   /// Those that are taken, with all whose keys are not known to be larger, and the key at which
@@ -75,10 +90,31 @@ class Selection {
     return {taken, 0.5 * (last + next)};
   }
 
+  /// A rectangle of exponents in which the modes are complete: within the disk of the known ones,
+  /// or of those that are taken, up to a decay that is not deflated.
+  SearchedRegion region(const Numbers& taken, double edge) const {
+    double largest = 0.0;  // where no mode is beyond reach
+    for (const Mode& mode : set_.modes) largest = std::max(largest, std::abs(mode.exponent));
+    const bool is_slowest = !by_decay_ && centre_ == 0.0;
+    const double radius =
+        std::min({is_slowest ? edge : set_.reach, set_.reach, 2.0 * std::max(largest, rate_)});
+    double decay = by_decay_ ? std::min(edge, radius) : least_decay * radius;
+    if (!by_decay_)
+      for (const std::size_t m : taken)
+        decay = std::max(decay, std::abs(set_.modes[m].exponent.real()));
+    decay = std::min({decay, largest_decay * radius, set_.deflated_rate});
+    double high = std::sqrt(radius * radius - decay * decay);
+    if (centre_ > 0.0) high = std::min(high, centre_ + edge);
+    const double low =
+        centre_ > 0.0 && known_.size() > wanted_ ? std::max(centre_ - edge, 0.0) : 0.0;
+    return {low, high, decay, decay, true, static_cast<int>(wanted_), by_decay_, 1.0, true};
+  }
+
  private:
   double modulus_of(std::size_t m) const { return std::abs(set_.modes[m].exponent); }
   double key_of(std::size_t m) const {
-    return by_decay_ ? -set_.modes[m].exponent.real() : std::abs(modulus_of(m) - centre_);
+    if (by_decay_) return -set_.modes[m].exponent.real();
+    return centre_ > 0.0 ? std::abs(set_.modes[m].exponent.imag() - centre_) : modulus_of(m);
   }
 
   /// Of the key, as far as it decides between modes: that of a decay. (A larger one says nothing.)
@@ -88,7 +124,7 @@ class Selection {
 
   const ModeSet& set_;
   bool by_decay_;
-  double centre_;  ///< modulus next to which modes are wanted [rad/s]
+  double centre_;  ///< frequency next to which modes are wanted [rad/s]
   std::size_t wanted_;
   double rate_;
   Numbers known_;  ///< resolved modes below the reach, ascending by the key
@@ -122,33 +158,27 @@ std::optional<double> lacking_reach(const ModeSet& set, const FloquetOptions& op
 void leave_wanted(ModeSet& set, const FloquetOptions& options) {
   const Selection selection(set, options);
   if (selection.is_empty()) return;  // no mode is resolved: the whole set says so
+  selection.require_reach();
   auto [taken, edge] = selection.take();
-  const bool is_by_decay = selection.is_by_decay();
-  // Without an end, all modes are taken.
-  double largest = 0.0;
-  for (const Mode& mode : set.modes) largest = std::max(largest, std::abs(mode.exponent));
-  const double reach = std::min(set.reach, std::nextafter(largest, 2.0 * largest));
-  const double high = is_by_decay ? reach : std::min(selection.centre() + edge, reach);
-  const double low = selection.centre() > edge ? selection.centre() - edge : 0.0;
-  const double decay = std::min({is_by_decay ? edge : high, high, set.deflated_rate});
+  SearchedRegion region = selection.region(taken, edge);
+  const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   for (std::size_t m = 0; m < set.modes.size(); ++m) {
     const Mode& mode = set.modes[m];
-    const double rate = mode.exponent.real();
     // Without damping, growth and decay of an instability come in pairs.
-    if (mode.resolved && (set.conservative ? std::abs(rate) : rate) > mode.growth_error)
+    const double rate = mode.exponent.real();
+    if (mode.resolved &&
+        (set.conservative ? std::abs(rate) : rate) > std::max(mode.growth_error, zero))
       taken.push_back(m);
   }
   std::ranges::sort(taken);
   taken.erase(std::ranges::unique(taken).begin(), taken.end());
   keep(set, taken);
-  set.reach = high;
   set.states = 0;  // not of those that are left
   set.deflated = 0;
   set.deflated_rate = std::numeric_limits<double>::infinity();
   set.found = 0;
   for (const Mode& mode : set.modes) set.found += mode.exponent.imag() == 0.0 ? 1 : 2;
-  set.searched =
-      SearchedRegion{low, high, decay, high, true, selection.wanted(), is_by_decay, 1.0, true};
+  set.searched = region;
 }
 
 }  // namespace samara::analysis

@@ -17,7 +17,9 @@ std::optional<double> lacking_reach(const ModeSet& set, const FloquetOptions& op
 /// Leaves the modes asked for: the slowest ones, those nearest to a frequency, or of those below
 /// ModeSet::reach the ones of slowest decay, with all that equal the last one, and every other mode
 /// that grows. Modes of a medium that decay are left out. Describes the part of the spectrum in
-/// which they are complete. `set`: all modes, arranged.
+/// which they are complete. `set`: all modes, arranged. Where no mode is resolved, it stays as it
+/// is.
+/// @throws ConvergenceError if `options.near_hz` is beyond ModeSet::reach
 void leave_wanted(ModeSet& set, const FloquetOptions& options);
 
 }  // namespace samara::analysis

@@ -42,7 +42,6 @@ Eigen::MatrixXcd positions_of(const turbine::TurbineSystem& system, const Eigen:
 double likeness_of(const ModeSet& set, const Mode& mode, const Eigen::MatrixXcd& shape,
                    const Mode& other, const Eigen::MatrixXcd& other_shape) {
   constexpr int nearby = 2;
-  if (shape.cols() != other_shape.cols()) return 0.0;
   const double scale = shape.squaredNorm() * other_shape.squaredNorm();
   const Eigen::RowVectorXcd products = shape.conjugate().cwiseProduct(other_shape).colwise().sum();
   if (set.rotor_speed == 0.0) return std::norm(products.sum()) / scale;
@@ -129,24 +128,40 @@ class Changes {
   Matrix3 axes_;
 };
 
+/// exp(i h Omega t) of the harmonics from -most to most, instants x harmonics.
+Eigen::MatrixXcd harmonics_at(const std::vector<double>& times, Index most, double speed) {
+  Eigen::MatrixXcd series(static_cast<Index>(times.size()), 2 * most + 1);
+  for (Index k = 0; k < series.rows(); ++k)
+    for (Index h = -most; h <= most; ++h)
+      series(k, h + most) =
+          std::polar(1.0, static_cast<double>(h) * speed * times[static_cast<std::size_t>(k)]);
+  return series;
+}
+
+Eigen::MatrixXcd pseudo_inverse(const Eigen::MatrixXcd& matrix) {
+  return matrix.completeOrthogonalDecomposition().pseudoInverse();
+}
+
 /// Rate of a periodic vector times exp(lambda t), divided by exp(lambda t): lambda q + q_dot, with
 /// q_dot of the Fourier series through the instants.
 Eigen::MatrixXcd rates_of(const Eigen::MatrixXcd& q, Complex exponent,
                           const std::vector<double>& times, double speed) {
-  const Index n = q.cols();
-  if (n == 1) return exponent * q;
-  const Index most = (n - 1) / 2;
-  Eigen::MatrixXcd series(n, 2 * most + 1);  // instants x harmonics
-  for (Index k = 0; k < n; ++k)
-    for (Index h = -most; h <= most; ++h)
-      series(k, h + most) =
-          std::polar(1.0, static_cast<double>(h) * speed * times[static_cast<std::size_t>(k)]);
+  if (q.cols() == 1) return exponent * q;
+  const Index most = (q.cols() - 1) / 2;
+  const Eigen::MatrixXcd series = harmonics_at(times, most, speed);
   Eigen::MatrixXcd rates = series;
   for (Index h = -most; h <= most; ++h)
     rates.col(h + most) *= Complex(0.0, static_cast<double>(h) * speed);
-  const Eigen::MatrixXcd derivative =
-      rates * series.completeOrthogonalDecomposition().pseudoInverse();
-  return exponent * q + q * derivative.transpose();
+  return exponent * q + q * (rates * pseudo_inverse(series)).transpose();
+}
+
+/// Matrix that maps the values of a periodic vector at instants to those at others, by the Fourier
+/// series through the former.
+Eigen::MatrixXcd interpolation(const std::vector<double>& from, const std::vector<double>& to,
+                               double speed) {
+  const Index most = (static_cast<Index>(from.size()) - 1) / 2;
+  return (harmonics_at(to, most, speed) * pseudo_inverse(harmonics_at(from, most, speed)))
+      .transpose();
 }
 
 }  // namespace
@@ -173,6 +188,12 @@ AirPart find_air_part(const turbine::TurbineSystem& system,
   for (std::size_t k = 0; k < held.modes.size(); ++k)
     others.push_back(oscillates(held, k) ? positions_of(system, held.shapes[k])
                                          : Eigen::MatrixXcd());
+  if (held.shape_times != modes.shape_times) {  // other steps, or other harmonics
+    const Eigen::MatrixXcd map =
+        interpolation(held.shape_times, modes.shape_times, modes.rotor_speed);
+    for (Eigen::MatrixXcd& other : others)
+      if (other.size() > 0) other = (other * map).eval();
+  }
   std::vector<Changes> instants;
   for (const double t : modes.shape_times) instants.emplace_back(system, steady, t);
   for (std::size_t m = 0; m < modes.modes.size(); ++m) {

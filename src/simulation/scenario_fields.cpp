@@ -100,7 +100,8 @@ void declare_floquet(Visitor& fields, analysis::FloquetOptions& floquet) {
           "the way to `modes` or `least_damped`: `all` computes all modes, and reports those; "
           "`hill` is Hill's method for these alone, for large meshes, where `steps`, `period`, "
           "`time_order` and `accuracy` do not count, and, in the air, slow modes of strong damping "
-          "may be left out; `auto` takes the one that is likely to take less time"),
+          "may be left out; `auto` takes the one that is likely to take less time, and in `samara "
+          "modes` Hill's method"),
       floquet.search,
       {{"auto", analysis::ModeSearch::automatic},
        {"all", analysis::ModeSearch::all},

@@ -84,8 +84,11 @@ void sort_modes(const ModeSet& set, StabilityAssessment& result) {
   if (least != result.decaying.end()) result.least_damped = *least;
 }
 
-/// True if every mode in the part of the spectrum that was searched is resolved.
+/// True if every mode in the part of the spectrum that was searched is resolved. Of modes taken
+/// from all, those asked for or the first ones are to be there, unless there are no others.
 bool result_of_search_is_known(const ModeSet& set) {
+  const std::size_t least = std::min(first_modes, static_cast<std::size_t>(set.searched->wanted));
+  if (set.searched->is_of_all && std::isfinite(set.reach) && set.modes.size() < least) return false;
   return std::all_of(set.modes.begin(), set.modes.end(),
                      [](const Mode& mode) { return mode.resolved; });
 }

@@ -100,6 +100,18 @@ class Commands(ProgramTest):
             with h5py.File(self.folder / "two.h5") as two:
                 numpy.testing.assert_allclose(two["floquet/held_air_damping"][:12], held[:12],
                                               rtol=1e-6)
+            # Some modes have the parts that they have among all.
+            number = re.compile(r"^\d+\w+ ")
+            parts = {number.sub("", label): value for label, value in reversed(list(zip(labels, held)))}
+            for search in ("hill", "all"):
+                self.succeed("floquet", LAND, *quick, "--air", "--set", "floquet.modes=4", "--set",
+                             f"floquet.search={search}", "-o", "some.h5")
+                with h5py.File(self.folder / "some.h5") as some:
+                    own = dict(zip(some["floquet/label"].asstr()[:], some["floquet/held_air_damping"][:]))
+                    self.assertGreater(sum(numpy.isfinite(list(own.values()))), 3)
+                    for label in ("tower fore-aft", "tower side-side"):
+                        value = next(own[one] for one in own if number.sub("", one) == label)
+                        self.assertAlmostEqual(value / parts[label], 1, delta=5e-3, msg=(search, label))
             few = ["modes", LAND, *QUICK, "--parked", "--set", "wind.speed=8", "--set",
                    "floquet.modes=4", "--air"]
             self.succeed(*few, "-o", "few.h5", ranks=2)
