@@ -55,7 +55,7 @@ class SweepFinder final : public CampbellPointFinder {
     last_ = simulation::solve_trim(input, *built, simulation::trim_options(input), observer,
                                    ranks.comm, is_near ? &*last_ : nullptr);
     simulation::require_wake_range(*built, *last_);
-    simulation::note_roughness(*last_, observer);
+    simulation::note_doubts(*built, *last_, observer);
     CampbellPoint result =
         simulation::find_campbell_point(*built, *last_, input.floquet, ranks.comm, observer);
     if (input.turbine.wind && input.turbine.aero) result.wind_speed = input.turbine.wind->speed;

@@ -10,6 +10,7 @@
 #include "samara/elements/rotor_wake.hpp"
 #include "samara/model/airfoil.hpp"
 #include "samara/model/beam_modes.hpp"
+#include "samara/model/radius.hpp"
 #include "samara/petsc/session.hpp"
 #include "samara/simulation/transient_simulation.hpp"
 #include "samara/turbine/turbine_system.hpp"
@@ -156,11 +157,6 @@ std::string support_words(const model::SupportDefinition& support) {
   return text;
 }
 
-double rotor_radius(const model::TurbineDefinition& definition) {
-  return (definition.hub.radius + definition.blades.beam.length) *
-         std::cos(definition.blades.precone);
-}
-
 /// Warnings on figures that no turbine has, one line each; the usual cause is a wrong unit.
 std::string unusual_air(const model::BladesDefinition& blades, double length) {
   std::string text;
@@ -209,9 +205,9 @@ std::string unusual_air(const model::BladesDefinition& blades, double length) {
   return text;
 }
 
-std::string unusual_figures(const model::TurbineDefinition& definition) {
+std::string unusual_figures(const model::TurbineDefinition& definition, double rotor_radius) {
   std::string text = unusual_air(definition.blades, definition.blades.beam.length);
-  const double tip_speed = std::abs(definition.shaft.speed) * rotor_radius(definition);
+  const double tip_speed = std::abs(definition.shaft.speed) * rotor_radius;
   if (tip_speed > usual_tip_speed)
     text += "unusual: tip speed " + general(tip_speed, 4) + " m/s, above " +
             general(usual_tip_speed, 3) +
@@ -409,7 +405,7 @@ std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                   const model::Masses& masses) {
   const model::TurbineDefinition& definition = input.turbine;
   const model::Turbine& turbine = system.turbine();
-  const double radius = rotor_radius(definition);
+  const double radius = model::rotor_radius(turbine);
   const double speed = definition.shaft.speed;
   std::string text;
   const auto line = [&text](const std::string& name, const std::string& words) {
@@ -423,7 +419,8 @@ std::string facts(const io::Case& input, const turbine::TurbineSystem& system,
                                   general(speed * 30.0 / std::numbers::pi, 5) + " rpm; tip speed " +
                                   general(speed * radius, 4) + " m/s");
     line("rotor radius", general(radius, 6) + " m: hub " + general(definition.hub.radius, 5) +
-                             " m, blade " + general(definition.blades.beam.length, 5) + " m");
+                             " m, along the blade " + general(definition.blades.beam.length, 5) +
+                             " m");
   }
   if (turbine.has_tower) line("tower", general(definition.tower.length, 6) + " m");
   if (has_rotor) {
@@ -517,7 +514,7 @@ void run_check(const Job& job) {
       job,
       (title.empty() ? job.input.path : title) + "\n\n" + mass_table(turbine, masses) + "\n" +
           facts(job.input, system, masses) + air_tables(job.input.turbine.blades) +
-          unusual_figures(job.input.turbine),
+          unusual_figures(job.input.turbine, model::rotor_radius(system.turbine())),
       [&](io::ResultFile& file) {
         file.write_model(system);
         write_masses(file, masses);

@@ -164,7 +164,6 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
                      ": a steady state is one revolution; hint: leave `from` and `until` out");
   const io::Case input = io::read_result_case(path);
   const analysis::Trim trim = io::read_result_trim(path);
-  simulation::note_roughness(trim, observer, path);
   const analysis::PeriodicSolution& solution = trim.solution;
   if (!(solution.period() > 0.0))
     throw InputError(path +
@@ -175,6 +174,7 @@ LoadSource sample_steady_state(const std::string& path, const io::LoadOptions& o
     throw InputError(path + ": its steady state has " +
                      std::to_string(solution.coefficients().rows()) + " unknowns, the model has " +
                      std::to_string(system.size()) + "; hint: run samara trim again");
+  simulation::note_doubts(system, trim, observer, path);
   const turbine::TurbineChannels channels = make_channels(system, input.transient, options);
   const std::vector<Channel>& all = channels.channels();
   const Columns columns = choose_columns(path, all, options);

@@ -49,7 +49,7 @@ void run_modes(const Job& job) {
         job.input.path +
         ": the coefficients are periodic, the steady state changes with the "
         "azimuth; hint: samara floquet, or samara modes --parked for the rotor at rest");
-  simulation::note_roughness(trim, progress);
+  simulation::note_doubts(system, trim, progress);
   const auto held = simulation::hold_wake(system);
   const auto find = [&](const turbine::TurbineSystem& of, const analysis::FloquetOptions& options) {
     return analysis::find_constant_modes(of, trim.solution, options, PETSC_COMM_WORLD, progress);

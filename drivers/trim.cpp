@@ -206,7 +206,7 @@ std::string summary(const io::Case& input, const turbine::TurbineSystem& system,
   if (const std::string words = simulation::roughness(trim); !words.empty())
     text += "rough        " + words + "\n";
   for (const analysis::HeldCoordinate& held : trim.held) {
-    const double zero = round_off * std::max(trim.load_level, 1.0);
+    const double zero = simulation::least_held_load(trim);
     if (held.unknown == system.layout().generator()) {
       const std::optional<model::ControllerDefinition>& controller = system.turbine().controller;
       text += controller && controller->has_integral() ? controller_words(system, trim)

@@ -52,6 +52,12 @@ constexpr double largest_branch_error = 0.05;
 constexpr double least_imaginary = 1e-6;
 /// Replaces an exponent that belongs to no free motion.
 constexpr double far_from_zero = std::numeric_limits<double>::infinity();
+/// Relative to the rotor speed: below this, an exponent may be one of several that are zero in an
+/// exact steady state. Exponents nearer to each other than this many changes mix; the factor of a
+/// change is that of its estimate.
+constexpr double largest_slow = 0.05;
+constexpr double mixed = 3.0;
+constexpr double solution_safety = 2.0;
 /// Relative to the energy of a state of length 1 in energy coordinates: a smaller energy is
 /// round-off. The computed exponent of a motion at rest is the square root of round-off, and so is
 /// its speed.
@@ -296,6 +302,7 @@ class Analysis {
   }
 
   void solve_eigenproblem() {
+    find_slow_exponents_of_shift();
     Eigen::VectorXd conditions;
     const Eigenpairs pairs = massless_.eigenpairs_of(map_, "floquet_", &conditions);
     const StateParts parts = find_state_parts(system_);
@@ -363,6 +370,67 @@ class Analysis {
     const Eigen::VectorXd one = turned.real();
     const Eigen::VectorXd other = turned.imag();
     return {one, other.norm() > least * one.norm() ? other : one};
+  }
+
+  /// Where the azimuth of the rotor is free and nothing else depends on the time, the rate of the
+  /// steady state is a motion that the exact map leaves as it is; that of a few harmonics does not.
+  /// The smallest change of the map that makes it do so moves the exponents by about the error of
+  /// the steady state. Keeps those next to zero: several motions that nothing restores have next to
+  /// equal vectors, and small errors move their exponents far.
+  void find_slow_exponents_of_shift() {
+    if (!system_.constraints_are_autonomous()) return;
+    for (const system::UnconstrainedCoordinate& coordinate : system_.unconstrained_coordinates()) {
+      const auto at = static_cast<std::size_t>(coordinate.unknown);
+      if (system_.unknowns()[at].frame != system::Frame::rotating) continue;
+      const Eigen::MatrixXd shift = shift_in_time(coordinate.unknown);
+      const Eigen::MatrixXd map =
+          map_ + (shift - map_ * shift) * shift.transpose() / shift.squaredNorm();
+      std::vector<Complex> slow;
+      for (const Complex multiplier : dense_eigenvalues(massless_.without(map)))
+        if (const Complex exponent = principal_exponent(multiplier); is_slow(exponent))
+          slow.push_back(exponent);
+      // Of several free coordinates in the rotor, the azimuth is the one that changes least.
+      const double defect = (map_ * shift - shift).norm() / shift.norm();
+      if (defect < shift_defect_) of_shift_ = std::move(slow);
+      shift_defect_ = std::min(shift_defect_, defect);
+    }
+    ranks_.share(0, of_shift_);
+  }
+
+  /// The rate of the steady state with its azimuth, in energy coordinates.
+  Eigen::MatrixXd shift_in_time(PetscInt azimuth) const {
+    const int harmonics = solution_.harmonics();
+    const Eigen::MatrixXd& series = solution_.coefficients();
+    Eigen::VectorXd second = -PeriodicSolution::basis(harmonics, system_.period(), 0.0);
+    for (Index i = 0; i < second.size(); ++i) {
+      const double rate = static_cast<double>((i + 1) / 2) * speed_;
+      second(i) *= rate * rate;
+    }
+    Eigen::MatrixXd rate = series * PeriodicSolution::basis_rate(harmonics, system_.period(), 0.0);
+    rate(azimuth, 0) += speed_;
+    const Index d = subspace_.degrees_of_freedom();
+    Eigen::MatrixXd state(states_, 1);
+    state.topRows(d) = subspace_.coordinates_of(rate);
+    state.middleRows(d, d) = subspace_.coordinates_of(series * second);
+    state.bottomRows(subspace_.first_order()) = subspace_.states_of(rate);
+    return coordinates_.of(state);
+  }
+
+  bool is_slow(Complex exponent) const { return std::abs(exponent) < largest_slow * speed_; }
+
+  /// Error of the slow exponent of mode m by the steady state [1/s], or that of another one that is
+  /// not clearly apart from it; 0: not known.
+  double error_of_solution(std::size_t m) const {
+    if (of_shift_.empty() || !is_slow(exponents_[m])) return 0.0;
+    double error = 0.0;
+    for (const Complex other : exponents_) {
+      if (!is_slow(other)) continue;
+      double change = std::numeric_limits<double>::infinity();
+      for (const Complex exact : of_shift_)
+        change = std::min({change, std::abs(other - exact), std::abs(std::conj(other) - exact)});
+      if (std::abs(other - exponents_[m]) <= mixed * change) error = std::max(error, change);
+    }
+    return solution_safety * error;
   }
 
   // ---- identification --------------------------------------------------------------------------
@@ -575,6 +643,7 @@ class Analysis {
       mode.step_exponent.imag(0.0);
     }
     set_growth_error(mode, spread, may_be_free(m) ? exponents_[m] : far_from_zero, conditions_[m]);
+    if (!is_zero(mode.exponent)) mode.growth_error += error_of_solution(m);
     mode.resolved = slow && in_reach_at(exponents_[m], mode.harmonic) &&
                     mode.residual <= largest_residual && mode.step_error <= accuracy_ &&
                     spread.modulus <= largest_branch_error * sectors_ * speed_;
@@ -653,7 +722,6 @@ class Analysis {
         set_.shape_times.push_back((static_cast<double>(q * span_ + k * stride_) + offset_) * dt_);
     const std::vector<LeadingMotion> leading = separate_motions(system_, solution_, set_, sectors_);
     move_to_leading(leading);
-    take_shift_in_time(system_, set_);
     set_.reach = rule_.reach();
     for (const Mode& mode : set_.modes)
       if (!mode.resolved && !is_of_medium(mode))
@@ -730,9 +798,11 @@ class Analysis {
   Eigen::MatrixXd shapes_;  ///< all unknowns at every stride-th sample of this rank x states
   Eigen::MatrixXd
       end_;  ///< all unknowns at the first sample after the sector; empty on other ranks
-  Eigen::MatrixXd before_;            ///< map from the start to the first step of this rank
-  EnergyCoordinates coordinates_;     ///< of the states at the start
-  MasslessStates massless_;           ///< the same
+  Eigen::MatrixXd before_;         ///< map from the start to the first step of this rank
+  EnergyCoordinates coordinates_;  ///< of the states at the start
+  MasslessStates massless_;        ///< the same
+  std::vector<Complex> of_shift_;  ///< see find_slow_exponents_of_shift()
+  double shift_defect_ = std::numeric_limits<double>::infinity();  ///< relative, of this motion
   Eigen::MatrixXd map_;               ///< over a sector, in these coordinates
   std::vector<Complex> multipliers_;  ///< of the sector
   std::vector<double> conditions_;    ///< of the multipliers

@@ -239,12 +239,13 @@ Leading find_leading(const system::PeriodicSystem& system,
   const system::Owner& mover = motions[leading().motion].owner;
   const bool is_beam = mover.kind == system::PartKind::beam || mover.instance > 0;
   const bool is_slowest = std::abs(mode.exponent) < slowest_drift * set.rotor_speed;
-  if (mode.exponent.imag() == 0.0 && !is_beam && !is_slowest) return leading();
   // Parts that move as a slow drift goes on may have most of its energy, once a revolution. The
   // mean of the motion strains an overdamped part, but not those that a joint carries. The
   // motion that is next to one left out is that of the energy.
-  if (left_out == nullptr && is_drift(mode.exponent, set.rotor_speed) &&
-      is_rigid_body(system, named.shape.rowwise().mean(), mode)) {
+  const bool drifts = left_out == nullptr && is_drift(mode.exponent, set.rotor_speed) &&
+                      is_rigid_body(system, named.shape.rowwise().mean(), mode);
+  if (mode.exponent.imag() == 0.0 && !is_beam && !is_slowest && !drifts) return leading();
+  if (drifts) {
     Eigen::VectorXd of_shape = Eigen::VectorXd::Zero(count);
     for (Eigen::Index c = 0; c < named.shape.cols(); ++c)
       of_shape += in_time.at(time_of(set, named.shape, c, sectors))
@@ -431,7 +432,8 @@ bool is_at_rest(const Mode& mode, const ModeSet& set) {
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
   const double unsure = mode.growth_error - mode.mesh_growth_error;
   return std::abs(mode.exponent) < zero ||
-         (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure);
+         (std::abs(mode.exponent) < unsure &&
+          (mode.exponent.imag() == 0.0 || unsure < slowest_drift * set.rotor_speed));
 }
 
 bool is_drift(std::complex<double> exponent, double rotor_speed) {

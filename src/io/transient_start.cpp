@@ -76,7 +76,7 @@ void start_from(const std::string& path, const Case& input,
   }
   analysis::Trim trim = read_result_trim(path);
   place_held(simulation.system(), trim.held);
-  simulation::note_roughness(trim, observer, path);
+  simulation::note_doubts(simulation.system(), trim, observer, path);
   at_place(path, [&] { simulation.start_on(before, trim, is_new_law); });
 }
 

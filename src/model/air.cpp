@@ -237,9 +237,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
   rotor.density = definition.wind->density;
   rotor.blades = static_cast<int>(turbine.blades.size());
   rotor.hub_radius = definition.hub.radius;
-  for (std::size_t k = 0; k < turbine.blades.size(); ++k)
-    rotor.tip_radius =
-        std::max(rotor.tip_radius, undeformed_radius(turbine.roots[k], turbine.blades[k].tip));
+  rotor.tip_radius = std::max(rotor.tip_radius, rotor_radius(turbine));
   place_stations(definition, turbine, air);
   const HubWind wind = find_hub_wind(rotor.wind.mean, turbine);
   air.hub_height = wind.height;

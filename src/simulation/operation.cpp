@@ -134,7 +134,7 @@ class OperatingPointFinder::Search {
     try {
       if (table_.empty()) note_law(observer);
       OperatingPoint point = table_.empty() ? search(wind) : follow_table(wind);
-      note_roughness(*last_, observer, place + "trim");
+      note_doubts(*system_, *last_, observer, place + "trim");
       memory_.point = point;
       memory_.starts.finish_point();
       return point;

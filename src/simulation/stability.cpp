@@ -12,8 +12,8 @@ using analysis::ModeSet;
 
 /// A verdict refers to the slowest modes, at least this many.
 constexpr std::size_t first_modes = 10;
-/// Relative to the rotor speed: a real exponent with a larger error is not known to be that of a
-/// motion at rest.
+/// Relative to the rotor speed: an exponent with a larger error is not known to be that of a motion
+/// at rest.
 constexpr double largest_unsure = 0.02;
 
 double rate_scale(double rotor_speed) { return rotor_speed > 0.0 ? rotor_speed : 1.0; }
@@ -145,8 +145,7 @@ Motion motion_of(const Mode& mode, double rotor_speed) {
   // Step and round-off cause an error of the growth of an exponent near zero; the elements do not.
   const double unsure = mode.growth_error - mode.mesh_growth_error;
   if (std::abs(mode.exponent) < zero ||
-      (mode.exponent.imag() == 0.0 && std::abs(mode.exponent) < unsure &&
-       unsure < largest_unsure * rate_scale(rotor_speed)))
+      (std::abs(mode.exponent) < unsure && unsure < largest_unsure * rate_scale(rotor_speed)))
     return Motion::rigid_body;
   if (std::abs(mode.exponent.real()) <= mode.growth_error) return Motion::undamped;
   return mode.exponent.real() > 0.0 ? Motion::growing : Motion::decaying;

@@ -14,6 +14,7 @@ namespace {
 
 /// Relative to the largest load. With a larger imbalance of loads a steady state is rough.
 constexpr double rough_imbalance = 1e-4;
+constexpr double round_off = 1e-9;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
@@ -144,7 +145,7 @@ analysis::Trim find_trim(const Scenario& scenario, const turbine::TurbineSystem&
                          analysis::Observer& observer, MPI_Comm comm) {
   analysis::Trim trim = solve_trim(scenario, system, trim_options(scenario), observer, comm);
   require_wake_range(system, trim);
-  note_roughness(trim, observer);
+  note_doubts(system, trim, observer);
   return trim;
 }
 
@@ -214,10 +215,20 @@ std::string roughness(const analysis::Trim& trim) {
          (is_newton ? "; hint: a smaller trim.tolerance" : "; hint: more trim.harmonics");
 }
 
-void note_roughness(const analysis::Trim& trim, analysis::Observer& observer,
-                    const std::string& source) {
+double least_held_load(const analysis::Trim& trim) {
+  return std::max(
+      {round_off * std::max(trim.load_level, 1.0), trim.residual, trim.residual_between});
+}
+
+void note_doubts(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                 analysis::Observer& observer, const std::string& source) {
   const std::string words = roughness(trim);
   if (!words.empty()) observer.note(source + ": the steady state is rough: " + words);
+  for (const analysis::HeldCoordinate& held : trim.held)
+    if (held.unknown != system.layout().generator() &&
+        !(std::abs(held.load) < least_held_load(trim)))
+      observer.note(source + ": no equilibrium: a constant load of " + general(held.load, 4) + " " +
+                    held.unit + " holds " + held.name + ", which nothing restores, at a mean of 0");
 }
 
 }  // namespace samara::simulation

@@ -32,6 +32,15 @@ class New(ProgramTest):
                         words += ["--bands", "0"]
                     self.succeed(*words)
 
+    def test_the_rotor_in_air_runs_in_every_wind(self):
+        """Stations beside the hub must not stall: their induced velocities would jump."""
+        self.succeed("new", "rotor-in-air", "mine")
+        for wind in (4, 5.1, 5.5, 9, 17):
+            with self.subTest(wind=wind):
+                run = self.succeed("transient", "mine.yaml", "--set", f"wind.speed={wind}", "--set",
+                                   "transient={duration: 0.5, step: 0.02, start: trim}", "-o", "series.h5")
+                self.assertEqual(run.stderr, "")
+
     def test_a_file_is_never_overwritten(self):
         self.write("mine.yaml", "mine")
         self.refuse("new", "beam", "mine", words="exists")

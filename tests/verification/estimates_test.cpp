@@ -7,7 +7,10 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "cases.hpp"
+#include "samara/model/masses.hpp"
+#include "samara/simulation/stability.hpp"
+
+#include "turning.hpp"
 
 using namespace samara;
 using namespace samara::test;
@@ -229,4 +232,48 @@ BOOST_AUTO_TEST_CASE(errors_of_growth_are_honest_where_dampers_couple_harmonics)
   BOOST_REQUIRE(counted > 100);
   BOOST_TEST_MESSAGE(honest << " of " << counted << " honest");
   BOOST_TEST(honest >= 0.95 * counted);
+}
+
+BOOST_AUTO_TEST_CASE(slow_exponents_have_the_error_of_the_steady_state) {
+  // Two blades on a teeter spring, free yaw and a free generator, whose torque falls with its
+  // speed. With few harmonics, the exponents at zero of yaw and rotation mix. The speed of the
+  // rotor grows with -slope n^2 / (I + n^2 J) but for the small motions of the tower.
+  constexpr double gear = 97.0;
+  constexpr double own_inertia = 534.116;
+  for (const double slope : {0.0, -1.0, -10.0, -50.0})
+    for (const std::string harmonics : {"4", "8"}) {
+      Turning turbine(
+          "two_bladed/teetering",
+          {"blades.elements=2", "blades.element_lengths=[1, 1]", "nacelle.yaw={joint: free}",
+           "hub.teeter={joint: free, stiffness: 3e7, damping: 2e6}",
+           "shaft.generator={joint: free, own_inertia: 534.116, torque_slope: " +
+               std::to_string(slope) + "}",
+           "trim.harmonics=" + harmonics});
+      const model::Masses masses =
+          model::compute_masses(turbine.input.turbine, model::build_turbine(turbine.input.turbine));
+      const double expected =
+          -slope * gear * gear / (masses.rotor.inertia(1, 1) + gear * gear * own_inertia);
+      const analysis::ModeSet set = turbine.modes({}).set;
+      const simulation::StabilityAssessment verdict = simulation::assess_stability(set);
+      BOOST_TEST_CONTEXT("slope " << slope << ", " << harmonics << " harmonics") {
+        const analysis::Mode* fastest = nullptr;
+        for (const analysis::Mode& mode : set.modes) {
+          if (!mode.resolved || std::abs(mode.exponent) > 0.05 * set.rotor_speed) continue;
+          BOOST_TEST((mode.name == "yaw" || mode.name == "rotor rotation"), mode.label);
+          if (fastest == nullptr || mode.exponent.real() > fastest->exponent.real())
+            fastest = &mode;
+        }
+        BOOST_REQUIRE(fastest != nullptr);
+        BOOST_TEST(
+            std::abs(fastest->exponent.real() - expected) < fastest->growth_error + 0.01 * expected,
+            fastest->exponent << " +- " << fastest->growth_error << ", not " << expected);
+        if (slope == 0.0)
+          BOOST_TEST((verdict.stability == simulation::Stability::neutral));
+        else
+          BOOST_TEST(
+              (verdict.stability == simulation::Stability::unstable || std::abs(expected) < 1e-3));
+        // One that is known from zero is known to a few percent.
+        if (slope <= -10.0) BOOST_TEST(fastest->growth_error < 0.2 * expected);
+      }
+    }
 }

@@ -43,8 +43,13 @@ std::vector<double> mean_channels(const turbine::TurbineSystem& system, const an
 /// Note on a rough steady state, with the way to a better one; empty if it is not rough.
 std::string roughness(const analysis::Trim& trim);
 
-/// Passes this note to the observer. `source`: origin of the steady state.
-void note_roughness(const analysis::Trim& trim, analysis::Observer& observer,
-                    const std::string& source = "trim");
+/// Smallest load that holds an unconstrained coordinate: a smaller one is an error of the steady
+/// state [N, N m].
+double least_held_load(const analysis::Trim& trim);
+
+/// Passes notes on a steady state to the observer: that it is rough, and which coordinates it holds
+/// by a load that is not there in the turbine (the generator's torque is). `source`: its origin.
+void note_doubts(const turbine::TurbineSystem& system, const analysis::Trim& trim,
+                 analysis::Observer& observer, const std::string& source = "trim");
 
 }  // namespace samara::simulation
