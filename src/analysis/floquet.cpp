@@ -403,7 +403,8 @@ class Analysis {
     const Eigen::MatrixXd& series = solution_.coefficients();
     Eigen::VectorXd second = -PeriodicSolution::basis(harmonics, system_.period(), 0.0);
     for (Index i = 0; i < second.size(); ++i) {
-      const double rate = static_cast<double>((i + 1) / 2) * speed_;
+      const Index harmonic = (i + 1) / 2;
+      const double rate = static_cast<double>(harmonic) * speed_;
       second(i) *= rate * rate;
     }
     Eigen::MatrixXd rate = series * PeriodicSolution::basis_rate(harmonics, system_.period(), 0.0);

@@ -171,7 +171,7 @@ void leave_wanted(ModeSet& set, const FloquetOptions& options) {
       taken.push_back(m);
   }
   std::ranges::sort(taken);
-  taken.erase(std::ranges::unique(taken).begin(), taken.end());
+  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
   keep(set, taken);
   set.states = 0;  // not of those that are left
   set.deflated = 0;
