@@ -104,7 +104,9 @@ constexpr HillTime hill_of_slow_decays{0.0, 5e-4};
 constexpr HillTime hill_in_medium_of_few{0.0, 1.5e-3};
 constexpr HillTime hill_of_slow_modes_of_few{0.0, 8e-4};
 constexpr HillTime hill_of_slow_decays_of_few{0.0, 2e-3};
-/// Factor of the steps for the slowest decays, which are not the slowest modes.
+/// Steps a revolution for each mode asked for in a medium, as measured, and factor of the steps for
+/// the slowest decays, which are not the slowest modes.
+constexpr double steps_of_mode_in_medium = 4.0;
 constexpr double steps_of_slow_decays = 1.5;
 /// Beyond this number of unknowns, Hill's method always takes less.
 constexpr PetscInt most_unknowns = 10000;
@@ -833,8 +835,11 @@ double choose_steps(const system::PeriodicSystem& system, const PeriodicSolution
   const double speed = 2.0 * std::numbers::pi / system.period();
   const double last = moduli[std::min(moduli.size(), static_cast<std::size_t>(count)) - 1];
   const double reach = reach_factor * (last + reach_harmonics * speed);
-  const double factor = options.least_damped > 0 ? steps_of_slow_decays : 1.0;
-  const double steps = factor * reach / TimeRule{options.order, system.period()}.reach();
+  double steps = reach / TimeRule{options.order, system.period()}.reach();
+  // Slow exponents of a medium are among these moduli, but not among the modes asked for.
+  if (asks_for_some(options) && system::has_medium(system.unknowns()))
+    steps = std::max(steps, steps_of_mode_in_medium * count);
+  if (options.least_damped > 0) steps *= steps_of_slow_decays;
   return std::clamp(steps, static_cast<double>(least_steps), most_steps);
 }
 
