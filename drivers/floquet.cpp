@@ -109,7 +109,7 @@ void run_floquet(const Job& job) {
   std::optional<simulation::AirPart> air;
   if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr) {
     const analysis::Floquet without = analysis::find_floquet_modes(
-        *still, trim.solution, options_of_held_air(floquet.set, job.input.floquet),
+        *still, trim.solution, simulation::options_of_held_air(floquet.set, job.input.floquet),
         PETSC_COMM_WORLD, progress);
     if (is_first)  // others have no shapes
       air = simulation::find_air_part(system, trim.solution, floquet.set, without.set);

@@ -402,16 +402,6 @@ std::string mode_table(const ModeSet& set, const StabilityAssessment& assessment
                              : "");
 }
 
-analysis::FloquetOptions options_of_held_air(const ModeSet& set,
-                                             const analysis::FloquetOptions& options) {
-  analysis::FloquetOptions of_held = options;
-  if (set.searched && set.searched->is_of_all) {
-    of_held.modes = of_held.least_damped = 0;
-    of_held.near_hz.reset();
-  }
-  return of_held;
-}
-
 void write_air_part(io::ResultFile& file, const std::string& group, const simulation::AirPart& part,
                     std::size_t blades) {
   file.write_values(group + "/held_air_damping", part.held_damping,

@@ -18,11 +18,6 @@ struct ModeListing {
   const simulation::AirPart* air = nullptr;  ///< its part in the damping; null: not known
 };
 
-/// Options of the modes under held loads of the air, with which those of `set` are compared: where
-/// these are taken from all modes, all of them.
-analysis::FloquetOptions options_of_held_air(const analysis::ModeSet& set,
-                                             const analysis::FloquetOptions& options);
-
 /// Writes `group`/held_air_damping, held_air_likeness, air_work and the lengths of the stations.
 void write_air_part(io::ResultFile& file, const std::string& group, const simulation::AirPart& part,
                     std::size_t blades);

@@ -57,7 +57,8 @@ void run_modes(const Job& job) {
   const analysis::ModeSet set = find(held ? *held : system, job.input.floquet);
   std::optional<simulation::AirPart> air;
   if (const auto still = job.air_part ? simulation::hold_air(system) : nullptr) {
-    const analysis::ModeSet without = find(*still, options_of_held_air(set, job.input.floquet));
+    const analysis::ModeSet without =
+        find(*still, simulation::options_of_held_air(set, job.input.floquet));
     if (is_first) air = simulation::find_air_part(system, trim.solution, set, without);
   }
   progress.finish();

@@ -380,22 +380,21 @@ class Analysis {
   /// the steady state. Keeps those next to zero: several motions that nothing restores have next to
   /// equal vectors, and small errors move their exponents far.
   void find_slow_exponents_of_shift() {
-    if (!system_.constraints_are_autonomous()) return;
-    for (const system::UnconstrainedCoordinate& coordinate : system_.unconstrained_coordinates()) {
-      const auto at = static_cast<std::size_t>(coordinate.unknown);
-      if (system_.unknowns()[at].frame != system::Frame::rotating) continue;
-      const Eigen::MatrixXd shift = shift_in_time(coordinate.unknown);
-      const Eigen::MatrixXd map =
-          map_ + (shift - map_ * shift) * shift.transpose() / shift.squaredNorm();
-      std::vector<Complex> slow;
-      for (const Complex multiplier : dense_eigenvalues(massless_.without(map)))
-        if (const Complex exponent = principal_exponent(multiplier); is_slow(exponent))
-          slow.push_back(exponent);
-      // Of several free coordinates in the rotor, the azimuth is the one that changes least.
-      const double defect = (map_ * shift - shift).norm() / shift.norm();
-      if (defect < shift_defect_) of_shift_ = std::move(slow);
-      shift_defect_ = std::min(shift_defect_, defect);
+    // Of several free coordinates in the rotor, the azimuth is the one that changes least.
+    Eigen::MatrixXd shift;
+    Eigen::MatrixXd defect;
+    for (const PetscInt unknown : find_shifts_in_time(system_)) {
+      const Eigen::MatrixXd one = shift_in_time(unknown);
+      const Eigen::MatrixXd own = one - map_ * one;
+      if (shift.size() > 0 && own.norm() / one.norm() >= defect.norm() / shift.norm()) continue;
+      shift = one;
+      defect = own;
     }
+    if (shift.size() == 0) return;
+    const Eigen::MatrixXd map = map_ + defect * shift.transpose() / shift.squaredNorm();
+    for (const Complex multiplier : dense_eigenvalues(massless_.without(map)))
+      if (const Complex exponent = principal_exponent(multiplier); is_slow(exponent))
+        of_shift_.push_back(exponent);
     ranks_.share(0, of_shift_);
   }
 
@@ -801,11 +800,10 @@ class Analysis {
   Eigen::MatrixXd shapes_;  ///< all unknowns at every stride-th sample of this rank x states
   Eigen::MatrixXd
       end_;  ///< all unknowns at the first sample after the sector; empty on other ranks
-  Eigen::MatrixXd before_;         ///< map from the start to the first step of this rank
-  EnergyCoordinates coordinates_;  ///< of the states at the start
-  MasslessStates massless_;        ///< the same
-  std::vector<Complex> of_shift_;  ///< see find_slow_exponents_of_shift()
-  double shift_defect_ = std::numeric_limits<double>::infinity();  ///< relative, of this motion
+  Eigen::MatrixXd before_;            ///< map from the start to the first step of this rank
+  EnergyCoordinates coordinates_;     ///< of the states at the start
+  MasslessStates massless_;           ///< the same
+  std::vector<Complex> of_shift_;     ///< see find_slow_exponents_of_shift()
   Eigen::MatrixXd map_;               ///< over a sector, in these coordinates
   std::vector<Complex> multipliers_;  ///< of the sector
   std::vector<double> conditions_;    ///< of the multipliers
@@ -822,7 +820,7 @@ namespace {
 
 /// Number of the slowest modes that the steps are to resolve.
 int count_to_resolve(const FloquetOptions& options) {
-  return asks_for_some(options) ? std::max(options.modes, options.least_damped) : first_modes;
+  return asks_for_some(options) ? wanted_modes(options) : first_modes;
 }
 
 /// Number of steps in a revolution whose reach is beyond the slowest modes, as the tangents at the
@@ -851,16 +849,14 @@ HillTime hill_time(const system::PeriodicSystem& system, const FloquetOptions& o
   return has_few ? hill_of_slow_modes_of_few : hill_of_slow_modes;
 }
 
-/// Whether all modes by integration take less time than some by Hill's method, as far as it can be
-/// foreseen.
+/// Whether all modes, with this number of steps in a sector, take less time than some by Hill's
+/// method, as far as it can be foreseen.
 bool all_modes_take_less(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                         const FloquetOptions& options, int sectors) {
-  if (options.near_hz || system.size() > most_unknowns) return false;
+                         const FloquetOptions& options, double steps) {
   const auto states = static_cast<double>(ConsistentSubspace(system, solution).size());
-  const double steps = options.steps > 0 ? options.steps : choose_steps(system, solution, options);
   const auto unknowns = static_cast<double>(system.size());
   const double integration =
-      steps / sectors * unknowns * (step_of_unknown + step_of_unknown_and_state * states) +
+      steps * unknowns * (step_of_unknown + step_of_unknown_and_state * states) +
       eigenproblem_of_state * states * states * states;
   const auto [of_unknown, of_unknown_and_mode] = hill_time(system, options);
   return integration < unknowns * (of_unknown + of_unknown_and_mode * count_to_resolve(options));
@@ -898,6 +894,26 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   if (system.period() == 0.0)
     throw InputError("floquet: the rotor stands still; hint: use samara modes");
   const int repeats = system.symmetry().sectors;
+  const int sectors = options.period == FloquetPeriod::full ? 1 : repeats;
+  const Ranks ranks(comm);
+  std::optional<double> chosen;  // steps a revolution
+  const auto steps_for_modes = [&] {
+    if (!chosen)
+      chosen = options.steps > 0 ? options.steps : choose_steps(system, solution, options);
+    return *chosen;
+  };
+  if (asks_for_some(options) && options.search != ModeSearch::all) {
+    bool takes_less = false;
+    if (options.search == ModeSearch::automatic && !options.near_hz &&
+        system.size() <= most_unknowns)
+      takes_less = all_modes_take_less(system, solution, options, steps_for_modes() / sectors);
+    ranks.share(0, takes_less);  // estimates may differ by round-off
+    if (!takes_less) {
+      if (std::optional<Floquet> found = find_hill_modes(system, solution, options, comm))
+        return std::move(*found);
+      observer.note("floquet: all modes, because the mesh is too coarse for Hill's method");
+    }
+  }
   if (options.period == FloquetPeriod::blade && repeats < 2)
     throw InputError(
         "floquet.period: blade needs two or more identical blades" +
@@ -906,18 +922,6 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   const std::string& broken_by = system.symmetry().broken_by;
   if (options.period == FloquetPeriod::automatic && !broken_by.empty())
     observer.note("floquet: full period, because " + broken_by);
-  const int sectors = options.period == FloquetPeriod::full ? 1 : repeats;
-  const Ranks ranks(comm);
-  if (asks_for_some(options) && options.search != ModeSearch::all) {
-    bool takes_less = options.search == ModeSearch::automatic &&
-                      all_modes_take_less(system, solution, options, sectors);
-    ranks.share(0, takes_less);  // estimates may differ by round-off
-    if (!takes_less) {
-      if (std::optional<Floquet> found = find_hill_modes(system, solution, options, comm))
-        return std::move(*found);
-      observer.note("floquet: all modes, because the mesh is too coarse for Hill's method");
-    }
-  }
   const auto run = [&](int steps) {
     return Analysis(system, solution, sectors, steps, options, ranks, observer).run();
   };
@@ -934,7 +938,7 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
                     " blades");
     return wanted_of(run(steps));
   }
-  int steps = whole(choose_steps(system, solution, options));
+  int steps = whole(steps_for_modes());
   for (int attempt = 1;; ++attempt) {
     Floquet found = run(steps);
     const double factor = increase_of(found.set, options);

@@ -21,6 +21,7 @@
 #include "hill_search.hpp"
 #include "least_damped_search.hpp"
 #include "mesh_partition.hpp"
+#include "mode_selection.hpp"
 #include "mode_sharing.hpp"
 #include "sector_motion.hpp"
 #include "state_parts.hpp"
@@ -53,9 +54,9 @@ constexpr Accuracy of_change{3e-4, 1e-2};
 constexpr double increase_with_medium = 2.0;
 /// Wanted change of a growth, relative to itself or to this part of the exponent.
 constexpr double wanted_change = 1e-3;
+constexpr double least_growth = 0.01;
 /// Relative to an exponent: a smaller imaginary part is less than its changes.
 constexpr double least_imaginary = 1e-4;
-constexpr double least_growth = 0.01;
 /// The first shift, relative to the rotor speed: a medium has decays at 0 and 1, where its answer
 /// varies fast.
 constexpr double between_copies = 1.5;
@@ -79,10 +80,6 @@ constexpr double highest_of_medium = 1.5;
 constexpr double largest_damping_with_medium = 0.9;
 /// Least decay at which a region in a medium ends, relative to the rotor speed.
 constexpr double least_decay = 0.1;
-/// The slowest decays are known where they have frequencies in this part of the range, or where
-/// this many times as many modes were found.
-constexpr double part_of_slowest = 0.6;
-constexpr double most_of_slowest = 3.0;
 /// Relative residual of eigenpairs in their truncated series: with the first number of harmonics,
 /// which may not be the last, and the one that is wanted. With a medium, the change from one number
 /// of harmonics to the next is much larger.
@@ -427,7 +424,7 @@ class Analysis {
     int steps = 0;
     int empty = 0;
     double frequency = has_medium_ ? between_copies * speed_ : speed_;
-    const int wanted = std::max(options_.modes, options_.least_damped);
+    const int wanted = wanted_modes(options_);
     int count = std::max(least_pairs, std::min(wanted + margin_pairs, most_pairs));
     while (!is_enough(region_.high)) {
       if (++steps > most_regions)
@@ -583,12 +580,13 @@ class Analysis {
     if (options_.least_damped == 0) return centred(high) >= options_.modes;
     const std::optional<SlowestDecays> slowest = slowest_decays(high);
     if (!slowest) return false;
-    if (slowest->found >= most_of_slowest * options_.least_damped) return true;
     const bool has_slower = std::ranges::any_of(found_, [&](const Candidate& candidate) {
       return is_centred(candidate) && modulus_of(candidate) >= high - margin() &&
              -candidate.pair.exponent.real() < slowest->decay;
     });
-    return !has_slower && slowest->highest < part_of_slowest * (high - margin());
+    return knows_slowest_decays(
+        slowest->found, options_.least_damped,
+        has_slower ? std::numeric_limits<double>::infinity() : slowest->highest, high - margin());
   }
 
   /// The wanted modes of slowest decay among those that the search has found below an edge.
@@ -1330,7 +1328,7 @@ class Analysis {
                        region_.decay,
                        region_.growth,
                        region_is_counted_ && (kept >= expected_ || options_.least_damped > 0),
-                       std::max(options_.modes, options_.least_damped),
+                       wanted_modes(options_),
                        options_.least_damped > 0,
                        has_medium_ ? largest_damping_with_medium : 1.0};
     for (const Mode& mode : set_.modes) set_.found += mode.exponent.imag() == 0.0 ? 1 : 2;

@@ -513,6 +513,20 @@ std::string label_of(const std::string& name, int number, std::map<std::string, 
   return time > 1 ? label + " (" + std::to_string(time) + ")" : label;
 }
 
+void pick_modes(ModeSet& set, const std::vector<std::size_t>& numbers) {
+  std::vector<Mode> modes;
+  std::vector<Eigen::MatrixXcd> shapes;  // large: moved, not copied
+  std::vector<Eigen::Index> rows;
+  for (const std::size_t m : numbers) {
+    modes.push_back(std::move(set.modes[m]));
+    if (!set.shapes.empty()) shapes.push_back(std::move(set.shapes[m]));
+    rows.push_back(static_cast<Eigen::Index>(m));
+  }
+  set.modes = std::move(modes);
+  set.shapes = std::move(shapes);
+  if (set.participation.rows() > 0) set.participation = set.participation(rows, Eigen::all).eval();
+}
+
 void arrange_modes(ModeSet& set) {
   const std::size_t count = set.modes.size();
   const double zero = zero_exponent * (set.rotor_speed > 0.0 ? set.rotor_speed : 1.0);
@@ -538,19 +552,7 @@ void arrange_modes(ModeSet& set) {
     };
     return key(a) < key(b);
   });
-  std::vector<Mode> modes;
-  std::vector<Eigen::MatrixXcd> shapes;  // large: moved, not copied
-  Eigen::MatrixXd participation = set.participation;
-  for (std::size_t i = 0; i < count; ++i) {
-    modes.push_back(std::move(set.modes[order[i]]));
-    if (!set.shapes.empty()) shapes.push_back(std::move(set.shapes[order[i]]));
-    if (participation.rows() > 0)
-      participation.row(static_cast<Eigen::Index>(i)) =
-          set.participation.row(static_cast<Eigen::Index>(order[i]));
-  }
-  set.modes = std::move(modes);
-  set.shapes = std::move(shapes);
-  set.participation = std::move(participation);
+  pick_modes(set, order);
   // Modes that are not resolved come after the others and take the last numbers; they do not change
   // the names of resolved modes.
   std::map<std::string, int> alike;

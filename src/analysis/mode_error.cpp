@@ -126,13 +126,18 @@ void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<doub
     mode.growth_error = std::max(mode.growth_error, several * spread.modulus);
 }
 
+std::vector<PetscInt> find_shifts_in_time(const system::PeriodicSystem& system) {
+  std::vector<PetscInt> unknowns;
+  if (!system.constraints_are_autonomous()) return unknowns;
+  for (const system::UnconstrainedCoordinate& coordinate : system.unconstrained_coordinates())
+    if (system.unknowns()[static_cast<std::size_t>(coordinate.unknown)].frame ==
+        system::Frame::rotating)
+      unknowns.push_back(coordinate.unknown);
+  return unknowns;
+}
+
 void take_shift_in_time(const system::PeriodicSystem& system, ModeSet& set) {
-  const auto& coordinates = system.unconstrained_coordinates();
-  const bool has_shift = std::ranges::any_of(coordinates, [&](const auto& coordinate) {
-    return system.unknowns()[static_cast<std::size_t>(coordinate.unknown)].frame ==
-           system::Frame::rotating;
-  });
-  if (!has_shift || !system.constraints_are_autonomous() || !(set.rotor_speed > 0.0)) return;
+  if (find_shifts_in_time(system).empty() || !(set.rotor_speed > 0.0)) return;
   const auto size_of = [&set](const Mode& mode) {
     return std::hypot(mode.exponent.real(), std::remainder(mode.exponent.imag(), set.rotor_speed));
   };

@@ -7,16 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "samara/analysis/identification.hpp"
 #include "samara/base/error.hpp"
 #include "samara/base/format.hpp"
 
 namespace samara::analysis {
 namespace {
 
-/// The slowest decays are known where they have frequencies in this part of the resolved ones, or
-/// where this many times as many modes are resolved.
-constexpr double part_of_slowest = 0.6;
-constexpr double most_of_slowest = 3.0;
 /// Parts of the largest modulus that the frequency and the decay of a range may have: 0.8^2 + 0.6^2
 /// = 1. The decay of a range is no less than the third of these.
 constexpr double farthest_part = 0.8;
@@ -37,7 +34,7 @@ class Selection {
       : set_(set),
         by_decay_(options.least_damped > 0),
         centre_(2.0 * std::numbers::pi * options.near_hz.value_or(0.0)),
-        wanted_(static_cast<std::size_t>(std::max(options.modes, options.least_damped))),
+        wanted_(static_cast<std::size_t>(wanted_modes(options))),
         rate_(set.rotor_speed > 0.0 ? set.rotor_speed : 1.0) {
     for (std::size_t m = 0; m < set.modes.size(); ++m)
       if (set.modes[m].resolved && !is_of_medium(set.modes[m]) && modulus_of(m) < set.reach)
@@ -58,9 +55,10 @@ class Selection {
     if (!by_decay_) return 0.0;
     double highest = 0.0;
     for (std::size_t i = 0; i < wanted_; ++i) highest = std::max(highest, modulus_of(known_[i]));
-    const bool has_many =
-        static_cast<double>(known_.size()) >= most_of_slowest * static_cast<double>(wanted_);
-    return has_many || highest <= part_of_slowest * set_.reach ? 0.0 : highest / part_of_slowest;
+    return knows_slowest_decays(static_cast<double>(known_.size()), static_cast<int>(wanted_),
+                                highest, set_.reach)
+               ? 0.0
+               : highest / part_of_slowest;
   }
 
   /// @throws ConvergenceError if the frequency next to which modes are wanted is beyond the reach
@@ -130,21 +128,6 @@ class Selection {
   Numbers known_;  ///< resolved modes below the reach, ascending by the key
 };
 
-/// Leaves modes of these numbers, ascending.
-void keep(ModeSet& set, const Numbers& numbers) {
-  std::vector<Mode> modes;
-  std::vector<Eigen::MatrixXcd> shapes;
-  std::vector<Eigen::Index> rows;
-  for (const std::size_t m : numbers) {
-    modes.push_back(std::move(set.modes[m]));
-    if (!set.shapes.empty()) shapes.push_back(std::move(set.shapes[m]));
-    rows.push_back(static_cast<Eigen::Index>(m));
-  }
-  set.modes = std::move(modes);
-  set.shapes = std::move(shapes);
-  if (set.participation.rows() > 0) set.participation = set.participation(rows, Eigen::all).eval();
-}
-
 }  // namespace
 
 std::optional<double> lacking_reach(const ModeSet& set, const FloquetOptions& options) {
@@ -172,7 +155,7 @@ void leave_wanted(ModeSet& set, const FloquetOptions& options) {
   }
   std::ranges::sort(taken);
   taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
-  keep(set, taken);
+  pick_modes(set, taken);
   set.states = 0;  // not of those that are left
   set.deflated = 0;
   set.deflated_rate = std::numeric_limits<double>::infinity();

@@ -237,7 +237,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
   rotor.density = definition.wind->density;
   rotor.blades = static_cast<int>(turbine.blades.size());
   rotor.hub_radius = definition.hub.radius;
-  rotor.tip_radius = std::max(rotor.tip_radius, rotor_radius(turbine));
+  rotor.tip_radius = rotor_radius(turbine);
   place_stations(definition, turbine, air);
   const HubWind wind = find_hub_wind(rotor.wind.mean, turbine);
   air.hub_height = wind.height;

@@ -173,6 +173,16 @@ double AirPart::whole_work(std::size_t mode) const {
   return sum;
 }
 
+analysis::FloquetOptions options_of_held_air(const ModeSet& modes,
+                                             const analysis::FloquetOptions& options) {
+  analysis::FloquetOptions of_held = options;
+  if (modes.searched && modes.searched->is_of_all) {
+    of_held.modes = of_held.least_damped = 0;
+    of_held.near_hz.reset();
+  }
+  return of_held;
+}
+
 AirPart find_air_part(const turbine::TurbineSystem& system,
                       const analysis::PeriodicSolution& steady, const ModeSet& modes,
                       const ModeSet& held) {

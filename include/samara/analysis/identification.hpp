@@ -58,6 +58,9 @@ void name_modes(const system::PeriodicSystem& system, const std::vector<LeadingM
 /// counted here; the second one has " (2)" behind it.
 std::string label_of(const std::string& name, int number, std::map<std::string, int>& times);
 
+/// Leaves the modes of these numbers, in their order, with their shapes and participation.
+void pick_modes(ModeSet& set, const std::vector<std::size_t>& numbers);
+
 /// Sorts modes: resolved ones first, then by |lambda|, growth, name and harmonic. Numbers the modes
 /// of the same name. Order and numbers do not depend on the order in which an eigensolver found the
 /// modes.

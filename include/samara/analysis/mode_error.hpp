@@ -54,10 +54,14 @@ Eigen::Vector2d find_mesh_error(const system::PeriodicSystem& system,
 void set_growth_error(Mode& mode, const WarpingSpread& spread, std::complex<double> principal,
                       double condition = 1.0);
 
-/// Where a coordinate that nothing restores turns with the rotor (a free generator), and nothing
-/// else depends on the time, a shift of it is a shift in time: one exponent is zero. The smallest
-/// one that was found is taken for it; its distance from zero, by the truncation of the steady
-/// state and by the step, is an error of its growth, and of that of the exponents next to it.
+/// Unknowns of coordinates that nothing restores and that turn with the rotor (a free generator),
+/// where nothing else depends on the time: a shift of one of them is a shift in time, and one
+/// exponent is zero.
+std::vector<PetscInt> find_shifts_in_time(const system::PeriodicSystem& system);
+
+/// Where there is a shift in time, and no map in which to find its error: the smallest exponent
+/// that was found is taken for its zero; its distance from zero, by the truncation of the steady
+/// state, is an error of its growth, and of that of the exponents next to it.
 void take_shift_in_time(const system::PeriodicSystem& system, ModeSet& set);
 
 /// Adds the relative error of the mesh to a mode, and to the error of its growth.

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "samara/analysis/mode.hpp"
+#include "samara/analysis/options.hpp"
 #include "samara/analysis/periodic_solution.hpp"
 #include "samara/turbine/turbine_system.hpp"
 
@@ -27,6 +28,11 @@ struct AirPart {
 
   double whole_work(std::size_t mode) const;
 };
+
+/// Options for the modes of hold_air(system) with which those of `modes` are compared: where these
+/// are taken from all modes, all of them.
+analysis::FloquetOptions options_of_held_air(const analysis::ModeSet& modes,
+                                             const analysis::FloquetOptions& options);
 
 /// `held`: modes of hold_air(system), of held_air.hpp, at the same steady state. The work is the
 /// mean over a revolution of the change of the loads times the rate of the change of the place, in
