@@ -58,6 +58,10 @@ constexpr double far_from_zero = std::numeric_limits<double>::infinity();
 constexpr double largest_slow = 0.05;
 constexpr double mixed = 3.0;
 constexpr double solution_safety = 2.0;
+/// Relative to the largest change among exponents that mix: another one changes less than this.
+/// The error of a growth that is known to be one, relative to the growth.
+constexpr double unmoved = 0.01;
+constexpr double largest_of_growth = 0.95;
 /// Relative to the energy of a state of length 1 in energy coordinates: a smaller energy is
 /// round-off. The computed exponent of a motion at rest is the square root of round-off, and so is
 /// its speed.
@@ -420,19 +424,71 @@ class Analysis {
 
   bool is_slow(Complex exponent) const { return std::abs(exponent) < largest_slow * speed_; }
 
-  /// Error of the slow exponent of mode m by the steady state [1/s], or that of another one that is
-  /// not clearly apart from it; 0: not known.
+  /// Change of a slow exponent by the correction of the map.
+  double change_of(Complex exponent) const {
+    double change = std::numeric_limits<double>::infinity();
+    for (const Complex exact : of_shift_)
+      change =
+          std::min({change, std::abs(exponent - exact), std::abs(std::conj(exponent) - exact)});
+    return change;
+  }
+
+  static double real_parts(Complex exponent) {  // of a pair, of which one is listed
+    return (exponent.imag() == 0.0 ? 1.0 : 2.0) * exponent.real();
+  }
+
+  /// Change of the sum of all slow exponents. Errors of the steady state change a sum of exponents
+  /// in proportion, also where these are next to each other and move far.
+  double change_of_sum() const {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const Complex exponent : exponents_)
+      if (is_slow(exponent)) {
+        sum += real_parts(exponent);
+        count += exponent.imag() == 0.0 ? 1.0 : 2.0;
+      }
+    for (const Complex exact : of_shift_) sum -= exact.real();
+    // One beyond the limit of slow ones tells nothing.
+    return count == static_cast<double>(of_shift_.size()) ? std::abs(sum)
+                                                          : std::numeric_limits<double>::infinity();
+  }
+
+  /// Largest change among the slow exponents that are not clearly apart from that of mode m.
+  double mixed_change(std::size_t m) const {
+    double change = 0.0;
+    for (const Complex other : exponents_)
+      if (is_slow(other) && std::abs(other - exponents_[m]) <= mixed * change_of(other))
+        change = std::max(change, change_of(other));
+    return change;
+  }
+
+  /// Error of the exponent of mode m by the steady state [1/s]; 0: not known.
   double error_of_solution(std::size_t m) const {
-    if (of_shift_.empty() || !is_slow(exponents_[m])) return 0.0;
-    double error = 0.0;
-    for (const Complex other : exponents_) {
-      if (!is_slow(other)) continue;
-      double change = std::numeric_limits<double>::infinity();
-      for (const Complex exact : of_shift_)
-        change = std::min({change, std::abs(other - exact), std::abs(std::conj(other) - exact)});
-      if (std::abs(other - exponents_[m]) <= mixed * change) error = std::max(error, change);
+    return of_shift_.empty() || !is_slow(exponents_[m]) ? 0.0 : solution_safety * mixed_change(m);
+  }
+
+  /// Whether the sum of the exponents that mix with a growing one is known to be positive: one of
+  /// them grows, whatever the error of each.
+  bool is_known_to_grow(std::size_t m) const {
+    if (of_shift_.empty() || !is_slow(exponents_[m]) || !(exponents_[m].real() > 0.0)) return false;
+    const double largest = mixed_change(m);
+    double sum = 0.0;
+    for (const Complex other : exponents_)
+      if (is_slow(other) && std::abs(other - exponents_[m]) <= mixed * largest &&
+          change_of(other) > unmoved * largest)
+        sum += real_parts(other);
+    return solution_safety * change_of_sum() < sum;
+  }
+
+  /// The errors of the steady state do not hide a growth that is known.
+  void limit_errors_of_solution() {
+    for (std::size_t m = 0; m < set_.modes.size(); ++m) {
+      Mode& mode = set_.modes[m];
+      if (!is_known_to_grow(m)) continue;
+      const double others = mode.growth_error - error_of_solution(m);
+      mode.growth_error =
+          std::min(mode.growth_error, std::max(others, largest_of_growth * mode.exponent.real()));
     }
-    return solution_safety * error;
   }
 
   // ---- identification --------------------------------------------------------------------------
@@ -729,6 +785,7 @@ class Analysis {
       if (!mode.resolved && !is_of_medium(mode))
         set_.reach = std::min(set_.reach, std::abs(mode.exponent));
     find_mesh_errors();
+    limit_errors_of_solution();
     name_modes(system_, leading, set_, sectors_);
     share_names();
     arrange_modes(set_);

@@ -270,8 +270,8 @@ BOOST_AUTO_TEST_CASE(slow_exponents_have_the_error_of_the_steady_state) {
         if (slope == 0.0)
           BOOST_TEST((verdict.stability == simulation::Stability::neutral));
         else
-          BOOST_TEST(
-              (verdict.stability == simulation::Stability::unstable || std::abs(expected) < 1e-3));
+          // By the sum of the exponents, also where each of them has a large error.
+          BOOST_TEST((verdict.stability == simulation::Stability::unstable));
         // One that is known from zero is known to a few percent.
         if (slope <= -10.0) BOOST_TEST(fastest->growth_error < 0.2 * expected);
       }
