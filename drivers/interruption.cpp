@@ -116,6 +116,8 @@ void Interruption::hold() { change_held_signals(SIG_BLOCK); }
 
 void Interruption::release() { change_held_signals(SIG_UNBLOCK); }
 
+void Interruption::silence() { is_silent = 1; }
+
 void Interruption::remove_at_end(const std::string& path) {
   has_file = 0;
   if (path.empty() || path.size() >= file_at_end.size()) return;

@@ -28,6 +28,9 @@ class Interruption {
   static void hold();
   static void release();
 
+  /// From here on a signal ends the process without a message.
+  static void silence();
+
   /// A file that is removed when a signal ends the process; empty: none.
   static void remove_at_end(const std::string& path);
 };

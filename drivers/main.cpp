@@ -324,6 +324,14 @@ void print_text(const CommandLine& line) {
   }
 }
 
+/// The common exit code of all ranks (Session::agree). After a failure that one rank has reported,
+/// signals end the ranks without a word: mpiexec sends them as soon as the first rank has ended.
+int end_together(const Session& session, const Outcome& outcome) {
+  const int code = session.agree(outcome.code, outcome.message);
+  if (code != 0) Interruption::silence();
+  return code;
+}
+
 int run(const std::vector<std::string>& arguments) {
   for (const Command& command : commands)
     if (command.hand_over != nullptr && !arguments.empty() && arguments.front() == command.name) {
@@ -350,17 +358,17 @@ int run(const std::vector<std::string>& arguments) {
     return outcome.code;
   }
   const Session session(line.petsc_options);
-  if (const int code = session.agree(outcome.code, outcome.message)) return code;
+  if (const int code = end_together(session, outcome)) return code;
   if (converts) return 0;
   outcome = attempt("", [] { refuse_unsupported_options(Session::options()); });
-  if (const int code = session.agree(outcome.code, outcome.message)) return code;
+  if (const int code = end_together(session, outcome)) return code;
   outcome = attempt(line.case_path, [&] { lock_result(job); });
-  if (const int code = session.agree(outcome.code, outcome.message)) return code;
+  if (const int code = end_together(session, outcome)) return code;
   outcome = attempt(line.case_path, [&] { line.command->run(job); });
   release_result(job);
   if (outcome.code == 0 && Interruption::is_asked())  // after all was done
     outcome = {Interruption::noted(), "samara: interrupted; the result is complete\n"};
-  const int code = session.agree(outcome.code, outcome.message);
+  const int code = end_together(session, outcome);
   if (code == 0 && Session::rank() == 0) report_unused_options(line.command->name);
   return code;
 }
