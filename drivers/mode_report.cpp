@@ -131,7 +131,9 @@ std::vector<std::string> row_of(const ModeSet& set, const StabilityAssessment& a
     row.push_back(frequency == 0.0 || !is_known || std::isnan(air->held_damping[m])
                       ? "-"
                       : fixed(100.0 * (mode.damping_ratio - air->held_damping[m]), 3));
-  row.push_back(frequency == 0.0 || !is_known
+  // Near 100 % the damping ratio does not determine the decrement, nor is the frequency known.
+  constexpr double most_ratio = 0.999995;  // printed as 100.000 %
+  row.push_back(frequency == 0.0 || !is_known || std::abs(mode.damping_ratio) >= most_ratio
                     ? "-"
                     : fixed(is_moving ? 100.0 * logarithmic_decrement(mode) : 0.0, 3));
   row.push_back(!is_moving

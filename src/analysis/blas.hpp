@@ -104,6 +104,14 @@ inline void divide_by_triangle(char part, Integer n, const Complex* a, Integer c
   ztrsm_("R", &part, "N", diagonal, &count, &n, &one, a, &n, b, &n);
 }
 
+/// B = R^-1 B (`side` 'L') or B R^-1 ('R') with the upper triangle R of a square matrix; B: m x n.
+inline void divide_by_upper(char side, Integer m, Integer n, const double* r, Integer ldr,
+                            double* b, Integer ldb) {
+  count_operations<double>(0.5 * m * n * (side == 'L' ? m : n));
+  const double one = 1.0;
+  BLAStrsm_(&side, "U", "N", "N", &m, &n, &one, r, &ldr, b, &ldb);
+}
+
 /// Factors an n x n matrix. @returns 0 unless a pivot is zero
 inline Integer factor(Integer n, double* a, Integer* interchanges) {
   count_operations<double>(1.0 / 3.0 * n * n * n);

@@ -343,38 +343,55 @@ void CollocationStep::factor_impulses() {
 void CollocationStep::project() {
   combine(rate_at_end_, rate_);
   multiply(rates_of_, end_, impulse_);
-  impulse_ += impulses_.added() * rate_;
+  multiply(impulses_.added(), rate_, impulse_, 1.0);
   impulses_.solve(impulse_);
-  for (const PetscInt velocity : subspace_.velocities())
-    end_.row(velocity) += impulse_.row(velocity);
+  for (Index c = 0; c < end_.cols(); ++c)
+    for (const PetscInt velocity : subspace_.velocities())
+      end_(velocity, c) += impulse_(velocity, c);
 }
 
 void CollocationStep::sample(double fraction, Eigen::MatrixXd& values) const {
+  sample(std::vector{fraction}, std::span(&values, 1));
+}
+
+/// All samples of a node and a column at once: the polynomials are read once.
+void CollocationStep::sample(const std::vector<double>& fractions,
+                             std::span<Eigen::MatrixXd> values) const {
   std::vector<double> nodes{0.0};
   nodes.insert(nodes.end(), points_.begin(), points_.end());
   if (nodes.back() < 1.0) nodes.push_back(1.0);
   const auto count = static_cast<std::size_t>(stages_);
-  std::vector<double> carried(count + 2, 0.0);
-  std::vector<double> others(count);
-  for (std::size_t a = 0; a < nodes.size(); ++a)
-    carried[a] = math::lagrange(nodes, static_cast<int>(a), fraction);
-  for (std::size_t a = 0; a < others.size(); ++a)
-    others[a] = math::lagrange(points_, static_cast<int>(a), fraction);
-  values.resize(start_.rows(), start_.cols());
-  for (Index c = 0; c < values.cols(); ++c)
-    for (Index first = 0; first < values.rows(); first += block_) {
+  struct Weights {
+    std::vector<double> carried;  // start, stages, end
+    std::vector<double> others;   // stages
+  };
+  std::vector<Weights> all;
+  for (const double fraction : fractions) {
+    Weights one{std::vector<double>(count + 2, 0.0), std::vector<double>(count)};
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      one.carried[a] = math::lagrange(nodes, static_cast<int>(a), fraction);
+    for (std::size_t a = 0; a < count; ++a)
+      one.others[a] = math::lagrange(points_, static_cast<int>(a), fraction);
+    all.push_back(std::move(one));
+  }
+  for (Eigen::MatrixXd& one : values) one.resize(start_.rows(), start_.cols());
+  for (Index c = 0; c < start_.cols(); ++c)
+    for (Index first = 0; first < start_.rows(); first += block_) {
       const double* start = &start_(first, c);
       const double* end = &end_(first, c);
       const double* stages = &middles_(first * stages_, c);
       const double* is_carried = &carried_(first);
-      double* result = &values(first, c);
-      for (Index i = 0; i < block_; ++i)
-        result[i] = is_carried[i] * (carried.front() * start[i] + carried.back() * end[i]);
-      for (std::size_t stage = 0; stage < count; ++stage) {
-        const double* middle = stages + static_cast<Index>(stage) * block_;
-        const double difference = carried[stage + 1] - others[stage];
+      for (std::size_t n = 0; n < all.size(); ++n) {
+        const auto& [carried, others] = all[n];
+        double* result = &values[n](first, c);
         for (Index i = 0; i < block_; ++i)
-          result[i] += (others[stage] + is_carried[i] * difference) * middle[i];
+          result[i] = is_carried[i] * (carried.front() * start[i] + carried.back() * end[i]);
+        for (std::size_t stage = 0; stage < count; ++stage) {
+          const double* middle = stages + static_cast<Index>(stage) * block_;
+          const double difference = carried[stage + 1] - others[stage];
+          for (Index i = 0; i < block_; ++i)
+            result[i] += (others[stage] + is_carried[i] * difference) * middle[i];
+        }
       }
     }
 }

@@ -46,6 +46,9 @@ constexpr double zero_to_shift = 1e-7;
 /// zero, which round-off splits by its square root.
 constexpr double split_to_shift = 1e-5;
 
+/// Of moduli that choose a number of steps: about three digits.
+constexpr double tolerance_of_moduli = 1e-5;
+
 struct Spectrum {
   std::vector<Complex> exponents;
   std::vector<int> states;  ///< see leading_states()
@@ -192,6 +195,39 @@ double distance(Complex exponent, const Spectrum& other, double zero) {
   return nearest / std::max(std::abs(exponent), zero);
 }
 
+/// At least `count` eigenvalues 1 / (sigma - lambda) of largest modulus of the tangents at t = 0,
+/// fewer where they do not converge: of y for x with (K + sigma M) y = M x, for the unknowns that M
+/// contains, in the units by which the solver scales.
+std::vector<Complex> largest_inverses(const system::PeriodicSystem& system,
+                                      const PeriodicSolution& solution, double sigma, int count) {
+  const auto [K, M] = tangents_on(system, solution, 0.0);
+  const petsc::Handle<Vec> z = system.make_state();
+  const petsc::Handle<Vec> z_dot = system.make_state();
+  const petsc::Handle<Mat> shifted = system.make_jacobian();
+  solution.evaluate(0.0, z.get(), z_dot.get());
+  system.tangents(0.0, z.get(), z_dot.get(), sigma, shifted.get(), nullptr);
+  DirectSolver solver(
+      "modes_", [&system, sigma](Mat matrix) { return scale_by_role(system, matrix, sigma); });
+  solver.factor(shifted.get());
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index i = 0; i < system.size(); ++i)
+    if (system.differential()[static_cast<std::size_t>(i)]) places.push_back(i);
+  const petsc::ReadView units(solver.scaling().columns.get());
+  const Eigen::VectorXd scale =
+      Eigen::Map<const Eigen::VectorXd>(units.data(), system.size())(places);
+  Eigen::MatrixXd values;
+  return largest_eigenvalues(
+      scale.size(),
+      [&](const Eigen::VectorXd& x) {
+        Eigen::VectorXd all = Eigen::VectorXd::Zero(system.size());
+        all(places) = x.cwiseProduct(scale);
+        values = M * all;
+        solver.solve(values);
+        return Eigen::VectorXd(values(places, 0).cwiseQuotient(scale));
+      },
+      count, tolerance_of_moduli);
+}
+
 /// Moduli of exponents of the tangents at t = 0, from eigenvalues of the inverse at the shift
 /// `rate`.
 std::vector<double> moduli_at(double rate, std::vector<Complex> of_inverse) {
@@ -208,8 +244,13 @@ std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
   const double rate = system::base_rate(system);
   // Both of a pair, and some that count as zero.
   const int values = 3 * count;
+  constexpr int whole_below = 12;  // times the number that is wanted
+  if (subspace.size() >= whole_below * values) {
+    std::vector<Complex> found = largest_inverses(system, solution, rate, values);
+    if (found.size() >= static_cast<std::size_t>(values)) return moduli_at(rate, std::move(found));
+  }
   const ShiftedInverse inverse = invert_at(system, solution, subspace, rate, rate);
-  return moduli_at(rate, largest_eigenvalues(inverse.massless.without(inverse.map), values));
+  return moduli_at(rate, dense_eigenvalues(inverse.massless.without(inverse.map)));
 }
 
 ModeSet find_constant_modes(const system::PeriodicSystem& system,

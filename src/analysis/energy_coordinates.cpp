@@ -4,6 +4,9 @@
 #include <Eigen/Eigenvalues>
 
 #include "samara/analysis/harmonic_energy.hpp"
+#include "samara/analysis/linear_algebra.hpp"
+
+#include "blas.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -37,19 +40,39 @@ Eigen::MatrixXd null_space_of(const Eigen::MatrixXd& metric, const Factors& fact
   return scale.asDiagonal() * solver.eigenvectors().leftCols(null);
 }
 
+/// Twice the energy of the groups of a kind as a quadratic form of the columns: d x d.
+Eigen::MatrixXd metric_of(const system::PeriodicSystem& system, system::EnergyGroup::Kind kind,
+                          const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  Eigen::Index rows = 0;
+  for (const system::EnergyGroup& group : system.energy_groups())
+    if (group.kind == kind) rows += static_cast<Eigen::Index>(group.unknowns.size());
+  Eigen::MatrixXd signals = Eigen::MatrixXd::Zero(rows, columns.cols());
+  Eigen::Index first = 0;
+  for (const system::EnergyGroup& group : system.energy_groups()) {
+    if (group.kind != kind || group.unknowns.empty()) continue;
+    const Eigen::MatrixXd root = energy_root(group);
+    signals.middleRows(first, root.rows()) = root * columns(group.unknowns, Eigen::all);
+    first += root.rows();
+  }
+  return multiply(signals.transpose(), signals);
+}
+
+/// R^-1 B (`side` 'L') or B R^-1 ('R') for an upper triangle R.
+void divide_by(char side, const Eigen::MatrixXd& triangle, Eigen::Ref<Eigen::MatrixXd> columns) {
+  if (columns.size() == 0) return;
+  blas::divide_by_upper(side, static_cast<blas::Integer>(columns.rows()),
+                        static_cast<blas::Integer>(columns.cols()), triangle.data(),
+                        static_cast<blas::Integer>(triangle.rows()), columns.data(),
+                        static_cast<blas::Integer>(columns.outerStride()));
+}
+
 }  // namespace
 
 EnergyCoordinates::EnergyCoordinates(const system::PeriodicSystem& system,
                                      const Eigen::MatrixXd& basis, Eigen::Index d, double rate) {
-  Eigen::MatrixXd kinetic = Eigen::MatrixXd::Zero(d, d);
-  Eigen::MatrixXd strain = Eigen::MatrixXd::Zero(d, d);
-  for (const system::EnergyGroup& group : system.energy_groups()) {
-    if (group.unknowns.empty()) continue;
-    const bool is_kinetic = group.kind == system::EnergyGroup::Kind::kinetic;
-    const Eigen::MatrixXd signals =
-        energy_root(group) * basis(group.unknowns, Eigen::seqN(is_kinetic ? d : 0, d));
-    (is_kinetic ? kinetic : strain).noalias() += signals.transpose() * signals;
-  }
+  Eigen::MatrixXd kinetic =
+      metric_of(system, system::EnergyGroup::Kind::kinetic, basis.middleCols(d, d));
+  Eigen::MatrixXd strain = metric_of(system, system::EnergyGroup::Kind::strain, basis.leftCols(d));
   Factors kinetic_factors(kinetic);
   without_inertia_ = null_space_of(kinetic, kinetic_factors);
   strain += rate * rate * kinetic;
@@ -67,15 +90,15 @@ EnergyCoordinates::EnergyCoordinates(const system::PeriodicSystem& system,
 
 void EnergyCoordinates::divide(Eigen::MatrixXd& columns) const {
   const Eigen::Index d = eta_.rows();
-  eta_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(columns.leftCols(d));
-  rate_.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(columns.middleCols(d, d));
+  divide_by('R', eta_, columns.leftCols(d));
+  divide_by('R', rate_, columns.middleCols(d, d));
 }
 
 Eigen::MatrixXd EnergyCoordinates::of(const Eigen::MatrixXd& states) const {
   const Eigen::Index d = eta_.rows();
   Eigen::MatrixXd result(states.rows(), states.cols());
-  result.topRows(d) = eta_.triangularView<Eigen::Upper>() * states.topRows(d);
-  result.middleRows(d, d) = rate_.triangularView<Eigen::Upper>() * states.middleRows(d, d);
+  result.topRows(d) = multiply(eta_, states.topRows(d));
+  result.middleRows(d, d) = multiply(rate_, states.middleRows(d, d));
   result.bottomRows(states.rows() - 2 * d) = states.bottomRows(states.rows() - 2 * d);
   return result;
 }
@@ -83,8 +106,8 @@ Eigen::MatrixXd EnergyCoordinates::of(const Eigen::MatrixXd& states) const {
 Eigen::MatrixXd EnergyCoordinates::states_of(const Eigen::MatrixXd& coordinates) const {
   const Eigen::Index d = eta_.rows();
   Eigen::MatrixXd states = coordinates;
-  eta_.triangularView<Eigen::Upper>().solveInPlace(states.topRows(d));
-  rate_.triangularView<Eigen::Upper>().solveInPlace(states.middleRows(d, d));
+  divide_by('L', eta_, states.topRows(d));
+  divide_by('L', rate_, states.middleRows(d, d));
   return states;
 }
 

@@ -48,6 +48,10 @@ constexpr double largest_fast_share = 0.01;
 /// i Q Omega. Where the error is larger, modes mix whose exponents are next to each other up to
 /// this distance, and neither their harmonics nor their number below a frequency are known.
 constexpr double largest_branch_error = 0.05;
+/// This error is larger by less than this factor at the harmonic with most energy than at another
+/// one that a mode may be moved to: 1 + 1/p, with the share p of the first, which is not less than
+/// that of the second, at least 0.2.
+constexpr double of_other_harmonic = 10.0;
 /// Relative to an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
 constexpr double least_imaginary = 1e-6;
 /// Replaces an exponent that belongs to no free motion.
@@ -70,8 +74,8 @@ constexpr double rest_energy = 1e-10;
 constexpr Index group_states = 128;
 /// Largest number of instants of the mode shapes per revolution.
 constexpr int shape_samples = 24;
-/// Instants per sector for the name of a mode that is not resolved.
-constexpr Eigen::Index label_samples = 3;
+/// Instants per revolution for the name of a mode that is not resolved, at least.
+constexpr Index label_samples = 3;
 
 /// Modes that a chosen number of steps resolves where all modes are asked for, those of a verdict.
 constexpr int first_modes = 10;
@@ -205,22 +209,27 @@ class Analysis {
     for (Index g = 0; g < states_; g += group_states)
       groups.emplace_back(start.middleCols(g, std::min(group_states, states_ - g)));
     Eigen::MatrixXd states_at_end(states_, states_);
-    Eigen::MatrixXd values;
+    std::vector<double> fractions;  // of a step, at the samples
+    for (int i = 0; i < samples_of_step_; ++i)
+      fractions.push_back((i + offset_) / samples_of_step_);
+    std::vector<Eigen::MatrixXd> values(fractions.size());
     for (long k = first; k < end; ++k) {
       Index g = 0;
       for (Eigen::MatrixXd& group : groups) {
         step.advance(k, group);
         const Index count = group.cols();
         if (k == steps_) {
-          step.sample(offset_ / samples_of_step_, values);
-          end_.middleCols(g, count) = values;
+          step.sample(fractions.front(), values.front());
+          end_.middleCols(g, count) = values.front();
         } else {
+          step.sample(fractions, values);
           for (int i = 0; i < samples_of_step_; ++i) {
             const long sample = k * samples_of_step_ + i;
-            step.sample((i + offset_) / samples_of_step_, values);
-            series_.take(sample - first_sample, g, values);
+            const Eigen::MatrixXd& at_sample = values[static_cast<std::size_t>(i)];
+            series_.take(sample - first_sample, g, at_sample);
             if (sample % stride_ == 0)
-              shapes_.block(n * (sample / stride_ - shape_numbers_.front()), g, n, count) = values;
+              shapes_.block(n * (sample / stride_ - shape_numbers_.front()), g, n, count) =
+                  at_sample;
           }
           if (k + 1 == std::min(end, steps_)) states_at_end.middleCols(g, count) = step.state();
         }
@@ -307,11 +316,35 @@ class Analysis {
     return rule_.may_reach(s) && in_reach(unwarped(s, rule_));
   }
 
+  /// All ranks use the result of the first one.
   void solve_eigenproblem() {
-    find_slow_exponents_of_shift();
+    const StateParts parts = find_state_parts(system_);
+    ranks_.attempt([&] {
+      if (ranks_.rank > 0) return;
+      find_slow_exponents_of_shift();
+      find_multipliers(parts);
+    });
+    ranks_.share(0, of_shift_);
+    ranks_.share(0, set_.deflated);
+    ranks_.share(0, set_.deflated_rate);
+    ranks_.share(0, multipliers_);
+    ranks_.share(0, conditions_);
+    ranks_.share(0, leading_states_);
+    ranks_.share(0, weights_);
+    if (ranks_.rank > 0) weights_ = multiply(before_, weights_);
+    before_.resize(0, 0);
+    set_.modes.resize(multipliers_.size());
+    for (std::size_t i = 0; i < set_.modes.size(); ++i) {
+      exponents_.push_back(principal_exponent(multipliers_[i]));
+      set_.modes[i].multiplier = std::pow(multipliers_[i], sectors_);
+      if (leading_states_[i] >= 0)
+        set_.modes[i].state = parts.owners[static_cast<std::size_t>(leading_states_[i])];
+    }
+  }
+
+  void find_multipliers(const StateParts& parts) {
     Eigen::VectorXd conditions;
     const Eigenpairs pairs = massless_.eigenpairs_of(map_, "floquet_", &conditions);
-    const StateParts parts = find_state_parts(system_);
     const std::vector<int> states =
         leading_states(pairs, 2 * subspace_.degrees_of_freedom(), parts);
     Eigen::MatrixXcd vectors(states_, states_);  // of the modes
@@ -349,22 +382,6 @@ class Analysis {
       }
     }
     weights_ = real_and_imaginary(vectors.leftCols(static_cast<Index>(multipliers_.size())));
-    // All ranks use the result of one.
-    ranks_.share(0, set_.deflated);
-    ranks_.share(0, set_.deflated_rate);
-    ranks_.share(0, multipliers_);
-    ranks_.share(0, conditions_);
-    ranks_.share(0, leading_states_);
-    ranks_.share(0, weights_);
-    if (ranks_.rank > 0) weights_ = multiply(before_, weights_);
-    before_.resize(0, 0);
-    set_.modes.resize(multipliers_.size());
-    for (std::size_t i = 0; i < set_.modes.size(); ++i) {
-      exponents_.push_back(principal_exponent(multipliers_[i]));
-      set_.modes[i].multiplier = std::pow(multipliers_[i], sectors_);
-      if (leading_states_[i] >= 0)
-        set_.modes[i].state = parts.owners[static_cast<std::size_t>(leading_states_[i])];
-    }
   }
 
   /// Two real vectors in the plane of a complex one; the same one where there is no plane.
@@ -399,7 +416,6 @@ class Analysis {
     for (const Complex multiplier : dense_eigenvalues(massless_.without(map)))
       if (const Complex exponent = principal_exponent(multiplier); is_slow(exponent))
         of_shift_.push_back(exponent);
-    ranks_.share(0, of_shift_);
   }
 
   /// The rate of the steady state with its azimuth, in energy coordinates.
@@ -571,15 +587,15 @@ class Analysis {
   void find_residuals() {
     std::vector<Eigen::Index> modes(set_.modes.size());
     std::iota(modes.begin(), modes.end(), 0);
-    Eigen::MatrixXd first = shapes_of(modes, 1);
-    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(first.rows(), first.cols());
+    first_ = shapes_of(modes, 1);
+    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(first_.rows(), first_.cols());
     if (end_.size() > 0) last = multiply(end_, weights_of(modes));
-    ranks_.sum_on(0, first);
+    ranks_.sum_on(0, first_);
     ranks_.sum_on(0, last);
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(modes.size()));
     if (ranks_.rank == 0)
       for (const Eigen::Index m : modes)
-        residuals(m) = closure(first.col(2 * m) + 1i * first.col(2 * m + 1),
+        residuals(m) = closure(first_.col(2 * m) + 1i * first_.col(2 * m + 1),
                                last.col(2 * m) + 1i * last.col(2 * m + 1),
                                multipliers_[static_cast<std::size_t>(m)]);
     ranks_.sum(residuals);
@@ -595,14 +611,17 @@ class Analysis {
     for (std::size_t m = 0; m < set_.modes.size(); ++m) {
       const Complex exponent = exponents_[m];
       const bool may_be_rigid = exponent.imag() == 0.0 || is_zero(exponent);
-      const bool fine = may_be_rigid || in_reach_at(exponent, set_.modes[m].harmonic);
+      const bool fine =
+          !is_too_fast(m) &&
+          (may_be_rigid || (in_reach_at(exponent, set_.modes[m].harmonic) &&
+                            spread_of(m).modulus <= of_other_harmonic * most_spread()));
       (fine && set_.modes[m].residual <= largest_residual ? trusted : others)
           .push_back(static_cast<Eigen::Index>(m));
     }
     const Eigen::Index instants = (span_ + stride_ - 1) / stride_;
     set_.shapes.resize(ranks_.rank == 0 ? set_.modes.size() : 0);
     expand_shapes(trusted, instants);
-    expand_shapes(others, std::min(instants, label_samples));
+    expand_shapes(others, std::min(instants, (label_samples + sectors_ - 1) / sectors_));
     settle_rigid_body_modes();
   }
 
@@ -624,9 +643,17 @@ class Analysis {
   /// The first `instants` of a sector, continued over the period.
   void expand_shapes(const std::vector<Eigen::Index>& modes, Eigen::Index instants) {
     const Eigen::Index n = system_.size();
-    Eigen::MatrixXd values = shapes_of(modes, instants);
-    ranks_.sum_on(0, values);
+    Eigen::MatrixXd values;
+    if (instants > 1) {
+      values = shapes_of(modes, instants);
+      ranks_.sum_on(0, values);
+    }
     if (ranks_.rank != 0) return;
+    if (instants == 1) {
+      values.resize(n, 2 * static_cast<Index>(modes.size()));
+      for (std::size_t i = 0; i < modes.size(); ++i)
+        values.middleCols<2>(2 * static_cast<Index>(i)) = first_.middleCols<2>(2 * modes[i]);
+    }
     for (std::size_t i = 0; i < modes.size(); ++i) {
       const auto m = static_cast<std::size_t>(modes[i]);
       const SectorMotion motion{values.col(2 * static_cast<Eigen::Index>(i)).data(), n, instants,
@@ -677,14 +704,18 @@ class Analysis {
     return fast_share(m, sampled_shares_.row(static_cast<Index>(m))) > largest_fast_share;
   }
 
+  WarpingSpread spread_of(std::size_t m) const {
+    return warping_spread(exponents_[m], set_.participation.row(static_cast<Index>(m)),
+                          -static_cast<int>(samples_ / 2), set_.modes[m].harmonic, speed_, rule_);
+  }
+  double most_spread() const { return largest_branch_error * sectors_ * speed_; }
+
   /// Adds the harmonic of mode m to the exponent, maps the warping by the step back and chooses the
   /// conjugate with Im >= 0. May be called again with another harmonic.
   void settle(std::size_t m) {
     Mode& mode = set_.modes[m];
     const bool slow = !is_too_fast(m);
-    const WarpingSpread spread =
-        warping_spread(exponents_[m], set_.participation.row(static_cast<Eigen::Index>(m)),
-                       -static_cast<int>(samples_ / 2), mode.harmonic, speed_, rule_);
+    const WarpingSpread spread = spread_of(m);
     mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
     mode.exponent = unwarped(mode.step_exponent, rule_);
     if (mode.exponent.imag() < -zero_exponent * speed_) conjugate(m);
@@ -704,7 +735,7 @@ class Analysis {
     if (!is_zero(mode.exponent)) mode.growth_error += error_of_solution(m);
     mode.resolved = slow && in_reach_at(exponents_[m], mode.harmonic) &&
                     mode.residual <= largest_residual && mode.step_error <= accuracy_ &&
-                    spread.modulus <= largest_branch_error * sectors_ * speed_;
+                    spread.modulus <= most_spread();
   }
 
   /// Replaces mode m by its conjugate, which represents the pair from then on.
@@ -857,7 +888,8 @@ class Analysis {
   Eigen::MatrixXd shapes_;  ///< all unknowns at every stride-th sample of this rank x states
   Eigen::MatrixXd
       end_;  ///< all unknowns at the first sample after the sector; empty on other ranks
-  Eigen::MatrixXd before_;            ///< map from the start to the first step of this rank
+  Eigen::MatrixXd first_;   ///< all modes at the first sample, on the first rank: see shapes_of()
+  Eigen::MatrixXd before_;  ///< map from the start to the first step of this rank
   EnergyCoordinates coordinates_;     ///< of the states at the start
   MasslessStates massless_;           ///< the same
   std::vector<Complex> of_shift_;     ///< see find_slow_exponents_of_shift()
@@ -955,8 +987,11 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   const Ranks ranks(comm);
   std::optional<double> chosen;  // steps a revolution
   const auto steps_for_modes = [&] {
-    if (!chosen)
-      chosen = options.steps > 0 ? options.steps : choose_steps(system, solution, options);
+    if (!chosen) {
+      double steps = options.steps > 0 ? options.steps : choose_steps(system, solution, options);
+      ranks.share(0, steps);  // estimates may differ by round-off
+      chosen = steps;
+    }
     return *chosen;
   };
   if (asks_for_some(options) && options.search != ModeSearch::all) {
@@ -964,7 +999,7 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
     if (options.search == ModeSearch::automatic && !options.near_hz &&
         system.size() <= most_unknowns)
       takes_less = all_modes_take_less(system, solution, options, steps_for_modes() / sectors);
-    ranks.share(0, takes_less);  // estimates may differ by round-off
+    ranks.share(0, takes_less);
     if (!takes_less) {
       if (std::optional<Floquet> found = find_hill_modes(system, solution, options, comm))
         return std::move(*found);

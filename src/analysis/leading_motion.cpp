@@ -59,6 +59,7 @@ struct NamedShape {
   Eigen::MatrixXcd shape;       ///< positions and loads at the identified harmonic
   Eigen::MatrixXcd shape_rate;  ///< (lambda + d/dt) of it
   Eigen::MatrixXcd whole_rate;  ///< (lambda + d/dt) of all harmonics
+  bool is_whole = true;         ///< the identified harmonic stands for all of them
   /// The fit: shape = coefficients waves^T, with lambda + i h Omega in `rates`; empty without a
   /// fit.
   Eigen::MatrixXcd coefficients;
@@ -107,6 +108,7 @@ NamedShape named_shape(const ModeSet& set, std::size_t m) {
     named.shape_rate = named.whole_rate;
     return named;
   }
+  named.is_whole = false;
   named.shape = named.at(0);
   named.shape_rate = mode.exponent * named.shape;
   return named;
@@ -208,9 +210,11 @@ Leading find_leading(const system::PeriodicSystem& system,
   Eigen::VectorXd all = Eigen::VectorXd::Zero(count);
   for (Eigen::Index c = 0; c < named.shape.cols(); ++c) {
     const system::MotionEnergies& about = in_time.at(time_of(set, named.shape, c, sectors));
-    identified += counts.cwiseProduct(about.of(named.shape_rate.col(c), named.whole_rate.col(c)));
     all += counts.cwiseProduct(about.of(named.whole_rate.col(c), named.whole_rate.col(c)));
+    if (!named.is_whole)
+      identified += counts.cwiseProduct(about.of(named.shape_rate.col(c), named.whole_rate.col(c)));
   }
+  if (named.is_whole) identified = all;
   if (left_out != nullptr && !(all.sum() > 0.0))  // nothing else moves
     return find_leading(system, motions, set, m, named, sectors, in_time, nullptr);
   // The identified harmonic has less of the energy where it is that of blades that the tower moves:

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <sstream>
 
@@ -287,6 +289,7 @@ void DirectSolver::factor(Mat matrix) {
   }
   apply_scaling(scaling_, matrix);
   if (blocks_) {
+    solves_ = 0;
     if (blocks_->factor(MatrixEntries(matrix).blocks())) return;
     blocks_.reset();
     pivots_ = true;
@@ -370,7 +373,8 @@ bool DirectSolver::solve_by_blocks(Eigen::MatrixXd& right) {
     return compute_residual(x, b) <= largest_solve_residual * (b.norm() + x.norm());
   };
   blocks_->solve(right, row_factors);
-  if (is_small(blocks_->column(probe_))) {
+  const bool is_checked = std::has_single_bit(++solves_);
+  if (!is_checked || is_small(blocks_->column(probe_))) {
     blocks_->copy(column_factors, right);
     return true;
   }
@@ -457,12 +461,12 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 }
 
 void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen::MatrixXd& b,
-              Eigen::MatrixXd& c) {
+              Eigen::MatrixXd& c, double c_factor) {
   PetscLogFlops(2.0 * static_cast<double>(a.nonZeros() * b.cols()));
   constexpr int group = 8;  // columns at once
   using Group = Eigen::Array<double, group, 1>;
   std::vector<Group> values(static_cast<std::size_t>(b.rows()), Group::Zero());
-  c.resize(a.rows(), b.cols());
+  if (c_factor == 0.0) c.resize(a.rows(), b.cols());
   for (Eigen::Index first = 0; first < b.cols(); first += group) {
     const Eigen::Index count = std::min<Eigen::Index>(group, b.cols() - first);
     for (Eigen::Index j = 0; j < count; ++j)
@@ -472,7 +476,10 @@ void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen
       Group sum = Group::Zero();
       for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(a, i); it; ++it)
         sum += it.value() * values[static_cast<std::size_t>(it.col())];
-      for (Eigen::Index j = 0; j < count; ++j) c(i, first + j) = sum(j);
+      for (Eigen::Index j = 0; j < count; ++j) {
+        double& value = c(i, first + j);
+        value = c_factor == 0.0 ? sum(j) : c_factor * value + sum(j);
+      }
     }
   }
 }
@@ -538,6 +545,27 @@ void solve_whole(EPS solver, const std::string& prefix) {
                      ": SLEPc does not find all eigenvalues with it; hint: lapack");
   }
   petsc::check(code);
+}
+
+/// @throws InternalError unless a complex eigenvalue is followed by its conjugate.
+bool is_first_of_pair(const Eigenpairs& pairs, Eigen::Index i) {
+  const auto at = static_cast<std::size_t>(i);
+  if (pairs.values[at].imag() == 0.0) return false;
+  if (at + 1 == pairs.values.size() || pairs.values[at + 1] != std::conj(pairs.values[at]))
+    throw InternalError("a complex eigenvalue is not followed by its conjugate");
+  return true;
+}
+
+/// The real eigenvectors, and the real and imaginary part of the first one of each complex pair.
+Eigen::MatrixXd real_parts(const Eigenpairs& pairs) {
+  Eigen::MatrixXd parts(pairs.vectors.rows(), pairs.vectors.cols());
+  for (Eigen::Index i = 0; i < parts.cols(); ++i) {
+    parts.col(i) = pairs.vectors.col(i).real();
+    if (!is_first_of_pair(pairs, i)) continue;
+    parts.col(i + 1) = pairs.vectors.col(i).imag();
+    ++i;
+  }
+  return parts;
 }
 
 }  // namespace
@@ -607,14 +635,17 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
     for (PetscInt j = 0; j < n; ++j)
       pairs.vectors(j, i) = std::complex<double>(a[j], value_im == 0.0 ? 0.0 : b[j]);
   }
-  const Eigen::MatrixXd product_re = multiply(matrix, pairs.vectors.real());
-  const Eigen::MatrixXd product_im = multiply(matrix, pairs.vectors.imag());
+  const Eigen::MatrixXd product = multiply(matrix, real_parts(pairs));
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::complex<double> value = pairs.values[static_cast<std::size_t>(i)];
     Eigen::VectorXcd defect = -value * pairs.vectors.col(i);
-    defect.real() += product_re.col(i);
-    defect.imag() += product_im.col(i);
-    pairs.residuals.push_back(defect.norm() / pairs.vectors.col(i).norm());
+    defect.real() += product.col(i);
+    if (is_first_of_pair(pairs, i)) defect.imag() += product.col(i + 1);
+    const double residual = defect.norm() / pairs.vectors.col(i).norm();
+    pairs.residuals.push_back(residual);
+    if (!is_first_of_pair(pairs, i)) continue;
+    pairs.residuals.push_back(residual);
+    ++i;
   }
   return pairs;
 }
@@ -642,39 +673,82 @@ std::vector<std::complex<double>> dense_eigenvalues(Eigen::MatrixXd matrix) {
   return values;
 }
 
-std::vector<std::complex<double>> largest_eigenvalues(const Eigen::MatrixXd& matrix, int count) {
-  constexpr double tolerance = 1e-7;
-  constexpr int whole_below = 12;  // times the number that is wanted
-  if (matrix.rows() < whole_below * count) return dense_eigenvalues(matrix);
-  DenseProblem problem(matrix);
-  EPS solver = problem.solver.get();
-  petsc::check(EPSSetWhichEigenpairs(solver, EPS_LARGEST_MAGNITUDE));
-  petsc::check(EPSSetDimensions(solver, count, PETSC_DEFAULT, PETSC_DEFAULT));
-  petsc::check(EPSSetTolerances(solver, tolerance, PETSC_DEFAULT));
-  petsc::check(EPSSolve(solver));
+namespace {
+
+/// A LinearMap as a PETSc matrix. PETSc's stack does not carry exceptions: the first one is kept.
+struct ShellOfMap {
+  ShellOfMap(Eigen::Index size, const LinearMap& linear_map) : map(linear_map) {
+    const auto n = static_cast<PetscInt>(size);
+    petsc::check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, this, matrix.fill()));
+    petsc::check(
+        MatShellSetOperation(matrix.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+  }
+
+  static PetscErrorCode multiply(Mat shell, Vec x, Vec y) noexcept {
+    void* context = nullptr;
+    if (const PetscErrorCode code = MatShellGetContext(shell, &context)) return code;
+    auto& self = *static_cast<ShellOfMap*>(context);
+    try {
+      PetscInt size = 0;
+      petsc::check(VecGetLocalSize(x, &size));
+      const petsc::ReadView in(x);
+      const petsc::WriteView out(y);
+      Eigen::Map<Eigen::VectorXd>(out.data(), size) =
+          self.map(Eigen::Map<const Eigen::VectorXd>(in.data(), size));
+    } catch (...) {
+      if (!self.error) self.error = std::current_exception();
+      return PETSC_ERR_LIB;
+    }
+    return 0;
+  }
+
+  const LinearMap& map;
+  petsc::Handle<Mat> matrix;
+  std::exception_ptr error;
+};
+
+}  // namespace
+
+std::vector<std::complex<double>> largest_eigenvalues(Eigen::Index size, const LinearMap& map,
+                                                      int count, double tolerance) {
+  ShellOfMap shell(size, map);
+  petsc::Handle<EPS> solver;
+  petsc::check(EPSCreate(PETSC_COMM_SELF, solver.fill()));
+  petsc::check(EPSSetOperators(solver.get(), shell.matrix.get(), nullptr));
+  petsc::check(EPSSetProblemType(solver.get(), EPS_NHEP));
+  petsc::check(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_MAGNITUDE));
+  petsc::check(EPSSetDimensions(solver.get(), count, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc::check(EPSSetTolerances(solver.get(), tolerance, PETSC_DEFAULT));
+  const PetscErrorCode code = EPSSolve(solver.get());
+  if (shell.error) std::rethrow_exception(shell.error);
+  petsc::check(code);
   PetscInt converged = 0;
-  petsc::check(EPSGetConverged(solver, &converged));
-  if (converged < count) return dense_eigenvalues(matrix);
+  petsc::check(EPSGetConverged(solver.get(), &converged));
   std::vector<std::complex<double>> values;
   for (PetscInt i = 0; i < converged; ++i) {
     PetscScalar re = 0.0;
     PetscScalar im = 0.0;
-    petsc::check(EPSGetEigenvalue(solver, i, &re, &im));
+    petsc::check(EPSGetEigenvalue(solver.get(), i, &re, &im));
     values.emplace_back(re, im);
   }
   return values;
 }
 
 Eigen::VectorXd condition_numbers(const Eigenpairs& pairs) {
-  // The rows of the inverse are left eigenvectors.
-  Eigen::MatrixXcd left = pairs.vectors;
-  const auto n = static_cast<blas::Integer>(left.rows());
+  // The rows of the inverse of the real parts are 2 Re y and -2 Im y of a left eigenvector y.
+  Eigen::MatrixXd inverse = real_parts(pairs);
+  const auto n = static_cast<blas::Integer>(inverse.rows());
   std::vector<blas::Integer> interchanges(static_cast<std::size_t>(n));
-  if (blas::factor(n, left.data(), interchanges.data()) != 0)
+  if (blas::factor(n, inverse.data(), interchanges.data()) != 0)
     return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
-  blas::invert(n, left.data(), interchanges.data());
-  const Eigen::VectorXd sizes =
-      left.rowwise().norm().cwiseProduct(pairs.vectors.colwise().norm().transpose());
+  blas::invert(n, inverse.data(), interchanges.data());
+  Eigen::VectorXd sizes = inverse.rowwise().norm();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!is_first_of_pair(pairs, i)) continue;
+    sizes.segment<2>(i).setConstant(sizes.segment<2>(i).norm() / 2.0);
+    ++i;
+  }
+  sizes = sizes.cwiseProduct(pairs.vectors.colwise().norm().transpose()).eval();
   return sizes.unaryExpr([](double size) {
     return std::isfinite(size) ? size : std::numeric_limits<double>::infinity();
   });

@@ -20,6 +20,16 @@ namespace {
 constexpr double patience = 5.0;
 /// Time during which a waiting rank polls without a pause [s].
 constexpr double spinning = 1e-3;
+constexpr std::chrono::microseconds rest{200};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Sleeps for a moment if a rank has waited for longer than another one.
+void rest_after(double waited) {
+  if (waited > spinning) std::this_thread::sleep_for(rest);
+}
 
 /// PETSc does not handle signals: a reader that ends early (samara ... | head) is not a crash. The
 /// only file of options is that of the home folder: PETSc would also read `.petscrc` and `petscrc`
@@ -152,17 +162,15 @@ int Session::agree(int code, const std::string& message) const {
     MPI_Iallreduce(own.data(), all.data(), 2, MPI_INT, MPI_MAX, agreement_, &request);
     const auto start = std::chrono::steady_clock::now();
     int done = 0;
-    // A waiting rank sleeps: MPI's busy waiting would take processor time from the working rank.
     while (done == 0) {
       MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-      const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
-      if (done == 0 && code != 0 && waited.count() > patience) {
+      const double waited = seconds_since(start);
+      if (done == 0 && code != 0 && waited > patience) {
         std::fputs(message.c_str(), stderr);
         std::fflush(stderr);
         MPI_Abort(MPI_COMM_WORLD, code);
       }
-      if (done == 0 && waited.count() > spinning)
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (done == 0) rest_after(waited);
     }
     MPI_Wait(&request, MPI_STATUS_IGNORE);  // ended: returns at once
   }
@@ -193,6 +201,14 @@ std::string Session::options() {
     if (const std::size_t at = text.find(word); at != std::string::npos)
       text.erase(at, word.size() + 1);  // and the blank behind it
   return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
+void wait_idly(MPI_Request& request) {
+  const auto start = std::chrono::steady_clock::now();
+  for (int done = 0; done == 0;) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done == 0) rest_after(seconds_since(start));
+  }
 }
 
 Stage::Stage(const char* name) {

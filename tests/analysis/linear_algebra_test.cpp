@@ -266,8 +266,8 @@ BOOST_AUTO_TEST_CASE(eigenpairs_of_random_matrices_are_those_of_eigen) {
 
 BOOST_AUTO_TEST_CASE(largest_eigenvalues_are_those_of_the_whole_spectrum) {
   // Eigenvalues 1/(1 - i omega) of an inverse, as those of modes are, in coordinates that are not
-  // orthogonal; few of many, and all of few.
-  for (const auto& [size, count] : {std::pair{500, 30}, std::pair{60, 30}, std::pair{2, 30}}) {
+  // orthogonal.
+  for (const auto& [size, count] : {std::pair{500, 30}, std::pair{60, 20}}) {
     const Eigen::Index n = size;
     std::mt19937 random(11);
     std::uniform_real_distribution<double> entry(-0.2, 0.2);
@@ -284,10 +284,11 @@ BOOST_AUTO_TEST_CASE(largest_eigenvalues_are_those_of_the_whole_spectrum) {
     }
     const Eigen::MatrixXd matrix = vectors * blocks * vectors.inverse();
     std::vector<double> found;
-    for (const Complex value : analysis::largest_eigenvalues(matrix, count))
+    const auto map = [&matrix](const Eigen::VectorXd& x) { return Eigen::VectorXd(matrix * x); };
+    for (const Complex value : analysis::largest_eigenvalues(n, map, count, 1e-7))
       found.push_back(std::abs(value));
     std::sort(found.rbegin(), found.rend());
-    BOOST_REQUIRE(found.size() >= static_cast<std::size_t>(std::min(size, count)));
+    BOOST_REQUIRE(found.size() >= static_cast<std::size_t>(count));
     BOOST_TEST(found.size() <= wanted.size());
     for (std::size_t i = 0; i < found.size(); ++i)
       BOOST_TEST(std::abs(found[i] / wanted[i] - 1.0) < 1e-6);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,8 +35,9 @@ class CollocationStep {
   /// @throws ConvergenceError from the linear solver
   void advance(long k, Eigen::MatrixXd& z);
 
-  /// Values of the last columns at a fraction of the step, from 0 to 1.
+  /// Values of the last columns at a fraction of the step, from 0 to 1, or at several.
   void sample(double fraction, Eigen::MatrixXd& values) const;
+  void sample(const std::vector<double>& fractions, std::span<Eigen::MatrixXd> values) const;
 
   /// (eta, eta_dot, xi) of the last columns at the end of the step, 2 d + n_1 x columns.
   Eigen::MatrixXd state();

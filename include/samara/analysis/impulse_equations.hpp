@@ -44,7 +44,7 @@ class ImpulseEquations {
   void factor(double tau);
   void solve(Eigen::MatrixXd& right) { solver_.solve(right); }
   /// The terms with tau.
-  const Eigen::SparseMatrix<double>& added() const { return added_; }
+  const Eigen::SparseMatrix<double, Eigen::RowMajor>& added() const { return added_; }
   /// Of the factored matrix.
   const Equilibration& scaling() const { return solver_.scaling(); }
 
@@ -63,7 +63,7 @@ class ImpulseEquations {
   std::vector<Column> columns_;
   petsc::Handle<Mat> matrix_;
   petsc::Handle<Mat> mass_;
-  Eigen::SparseMatrix<double> added_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> added_;
   DirectSolver solver_;
 };
 

@@ -83,7 +83,8 @@ class DirectSolver {
 
   /// Solves for all columns of `right`, which is overwritten by the solution.
   /// @throws ConvergenceError where the residual of a probing column is not small, even after some
-  /// steps of iterative refinement.
+  /// steps of iterative refinement. Of the solves by blocks with the same factors, number 1, 2, 4,
+  /// 8, ... are probed.
   void solve(Eigen::MatrixXd& right);
 
   /// Of the factored matrices.
@@ -106,6 +107,7 @@ class DirectSolver {
   Mat matrix_ = nullptr;
   Eigen::MatrixXd solution_;  ///< kept: allocation of large arrays takes longer than filling
   Eigen::Index probe_ = 0;
+  unsigned solves_ = 0;  ///< by blocks, with the present factors
 };
 
 /// Real part of an eigenvector after a phase shift that makes its largest entry real.
@@ -116,10 +118,10 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c);
 
-/// A B for a sparse matrix by rows and many columns; faster than Eigen's product, which goes
-/// through A once for each column.
+/// C = A B + `c_factor` C for a sparse matrix by rows and many columns; faster than Eigen's
+/// product, which goes through A once for each column. `c` is resized where the factor is zero.
 void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen::MatrixXd& b,
-              Eigen::MatrixXd& c);
+              Eigen::MatrixXd& c, double c_factor = 0.0);
 
 /// exp(A) by SLEPc.
 Eigen::MatrixXd exponential(const Eigen::MatrixXd& matrix);
@@ -144,10 +146,14 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix, const std::string& pr
 /// @throws ConvergenceError
 std::vector<std::complex<double>> dense_eigenvalues(Eigen::MatrixXd matrix);
 
-/// At least `count` eigenvalues of a dense real matrix, those of largest modulus, to about six
-/// digits; all of a small matrix. By Krylov-Schur (SLEPc) where that takes less time.
-/// @throws ConvergenceError
-std::vector<std::complex<double>> largest_eigenvalues(const Eigen::MatrixXd& matrix, int count);
+/// A real matrix given by its product with a vector.
+using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+
+/// At least `count` eigenvalues of a real matrix of `size` rows, those of largest modulus, by
+/// Krylov-Schur (SLEPc) with a residual below `tolerance` relative to each. Fewer where they do not
+/// converge, and few of many that are equal.
+std::vector<std::complex<double>> largest_eigenvalues(Eigen::Index size, const LinearMap& map,
+                                                      int count, double tolerance);
 
 /// |y| |x| / |y.x| of left and right eigenvectors: the largest factor from an error of the matrix
 /// to the error of an eigenvalue. It is 1 for a normal matrix, and infinite where eigenvectors

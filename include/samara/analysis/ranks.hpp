@@ -15,6 +15,7 @@
 #include <mpi.h>
 
 #include "samara/base/error.hpp"
+#include "samara/petsc/session.hpp"
 
 namespace samara::analysis {
 
@@ -138,7 +139,9 @@ struct Ranks {
       take(failure, ErrorClass::convergence);
     }
     int failed = error ? rank : size;
-    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, comm);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, comm, &request);
+    petsc::wait_idly(request);
     if (failed == size) return;
     share(failed, message);
     share(failed, kind);

@@ -45,6 +45,10 @@ class Session {
   MPI_Comm agreement_ = MPI_COMM_NULL;  ///< separate from all communication of the analyses
 };
 
+/// Completes a request. After a moment the process sleeps between tests: MPI's busy waiting would
+/// take processor time and memory bandwidth from the ranks that work.
+void wait_idly(MPI_Request& request);
+
 /// A stage of the work in the table of PETSc's `-log_view`, for the length of a scope.
 class Stage {
  public:
