@@ -25,6 +25,10 @@ constexpr char start[] =
     "def stop(number, _):\n"
     "    asked.append(number)\n"
     "    raise KeyboardInterrupt\n"
+    "def unless_asked(show):\n"  // where it ends a callback, the interpreter shows and forgets it
+    "    return lambda *error: None if asked else show(*error)\n"
+    "sys.excepthook = unless_asked(sys.excepthook)\n"
+    "sys.unraisablehook = unless_asked(sys.unraisablehook)\n"
     "try:\n"
     "    import signal\n"
     "    held = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)\n"

@@ -48,10 +48,9 @@ constexpr double largest_fast_share = 0.01;
 /// i Q Omega. Where the error is larger, modes mix whose exponents are next to each other up to
 /// this distance, and neither their harmonics nor their number below a frequency are known.
 constexpr double largest_branch_error = 0.05;
-/// This error is larger by less than this factor at the harmonic with most energy than at another
-/// one that a mode may be moved to: 1 + 1/p, with the share p of the first, which is not less than
-/// that of the second, at least 0.2.
-constexpr double of_other_harmonic = 10.0;
+/// Share of the kinetic energy from which a harmonic may become that of the mode
+/// (separate_motions() takes twice as much).
+constexpr double least_share_of_own = 0.1;
 /// Relative to an exponent and the harmonic's frequency: a smaller imaginary part is round-off.
 constexpr double least_imaginary = 1e-6;
 /// Replaces an exponent that belongs to no free motion.
@@ -145,8 +144,7 @@ class Analysis {
         dt_(system.period() / samples_),
         speed_(2.0 * std::numbers::pi / system.period()),
         states_(subspace_.size()),
-        series_(system, sectors, first_samples(ranks.size, steps_, samples_of_step_), states_,
-                ranks),
+        series_(system, sectors, first_samples(), states_, ranks),
         stride_(std::max(1, (samples_ + shape_samples - 1) / shape_samples)) {}
 
   Floquet run() {
@@ -173,8 +171,8 @@ class Analysis {
 
   /// Each rank integrates some of the steps, for all initial states at the start of its own steps.
   /// A step depends on nothing but the state at its start, so that the map over all steps is the
-  /// product of the maps of the ranks. One step more than a sector shows whether the motion
-  /// repeats.
+  /// product of the maps of the ranks. The motion one sector after the first sample shows whether
+  /// it repeats: at the end of the last step, or within one step more.
   void integrate() {
     Eigen::MatrixXd start = subspace_.basis(0.0);
     coordinates_ = EnergyCoordinates(system_, start, subspace_.degrees_of_freedom(), speed_);
@@ -203,7 +201,7 @@ class Analysis {
       if (i % stride_ == 0) shape_numbers_.push_back(i / stride_);
     const Index n = start.rows();
     shapes_.resize(n * static_cast<Index>(shape_numbers_.size()), states_);
-    if (end > steps_) end_.resize(n, states_);
+    if (end == all_steps()) end_.resize(n, states_);
     CollocationStep step(system_, solution_, subspace_, rule_.order, rule_.step);
     std::vector<Eigen::MatrixXd> groups;
     for (Index g = 0; g < states_; g += group_states)
@@ -231,6 +229,7 @@ class Analysis {
               shapes_.block(n * (sample / stride_ - shape_numbers_.front()), g, n, count) =
                   at_sample;
           }
+          if (k + 1 == all_steps()) end_.middleCols(g, count) = group;
           if (k + 1 == std::min(end, steps_)) states_at_end.middleCols(g, count) = step.state();
         }
         g += count;
@@ -240,15 +239,16 @@ class Analysis {
     }
   }
 
-  /// Number of the first step of a rank. A sector has `steps_` of them, and one more is made.
-  long first_step(int rank) const { return first_step(rank, ranks_.size, steps_); }
-  static long first_step(int rank, int ranks, long steps) { return (steps + 1) * rank / ranks; }
+  /// Steps that are made. A sector has `steps_` of them.
+  long all_steps() const { return steps_ + (offset_ > 0.0 ? 1 : 0); }
+  /// Number of the first step of a rank.
+  long first_step(int rank) const { return all_steps() * rank / ranks_.size; }
 
   /// Number of the first sample of each rank, and that of all samples.
-  static std::vector<long> first_samples(int ranks, long steps, int samples_of_step) {
+  std::vector<long> first_samples() const {
     std::vector<long> first;
-    for (int r = 0; r <= ranks; ++r)
-      first.push_back(std::min(first_step(r, ranks, steps), steps) * samples_of_step);
+    for (int r = 0; r <= ranks_.size; ++r)
+      first.push_back(std::min(first_step(r), steps_) * samples_of_step_);
     return first;
   }
 
@@ -563,8 +563,8 @@ class Analysis {
     }
   }
 
-  /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega), velocities and states, at the middle
-  /// of the first step and one sector later.
+  /// |P z(T/Q) - mu z(0)| / |z(0)| in positions (times Omega), velocities and states, at the first
+  /// sample and one sector later.
   double closure(const Eigen::Ref<const Eigen::VectorXcd>& begin,
                  const Eigen::Ref<const Eigen::VectorXcd>& end, Complex multiplier) const {
     double size = 0.0;
@@ -603,25 +603,39 @@ class Analysis {
       set_.modes[static_cast<std::size_t>(m)].residual = residuals(m);
   }
 
+  /// Whether mode m may count as resolved, at its harmonic or at another one that has a large part
+  /// of its energy, or is at rest.
+  bool may_be_resolved(std::size_t m) const {
+    const Complex exponent = exponents_[m];
+    if (set_.modes[m].residual > largest_residual) return false;
+    if (is_zero(exponent)) return true;
+    if (is_too_fast(m)) return false;
+    if (exponent.imag() == 0.0 || is_drift(exponent, speed_)) return true;
+    const auto may_be_at = [&](int harmonic) {
+      return in_reach_at(exponent, harmonic) && spread_at(m, harmonic).modulus <= most_spread();
+    };
+    const auto row = static_cast<Index>(m);
+    for (Index i = 0; i < samples_; ++i)
+      if (set_.participation(row, i) > least_share_of_own &&
+          may_be_at(static_cast<int>(i - samples_ / 2)))
+        return true;
+    return may_be_at(set_.modes[m].harmonic);
+  }
+
   /// Collects the shapes of the modes that may count as resolved; for the other modes only as many
   /// instants as their names need.
   void collect_shapes() {
-    std::vector<Eigen::Index> trusted;
-    std::vector<Eigen::Index> others;
-    for (std::size_t m = 0; m < set_.modes.size(); ++m) {
-      const Complex exponent = exponents_[m];
-      const bool may_be_rigid = exponent.imag() == 0.0 || is_zero(exponent);
-      const bool fine =
-          !is_too_fast(m) &&
-          (may_be_rigid || (in_reach_at(exponent, set_.modes[m].harmonic) &&
-                            spread_of(m).modulus <= of_other_harmonic * most_spread()));
-      (fine && set_.modes[m].residual <= largest_residual ? trusted : others)
-          .push_back(static_cast<Eigen::Index>(m));
-    }
-    const Eigen::Index instants = (span_ + stride_ - 1) / stride_;
+    std::vector<Index> trusted;
+    std::vector<Index> others;
+    for (std::size_t m = 0; m < set_.modes.size(); ++m)
+      (may_be_resolved(m) ? trusted : others).push_back(static_cast<Index>(m));
+    ranks_.share(0, trusted);  // limits may differ by round-off
+    ranks_.share(0, others);
+    const Index instants = (span_ + stride_ - 1) / stride_;
     set_.shapes.resize(ranks_.rank == 0 ? set_.modes.size() : 0);
     expand_shapes(trusted, instants);
     expand_shapes(others, std::min(instants, (label_samples + sectors_ - 1) / sectors_));
+    first_.resize(0, 0);
     settle_rigid_body_modes();
   }
 
@@ -704,9 +718,9 @@ class Analysis {
     return fast_share(m, sampled_shares_.row(static_cast<Index>(m))) > largest_fast_share;
   }
 
-  WarpingSpread spread_of(std::size_t m) const {
+  WarpingSpread spread_at(std::size_t m, int harmonic) const {
     return warping_spread(exponents_[m], set_.participation.row(static_cast<Index>(m)),
-                          -static_cast<int>(samples_ / 2), set_.modes[m].harmonic, speed_, rule_);
+                          -static_cast<int>(samples_ / 2), harmonic, speed_, rule_);
   }
   double most_spread() const { return largest_branch_error * sectors_ * speed_; }
 
@@ -715,7 +729,7 @@ class Analysis {
   void settle(std::size_t m) {
     Mode& mode = set_.modes[m];
     const bool slow = !is_too_fast(m);
-    const WarpingSpread spread = spread_of(m);
+    const WarpingSpread spread = spread_at(m, mode.harmonic);
     mode.step_exponent = exponents_[m] + Complex(0.0, mode.harmonic * speed_);
     mode.exponent = unwarped(mode.step_exponent, rule_);
     if (mode.exponent.imag() < -zero_exponent * speed_) conjugate(m);
@@ -821,8 +835,13 @@ class Analysis {
     share_names();
     arrange_modes(set_);
     scale_shapes(system_, set_);
-    for (std::size_t m = 0; m < set_.shapes.size(); ++m)
-      if (!set_.modes[m].resolved) set_.shapes[m].resize(0, 0);
+    for (std::size_t m = 0; m < set_.shapes.size(); ++m) {
+      if (!set_.modes[m].resolved)
+        set_.shapes[m].resize(0, 0);
+      else if (set_.shapes[m].cols() != static_cast<Index>(set_.shape_times.size()))
+        throw InternalError("floquet: mode " + std::to_string(m + 1) +
+                            " is resolved, but its shape has few instants");
+    }
     Floquet result;
     result.steps = static_cast<int>(steps_) * sectors_;
     result.order = rule_.order;

@@ -304,6 +304,11 @@ bool separate_displacements(const system::PeriodicSystem& system,
   std::vector<std::size_t> at_rest;
   for (std::size_t m = 0; m < set.shapes.size(); ++m)
     if (!set.modes[m].state && is_at_rest(set.modes[m], set)) at_rest.push_back(m);
+  // Those of modes that are not resolved have few instants.
+  if (std::ranges::any_of(at_rest, [&](std::size_t m) {
+        return set.shapes[m].cols() != set.shapes[at_rest.front()].cols();
+      }))
+    return false;
   const auto coordinates = static_cast<Eigen::Index>(system.unconstrained_coordinates().size());
   if (at_rest.size() < 2 || coordinates < 2) return false;
   const auto count = static_cast<Eigen::Index>(at_rest.size());

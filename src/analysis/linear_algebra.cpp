@@ -290,6 +290,7 @@ void DirectSolver::factor(Mat matrix) {
   apply_scaling(scaling_, matrix);
   if (blocks_) {
     solves_ = 0;
+    needs_refinement_ = false;
     if (blocks_->factor(MatrixEntries(matrix).blocks())) return;
     blocks_.reset();
     pivots_ = true;
@@ -373,11 +374,12 @@ bool DirectSolver::solve_by_blocks(Eigen::MatrixXd& right) {
     return compute_residual(x, b) <= largest_solve_residual * (b.norm() + x.norm());
   };
   blocks_->solve(right, row_factors);
-  const bool is_checked = std::has_single_bit(++solves_);
+  const bool is_checked = std::has_single_bit(++solves_) || needs_refinement_;
   if (!is_checked || is_small(blocks_->column(probe_))) {
     blocks_->copy(column_factors, right);
     return true;
   }
+  needs_refinement_ = true;
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(right.rows());
   const Eigen::SparseMatrix<double> matrix = to_sparse(matrix_);
   blocks_->copy(ones, solution_);

@@ -90,12 +90,16 @@ elements::RigidBody tower_top_of(const Matrix6& mass) {
   return body;
 }
 
+BladeDifference difference_of(const BladesDefinition& blades, int k) {
+  const auto found = blades.each.find(k + 1);
+  return found == blades.each.end() ? BladeDifference{} : found->second;
+}
+
 /// Blade axes at zero cone and pitch: b1 from root to tip, b3 = s2, b2 = b3 x b1. Azimuth turns
 /// about h2; cone moves b1 toward h2; pitch turns b2 (the leading edge) upwind, about -b1.
 BladeRoot root_of(const BladesDefinition& blades, double radius, int k) {
   const double azimuth = 2.0 * std::numbers::pi * k / blades.count;
-  const auto found = blades.each.find(k + 1);
-  const BladeDifference own = found == blades.each.end() ? BladeDifference{} : found->second;
+  const BladeDifference own = difference_of(blades, k);
   BladeRoot root;
   root.pitch = blades.pitch + own.pitch;
   Matrix3 upright;  // columns b1 b2 b3 = h3 h1 h2
@@ -227,10 +231,6 @@ void place_mass_dampers(const TurbineDefinition& definition, Turbine& turbine) {
   }
 }
 
-bool differs(const BladeDifference& d) {
-  return d.pitch != 0.0 || d.mass_factor != 1.0 || d.stiffness_factor != 1.0 || !d.hinges.empty();
-}
-
 }  // namespace
 
 Turbine build_turbine(const TurbineDefinition& given) {
@@ -243,9 +243,8 @@ Turbine build_turbine(const TurbineDefinition& given) {
   add_damper_nodes(definition.mass_dampers, tower, blades.beam);
   if (definition.has_tower) turbine.tower = build_beam("tower", tower);
   for (int k = 0; k < blades.count; ++k) {
-    const auto found = blades.each.find(k + 1);
-    const BladeDifference d = found == blades.each.end() ? BladeDifference{} : found->second;
-    if (differs(d)) turbine.identical_blades = false;
+    const BladeDifference d = difference_of(blades, k);
+    if (d != difference_of(blades, 0)) turbine.identical_blades = false;
     turbine.blades.push_back(build_beam("blade " + std::to_string(k + 1), blades.beam,
                                         d.mass_factor, d.stiffness_factor));
     turbine.roots.push_back(root_of(blades, definition.hub.radius, k));

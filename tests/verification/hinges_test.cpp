@@ -458,6 +458,15 @@ BOOST_AUTO_TEST_CASE(a_damper_that_is_out_breaks_the_symmetry) {
   const turbine::TurbineSystem one_out(model::build_turbine(input.turbine), PETSC_COMM_SELF);
   BOOST_TEST(one_out.symmetry().sectors == 1);
   BOOST_TEST(one_out.symmetry().broken_by == "the blades differ");
+  // The same change of all blades keeps it.
+  const io::Case all_changed = io::parse_case(
+      "test",
+      rotor(0.5, "[0, 0, 0]",
+            hinges + "  each: {1: {mass_factor: 2}, 2: {mass_factor: 2}, 3: {mass_factor: 2}}\n",
+            3),
+      {});
+  const turbine::TurbineSystem changed(model::build_turbine(all_changed.turbine), PETSC_COMM_SELF);
+  BOOST_TEST(changed.symmetry().sectors == 3);
 }
 
 BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_with_its_place) {

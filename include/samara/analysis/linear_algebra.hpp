@@ -84,7 +84,7 @@ class DirectSolver {
   /// Solves for all columns of `right`, which is overwritten by the solution.
   /// @throws ConvergenceError where the residual of a probing column is not small, even after some
   /// steps of iterative refinement. Of the solves by blocks with the same factors, number 1, 2, 4,
-  /// 8, ... are probed.
+  /// 8, ... are probed, and all that follow one that needed refinement.
   void solve(Eigen::MatrixXd& right);
 
   /// Of the factored matrices.
@@ -107,7 +107,8 @@ class DirectSolver {
   Mat matrix_ = nullptr;
   Eigen::MatrixXd solution_;  ///< kept: allocation of large arrays takes longer than filling
   Eigen::Index probe_ = 0;
-  unsigned solves_ = 0;  ///< by blocks, with the present factors
+  unsigned solves_ = 0;            ///< by blocks, with the present factors
+  bool needs_refinement_ = false;  ///< a solve with these factors has needed it
 };
 
 /// Real part of an eigenvector after a phase shift that makes its largest entry real.
