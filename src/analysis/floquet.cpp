@@ -604,22 +604,22 @@ class Analysis {
   }
 
   /// Whether mode m may count as resolved, at its harmonic or at another one that has a large part
-  /// of its energy, or is at rest.
-  bool may_be_resolved(std::size_t m) const {
+  /// of its energy, or is at rest, or the frequency that it is listed with may be that of another
+  /// harmonic.
+  bool needs_shape(std::size_t m) const {
     const Complex exponent = exponents_[m];
     if (set_.modes[m].residual > largest_residual) return false;
     if (is_zero(exponent)) return true;
-    if (is_too_fast(m)) return false;
-    if (exponent.imag() == 0.0 || is_drift(exponent, speed_)) return true;
-    const auto may_be_at = [&](int harmonic) {
-      return in_reach_at(exponent, harmonic) && spread_at(m, harmonic).modulus <= most_spread();
-    };
-    const auto row = static_cast<Index>(m);
-    for (Index i = 0; i < samples_; ++i)
-      if (set_.participation(row, i) > least_share_of_own &&
-          may_be_at(static_cast<int>(i - samples_ / 2)))
+    const bool is_slow = !is_too_fast(m);
+    if (exponent.imag() == 0.0 || is_drift(exponent, speed_)) return is_slow;
+    const int own = set_.modes[m].harmonic;
+    for (Index i = 0; i < samples_; ++i) {
+      const auto other = static_cast<int>(i - samples_ / 2);
+      if (other != own && set_.participation(static_cast<Index>(m), i) > least_share_of_own &&
+          in_reach_at(exponent, other))
         return true;
-    return may_be_at(set_.modes[m].harmonic);
+    }
+    return is_slow && in_reach_at(exponent, own) && spread_at(m, own).modulus <= most_spread();
   }
 
   /// Collects the shapes of the modes that may count as resolved; for the other modes only as many
@@ -628,7 +628,8 @@ class Analysis {
     std::vector<Index> trusted;
     std::vector<Index> others;
     for (std::size_t m = 0; m < set_.modes.size(); ++m)
-      (may_be_resolved(m) ? trusted : others).push_back(static_cast<Index>(m));
+      (needs_shape(m) ? trusted : others).push_back(static_cast<Index>(m));
+
     ranks_.share(0, trusted);  // limits may differ by round-off
     ranks_.share(0, others);
     const Index instants = (span_ + stride_ - 1) / stride_;
