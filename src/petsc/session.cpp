@@ -203,12 +203,16 @@ std::string Session::options() {
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 
-void wait_idly(MPI_Request& request) {
+int find_smallest(int value, MPI_Comm comm) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Iallreduce(MPI_IN_PLACE, &value, 1, MPI_INT, MPI_MIN, comm, &request);
   const auto start = std::chrono::steady_clock::now();
   for (int done = 0; done == 0;) {
     MPI_Test(&request, &done, MPI_STATUS_IGNORE);
     if (done == 0) rest_after(seconds_since(start));
   }
+  MPI_Wait(&request, MPI_STATUS_IGNORE);  // ended: returns at once
+  return value;
 }
 
 Stage::Stage(const char* name) {

@@ -138,10 +138,7 @@ struct Ranks {
     } catch (const std::exception& failure) {
       take(failure, ErrorClass::convergence);
     }
-    int failed = error ? rank : size;
-    MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Iallreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, comm, &request);
-    petsc::wait_idly(request);
+    const int failed = petsc::find_smallest(error ? rank : size, comm);
     if (failed == size) return;
     share(failed, message);
     share(failed, kind);

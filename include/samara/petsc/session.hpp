@@ -45,9 +45,9 @@ class Session {
   MPI_Comm agreement_ = MPI_COMM_NULL;  ///< separate from all communication of the analyses
 };
 
-/// Completes a request. After a moment the process sleeps between tests: MPI's busy waiting would
-/// take processor time and memory bandwidth from the ranks that work.
-void wait_idly(MPI_Request& request);
+/// The smallest value of all ranks. One that waits for others sleeps between tests, after a moment:
+/// MPI's busy waiting would take processor time and memory bandwidth from the ranks that work.
+int find_smallest(int value, MPI_Comm comm);
 
 /// A stage of the work in the table of PETSc's `-log_view`, for the length of a scope.
 class Stage {
