@@ -200,7 +200,7 @@ double distance(Complex exponent, const Spectrum& other, double zero) {
 /// contains, in the units by which the solver scales.
 std::vector<Complex> largest_inverses(const system::PeriodicSystem& system,
                                       const PeriodicSolution& solution, double sigma, int count) {
-  const auto [K, M] = tangents_on(system, solution, 0.0);
+  const Sparse M = tangents_on(system, solution, 0.0).M;
   const petsc::Handle<Vec> z = system.make_state();
   const petsc::Handle<Vec> z_dot = system.make_state();
   const petsc::Handle<Mat> shifted = system.make_jacobian();
