@@ -78,6 +78,27 @@ void require_constant(const system::PeriodicSystem& system, const PeriodicSoluti
   }
 }
 
+/// K + sigma M and M on the solution at t = 0.
+struct ShiftedTangents {
+  ShiftedTangents(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                  double sigma)
+      : shifted(system.make_jacobian()) {
+    const petsc::Handle<Vec> z = system.make_state();
+    const petsc::Handle<Vec> z_dot = system.make_state();
+    const petsc::Handle<Mat> mass = system.make_mass();
+    solution.evaluate(0.0, z.get(), z_dot.get());
+    system.tangents(0.0, z.get(), z_dot.get(), sigma, shifted.get(), mass.get());
+    M = to_sparse(mass.get());
+  }
+
+  petsc::Handle<Mat> shifted;
+  Eigen::SparseMatrix<double> M;
+};
+
+DirectSolver solver_of(const system::PeriodicSystem& system, double sigma) {
+  return {"modes_", [&system, sigma](Mat matrix) { return scale_by_role(system, matrix, sigma); }};
+}
+
 /// (sigma - A)^-1 of the states, in energy coordinates, and the shapes that it leads to.
 struct ShiftedInverse {
   Eigen::MatrixXd map;      ///< states x states
@@ -90,25 +111,19 @@ struct ShiftedInverse {
 /// lambda by 1 / (sigma - lambda). `rate`: of the energy coordinates.
 ShiftedInverse invert_at(const system::PeriodicSystem& system, const PeriodicSolution& solution,
                          const ConsistentSubspace& subspace, double sigma, double rate) {
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const petsc::Handle<Mat> jacobian = system.make_jacobian();
-  const petsc::Handle<Mat> mass = system.make_mass();
-  solution.evaluate(0.0, z.get(), z_dot.get());
-  system.tangents(0.0, z.get(), z_dot.get(), sigma, jacobian.get(), mass.get());
-  const Eigen::SparseMatrix<double> M = to_sparse(mass.get());
-  DirectSolver solver(
-      "modes_", [&system, sigma](Mat matrix) { return scale_by_role(system, matrix, sigma); });
+  const ShiftedTangents tangents(system, solution, sigma);
+  const Eigen::SparseMatrix<double>& M = tangents.M;
+  DirectSolver solver = solver_of(system, sigma);
   const Eigen::Index d = subspace.degrees_of_freedom();
   Eigen::MatrixXd states = subspace.basis(0.0);
   const EnergyCoordinates coordinates(system, states, d, rate);
   ShiftedInverse inverse;
   if (coordinates.without_inertia().cols() > 0)
     inverse.massless =
-        MasslessStates(to_sparse(jacobian.get()) - sigma * M, M, states, coordinates);
+        MasslessStates(to_sparse(tangents.shifted.get()) - sigma * M, M, states, coordinates);
   coordinates.divide(states);
   inverse.shapes = M * states;
-  solver.factor(jacobian.get());  // scales it
+  solver.factor(tangents.shifted.get());  // scales it
   solver.solve(inverse.shapes);
   Eigen::MatrixXd images(subspace.size(), subspace.size());
   images.topRows(d) = subspace.coordinates_of(inverse.shapes);
@@ -200,15 +215,9 @@ double distance(Complex exponent, const Spectrum& other, double zero) {
 /// contains, in the units by which the solver scales.
 std::vector<Complex> largest_inverses(const system::PeriodicSystem& system,
                                       const PeriodicSolution& solution, double sigma, int count) {
-  const Sparse M = tangents_on(system, solution, 0.0).M;
-  const petsc::Handle<Vec> z = system.make_state();
-  const petsc::Handle<Vec> z_dot = system.make_state();
-  const petsc::Handle<Mat> shifted = system.make_jacobian();
-  solution.evaluate(0.0, z.get(), z_dot.get());
-  system.tangents(0.0, z.get(), z_dot.get(), sigma, shifted.get(), nullptr);
-  DirectSolver solver(
-      "modes_", [&system, sigma](Mat matrix) { return scale_by_role(system, matrix, sigma); });
-  solver.factor(shifted.get());
+  const ShiftedTangents tangents(system, solution, sigma);
+  DirectSolver solver = solver_of(system, sigma);
+  solver.factor(tangents.shifted.get());
   std::vector<Eigen::Index> places;
   for (Eigen::Index i = 0; i < system.size(); ++i)
     if (system.differential()[static_cast<std::size_t>(i)]) places.push_back(i);
@@ -221,7 +230,7 @@ std::vector<Complex> largest_inverses(const system::PeriodicSystem& system,
       [&](const Eigen::VectorXd& x) {
         Eigen::VectorXd all = Eigen::VectorXd::Zero(system.size());
         all(places) = x.cwiseProduct(scale);
-        values = M * all;
+        values = tangents.M * all;
         solver.solve(values);
         return Eigen::VectorXd(values(places, 0).cwiseQuotient(scale));
       },

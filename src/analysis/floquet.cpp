@@ -603,15 +603,15 @@ class Analysis {
       set_.modes[static_cast<std::size_t>(m)].residual = residuals(m);
   }
 
-  /// Whether mode m may count as resolved, at its harmonic or at another one that has a large part
-  /// of its energy, or is at rest, or the frequency that it is listed with may be that of another
-  /// harmonic.
+  /// Whether the whole shape of mode m is needed: where the mode may count as resolved, where it
+  /// may be at rest, and where a harmonic within reach, other than the identified one, has so much
+  /// energy that it may be the one whose frequency is listed.
   bool needs_shape(std::size_t m) const {
     const Complex exponent = exponents_[m];
     if (set_.modes[m].residual > largest_residual) return false;
     if (is_zero(exponent)) return true;
-    const bool is_slow = !is_too_fast(m);
-    if (exponent.imag() == 0.0 || is_drift(exponent, speed_)) return is_slow;
+    const bool is_fast = is_too_fast(m);
+    if (exponent.imag() == 0.0 || is_drift(exponent, speed_)) return !is_fast;
     const int own = set_.modes[m].harmonic;
     for (Index i = 0; i < samples_; ++i) {
       const auto other = static_cast<int>(i - samples_ / 2);
@@ -619,17 +619,16 @@ class Analysis {
           in_reach_at(exponent, other))
         return true;
     }
-    return is_slow && in_reach_at(exponent, own) && spread_at(m, own).modulus <= most_spread();
+    return !is_fast && in_reach_at(exponent, own) && spread_at(m, own).modulus <= most_spread();
   }
 
-  /// Collects the shapes of the modes that may count as resolved; for the other modes only as many
+  /// Collects the whole shapes of the modes that need them; for the other modes only as many
   /// instants as their names need.
   void collect_shapes() {
     std::vector<Index> trusted;
     std::vector<Index> others;
     for (std::size_t m = 0; m < set_.modes.size(); ++m)
       (needs_shape(m) ? trusted : others).push_back(static_cast<Index>(m));
-
     ranks_.share(0, trusted);  // limits may differ by round-off
     ranks_.share(0, others);
     const Index instants = (span_ + stride_ - 1) / stride_;

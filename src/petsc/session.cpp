@@ -20,13 +20,14 @@ namespace {
 constexpr double patience = 5.0;
 /// Time during which a waiting rank polls without a pause [s].
 constexpr double spinning = 1e-3;
+/// Length of a pause between two tests after that time.
 constexpr std::chrono::microseconds rest{200};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Sleeps for a moment if a rank has waited for longer than another one.
+/// A pause, if the rank has waited longer than it polls without one. `waited` [s].
 void rest_after(double waited) {
   if (waited > spinning) std::this_thread::sleep_for(rest);
 }
