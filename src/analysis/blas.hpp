@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <petscsys.h>
+
 #include <petscblaslapack.h>
 
 namespace samara::analysis::blas {
@@ -60,6 +62,19 @@ inline void multiply(Integer m, Integer n, Integer k, Complex a_factor, const Co
                      Integer lda, const Complex* b, Integer ldb, Complex c_factor, Complex* c,
                      Integer ldc) {
   zgemm_("N", "N", &m, &n, &k, &a_factor, a, &lda, b, &ldb, &c_factor, c, &ldc);
+}
+
+/// C = A^T B (`how` 'T') or A^H B ('C'); A: k x m, B: k x n.
+inline void multiply_turned(char how, Integer m, Integer n, Integer k, const Complex* a,
+                            Integer lda, const Complex* b, Integer ldb, Complex* c, Integer ldc) {
+  count_operations<Complex>(1.0 * m * n * k);
+  const Complex one = 1.0;
+  const Complex zero = 0.0;
+  const Integer step = 1;
+  if (n == 1)
+    zgemv_(&how, &k, &m, &one, a, &lda, b, &step, &zero, c, &step);
+  else
+    zgemm_(&how, "N", &m, &n, &k, &one, a, &lda, b, &ldb, &zero, c, &ldc);
 }
 
 // Products with one column, and solves for one, do not pay for the copies that those with many

@@ -68,7 +68,7 @@ ComplexSolver::ComplexSolver(Eigen::Index size, Map matrix, Map preconditioner, 
   KSP solver = solver_.get();
   petsc::check(KSPSetOptionsPrefix(solver, prefix.c_str()));
   petsc::check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));
-  petsc::check(KSPSetType(solver, KSPGMRES));
+  petsc::check(KSPSetType(solver, KSPFGMRES));
   petsc::check(KSPGMRESSetRestart(solver, restart));
   petsc::check(KSPSetPCSide(solver, PC_RIGHT));
   petsc::check(KSPSetTolerances(solver, tolerance, 0.0, PETSC_DEFAULT, most_iterations));

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "block_factors.hpp"
 #include "dense_factors.hpp"
+#include "harmonic_chains.hpp"
 #include "harmonic_tangents.hpp"
 
 namespace samara::analysis {
@@ -57,60 +57,38 @@ class HarmonicPreconditioner {
     Index count() const { return static_cast<Index>(interior.size()); }
   };
 
-  /// Node blocks of the interior that have a harmonic.
-  struct Chains {
-    std::vector<Index> blocks;    ///< numbers in the interior
-    std::vector<Index> local;     ///< number of each block of the interior among them; -1: none
-    std::vector<PetscInt> begin;  ///< block pattern
-    std::vector<PetscInt> columns;
-    std::vector<Index> block_of;  ///< block of each inner place; -1: absent
-    std::vector<Index> coupled;   ///< blocks that rows of the border refer to
-  };
-
   void find_border();
   void list_places();
   bool is_real() const { return shift_.imag() == 0.0; }
-  /// Harmonics k of the chains: for a real shift those of -k are conjugates.
-  int first_harmonic() const { return is_real() ? 0 : -tangents_.harmonics(); }
-  BlockFactors<Complex>& factors_of(int harmonic);
-  void find_chains(int remainder);
-  const Chains& chains_of(int harmonic) const;
-  bool factor_harmonic(int harmonic);
   void find_present();
   void write_block(const Place& place, Eigen::Ref<Eigen::MatrixXcd> block) const;
   void write_border();
   void add_to_complement(Index border, Index column,
                          const Eigen::Ref<const Eigen::VectorXcd>& values);
-  Index row_in(const Chains& chains, Index interior) const;
   /// A coefficient of an unknown of the border.
   struct BorderColumn {
     Index border;
     Index number;
   };
   void eliminate_chains();
-  void subtract_rows(int k, const std::vector<BorderColumn>& columns,
-                     const Eigen::MatrixXcd& solved);
-  void solve_interior(Eigen::MatrixXcd& coefficients, bool only_coupled);
+  void subtract_rows(const HarmonicChains::Columns& solver, int k,
+                     const std::vector<BorderColumn>& columns, const Eigen::MatrixXcd& solved);
 
   const HarmonicTangents& tangents_;
   Index width_;
-  Index block_;                            ///< unknowns of a node
-  std::vector<Index> number_;              ///< of each unknown, in the border or between
-  std::vector<PetscInt> border_;           ///< unknowns
-  std::vector<PetscInt> interior_;         ///< unknowns, whole blocks in the order of the system
-  std::vector<Chains> chains_;             ///< for the remainders of the harmonics by the sectors
-  std::vector<int> remainders_;            ///< of the unknowns' harmonics, for which the chains are
-  std::vector<Place> inner_;               ///< interior rows and columns
-  std::vector<Couplings> rows_of_border_;  ///< interior columns, for each border unknown
+  std::vector<Index> number_;                 ///< of each unknown, in the border or between
+  std::vector<PetscInt> border_;              ///< unknowns
+  std::vector<PetscInt> interior_;            ///< unknowns, whole blocks in the order of the system
+  HarmonicChains chains_;                     ///< of the interior
+  std::vector<Couplings> rows_of_border_;     ///< interior columns, for each border unknown
   std::vector<Couplings> columns_of_border_;  ///< interior rows
   std::vector<Place> corner_;                 ///< border rows and columns
   const Eigen::VectorXd* row_factors_ = nullptr;
   const Eigen::VectorXd* column_factors_ = nullptr;
   Complex shift_;
-  std::vector<BlockFactors<Complex>> factors_;  ///< of each harmonic from first_harmonic()
-  std::vector<Index> present_;                  ///< coefficients that the border's unknowns have
-  std::vector<Index> position_;                 ///< of all coefficients among these; -1: absent
-  Eigen::MatrixXcd schur_;                      ///< complement of the border
+  std::vector<Index> present_;   ///< coefficients that the border's unknowns have
+  std::vector<Index> position_;  ///< of all coefficients among these; -1: absent
+  Eigen::MatrixXcd schur_;       ///< complement of the border
   DenseFactors<Complex> complement_factors_;
 };
 

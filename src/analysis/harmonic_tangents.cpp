@@ -6,13 +6,13 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
-#include <span>
 #include <string>
 
 #include "samara/analysis/linear_algebra.hpp"
 #include "samara/base/error.hpp"
 
 #include "matrix_entries.hpp"
+#include "sample_products.hpp"
 
 namespace samara::analysis {
 namespace {
@@ -21,26 +21,6 @@ constexpr int samples_at_once = 8;
 /// Difference of tangents that a rotation by a sector maps to each other, relative to the largest
 /// entry of the row.
 constexpr double same_tangent = 1e-6;
-
-/// Adds the products of entries of a row, at neighbouring samples, with vectors that are `distance`
-/// apart in memory. `sampled`: of a place, `stride` numbers after that of the one before.
-template <int samples, int vectors>
-void add_row(const double* sampled, Eigen::Index stride, std::span<const PetscInt> numbers,
-             const PetscInt* columns, const double* values, Eigen::Index all_samples,
-             Eigen::Index distance, double* sums) {
-  using Block = Eigen::Array<double, samples, 1>;
-  std::array<Block, vectors> total;
-  total.fill(Block::Zero());
-  for (std::size_t e = 0; e < numbers.size(); ++e) {
-    const Block own = Eigen::Map<const Block>(sampled + numbers[e] * stride);
-    const double* of_column = values + columns[e] * all_samples;
-    for (std::size_t v = 0; v < vectors; ++v)
-      total[v] +=
-          own * Eigen::Map<const Block>(of_column + static_cast<Eigen::Index>(v) * distance);
-  }
-  for (std::size_t v = 0; v < vectors; ++v)
-    Eigen::Map<Block>(sums + static_cast<Eigen::Index>(v) * distance) += total[v];
-}
 
 }  // namespace
 
@@ -107,7 +87,7 @@ void HarmonicTangents::make_map(TangentPattern& whole) {
     pattern_.resize(size_, size_);
     pattern_.setFromTriplets(places.begin(), places.end());
   }
-  sampled_.resize(2 * Eigen::Index{sample_count(system_, harmonics_)}, pattern_.nonZeros());
+  samples_ = sample_count(system_, harmonics_);
   set_instants(0.0);
   for (PetscInt i = 0; i < static_cast<PetscInt>(size_); ++i)
     for (PetscInt e = pattern_.outerIndexPtr()[i]; e < pattern_.outerIndexPtr()[i + 1]; ++e)
@@ -164,6 +144,8 @@ bool HarmonicTangents::holds(PetscInt row, PetscInt unknown) const {
 
 void HarmonicTangents::sample(const PeriodicSolution& solution, double offset) {
   if (offset != offset_) set_instants(offset);
+  for (Samples& part : kept_) part = {};
+  sampled_.resize(2 * Eigen::Index{samples()}, pattern_.nonZeros());
   const auto take = [&](int turns) {
     Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(4, size_);
     const auto work = [&] { sample_all(solution, turns, likeness); };
@@ -181,12 +163,31 @@ void HarmonicTangents::sample(const PeriodicSolution& solution, double offset) {
     deferred_.clear();
     take(1);
   }
+  keep_samples();
   list_entries();
+  ++samplings_;
+}
+
+/// Those of entries that are not zero throughout, in the order of their use.
+void HarmonicTangents::keep_samples() {
+  const Eigen::Index count = samples();
+  for (const std::size_t part : {0, 1}) {
+    const auto all = sampled_.middleRows(static_cast<Eigen::Index>(part) * count, count);
+    Samples& kept = kept_[part];
+    kept.number.assign(places_.size(), -1);
+    PetscInt next = 0;
+    for (std::size_t i = 0; i < kept.number.size(); ++i)
+      if (!all.col(static_cast<Eigen::Index>(i)).isZero(0.0)) kept.number[i] = next++;
+    kept.values.resize(count, next);
+    for (std::size_t i = 0; i < kept.number.size(); ++i)
+      if (kept.number[i] >= 0)
+        kept.values.col(kept.number[i]) = all.col(static_cast<Eigen::Index>(i));
+  }
+  sampled_.resize(0, 0);
 }
 
 /// From the samples: the entries that are not zero, the means, and the series of the border.
 void HarmonicTangents::list_entries() {
-  const Eigen::Index samples = values_of_.rows();
   for (EntriesOfBoth* both : {&all_, &of_border_}) both->fill({{0}, {}, {}});
   interior_.clear();
   std::vector<Place> of_border;
@@ -194,12 +195,10 @@ void HarmonicTangents::list_entries() {
     const bool is_of_border = is_border(place.row) || is_border(place.column);
     bool has_values = false;
     for (const std::size_t part : {0, 1}) {
-      const bool is_zero = sampled_.col(place.number)
-                               .segment(static_cast<Eigen::Index>(part) * samples, samples)
-                               .isZero(0.0);
-      has_values = has_values || !is_zero;
-      all_[part].add(place, !is_zero);
-      of_border_[part].add(place, !is_zero && is_of_border);
+      const PetscInt number = kept_[part].number[static_cast<std::size_t>(place.number)];
+      has_values = has_values || number >= 0;
+      all_[part].add(place, number);
+      of_border_[part].add(place, is_of_border ? number : -1);
     }
     if (is_of_border && block_size_ > 1)
       of_border.push_back(place);
@@ -209,9 +208,11 @@ void HarmonicTangents::list_entries() {
   for (EntriesOfBoth* both : {&all_, &of_border_})
     for (Entries& entries : *both)
       entries.begin.resize(static_cast<std::size_t>(size_) + 1, entries.count());
-  means_.resize(2, sampled_.cols());
-  means_.row(0) = sampled_.topRows(samples).colwise().mean();
-  means_.row(1) = sampled_.bottomRows(samples).colwise().mean();
+  means_.resize(2, static_cast<Eigen::Index>(places_.size()));
+  for (const Place& place : places_)
+    for (const std::size_t part : {0, 1})
+      means_(static_cast<Eigen::Index>(part), place.number) =
+          kept_[part].has(place) ? kept_[part].of(place).mean() : 0.0;
   series_of_.assign(places_.size(), -1);
   series_.resize(2 * width_ - 1, 2 * static_cast<Eigen::Index>(of_border.size()));
   Eigen::Index next = 0;
@@ -224,17 +225,15 @@ void HarmonicTangents::list_entries() {
 
 /// Coefficients of exp(i m Omega t), m = -2 H ... 2 H, of K and of M at a place.
 HarmonicTangents::Series HarmonicTangents::find_series(const Place& place) const {
-  const Eigen::Index samples = values_of_.rows();
-  const auto sampled = sampled_.col(place.number);
   Series series = Series::Zero(2 * width_ - 1, 2);
-  for (const Eigen::Index part : {Eigen::Index{0}, Eigen::Index{1}}) {
-    const auto values = sampled.segment(part * samples, samples);
-    if (values.isZero(0.0)) continue;
-    const Eigen::VectorXd coefficients = to_series_ * values;
-    auto upper = series.col(part).tail(width_);
+  for (const std::size_t part : {0, 1}) {
+    if (!kept_[part].has(place)) continue;
+    const Eigen::VectorXd coefficients = to_series_ * kept_[part].of(place);
+    auto column = series.col(static_cast<Eigen::Index>(part));
+    auto upper = column.tail(width_);
     upper.real() = coefficients.head(width_);
     upper.imag() = coefficients.tail(width_);
-    series.col(part).head(width_) = upper.reverse().conjugate().eval();
+    column.head(width_) = upper.reverse().conjugate().eval();
   }
   return series;
 }
@@ -476,29 +475,16 @@ void HarmonicTangents::multiply(const double* x, double* y) const {
 void HarmonicTangents::add_products(const EntriesOfBoth& both, int part,
                                     const Eigen::MatrixXd& values, Eigen::MatrixXd& sums) const {
   const Entries& entries = both[static_cast<std::size_t>(part)];
+  const Samples& kept = kept_[static_cast<std::size_t>(part)];
   const Eigen::Index samples = values_of_.rows();
   const Eigen::Index vectors = values.cols() / size_;
   const Eigen::Index distance = size_ * samples;
-  const auto add = [&]<int rows, int together>(Eigen::Index row, Eigen::Index sample,
-                                               Eigen::Index vector) {
+  for (Eigen::Index row = 0; row < size_; ++row) {
     const auto first = static_cast<std::size_t>(entries.begin[static_cast<std::size_t>(row)]);
     const auto last = static_cast<std::size_t>(entries.begin[static_cast<std::size_t>(row) + 1]);
-    const Eigen::Index at = vector * distance + sample;
-    add_row<rows, together>(sampled_.data() + part * samples + sample, sampled_.rows(),
-                            std::span(entries.numbers).subspan(first, last - first),
-                            entries.columns.data() + first, values.data() + at, samples, distance,
-                            sums.data() + at + row * samples);
-  };
-  const auto add_samples = [&]<int together>(Eigen::Index row, Eigen::Index vector) {
-    Eigen::Index sample = 0;
-    for (; sample + 8 <= samples; sample += 8) add.operator()<8, together>(row, sample, vector);
-    for (; sample + 2 <= samples; sample += 2) add.operator()<2, together>(row, sample, vector);
-    if (sample < samples) add.operator()<1, together>(row, sample, vector);
-  };
-  for (Eigen::Index row = 0; row < size_; ++row) {
-    Eigen::Index vector = 0;
-    for (; vector + 2 <= vectors; vector += 2) add_samples.operator()<2>(row, vector);
-    if (vector < vectors) add_samples.operator()<1>(row, vector);
+    const SampledRow own{kept.values.data(), entries.numbers.data() + first,
+                         entries.columns.data() + first, last - first, samples};
+    analysis::add_products(own, values.data(), vectors, distance, sums.data() + row * samples);
   }
   const auto count = static_cast<double>(entries.count()) + static_cast<double>(size_ * width_);
   PetscLogFlops(2.0 * static_cast<double>(samples * vectors) * count);
@@ -570,14 +556,14 @@ double HarmonicTangents::period() const { return 2.0 * std::numbers::pi / rate()
 
 void HarmonicTangents::scale(double loads, double rate, Eigen::VectorXd& rows,
                              Eigen::VectorXd& columns) const {
-  const Eigen::Index samples = values_of_.rows();
   // Entries of all blades, from those of the first one.
   std::vector<Eigen::Triplet<double>> entries;
   const std::vector<PetscInt>& source = system_.symmetry().source;
   for (const Place& place : places_) {
-    const auto sampled = sampled_.col(place.number);
-    double entry = sampled.head(samples).lpNorm<Eigen::Infinity>() +
-                   rate * sampled.tail(samples).lpNorm<Eigen::Infinity>();
+    double entry = 0.0;
+    for (const std::size_t part : {0, 1})
+      if (kept_[part].has(place))
+        entry += (part == 0 ? 1.0 : rate) * kept_[part].of(place).lpNorm<Eigen::Infinity>();
     PetscInt row = sector_.kept[static_cast<std::size_t>(place.row)];
     PetscInt column = sector_.kept[static_cast<std::size_t>(place.column)];
     if (sector_.sectors > 1 && !sector_.is_moved(place.row) && sector_.is_moved(place.column))
@@ -640,7 +626,16 @@ void HarmonicTangents::fill(Mat matrix) const {
     to_block.col(k) = Eigen::Map<const Eigen::VectorXd>(by_value.data(), by_value.size());
     to_block.col(samples + k) = Eigen::Map<const Eigen::VectorXd>(by_rate.data(), by_rate.size());
   }
-  const Eigen::MatrixXd blocks = analysis::multiply(to_block, sampled_);
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(to_block.rows(), pattern_.nonZeros());
+  for (const std::size_t part : {0, 1}) {
+    const Eigen::MatrixXd of_part =
+        to_block.middleCols(static_cast<Eigen::Index>(part) * samples, samples);
+    const Eigen::MatrixXd products = analysis::multiply(of_part, kept_[part].values);
+    for (const Place& place : places_)
+      if (const PetscInt number = kept_[part].number[static_cast<std::size_t>(place.number)];
+          number >= 0)
+        blocks.col(place.number) += products.col(number);
+  }
   PetscScalar* values = nullptr;
   petsc::check(MatSeqAIJGetArrayWrite(matrix, &values));
   PetscScalar* next = values;  // in the order of make_matrix

@@ -49,6 +49,9 @@ class HarmonicTangents {
   /// instants from the start of the period, in distances between them.
   void sample(const PeriodicSolution& solution, double offset = 0.0);
 
+  /// How often it has sampled.
+  int samplings() const { return samplings_; }
+
   /// The row of a follower that has only its own unknown in the map, with the factor 1. (In the
   /// system it has others.)
   struct Deferred {
@@ -130,10 +133,11 @@ class HarmonicTangents {
   double period() const;
   void make_map(TangentPattern& whole);
   void set_instants(double offset);
-  int samples() const { return static_cast<int>(sampled_.rows() / 2); }
+  int samples() const { return samples_; }
   double instant(int sample) const { return period() * (sample + offset_) / samples(); }
   void mark_border(const std::vector<char>& blocks);
   void find_followers();
+  void keep_samples();
   void list_entries();
   using Series = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 2>;
   Series find_series(const Place& place) const;
@@ -141,17 +145,29 @@ class HarmonicTangents {
   struct Entries {
     std::vector<PetscInt> begin;  ///< the first one of each row, and their number
     std::vector<PetscInt> columns;
-    std::vector<PetscInt> numbers;  ///< in the pattern
+    std::vector<PetscInt> numbers;  ///< among the samples that are kept
     PetscInt count() const { return static_cast<PetscInt>(columns.size()); }
-    /// The places come by row. Rows without entries have places as well.
-    void add(const Place& place, bool has_values) {
+    /// The places come by row. Rows without entries have places as well. `sampled`: the number, or
+    /// -1 where there are no values.
+    void add(const Place& place, PetscInt sampled) {
       begin.resize(static_cast<std::size_t>(place.row) + 1, count());
-      if (!has_values) return;
+      if (sampled < 0) return;
       columns.push_back(place.column);
-      numbers.push_back(place.number);
+      numbers.push_back(sampled);
     }
   };
   using EntriesOfBoth = std::array<Entries, 2>;  ///< of K and of M
+  /// The samples of a tangent, without entries that are zero throughout: a product reads them one
+  /// after the other.
+  struct Samples {
+    Eigen::MatrixXd values;        ///< samples x entries
+    std::vector<PetscInt> number;  ///< of each place, among these entries; -1: zero
+    bool has(const Place& place) const { return entry(place) >= 0; }
+    auto of(const Place& place) const { return values.col(entry(place)); }
+    PetscInt entry(const Place& place) const {
+      return number[static_cast<std::size_t>(place.number)];
+    }
+  };
   void add_products(const EntriesOfBoth& both, int part, const Eigen::MatrixXd& values,
                     Eigen::MatrixXd& sums) const;
   void project(const Eigen::MatrixXd& values, Eigen::MatrixXd& y) const;
@@ -188,6 +204,8 @@ class HarmonicTangents {
   Coordinates held_;  ///< with numbers of the map
   int harmonics_;
   int width_;
+  int samples_ = 0;  ///< instants
+  int samplings_ = 0;
   double offset_ = 0.0;  ///< of the instants, in distances between them
   Eigen::Index size_ = 0;
   PetscInt block_size_ = 1;
@@ -205,7 +223,9 @@ class HarmonicTangents {
   /// (2 width) x samples: weights of the real, then of the imaginary parts of the complex Fourier
   /// coefficients 0 ... 2 H.
   Eigen::MatrixXd to_series_;
-  Eigen::MatrixXd sampled_;  ///< 2 samples x places: K, then M; rows of all blades summed
+  /// 2 samples x places: K, then M; rows of all blades summed. Empty but while it samples.
+  Eigen::MatrixXd sampled_;
+  std::array<Samples, 2> kept_;  ///< of K and of M
   EntriesOfBoth all_;
   EntriesOfBoth of_border_;
   std::vector<Place> interior_;  ///< places of others that are not zero

@@ -10,6 +10,7 @@
 
 #include "samara/analysis/harmonic_energy.hpp"
 #include "samara/analysis/identification.hpp"
+#include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/mode_error.hpp"
 #include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
@@ -956,7 +957,7 @@ class Analysis {
         waves(k + harmonics, i) =
             std::polar(1.0, 2.0 * std::numbers::pi * static_cast<double>(k * i % samples_) /
                                 static_cast<double>(samples_));
-    return series.transpose() * waves;
+    return multiply_transpose(series, waves);
   }
 
   static std::vector<Candidate*> pointers_to(std::vector<Candidate>& candidates) {

@@ -16,7 +16,7 @@ using Matrix = Eigen::MatrixXcd;
 /// Distance of the shift from the exponents, and largest one at which factors are used again,
 /// relative to the rotor speed.
 constexpr double beside = 0.02;
-constexpr double largest_distance = 0.5;
+constexpr double largest_distance = 0.1;
 
 void take_shift(HillPencil& pencil, Complex exponent) {
   const double speed = pencil.speed();

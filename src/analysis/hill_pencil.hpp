@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "samara/analysis/linear_algebra.hpp"
 #include "samara/analysis/periodic_solution.hpp"
 #include "samara/analysis/ranks.hpp"
 #include "samara/petsc/handle.hpp"
@@ -70,9 +71,8 @@ class HillPencil {
   /// Null: the mesh is not distributed.
   const MeshPartition* mesh() const { return tangents_.partition(); }
   /// A^H B.
-  template <class A, class B>
-  Matrix product(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) const {
-    Matrix product = a.adjoint() * b;
+  Matrix product(Input a, Input b) const {
+    Matrix product = multiply_adjoint(a, b);
     ranks_.sum(product);
     return product;
   }

@@ -19,6 +19,8 @@ namespace {
 using Complex = std::complex<double>;
 using Index = Eigen::Index;
 
+using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
 /// Modes whose loads are found together.
 constexpr std::size_t modes_at_once = 8;
 
@@ -39,8 +41,7 @@ class Piece {
   const system::PeriodicSystem& system() const { return system_; }
 
   /// Factors of the rows; zero in those that another rank counts. `rate`: of the motion [rad/s].
-  Eigen::VectorXd row_factors(double rate, const Eigen::SparseMatrix<double>& K,
-                              const Eigen::SparseMatrix<double>& M) const {
+  Eigen::VectorXd row_factors(double rate, const Rows& K, const Rows& M) const {
     const Eigen::SparseMatrix<double> sizes = K.cwiseAbs() + rate * M.cwiseAbs();
     const Equilibration scaling =
         scaling_by_role(system_, sizes, rate, 0.0, mesh_ != nullptr ? &mesh_->ranks() : nullptr);
@@ -63,9 +64,8 @@ class Piece {
     if (mesh_ == nullptr) {
       Eigen::MatrixXcd values(system_.size(), columns * count);
       for (Index m = 0; m < count; ++m)
-        values.middleCols(m * columns, columns) =
-            pairs[static_cast<std::size_t>(m)]->series.transpose() *
-            waves[static_cast<std::size_t>(m)];
+        values.middleCols(m * columns, columns) = multiply_transpose(
+            pairs[static_cast<std::size_t>(m)]->series, waves[static_cast<std::size_t>(m)]);
       return values;
     }
     // Each blade has the series of the first one, its harmonics turned.
@@ -76,7 +76,7 @@ class Piece {
       Eigen::MatrixXcd turned = waves[static_cast<std::size_t>(m)];
       for (Index turn = 0; turn < turns; ++turn) {
         counted.middleRows((m * turns + turn) * columns, columns) =
-            turned.transpose() * pairs[static_cast<std::size_t>(m)]->series;
+            multiply_transpose(turned, pairs[static_cast<std::size_t>(m)]->series);
         for (Index k = -harmonics; k <= harmonics; ++k)
           turned.row(k + harmonics) *=
               std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k % turns) /
@@ -142,6 +142,18 @@ class Piece {
   std::vector<std::vector<Image>> images_;  ///< for each number of turns
 };
 
+/// Real and imaginary parts are columns of their own.
+Eigen::MatrixXcd product(const Rows& matrix, const Eigen::MatrixXcd& vectors) {
+  Eigen::MatrixXd parts(vectors.rows(), 2 * vectors.cols());
+  parts << vectors.real(), vectors.imag();
+  Eigen::MatrixXd products;
+  multiply(matrix, parts, products);
+  Eigen::MatrixXcd result(products.rows(), vectors.cols());
+  result.real() = products.leftCols(vectors.cols());
+  result.imag() = products.rightCols(vectors.cols());
+  return result;
+}
+
 }  // namespace
 
 std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
@@ -176,13 +188,13 @@ std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
   };
   const auto add_instant = [&](int j) {
     const double t = system.period() * (j + 0.37) / instants;
-    Eigen::SparseMatrix<double> K;
-    Eigen::SparseMatrix<double> M;
+    Rows K;
+    Rows M;
     const auto evaluate = [&] {
       solution.evaluate(t, z.get(), z_dot.get());
       piece.system().tangents(t, z.get(), z_dot.get(), 0.0, jacobian.get(), mass.get());
-      K = to_sparse(jacobian.get());
-      M = to_sparse(mass.get());
+      K = to_sparse_rows(jacobian.get());
+      M = to_sparse_rows(mass.get());
     };
     if (mesh != nullptr)
       mesh->ranks().attempt(evaluate);
@@ -200,12 +212,12 @@ std::vector<double> find_hill_residuals(const system::PeriodicSystem& system,
       std::vector<Eigen::MatrixXcd> waves;
       for (const HillPair* pair : some) waves.push_back(waves_of(*pair, t));
       const Eigen::MatrixXcd both = piece.values_of(some, waves);
-      const auto values = both(Eigen::all, Eigen::seqN(0, count, 2));
-      const auto rates = both(Eigen::all, Eigen::seqN(1, count, 2));
+      const Eigen::MatrixXcd values = both(Eigen::all, Eigen::seqN(0, count, 2));
+      const Eigen::MatrixXcd rates = both(Eigen::all, Eigen::seqN(1, count, 2));
       Eigen::MatrixXcd loads(system.size(), 3 * count);  // residual, inertia, that at the speed
-      loads.middleCols(count, count) = M * Eigen::MatrixXcd(rates);
-      loads.leftCols(count) = loads.middleCols(count, count) + K * Eigen::MatrixXcd(values);
-      loads.rightCols(count) = speed * (M * Eigen::MatrixXcd(values));
+      loads.middleCols(count, count) = product(M, rates);
+      loads.leftCols(count) = loads.middleCols(count, count) + product(K, values);
+      loads.rightCols(count) = speed * product(M, values);
       piece.complete(loads);
       for (Index m = 0; m < loads.cols(); ++m)
         loads.col(m).array() *=

@@ -46,6 +46,8 @@ constexpr double real_part_of_shift = 0.3;
 /// eigenvalue is that of something else.
 constexpr double least_distance = 0.1;
 constexpr double largest_correction = 0.5;
+/// Imaginary part of a real exponent, relative to the exponent or to the rotor speed.
+constexpr double round_off = 1e-9;
 constexpr double no_exponent = std::numeric_limits<double>::infinity();
 
 /// Restarts of the eigensolver in which no further pair converges, after which it ends with those
@@ -311,10 +313,14 @@ HillRegion HillSearch::find_all(double frequency, int count) {
     }
     x += Complex(0.0, 1.0) * y;
     const Complex approximation = pencil_.exponent_of(x);
-    const Complex exponent =
+    Complex exponent =
         pencil_.harmonics() > 0
             ? approximation
             : exponent_at(shift, {value_re, value_im}, approximation).value_or(no_exponent);
+    // A real motion has a real exponent; as one with a conjugate it would count twice.
+    if (value_im == 0.0 &&
+        std::abs(exponent.imag()) < round_off * std::max(std::abs(exponent), pencil_.speed()))
+      exponent.imag(0.0);
     const double expected =
         frequency / std::abs((shift - exponent) * (std::conj(shift) - exponent));
     if (!(std::abs(expected - modulus) <= 0.5 * modulus)) {  // of an infinite exponent

@@ -462,6 +462,31 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return c;
 }
 
+namespace {
+
+Eigen::MatrixXcd multiply_turned(char how, const Eigen::Ref<const Eigen::MatrixXcd>& a,
+                                 const Eigen::Ref<const Eigen::MatrixXcd>& b) {
+  Eigen::MatrixXcd c = Eigen::MatrixXcd::Zero(a.cols(), b.cols());
+  if (c.size() == 0 || a.rows() == 0) return c;
+  const auto integer = [](Eigen::Index value) { return static_cast<blas::Integer>(value); };
+  blas::multiply_turned(how, integer(a.cols()), integer(b.cols()), integer(a.rows()), a.data(),
+                        integer(a.outerStride()), b.data(), integer(b.outerStride()), c.data(),
+                        integer(c.rows()));
+  return c;
+}
+
+}  // namespace
+
+Eigen::MatrixXcd multiply_adjoint(const Eigen::Ref<const Eigen::MatrixXcd>& a,
+                                  const Eigen::Ref<const Eigen::MatrixXcd>& b) {
+  return multiply_turned('C', a, b);
+}
+
+Eigen::MatrixXcd multiply_transpose(const Eigen::Ref<const Eigen::MatrixXcd>& a,
+                                    const Eigen::Ref<const Eigen::MatrixXcd>& b) {
+  return multiply_turned('T', a, b);
+}
+
 void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c, double c_factor) {
   PetscLogFlops(2.0 * static_cast<double>(a.nonZeros() * b.cols()));
@@ -501,24 +526,29 @@ Eigen::MatrixXd exponential(const Eigen::MatrixXd& matrix) {
   return result;
 }
 
-Eigen::SparseMatrix<double> to_sparse(Mat matrix) {
+Eigen::SparseMatrix<double, Eigen::RowMajor> to_sparse_rows(Mat matrix) {
   PetscInt rows = 0;
   PetscInt columns = 0;
   petsc::check(MatGetSize(matrix, &rows, &columns));
-  std::vector<Eigen::Triplet<double>> entries;
+  MatInfo info{};
+  petsc::check(MatGetInfo(matrix, MAT_LOCAL, &info));
+  Eigen::SparseMatrix<double, Eigen::RowMajor> sparse(rows, columns);
+  sparse.reserve(static_cast<Eigen::Index>(info.nz_used));
   for (PetscInt i = 0; i < rows; ++i) {
     PetscInt count = 0;
     const PetscInt* at = nullptr;
     const PetscScalar* values = nullptr;
     petsc::check(MatGetRow(matrix, i, &count, &at, &values));
+    sparse.startVec(i);
     for (PetscInt c = 0; c < count; ++c)
-      if (values[c] != 0.0) entries.emplace_back(i, at[c], values[c]);
+      if (values[c] != 0.0) sparse.insertBack(i, at[c]) = values[c];
     petsc::check(MatRestoreRow(matrix, i, &count, &at, &values));
   }
-  Eigen::SparseMatrix<double> sparse(rows, columns);
-  sparse.setFromTriplets(entries.begin(), entries.end());
+  sparse.finalize();
   return sparse;
 }
+
+Eigen::SparseMatrix<double> to_sparse(Mat matrix) { return to_sparse_rows(matrix); }
 
 namespace {
 

@@ -119,6 +119,12 @@ Eigen::MatrixXd multiply(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 void multiply(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b,
               Eigen::MatrixXd& c);
 
+/// A^H B and A^T B of complex matrices by BLAS.
+Eigen::MatrixXcd multiply_adjoint(const Eigen::Ref<const Eigen::MatrixXcd>& a,
+                                  const Eigen::Ref<const Eigen::MatrixXcd>& b);
+Eigen::MatrixXcd multiply_transpose(const Eigen::Ref<const Eigen::MatrixXcd>& a,
+                                    const Eigen::Ref<const Eigen::MatrixXcd>& b);
+
 /// C = A B + `c_factor` C for a sparse matrix by rows and many columns; faster than Eigen's
 /// product, which goes through A once for each column. `c` is resized where the factor is zero.
 void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen::MatrixXd& b,
@@ -127,7 +133,8 @@ void multiply(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a, const Eigen
 /// exp(A) by SLEPc.
 Eigen::MatrixXd exponential(const Eigen::MatrixXd& matrix);
 
-/// The rows of a PETSc matrix on one rank as an Eigen sparse matrix.
+/// The rows of a PETSc matrix on one rank as an Eigen sparse matrix, without entries of zero.
+Eigen::SparseMatrix<double, Eigen::RowMajor> to_sparse_rows(Mat matrix);
 Eigen::SparseMatrix<double> to_sparse(Mat matrix);
 
 /// Eigenvalues and right eigenvectors (columns, 2-norm 1) of a dense real matrix by SLEPc.

@@ -1,0 +1,73 @@
+#include "sample_products.hpp"
+
+#include <array>
+
+// The library is compiled for all processors of an architecture. These loops are compiled for
+// others as well, of which the loader chooses.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define SAMARA_FOR_EACH_PROCESSOR \
+  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#define SAMARA_INLINE inline __attribute__((always_inline))
+#else
+#define SAMARA_FOR_EACH_PROCESSOR
+#define SAMARA_INLINE inline
+#endif
+
+namespace samara::analysis {
+namespace {
+
+/// Of some neighbouring samples, with some vectors. The sums stay in registers.
+template <int together, int vectors>
+SAMARA_INLINE void add_samples(const SampledRow& row, const double* values, std::ptrdiff_t distance,
+                               double* sums) {
+  std::array<std::array<double, together>, vectors> total{};
+  for (std::size_t e = 0; e < row.count; ++e) {
+    const double* own = row.sampled + row.numbers[e] * row.samples;
+    const double* other = values + row.columns[e] * row.samples;
+    for (std::size_t v = 0; v < vectors; ++v, other += distance)
+      for (std::size_t i = 0; i < together; ++i) total[v][i] += own[i] * other[i];
+  }
+  for (std::size_t v = 0; v < vectors; ++v, sums += distance)
+    for (std::size_t i = 0; i < together; ++i) sums[i] += total[v][i];
+}
+
+template <int vectors>
+SAMARA_INLINE void add_all(SampledRow row, const double* values, std::ptrdiff_t distance,
+                           double* sums) {
+  std::ptrdiff_t left = row.samples;
+  const auto advance = [&](int together) {
+    row.sampled += together;
+    values += together;
+    sums += together;
+    left -= together;
+  };
+  for (; left >= 16; advance(16)) add_samples<16, vectors>(row, values, distance, sums);
+  for (; left >= 8; advance(8)) add_samples<8, vectors>(row, values, distance, sums);
+  for (; left >= 4; advance(4)) add_samples<4, vectors>(row, values, distance, sums);
+  for (; left >= 2; advance(2)) add_samples<2, vectors>(row, values, distance, sums);
+  for (; left >= 1; advance(1)) add_samples<1, vectors>(row, values, distance, sums);
+}
+
+SAMARA_FOR_EACH_PROCESSOR
+void add_one(const SampledRow& row, const double* values, std::ptrdiff_t distance, double* sums) {
+  add_all<1>(row, values, distance, sums);
+}
+
+SAMARA_FOR_EACH_PROCESSOR
+void add_two(const SampledRow& row, const double* values, std::ptrdiff_t distance, double* sums) {
+  add_all<2>(row, values, distance, sums);
+}
+
+}  // namespace
+
+void add_products(const SampledRow& row, const double* values, std::ptrdiff_t vectors,
+                  std::ptrdiff_t distance, double* sums) {
+  std::ptrdiff_t vector = 0;
+  for (; vector + 2 <= vectors; vector += 2)
+    add_two(row, values + vector * distance, distance, sums + vector * distance);
+  if (vector < vectors)
+    add_one(row, values + vector * distance, distance, sums + vector * distance);
+}
+
+}  // namespace samara::analysis
