@@ -10,9 +10,11 @@
 #include <utility>
 #include <vector>
 
+// The second one needs the first one.
+// clang-format off
 #include <petscsys.h>
-
 #include <petscblaslapack.h>
+// clang-format on
 
 namespace samara::analysis::blas {
 

@@ -148,15 +148,16 @@ void HarmonicChains::list_links() {
     const double inverse = 1.0 / entries_(0, local.diagonal);
     const auto add = [&](std::vector<Link>& links, Index n, Index other) {
       const Place& place = places_[static_cast<std::size_t>(n)];
-      links.push_back({other, inverse * entries_(0, n), inverse * entries_(1, n),
-                       !has_all(place.row) || !has_all(place.column)});
+      links.push_back({n, other, locals_.position(other), inverse * entries_(0, n),
+                       inverse * entries_(1, n), !has_all(place.row) || !has_all(place.column)});
     };
     for (const Index n : local.row) add(row_links_, n, column_of(n));
     for (const Index n : local.columns) add(column_links_, n, row_of(n));
-    locals_of_rows_.push_back(
-        {local.unknown, inverse, static_cast<std::ptrdiff_t>(row_links_.size())});
-    locals_of_columns_.push_back(
-        {local.unknown, inverse, static_cast<std::ptrdiff_t>(column_links_.size())});
+    const auto end_of = [](const std::vector<Link>& links) {
+      return static_cast<std::ptrdiff_t>(links.size());
+    };
+    locals_of_rows_.push_back({local.unknown, local.diagonal, inverse, end_of(row_links_)});
+    locals_of_columns_.push_back({local.unknown, local.diagonal, inverse, end_of(column_links_)});
   }
 }
 
@@ -190,19 +191,22 @@ void HarmonicChains::condense(int harmonic, Eigen::VectorXcd& values) const {
   const Index size = locals_.block();
   const Pattern& pattern = pattern_of(harmonic);
   const Complex rate = rate_of(harmonic);
-  std::vector<std::pair<Index, Complex>> row;  // place in a block, A_lc / A_ll
-  for (const LocalUnknowns::Local& local : locals_.all()) {
-    if (!pattern.has(local.diagonal)) continue;
-    const double inverse = 1.0 / entries_(0, local.diagonal);
+  std::vector<std::pair<Index, Complex>> row;  // place in a block, A_lc
+  auto row_link = row_links_.begin();
+  auto link = column_links_.begin();
+  for (std::size_t l = 0; l < locals_of_rows_.size(); ++l) {
+    const Links& local = locals_of_rows_[l];
     row.clear();
-    for (const Index n : local.row)
-      if (pattern.has(n))
-        row.emplace_back(locals_.position(column_of(n)) * size, inverse * entry(n, rate));
-    for (const Index n : local.columns) {
-      if (!pattern.has(n)) continue;
-      const Complex factor = entry(n, rate);
-      Complex* block = values.data() + pattern.block_of[static_cast<std::size_t>(n)] * size * size +
-                       locals_.position(row_of(n));
+    for (const auto end = row_links_.begin() + local.end; row_link != end; ++row_link)
+      if (pattern.has(row_link->place))
+        row.emplace_back(row_link->position * size, row_link->at(rate) / local.inverse);
+    const auto end = column_links_.begin() + locals_of_columns_[l].end;
+    if (!pattern.has(local.diagonal)) link = end;
+    for (; link != end; ++link) {
+      if (!pattern.has(link->place)) continue;
+      const Complex factor = link->at(rate);
+      Complex* block = values.data() + link->position +
+                       pattern.block_of[static_cast<std::size_t>(link->place)] * size * size;
       for (const auto& [place, value] : row) block[place] -= product(factor, value);
     }
   }
@@ -357,24 +361,32 @@ void HarmonicChains::Columns::list_transfers() {
       if (is_filled[block] != 0) condense_.push_back({own, number * size + left, 1.0});
       if (is_coupled[block] != 0) recover_.push_back({number * size + left, own, 1.0});
     }
-  for (const LocalUnknowns::Local& local : locals.all()) {
-    if (!pattern.has(local.diagonal)) continue;
+  auto column_link = all_.column_links_.begin();
+  for (const Links& local : all_.locals_of_columns_) {
+    const auto end = all_.column_links_.begin() + local.end;
+    const Index own = row_of(local.unknown);
+    if (!pattern.has(local.diagonal) || is_filled[static_cast<std::size_t>(own / all_.block_)] == 0)
+      column_link = end;
+    for (; column_link != end; ++column_link) {
+      if (!pattern.has(column_link->place)) continue;
+      const Index to = row_of(column_link->other) / all_.block_;
+      is_reached[static_cast<std::size_t>(to)] = 1;
+      condense_.push_back({own, to * size + column_link->position, -column_link->at(rate)});
+    }
+  }
+  auto row_link = all_.row_links_.begin();
+  for (const Links& local : all_.locals_of_rows_) {
+    const auto end = all_.row_links_.begin() + local.end;
     const Index own = row_of(local.unknown);
     const auto block = static_cast<std::size_t>(own / all_.block_);
-    const double inverse = 1.0 / all_.entries_(0, local.diagonal);
-    if (is_filled[block] != 0)
-      for (const Index n : local.columns)
-        if (pattern.has(n)) {
-          const Index to = row_of(all_.row_of(n)) / all_.block_;
-          is_reached[static_cast<std::size_t>(to)] = 1;
-          condense_.push_back(
-              {own, to * size + locals.position(all_.row_of(n)), -inverse * all_.entry(n, rate)});
-        }
-    if (is_coupled[block] == 0) continue;
-    if (is_filled[block] != 0) recover_local_.push_back({own, own, inverse - 1.0});
-    for (const Index n : local.row)
-      if (pattern.has(n))
-        recover_local_.push_back({row_of(all_.column_of(n)), own, -inverse * all_.entry(n, rate)});
+    if (!pattern.has(local.diagonal) || is_coupled[block] == 0) {
+      row_link = end;
+      continue;
+    }
+    if (is_filled[block] != 0) recover_local_.push_back({own, own, local.inverse - 1.0});
+    for (; row_link != end; ++row_link)
+      if (pattern.has(row_link->place))
+        recover_local_.push_back({row_of(row_link->other), own, -row_link->at(rate)});
   }
   for (std::size_t block = 0; block < is_reached.size(); ++block)
     if (is_reached[block] != 0) reached_.push_back(static_cast<Index>(block));

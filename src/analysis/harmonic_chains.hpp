@@ -99,15 +99,19 @@ class HarmonicChains {
   /// A local unknown, with its links.
   struct Links {
     Index unknown;
+    Index diagonal;      ///< its own place
     double inverse;      ///< of its own entry
     std::ptrdiff_t end;  ///< behind its last link
   };
   /// An entry of a local unknown's row or column, K and M divided by the unknown's own entry.
   struct Link {
+    Index place;
     Index other;
+    Index position;  ///< of the other in its block, without local unknowns
     double value;
     double rate;
     bool is_partial;  ///< one of both does not have all harmonics
+    Complex at(Complex s) const { return value + s * rate; }
   };
 
   Index row_of(Index place) const {
