@@ -382,6 +382,9 @@ PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* 
     if (context.preconditioner == nullptr) factor(snes, operators, matrix);
   } catch (const DomainError&) {
     context.error = std::current_exception();
+    // Those of the state before serve: the residual says whether the next one is better.
+    if (context.tangents->samplings() > 0) return 0;
+    PetscCall(SNESSetCheckJacobianDomainError(snes, PETSC_TRUE));
     return SNESSetJacobianDomainError(snes);
   } catch (...) {
     context.error = std::current_exception();

@@ -144,7 +144,6 @@ bool HarmonicTangents::holds(PetscInt row, PetscInt unknown) const {
 
 void HarmonicTangents::sample(const PeriodicSolution& solution, double offset) {
   if (offset != offset_) set_instants(offset);
-  for (Samples& part : kept_) part = {};
   sampled_.resize(2 * Eigen::Index{samples()}, pattern_.nonZeros());
   const auto take = [&](int turns) {
     Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(4, size_);

@@ -573,6 +573,8 @@ class Integration {
     petsc::check(TSSetPreStage(ts, before_stage));
     petsc::check(TSSetPostStep(ts, after_step));
     petsc::check(TSGetSNES(ts, &snes_));
+    // PETSc's optimized builds would go on with a matrix that is half written.
+    petsc::check(SNESSetCheckJacobianDomainError(snes_, PETSC_TRUE));
     petsc::check(SNESSetTolerances(snes_, 0.0, 0.0, 0.0, most_newton_steps, PETSC_MAX_INT));
     petsc::check(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
     SNESLineSearch search = nullptr;
