@@ -84,6 +84,12 @@ void ComplexSolver::solve(const Vector& right, Vector& x) {
   write(right, right_.get());
   const PetscErrorCode code = KSPSolve(solver_.get(), right_.get(), solution_.get());
   if (code != 0 && error_) std::rethrow_exception(error_);
+  if (code == PETSC_ERR_SUP) {
+    const char* prefix = nullptr;
+    petsc::check(KSPGetOptionsPrefix(solver_.get(), &prefix));
+    throw InputError("floquet: PETSc does not support these options of -" + std::string(prefix) +
+                     " together; hint: the solver is flexible GMRES, with a right preconditioner");
+  }
   petsc::check(code);
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   petsc::check(KSPGetConvergedReason(solver_.get(), &reason));

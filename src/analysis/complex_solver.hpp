@@ -13,8 +13,8 @@
 
 namespace samara::analysis {
 
-/// GMRES with a right preconditioner, on vectors of all real parts and all imaginary parts. Options
-/// of PETSc's KSP with a prefix.
+/// Flexible GMRES with a right preconditioner, on vectors of all real parts and all imaginary
+/// parts. Options of PETSc's KSP with a prefix.
 class ComplexSolver {
  public:
   using Vector = Eigen::VectorXcd;

@@ -365,7 +365,13 @@ PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* 
     const bool is_start =
         context.start != nullptr &&
         ranks.all((context.unscaled - *context.start).norm() <= same * context.start->norm());
-    if (!is_start) context.tangents->sample(context.balance->own_solution(h));
+    if (!is_start) {
+      try {
+        context.tangents->sample(context.balance->own_solution(h));
+      } catch (const DomainError&) {  // those before serve: the residual tells of the next state
+        context.error = std::current_exception();
+      }
+    }
     context.start = nullptr;
     if (context.preconditioner != nullptr) {
       if (!factors_serve(snes, context)) factor_harmonics(context);
@@ -380,12 +386,6 @@ PetscErrorCode form_jacobian(SNES snes, Vec x, Mat operators, Mat matrix, void* 
       petsc::check(MatAssemblyEnd(operators, MAT_FINAL_ASSEMBLY));
     }
     if (context.preconditioner == nullptr) factor(snes, operators, matrix);
-  } catch (const DomainError&) {
-    context.error = std::current_exception();
-    // Those of the state before serve: the residual says whether the next one is better.
-    if (context.tangents->samplings() > 0) return 0;
-    PetscCall(SNESSetCheckJacobianDomainError(snes, PETSC_TRUE));
-    return SNESSetJacobianDomainError(snes);
   } catch (...) {
     context.error = std::current_exception();
     return PETSC_ERR_USER;

@@ -155,12 +155,21 @@ void HarmonicTangents::sample(const PeriodicSolution& solution, double offset) {
     if (sector_.sectors > 1) find_followers();
     return likeness;
   };
-  if (!repeats_) {
-    take(1);
-  } else if (!defer(unlike_rows(take(sector_.sectors)))) {
-    repeats_ = false;
-    deferred_.clear();
-    take(1);
+  const std::vector<Deferred> deferred = deferred_;
+  const bool repeats = repeats_;
+  try {
+    if (!repeats_) {
+      take(1);
+    } else if (!defer(unlike_rows(take(sector_.sectors)))) {
+      repeats_ = false;
+      deferred_.clear();
+      take(1);
+    }
+  } catch (...) {  // the samples before remain
+    deferred_ = deferred;
+    repeats_ = repeats;
+    sampled_.resize(0, 0);
+    throw;
   }
   keep_samples();
   list_entries();
@@ -194,7 +203,7 @@ void HarmonicTangents::list_entries() {
     const bool is_of_border = is_border(place.row) || is_border(place.column);
     bool has_values = false;
     for (const std::size_t part : {0, 1}) {
-      const PetscInt number = kept_[part].number[static_cast<std::size_t>(place.number)];
+      const PetscInt number = kept_[part].entry(place);
       has_values = has_values || number >= 0;
       all_[part].add(place, number);
       of_border_[part].add(place, is_of_border ? number : -1);
@@ -629,11 +638,9 @@ void HarmonicTangents::fill(Mat matrix) const {
   for (const std::size_t part : {0, 1}) {
     const Eigen::MatrixXd of_part =
         to_block.middleCols(static_cast<Eigen::Index>(part) * samples, samples);
-    const Eigen::MatrixXd products = analysis::multiply(of_part, kept_[part].values);
     for (const Place& place : places_)
-      if (const PetscInt number = kept_[part].number[static_cast<std::size_t>(place.number)];
-          number >= 0)
-        blocks.col(place.number) += products.col(number);
+      if (kept_[part].has(place))
+        blocks.col(place.number).noalias() += of_part * kept_[part].of(place);
   }
   PetscScalar* values = nullptr;
   petsc::check(MatSeqAIJGetArrayWrite(matrix, &values));

@@ -44,9 +44,10 @@ class HarmonicTangents {
   HarmonicTangents(const MeshPartition& partition, const Coordinates& held, int harmonics,
                    bool may_defer);
 
-  /// Evaluates K and M along `solution`; collective. With `may_defer`, all blades are evaluated at
-  /// the instants of one sector where the solution repeats from blade to blade. `offset`: of the
-  /// instants from the start of the period, in distances between them.
+  /// Evaluates K and M along `solution`; collective. After an error, the samples before remain.
+  /// With `may_defer`, all blades are evaluated at the instants of one sector where the solution
+  /// repeats from blade to blade. `offset`: of the instants from the start of the period, in
+  /// distances between them.
   void sample(const PeriodicSolution& solution, double offset = 0.0);
 
   /// How often it has sampled.

@@ -1,8 +1,15 @@
 #include "local_unknowns.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace samara::analysis {
+namespace {
+
+/// Least factor of a local unknown, relative to the largest entry of its row of K.
+constexpr double least_pivot = 1e-6;
+
+}  // namespace
 
 bool LocalUnknowns::find(const std::vector<Place>& places, const std::vector<Index>& number,
                          Index size, Index block, const Eigen::MatrixXd& means) {
@@ -12,10 +19,17 @@ bool LocalUnknowns::find(const std::vector<Place>& places, const std::vector<Ind
   const auto column_of = [&](const Place& place) {
     return number[static_cast<std::size_t>(place.column)];
   };
+  std::vector<double> largest(static_cast<std::size_t>(size), 0.0);
+  for (const Place& place : places) {
+    double& of_row = largest[static_cast<std::size_t>(row_of(place))];
+    of_row = std::max(of_row, std::abs(means(0, place.number)));
+  }
   // Candidates by their own rows.
   std::vector<char> is_local(static_cast<std::size_t>(size), 0);
   for (const Place& place : places)
-    if (place.row == place.column && means(0, place.number) != 0.0 && means(1, place.number) == 0.0)
+    if (const auto row = static_cast<std::size_t>(row_of(place));
+        place.row == place.column && means(1, place.number) == 0.0 && largest[row] > 0.0 &&
+        std::abs(means(0, place.number)) >= least_pivot * largest[row])
       is_local[static_cast<std::size_t>(row_of(place))] = 1;
   const auto is_zero = [&](const Place& place) {
     return means(0, place.number) == 0.0 && means(1, place.number) == 0.0;
@@ -31,7 +45,7 @@ bool LocalUnknowns::find(const std::vector<Place>& places, const std::vector<Ind
     if (place.row != place.column && !is_zero(place) &&
         is_local[static_cast<std::size_t>(column_of(place))] != 0)
       is_local[static_cast<std::size_t>(row_of(place))] = 0;
-  Index least = size > 0 ? block : 0;
+  Index least = size > 0 ? block - 1 : 0;
   for (Index first = 0; first < size; first += block)
     least = std::min<Index>(
         least, std::count(is_local.begin() + first, is_local.begin() + first + block, 1));
