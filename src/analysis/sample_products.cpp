@@ -33,20 +33,31 @@ SAMARA_INLINE void add_samples(const SampledRow& row, const double* values, std:
 }
 
 template <int vectors>
-SAMARA_INLINE void add_all(SampledRow row, const double* values, std::ptrdiff_t distance,
+SAMARA_INLINE void add_all(const SampledRow& all, const double* values, std::ptrdiff_t distance,
                            double* sums) {
-  std::ptrdiff_t left = row.samples;
-  const auto advance = [&](int together) {
-    row.sampled += together;
-    values += together;
-    sums += together;
-    left -= together;
-  };
-  for (; left >= 16; advance(16)) add_samples<16, vectors>(row, values, distance, sums);
-  for (; left >= 8; advance(8)) add_samples<8, vectors>(row, values, distance, sums);
-  for (; left >= 4; advance(4)) add_samples<4, vectors>(row, values, distance, sums);
-  for (; left >= 2; advance(2)) add_samples<2, vectors>(row, values, distance, sums);
-  for (; left >= 1; advance(1)) add_samples<1, vectors>(row, values, distance, sums);
+  SampledRow row = all;
+  for (std::ptrdiff_t at = 0; at < all.samples;) {
+    const std::ptrdiff_t left = all.samples - at;
+    row.sampled = all.sampled + at;
+    const double* some = values + at;
+    double* to = sums + at;
+    if (left >= 16) {
+      add_samples<16, vectors>(row, some, distance, to);
+      at += 16;
+    } else if (left >= 8) {
+      add_samples<8, vectors>(row, some, distance, to);
+      at += 8;
+    } else if (left >= 4) {
+      add_samples<4, vectors>(row, some, distance, to);
+      at += 4;
+    } else if (left >= 2) {
+      add_samples<2, vectors>(row, some, distance, to);
+      at += 2;
+    } else {
+      add_samples<1, vectors>(row, some, distance, to);
+      at += 1;
+    }
+  }
 }
 
 SAMARA_FOR_EACH_PROCESSOR
