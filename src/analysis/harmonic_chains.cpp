@@ -1,6 +1,7 @@
 #include "harmonic_chains.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
@@ -126,12 +127,6 @@ const HarmonicChains::Pattern& HarmonicChains::pattern_of(int harmonic) const {
   return patterns_[static_cast<std::size_t>((harmonic % sectors + sectors) % sectors)];
 }
 
-bool HarmonicChains::has_all(PetscInt unknown) const {
-  for (int remainder = 0; remainder < tangents_.sectors(); ++remainder)
-    if (!tangents_.has(unknown, remainder)) return false;
-  return true;
-}
-
 /// Whether two unknowns have the harmonic of a row of coefficients.
 bool HarmonicChains::have_both(Index one, Index other, Index row) const {
   const int harmonic = static_cast<int>(row) - tangents_.harmonics();
@@ -140,9 +135,8 @@ bool HarmonicChains::have_both(Index one, Index other, Index row) const {
 }
 
 void HarmonicChains::list_links() {
-  locals_of_rows_.clear();
+  linked_.clear();
   row_links_.clear();
-  locals_of_columns_.clear();
   column_links_.clear();
   for (const LocalUnknowns::Local& local : locals_.all()) {
     const double inverse = 1.0 / entries_(0, local.diagonal);
@@ -153,11 +147,8 @@ void HarmonicChains::list_links() {
     };
     for (const Index n : local.row) add(row_links_, n, column_of(n));
     for (const Index n : local.columns) add(column_links_, n, row_of(n));
-    const auto end_of = [](const std::vector<Link>& links) {
-      return static_cast<std::ptrdiff_t>(links.size());
-    };
-    locals_of_rows_.push_back({local.unknown, local.diagonal, inverse, end_of(row_links_)});
-    locals_of_columns_.push_back({local.unknown, local.diagonal, inverse, end_of(column_links_)});
+    linked_.push_back({local.unknown, local.diagonal, inverse, std::ssize(row_links_),
+                       std::ssize(column_links_)});
   }
 }
 
@@ -194,13 +185,12 @@ void HarmonicChains::condense(int harmonic, Eigen::VectorXcd& values) const {
   std::vector<std::pair<Index, Complex>> row;  // place in a block, A_lc
   auto row_link = row_links_.begin();
   auto link = column_links_.begin();
-  for (std::size_t l = 0; l < locals_of_rows_.size(); ++l) {
-    const Links& local = locals_of_rows_[l];
+  for (const LinkedUnknown& local : linked_) {
     row.clear();
-    for (const auto end = row_links_.begin() + local.end; row_link != end; ++row_link)
+    for (const auto end = row_links_.begin() + local.row_end; row_link != end; ++row_link)
       if (pattern.has(row_link->place))
         row.emplace_back(row_link->position * size, row_link->at(rate) / local.inverse);
-    const auto end = column_links_.begin() + locals_of_columns_[l].end;
+    const auto end = column_links_.begin() + local.column_end;
     if (!pattern.has(local.diagonal)) link = end;
     for (; link != end; ++link) {
       if (!pattern.has(link->place)) continue;
@@ -227,10 +217,10 @@ void HarmonicChains::condense(Eigen::MatrixXcd& coefficients) const {
   Eigen::VectorXcd rate(tangents_.width());
   for (Index first = 0; first < coefficients.cols(); first += interior) {
     auto link = column_links_.begin();
-    for (const Links& local : locals_of_columns_) {
+    for (const LinkedUnknown& local : linked_) {
       const auto value = coefficients.col(first + local.unknown);
       rate = factors.cwiseProduct(value);
-      for (const auto end = column_links_.begin() + local.end; link != end; ++link) {
+      for (const auto end = column_links_.begin() + local.column_end; link != end; ++link) {
         auto other = coefficients.col(first + link->other);
         if (!link->is_partial)
           other -= link->value * value + link->rate * rate;
@@ -251,11 +241,11 @@ void HarmonicChains::recover(Eigen::MatrixXcd& coefficients) const {
   Eigen::VectorXcd of_rates(tangents_.width());
   for (Index first = 0; first < coefficients.cols(); first += interior) {
     auto link = row_links_.begin();
-    for (const Links& local : locals_of_rows_) {
+    for (const LinkedUnknown& local : linked_) {
       auto own = coefficients.col(first + local.unknown);
       values.setZero();
       of_rates.setZero();
-      for (const auto end = row_links_.begin() + local.end; link != end; ++link) {
+      for (const auto end = row_links_.begin() + local.row_end; link != end; ++link) {
         const auto other = coefficients.col(first + link->other);
         if (!link->is_partial) {
           values += link->value * other;
@@ -362,29 +352,27 @@ void HarmonicChains::Columns::list_transfers() {
       if (is_coupled[block] != 0) recover_.push_back({number * size + left, own, 1.0});
     }
   auto column_link = all_.column_links_.begin();
-  for (const Links& local : all_.locals_of_columns_) {
-    const auto end = all_.column_links_.begin() + local.end;
+  auto row_link = all_.row_links_.begin();
+  for (const LinkedUnknown& local : all_.linked_) {
+    const auto column_end = all_.column_links_.begin() + local.column_end;
+    const auto row_end = all_.row_links_.begin() + local.row_end;
     const Index own = row_of(local.unknown);
-    if (!pattern.has(local.diagonal) || is_filled[static_cast<std::size_t>(own / all_.block_)] == 0)
-      column_link = end;
-    for (; column_link != end; ++column_link) {
+    const auto block = static_cast<std::size_t>(own / all_.block_);
+    const bool is_present = pattern.has(local.diagonal);
+    const bool fills = is_present && is_filled[block] != 0;
+    if (!fills) column_link = column_end;
+    for (; column_link != column_end; ++column_link) {
       if (!pattern.has(column_link->place)) continue;
       const Index to = row_of(column_link->other) / all_.block_;
       is_reached[static_cast<std::size_t>(to)] = 1;
       condense_.push_back({own, to * size + column_link->position, -column_link->at(rate)});
     }
-  }
-  auto row_link = all_.row_links_.begin();
-  for (const Links& local : all_.locals_of_rows_) {
-    const auto end = all_.row_links_.begin() + local.end;
-    const Index own = row_of(local.unknown);
-    const auto block = static_cast<std::size_t>(own / all_.block_);
-    if (!pattern.has(local.diagonal) || is_coupled[block] == 0) {
-      row_link = end;
+    if (!is_present || is_coupled[block] == 0) {
+      row_link = row_end;
       continue;
     }
-    if (is_filled[block] != 0) recover_local_.push_back({own, own, local.inverse - 1.0});
-    for (; row_link != end; ++row_link)
+    if (fills) recover_local_.push_back({own, own, local.inverse - 1.0});
+    for (; row_link != row_end; ++row_link)
       if (pattern.has(row_link->place))
         recover_local_.push_back({row_of(row_link->other), own, -row_link->at(rate)});
   }

@@ -96,12 +96,13 @@ class HarmonicChains {
     std::vector<Index> coupled;   ///< blocks that rows of the border refer to
     bool has(Index place) const { return has_both[static_cast<std::size_t>(place)] != 0; }
   };
-  /// A local unknown, with its links.
-  struct Links {
+  /// A local unknown, with the ends of its links.
+  struct LinkedUnknown {
     Index unknown;
-    Index diagonal;      ///< its own place
-    double inverse;      ///< of its own entry
-    std::ptrdiff_t end;  ///< behind its last link
+    Index diagonal;  ///< its own place
+    double inverse;  ///< of its own entry
+    std::ptrdiff_t row_end;
+    std::ptrdiff_t column_end;
   };
   /// An entry of a local unknown's row or column, K and M divided by the unknown's own entry.
   struct Link {
@@ -126,7 +127,9 @@ class HarmonicChains {
   Complex entry(Index place, Complex rate) const {
     return entries_(0, place) + rate * entries_(1, place);
   }
-  bool has_all(PetscInt unknown) const;
+  bool has_all(PetscInt unknown) const {
+    return tangents_.sectors() == 1 || tangents_.sector().is_moved(unknown);
+  }
   bool have_both(Index one, Index other, Index row) const;
   BlockFactors<Complex>& factors_of(int harmonic) {
     return factors_[static_cast<std::size_t>(harmonic - first_harmonic())];
@@ -151,11 +154,10 @@ class HarmonicChains {
   std::vector<int> remainders_;    ///< of the unknowns' harmonics, for which the patterns are
   std::vector<Pattern> patterns_;  ///< for the remainders of the harmonics by the sectors
   Complex shift_;
-  Eigen::MatrixXd entries_;  ///< scaled means of K and of M at the places
-  std::vector<Links> locals_of_rows_;
-  std::vector<Link> row_links_;
-  std::vector<Links> locals_of_columns_;
-  std::vector<Link> column_links_;
+  Eigen::MatrixXd entries_;                     ///< scaled means of K and of M at the places
+  std::vector<LinkedUnknown> linked_;           ///< the local unknowns
+  std::vector<Link> row_links_;                 ///< entries of their rows
+  std::vector<Link> column_links_;              ///< of their columns
   std::vector<BlockFactors<Complex>> factors_;  ///< of each harmonic from first_harmonic()
 };
 

@@ -15,6 +15,7 @@ constexpr double largest_border = 0.5;
 constexpr double least_coupling = 1e-4;
 /// Columns of the border that are eliminated together.
 constexpr std::size_t columns_at_once = 32;
+
 /// Coefficients of exp(i k Omega t), k = -H ... H, from mean, cosines and sines by row.
 Eigen::MatrixXcd to_series(const Eigen::Ref<const Eigen::MatrixXd>& coefficients) {
   using namespace std::complex_literals;

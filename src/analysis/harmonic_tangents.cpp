@@ -417,7 +417,7 @@ std::vector<PetscInt> HarmonicTangents::unlike_rows(Eigen::MatrixXd likeness) co
 /// component of a velocity in axes of the rotor, which the axes of a sector before do not have.
 /// @returns false where a row is not that of a follower with a constant factor
 bool HarmonicTangents::defer(const std::vector<PetscInt>& rows) {
-  const Eigen::Index samples = values_of_.rows();
+  const Eigen::Index samples = this->samples();
   for (const PetscInt row : rows)
     if (std::ranges::none_of(deferred_, [row](const Deferred& one) { return one.number == row; }))
       deferred_.push_back({row, 0.0});
@@ -484,7 +484,7 @@ void HarmonicTangents::add_products(const EntriesOfBoth& both, int part,
                                     const Eigen::MatrixXd& values, Eigen::MatrixXd& sums) const {
   const Entries& entries = both[static_cast<std::size_t>(part)];
   const Samples& kept = kept_[static_cast<std::size_t>(part)];
-  const Eigen::Index samples = values_of_.rows();
+  const Eigen::Index samples = this->samples();
   const Eigen::Index vectors = values.cols() / size_;
   const Eigen::Index distance = size_ * samples;
   for (Eigen::Index row = 0; row < size_; ++row) {
@@ -506,7 +506,7 @@ void HarmonicTangents::project(const Eigen::MatrixXd& values, Eigen::MatrixXd& y
 /// Coefficients of the products of some entries with x and w.
 void HarmonicTangents::multiply(const EntriesOfBoth& entries, const Eigen::MatrixXd& x,
                                 const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), x.cols());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples(), x.cols());
   add_products(entries, 0, analysis::multiply(values_of_, x), sums);
   add_products(entries, 1, analysis::multiply(values_of_, w), sums);
   project(sums, y);
@@ -519,7 +519,7 @@ void HarmonicTangents::multiply(const Eigen::MatrixXd& x, const Eigen::MatrixXd&
 }
 
 void HarmonicTangents::multiply_mass(const Eigen::MatrixXd& w, Eigen::MatrixXd& y) const {
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(values_of_.rows(), w.cols());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(samples(), w.cols());
   add_products(all_, 1, analysis::multiply(values_of_, w), sums);
   project(sums, y);
   sector_.drop_absent(y);
@@ -621,7 +621,7 @@ petsc::Handle<Mat> HarmonicTangents::make_matrix() const {
 }
 
 void HarmonicTangents::fill(Mat matrix) const {
-  const Eigen::Index samples = values_of_.rows();
+  const Eigen::Index samples = this->samples();
   Eigen::MatrixXd rates_of(samples, width_);
   for (Eigen::Index k = 0; k < samples; ++k)
     rates_of.row(k) = PeriodicSolution::basis_rate(
@@ -636,8 +636,7 @@ void HarmonicTangents::fill(Mat matrix) const {
   }
   Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(to_block.rows(), pattern_.nonZeros());
   for (const std::size_t part : {0, 1}) {
-    const Eigen::MatrixXd of_part =
-        to_block.middleCols(static_cast<Eigen::Index>(part) * samples, samples);
+    const auto of_part = to_block.middleCols(static_cast<Eigen::Index>(part) * samples, samples);
     for (const Place& place : places_)
       if (kept_[part].has(place))
         blocks.col(place.number).noalias() += of_part * kept_[part].of(place);

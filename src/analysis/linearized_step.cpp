@@ -55,7 +55,7 @@ void LinearizedStep::replace_constraints(double t_end, Vec z_end, Vec z_dot_end)
 
 const Eigen::MatrixXd& LinearizedStep::advance(Eigen::MatrixXd& z, const Eigen::MatrixXd& load) {
   // With z_f = 2 z_m - z_i: (2/dt M + K) z_m = 2/dt M z_i, and D_f z_m = D_f z_i / 2.
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> mass = to_sparse(mass_.get());
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> mass = to_sparse_rows(mass_.get());
   Eigen::SparseMatrix<double, Eigen::RowMajor> start = (2.0 / step_) * mass;
   if (!fixed_constraints_) start += 0.5 * constraint_rows_;
   middle_.noalias() = start * z;

@@ -12,8 +12,8 @@ namespace samara::analysis {
 /// Unknowns whose rows of K + s M have other unknowns of their own block only, and a factor of
 /// their own that does not depend on s: velocities of the points of a beam, f_P and f_H of
 /// docs/theory.md, section 2.2. Their elimination couples no blocks that are not coupled without
-/// it, and leaves smaller ones. Every block has the same number of them:
-/// none, where one block has none.
+/// it, and leaves smaller ones. Every block has the same number of them: none, where one block has
+/// none.
 class LocalUnknowns {
  public:
   using Index = Eigen::Index;

@@ -17,47 +17,34 @@
 namespace samara::analysis {
 namespace {
 
-/// Of some neighbouring samples, with some vectors. The sums stay in registers.
+/// Of neighbouring samples from `at` on, as many together as there are left. The sums stay in
+/// registers. @returns the first sample that is left
 template <int together, int vectors>
-SAMARA_INLINE void add_samples(const SampledRow& row, const double* values, std::ptrdiff_t distance,
-                               double* sums) {
-  std::array<std::array<double, together>, vectors> total{};
-  for (std::size_t e = 0; e < row.count; ++e) {
-    const double* own = row.sampled + row.numbers[e] * row.samples;
-    const double* other = values + row.columns[e] * row.samples;
-    for (std::size_t v = 0; v < vectors; ++v, other += distance)
-      for (std::size_t i = 0; i < together; ++i) total[v][i] += own[i] * other[i];
+SAMARA_INLINE std::ptrdiff_t add_samples(const SampledRow& row, const double* values,
+                                         std::ptrdiff_t distance, double* sums, std::ptrdiff_t at) {
+  for (; at + together <= row.samples; at += together) {
+    std::array<std::array<double, together>, vectors> total{};
+    for (std::size_t e = 0; e < row.count; ++e) {
+      const double* own = row.sampled + row.numbers[e] * row.samples + at;
+      const double* other = values + row.columns[e] * row.samples + at;
+      for (std::size_t v = 0; v < vectors; ++v, other += distance)
+        for (std::size_t i = 0; i < together; ++i) total[v][i] += own[i] * other[i];
+    }
+    double* to = sums + at;
+    for (std::size_t v = 0; v < vectors; ++v, to += distance)
+      for (std::size_t i = 0; i < together; ++i) to[i] += total[v][i];
   }
-  for (std::size_t v = 0; v < vectors; ++v, sums += distance)
-    for (std::size_t i = 0; i < together; ++i) sums[i] += total[v][i];
+  return at;
 }
 
 template <int vectors>
-SAMARA_INLINE void add_all(const SampledRow& all, const double* values, std::ptrdiff_t distance,
+SAMARA_INLINE void add_all(const SampledRow& row, const double* values, std::ptrdiff_t distance,
                            double* sums) {
-  SampledRow row = all;
-  for (std::ptrdiff_t at = 0; at < all.samples;) {
-    const std::ptrdiff_t left = all.samples - at;
-    row.sampled = all.sampled + at;
-    const double* some = values + at;
-    double* to = sums + at;
-    if (left >= 16) {
-      add_samples<16, vectors>(row, some, distance, to);
-      at += 16;
-    } else if (left >= 8) {
-      add_samples<8, vectors>(row, some, distance, to);
-      at += 8;
-    } else if (left >= 4) {
-      add_samples<4, vectors>(row, some, distance, to);
-      at += 4;
-    } else if (left >= 2) {
-      add_samples<2, vectors>(row, some, distance, to);
-      at += 2;
-    } else {
-      add_samples<1, vectors>(row, some, distance, to);
-      at += 1;
-    }
-  }
+  std::ptrdiff_t at = add_samples<16, vectors>(row, values, distance, sums, 0);
+  at = add_samples<8, vectors>(row, values, distance, sums, at);
+  at = add_samples<4, vectors>(row, values, distance, sums, at);
+  at = add_samples<2, vectors>(row, values, distance, sums, at);
+  add_samples<1, vectors>(row, values, distance, sums, at);
 }
 
 SAMARA_FOR_EACH_PROCESSOR
