@@ -101,46 +101,76 @@ DirectSolver solver_of(const system::PeriodicSystem& system, double sigma) {
 
 /// (sigma - A)^-1 of the states, in energy coordinates, and the shapes that it leads to.
 struct ShiftedInverse {
-  Eigen::MatrixXd map;      ///< states x states
-  Eigen::MatrixXd shapes;   ///< size x states
-  MasslessStates massless;  ///< which the map maps among each other
+  Eigen::MatrixXd map;     ///< states x states
+  Eigen::MatrixXd shapes;  ///< size x states
 };
 
-/// If x is a consistent state, y of (K + sigma M) y = M x is one, too, with the rate sigma y - x.
-/// In (eta, eta_dot, xi) the map from x to y is (sigma - A)^-1; it multiplies a state with exponent
-/// lambda by 1 / (sigma - lambda). `rate`: of the energy coordinates.
-ShiftedInverse invert_at(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                         const ConsistentSubspace& subspace, double sigma, double rate) {
-  const ShiftedTangents tangents(system, solution, sigma);
-  const Eigen::SparseMatrix<double>& M = tangents.M;
-  DirectSolver solver = solver_of(system, sigma);
-  const Eigen::Index d = subspace.degrees_of_freedom();
-  Eigen::MatrixXd states = subspace.basis(0.0);
-  const EnergyCoordinates coordinates(system, states, d, rate);
-  ShiftedInverse inverse;
-  if (coordinates.without_inertia().cols() > 0)
-    inverse.massless =
-        MasslessStates(to_sparse(tangents.shifted.get()) - sigma * M, M, states, coordinates);
-  coordinates.divide(states);
-  inverse.shapes = M * states;
-  solver.factor(tangents.shifted.get());  // scales it
-  solver.solve(inverse.shapes);
-  Eigen::MatrixXd images(subspace.size(), subspace.size());
-  images.topRows(d) = subspace.coordinates_of(inverse.shapes);
-  images.middleRows(d, d) = sigma * images.topRows(d) - subspace.coordinates_of(states);
-  images.bottomRows(subspace.first_order()) = subspace.states_of(inverse.shapes);
-  inverse.map = coordinates.of(images);
-  return inverse;
+/// The consistent states on the solution at t = 0, and (sigma - A)^-1 of them for any shift.
+class StateInverses {
+ public:
+  /// `rate`: of the energy coordinates, and a shift for which tangents are evaluated.
+  StateInverses(const system::PeriodicSystem& system, const PeriodicSolution& solution,
+                const ConsistentSubspace& subspace, double rate)
+      : system_(system),
+        solution_(solution),
+        subspace_(subspace),
+        states_(subspace_.basis(0.0)),
+        coordinates_(system, states_, subspace_.degrees_of_freedom(), rate) {
+    if (coordinates_.without_inertia().cols() > 0) {
+      const ShiftedTangents tangents(system, solution, rate);
+      massless_ = MasslessStates(to_sparse(tangents.shifted.get()) - rate * tangents.M, tangents.M,
+                                 states_, coordinates_);
+    }
+    coordinates_.divide(states_);
+  }
+
+  [[nodiscard]] int size() const { return subspace_.size(); }
+  [[nodiscard]] int degrees_of_freedom() const { return subspace_.degrees_of_freedom(); }
+  /// States that the maps map among each other.
+  [[nodiscard]] const MasslessStates& massless() const { return massless_; }
+
+  /// If x is a consistent state, y of (K + sigma M) y = M x is one, too, with the rate
+  /// sigma y - x. In (eta, eta_dot, xi) the map from x to y is (sigma - A)^-1; it multiplies a
+  /// state with exponent lambda by 1 / (sigma - lambda).
+  [[nodiscard]] ShiftedInverse at(double sigma) const {
+    const ShiftedTangents tangents(system_, solution_, sigma);
+    DirectSolver solver = solver_of(system_, sigma);
+    const Eigen::Index d = degrees_of_freedom();
+    ShiftedInverse inverse;
+    inverse.shapes = tangents.M * states_;
+    solver.factor(tangents.shifted.get());  // scales it
+    solver.solve(inverse.shapes);
+    Eigen::MatrixXd images(size(), size());
+    images.topRows(d) = subspace_.coordinates_of(inverse.shapes);
+    images.middleRows(d, d) = sigma * images.topRows(d) - subspace_.coordinates_of(states_);
+    images.bottomRows(subspace_.first_order()) = subspace_.states_of(inverse.shapes);
+    inverse.map = coordinates_.of(images);
+    return inverse;
+  }
+
+ private:
+  const system::PeriodicSystem& system_;
+  const PeriodicSolution& solution_;
+  const ConsistentSubspace& subspace_;
+  Eigen::MatrixXd states_;  ///< size x states, per unit of each energy coordinate
+  EnergyCoordinates coordinates_;
+  MasslessStates massless_;
+};
+
+/// The exponents of eigenvalues 1 / (sigma - lambda).
+std::vector<Complex> exponents_of(double sigma, std::vector<Complex> of_inverse) {
+  for (Complex& value : of_inverse) value = sigma - 1.0 / value;
+  return of_inverse;
 }
 
-Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolution& solution,
-                       const ConsistentSubspace& subspace, double sigma, double rate) {
-  const ShiftedInverse inverse = invert_at(system, solution, subspace, sigma, rate);
-  const Eigenpairs pairs = inverse.massless.eigenpairs_of(inverse.map, "modes_");
+Spectrum find_spectrum(const system::PeriodicSystem& system, const StateInverses& inverses,
+                       double sigma) {
+  const ShiftedInverse inverse = inverses.at(sigma);
+  const Eigenpairs pairs = inverses.massless().eigenpairs_of(inverse.map, "modes_");
   const std::vector<int> states_of_pairs =
-      leading_states(pairs, 2 * subspace.degrees_of_freedom(), find_state_parts(system));
+      leading_states(pairs, 2 * inverses.degrees_of_freedom(), find_state_parts(system));
   Spectrum spectrum;
-  spectrum.shapes.resize(system.size(), 0);
+  std::vector<Eigen::VectorXcd> combinations;
   for (std::size_t i = 0; i < pairs.values.size(); ++i) {
     const Complex exponent = Complex(sigma) - 1.0 / pairs.values[i];
     if (exponent.imag() < 0.0) continue;
@@ -148,8 +178,7 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
     const auto keep = [&](Complex value, const Eigen::VectorXcd& combination) {
       spectrum.exponents.push_back(value);
       spectrum.states.push_back(states_of_pairs[i]);
-      spectrum.shapes.conservativeResize(system.size(), spectrum.shapes.cols() + 1);
-      spectrum.shapes.col(spectrum.shapes.cols() - 1) = inverse.shapes * combination;
+      combinations.push_back(combination);
     };
     if (exponent.imag() > 0.0 && std::abs(exponent) < zero_to_shift * sigma) {
       // Round-off has split a double zero into a complex pair. It is kept as two real modes, like a
@@ -160,7 +189,23 @@ Spectrum find_spectrum(const system::PeriodicSystem& system, const PeriodicSolut
       keep(exponent, vector);
     }
   }
+  const auto modes = static_cast<Eigen::Index>(combinations.size());
+  Eigen::MatrixXd parts(inverse.shapes.cols(), 2 * modes);
+  for (Eigen::Index k = 0; k < modes; ++k) {
+    parts.col(k) = combinations[static_cast<std::size_t>(k)].real();
+    parts.col(modes + k) = combinations[static_cast<std::size_t>(k)].imag();
+  }
+  const Eigen::MatrixXd shapes = multiply(inverse.shapes, parts);
+  spectrum.shapes.resize(system.size(), modes);
+  spectrum.shapes.real() = shapes.leftCols(modes);
+  spectrum.shapes.imag() = shapes.rightCols(modes);
   return spectrum;
+}
+
+/// The exponents alone, both of a conjugate pair.
+std::vector<Complex> find_exponents(const StateInverses& inverses, double sigma) {
+  return exponents_of(sigma,
+                      dense_eigenvalues(inverses.massless().without(inverses.at(sigma).map)));
 }
 
 /// Moduli of the exponents that are not zero, one of a conjugate pair, ascending.
@@ -195,17 +240,17 @@ double widest_gap(const std::vector<double>& moduli, double low, double high) {
   return middle;
 }
 
-/// A shift, its spectrum, and the spectrum of the second shift.
+/// A shift, its spectrum, and the exponents of the second shift.
 struct CheckedSpectrum {
   double sigma = 0.0;
-  Spectrum found, check;
+  Spectrum found;
+  std::vector<Complex> check;
 };
 
-/// Distance to the nearest exponent of another spectrum, relative to the larger of itself and
-/// `zero`.
-double distance(Complex exponent, const Spectrum& other, double zero) {
+/// Distance to the nearest of other exponents, relative to the larger of itself and `zero`.
+double distance(Complex exponent, const std::vector<Complex>& others, double zero) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Complex& candidate : other.exponents)
+  for (const Complex& candidate : others)
     nearest = std::min(nearest, std::abs(candidate - exponent));
   return nearest / std::max(std::abs(exponent), zero);
 }
@@ -237,13 +282,6 @@ std::vector<Complex> largest_inverses(const system::PeriodicSystem& system,
       count, tolerance_of_moduli);
 }
 
-/// Moduli of exponents of the tangents at t = 0, from eigenvalues of the inverse at the shift
-/// `rate`.
-std::vector<double> moduli_at(double rate, std::vector<Complex> of_inverse) {
-  for (Complex& value : of_inverse) value = rate - 1.0 / value;
-  return moduli_of(of_inverse, zero_exponent * rate);
-}
-
 }  // namespace
 
 std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
@@ -251,15 +289,16 @@ std::vector<double> find_moduli_at_start(const system::PeriodicSystem& system,
   const ConsistentSubspace subspace(system, solution);
   if (subspace.size() == 0) return {};
   const double rate = system::base_rate(system);
+  const double zero = zero_exponent * rate;
   // Both of a pair, and some that count as zero.
   const int values = 3 * count;
   constexpr int whole_below = 12;  // times the number that is wanted
   if (subspace.size() >= whole_below * values) {
     std::vector<Complex> found = largest_inverses(system, solution, rate, values);
-    if (found.size() >= static_cast<std::size_t>(values)) return moduli_at(rate, std::move(found));
+    if (found.size() >= static_cast<std::size_t>(values))
+      return moduli_of(exponents_of(rate, std::move(found)), zero);
   }
-  const ShiftedInverse inverse = invert_at(system, solution, subspace, rate, rate);
-  return moduli_at(rate, dense_eigenvalues(inverse.massless.without(inverse.map)));
+  return moduli_of(find_exponents(StateInverses(system, solution, subspace, rate), rate), zero);
 }
 
 ModeSet find_constant_modes(const system::PeriodicSystem& system,
@@ -268,20 +307,19 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   const ConsistentSubspace subspace(system, solution);
   if (subspace.size() == 0)
     throw InputError("modes: nothing can move, all strains and joints are rigid");
-  const double speed = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const double rate = system::base_rate(system);
+  const StateInverses inverses(system, solution, subspace, rate);
+  const double speed = system.period() > 0.0 ? 2.0 * std::numbers::pi / system.period() : 0.0;
   const auto checked = [&](double sigma) {
-    return CheckedSpectrum{sigma, find_spectrum(system, solution, subspace, sigma, rate),
-                           find_spectrum(system, solution, subspace, check_shift * sigma, rate)};
+    return CheckedSpectrum{sigma, find_spectrum(system, inverses, sigma),
+                           find_exponents(inverses, check_shift * sigma)};
   };
   // The error of an exponent is about the round-off of max(sigma, |lambda|^2 / sigma). The slow
   // modes, which are of interest, and the fast modes, which a fine mesh adds, therefore have a
   // shift each, and so have modes that are much slower than the other slow ones.
   const double zero = zero_exponent * rate;
-  const ShiftedInverse at_rate = invert_at(system, solution, subspace, rate, rate);
-  const MasslessStates& massless = at_rate.massless;
-  const std::vector<double> moduli =
-      moduli_at(rate, dense_eigenvalues(massless.without(at_rate.map)));
+  const MasslessStates& massless = inverses.massless();
+  const std::vector<double> moduli = moduli_of(find_exponents(inverses, rate), zero);
   const auto first_above = [&moduli](double limit) {
     return static_cast<std::size_t>(std::lower_bound(moduli.begin(), moduli.end(), limit) -
                                     moduli.begin());
@@ -323,7 +361,7 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   collect();
   // A mode that two shifts place on different sides of a border is lost or found twice. Then all
   // modes are those of the fast shift.
-  if (exponents != subspace.size() - massless.count()) {
+  if (exponents != inverses.size() - massless.count()) {
     std::fill(borders.begin(), borders.end(), -1.0);
     collect();
   }
@@ -339,8 +377,8 @@ ModeSet find_constant_modes(const system::PeriodicSystem& system,
   const Eigen::VectorXcd one = Eigen::VectorXcd::Ones(1);
   const std::vector<system::MeshError> elements = system.mesh_errors();
   ModeSet set;
-  set.states = subspace.size() - massless.count();
-  set.degrees_of_freedom = subspace.degrees_of_freedom() - massless.directions();
+  set.states = inverses.size() - massless.count();
+  set.degrees_of_freedom = inverses.degrees_of_freedom() - massless.directions();
   set.rotor_speed = speed;
   set.conservative = system.is_conservative();
   set.shape_times = {0.0};
