@@ -415,6 +415,21 @@ class Inputs(ProgramTest):
         self.refuse("floquet", case, *coarse, "--set", "floquet.modes=4", *hill,
                     "-hill_eps_smallest_magnitude", words=["largest eigenvalues"])
 
+    def test_one_iteration_where_harmonics_are_not_coupled(self):
+        # Without weight, the tangents of the chains are constant and the border is exact: so is the
+        # preconditioner of Hill's method, with and without equal blades.
+        turbine = ("nrel5mw/land.yaml", "--set", "aero=none", "--set", "gravity=0")
+        for case in (turbine, ("beam/rotating.yaml",)):
+            for order in (3, 5):
+                orders = ("--set", f"blades.order={order}")
+                text = self.succeed("floquet", SOURCE / "inputs" / case[0], *case[1:], *orders, "--set",
+                                    "floquet.modes=4", "--set", "floquet.search=hill",
+                                    "-hill_ksp_converged_reason",
+                                    "-hill_refine_ksp_converged_reason").stdout
+                iterations = re.findall(r"(?m)solve converged .* iterations (\d+)$", text)
+                self.assertGreater(len(iterations), 20)
+                self.assertEqual(set(iterations), {"1"})
+
     def test_slowest_decays(self):
         case = SOURCE / "inputs/nrel5mw/land.yaml"
         coarse = ("--set", "blades.elements=1", "--set", "blades.order=3", "--set",
