@@ -300,7 +300,7 @@ std::string headline(const ModeSet& set, const StabilityAssessment& result) {
   switch (result.doubt) {
     case Doubt::unresolved:
       return "no verdict: modes from " + hertz(set.reach) + " on are not resolved" +
-             (has_steps(set) ? "; hint: more floquet.steps"
+             (has_steps(set) ? "; hint: more floquet.steps, or floquet.modes"
               : set.searched ? "; hint: " + other_search(set)
                              : "");
     case Doubt::incomplete:

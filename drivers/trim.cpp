@@ -36,6 +36,11 @@ struct Output {
   double zero = 0.0;    ///< a smaller value is round-off
 };
 
+/// Equal blades that turn differ only in azimuth.
+bool is_alike(const turbine::TurbineSystem& system) {
+  return system.symmetry().sectors > 1 && system.period() > 0.0;
+}
+
 std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load_level) {
   const model::Turbine& turbine = system.turbine();
   const turbine::TurbineLayout& layout = system.layout();
@@ -50,8 +55,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
   const auto add_angle = [&outputs](const std::string& name, int unknown) {
     outputs.push_back({name, "deg", unknown, 180.0 / std::numbers::pi, round_off});
   };
-  // Equal blades differ only in azimuth.
-  const int shown = system.symmetry().sectors > 1 ? 1 : static_cast<int>(turbine.blades.size());
+  const int shown = is_alike(system) ? 1 : static_cast<int>(turbine.blades.size());
   for (int k = 0; k < shown; ++k) {
     const std::string blade = turbine.blades[static_cast<std::size_t>(k)].name;
     const int root = layout.blade_root(k);
@@ -126,7 +130,7 @@ std::string output_table(const turbine::TurbineSystem& system, const Trim& trim)
   std::string notes;
   if (shown > 0) notes += "kP: amplitude at k times the rotor speed";
   if (shown < solution.harmonics()) notes += "; higher ones are in the result";
-  if (system.symmetry().sectors > 1)
+  if (is_alike(system))
     notes +=
         std::string(notes.empty() ? "" : "; ") + "the other blades are equal, each at its azimuth";
   return table.text() + (notes.empty() ? "" : notes + "\n");

@@ -92,7 +92,7 @@ constexpr double most_increase = 3.0;
 constexpr double usual_increase = 1.6;
 /// An estimated number of steps is raised by this factor.
 constexpr double step_margin = 1.05;
-constexpr int most_attempts = 5;
+constexpr int most_attempts = 7;
 
 /// Seconds of one core for each unknown, as measured (docs/performance.md): of a step with its part
 /// of the identification, the same for each state; of Hill's method, and for each mode. The
@@ -983,13 +983,19 @@ double increase_of(const ModeSet& set, const FloquetOptions& options) {
   double factor = 1.0;
   if (const std::optional<double> reach = lacking_reach(set, options))
     factor = std::clamp(*reach / set.reach, least_increase, most_increase);
+  // Frequencies of bending grow at most with the square of their number.
+  const auto resolved =
+      std::count_if(modes.begin(), modes.end(), [](const Mode* mode) { return mode->resolved; });
+  const double lacking =
+      static_cast<double>(modes.size()) / std::max(1.0, static_cast<double>(resolved));
+  const double increase = std::clamp(lacking * lacking, usual_increase, most_increase);
   for (const Mode* mode : modes) {
     if (mode->resolved) continue;
     const bool is_known =
         options.accuracy && mode->step_error > *options.accuracy && mode->step_error < 1.0;
     const double wanted =
         is_known ? step_margin * std::pow(mode->step_error / *options.accuracy, 1.0 / options.order)
-                 : usual_increase;
+                 : increase;
     factor = std::max(factor, std::clamp(wanted, least_increase, most_increase));
   }
   return factor;
@@ -1053,9 +1059,9 @@ Floquet find_floquet_modes(const system::PeriodicSystem& system, const PeriodicS
   for (int attempt = 1;; ++attempt) {
     Floquet found = run(steps);
     const double factor = increase_of(found.set, options);
-    if (factor <= 1.0 || attempt == most_attempts || steps * factor > most_steps)
+    if (factor <= 1.0 || attempt == most_attempts || steps >= most_steps)
       return wanted_of(std::move(found));
-    steps = std::max(whole(steps * factor), steps + sectors);
+    steps = std::max(whole(std::min(steps * factor, most_steps)), steps + sectors);
     observer.note("floquet: the " +
                   (asks_for_some(options) ? "wanted" : std::string("ten slowest")) +
                   " modes need more steps, " + std::to_string(steps) + " a revolution");

@@ -68,6 +68,8 @@ struct NewtonLimits {
 constexpr NewtonLimits full_steps{SNESLINESEARCHBASIC, 15, 1};
 /// Smallest part of the loads on free coordinates that one step removes.
 constexpr double least_release = 1.0 / 64.0;
+/// Largest change of an angle in a step of this homotopy [rad].
+constexpr double largest_turn = 0.5;
 
 /// A constant load in a row.
 struct RowLoad {
@@ -176,7 +178,7 @@ class Balance {
 
   PeriodicSolution without_held(Eigen::MatrixXd coefficients) const {
     for (const system::UnconstrainedCoordinate& coordinate : held_)
-      coefficients(coordinate.unknown, 0) = 0.0;
+      coefficients(coordinate.unknown, 0) = coordinate.mean;
     return {std::move(coefficients), system_.period()};
   }
 
@@ -733,7 +735,7 @@ Trim solve(const system::PeriodicSystem& system, const Coordinates& held,
   return solve_by(false, system, held, given, harmonics, tolerance, start, limits, comm);
 }
 
-/// The start of a trim with free coordinates, whose means are held at zero.
+/// The start of a trim with free coordinates, whose means are held.
 struct HeldStart {
   PeriodicSolution solution;
   std::vector<RowLoad> loads;  ///< that hold the free coordinates
@@ -761,6 +763,19 @@ std::optional<HeldStart> hold_free(const system::PeriodicSystem& system, int har
   }
 }
 
+/// Whether an angle that was held has turned too far for one step of the homotopy: to another
+/// branch.
+bool has_turned(const system::PeriodicSystem& system, const PeriodicSolution& from,
+                const PeriodicSolution& to) {
+  const auto is_far = [&](const system::UnconstrainedCoordinate& free) {
+    const Eigen::Index row = free.unknown;
+    return system.unknowns()[static_cast<std::size_t>(row)].role == system::UnknownRole::position &&
+           std::abs(to.coefficients()(row, 0) - from.coefficients()(row, 0)) > largest_turn;
+  };
+  const Coordinates free = system.free_coordinates();
+  return std::any_of(free.begin(), free.end(), is_far);
+}
+
 /// Homotopy: removes the loads that hold the free coordinates in parts, or at once if that
 /// converges.
 Trim release(const system::PeriodicSystem& system, int harmonics, double tolerance,
@@ -775,6 +790,10 @@ Trim release(const system::PeriodicSystem& system, int harmonics, double toleran
     for (RowLoad& load : loads) load.load *= next;
     try {
       Trim trim = solve(system, held, loads, harmonics, tolerance, &last, comm, full_steps);
+      if (has_turned(system, last, trim.solution)) {
+        step *= 0.5;
+        continue;
+      }
       if (next == 0.0) return trim;
       last = trim.solution;
       left = next;
@@ -783,7 +802,16 @@ Trim release(const system::PeriodicSystem& system, int harmonics, double toleran
       step *= 0.5;
     }
   }
-  return solve(system, held, {}, harmonics, tolerance, &start.solution, comm);
+  Trim trim = solve(system, held, {}, harmonics, tolerance, &start.solution, comm);
+  if (has_turned(system, start.solution, trim.solution)) {
+    std::string names;
+    for (const system::UnconstrainedCoordinate& free : system.free_coordinates())
+      names += (names.empty() ? "" : ", ") + free.name;
+    throw ConvergenceError(
+        "trim: no steady state near the one in which constant loads hold the free joints (" +
+        names + "); hint: a stiffness of the joint, or joint: locked or prescribed");
+  }
+  return trim;
 }
 
 }  // namespace

@@ -157,11 +157,15 @@ class ShapeNumbers {
     const auto load_at = [&](Eigen::Index i) {
       return shape.row((*places)[static_cast<std::size_t>(i)].load);
     };
+    // The phase of a strongly damped mode turns along the part: what is in phase counts.
+    const double square = load_at(largest).squaredNorm();
     int number = 0;
     bool is_positive = true;
     for (Eigen::Index i = 0; i < energies.size(); ++i) {
-      if (energies(i) < least_energy * most) continue;
-      const bool sign = load_at(largest).dot(load_at(i)).real() > 0.0;
+      const double in_phase = load_at(largest).dot(load_at(i)).real();
+      const double weight = (*places)[static_cast<std::size_t>(i)].weight;
+      if (!(weight * in_phase * in_phase >= least_energy * most * square)) continue;
+      const bool sign = in_phase > 0.0;
       if (number == 0 || sign != is_positive) ++number;
       is_positive = sign;
     }

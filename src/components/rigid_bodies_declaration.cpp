@@ -67,7 +67,14 @@ void RigidBodies::describe(Registry& registry) {
   const auto add_unconstrained = [&](const char* name, int number) {
     registry.add(system::UnconstrainedCoordinate{name, joint(number), joint(number) + 1, "N m"});
   };
-  if (chain.yaw.free && chain.yaw.stiffness == 0.0) add_unconstrained("yaw", yaw);
+  if (chain.yaw.free && chain.yaw.stiffness == 0.0) {
+    // Wind restores it, or turns it away. The shaft starts along the wind.
+    if (turbine_.air && turbine_.air->hub_wind > 0.0)
+      registry.add_free(
+          {"yaw", joint(yaw), joint(yaw) + 1, "N m", turbine_.air->rotor.wind.mean.direction});
+    else
+      add_unconstrained("yaw", yaw);
+  }
   if (chain.teeter.free && chain.teeter.stiffness == 0.0 && turbine_.speed == 0.0)
     add_unconstrained("teeter", teeter);
   if (integral_ >= 0) {

@@ -166,8 +166,8 @@ Vec3<T> RotorWake::wind_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double 
 
 /// The load of a point on the shapes and their velocity there.
 template <class T>
-auto RotorWake::point_terms(const PointBatch& point,
-                            const Eigen::Matrix<T, point_arguments, 1>& x) const
+auto RotorWake::point_terms(const PointBatch& point, const Eigen::Matrix<T, point_arguments, 1>& x,
+                            double t, const elements::WindInputs<T>* change) const
     -> Eigen::Matrix<T, point_values, 1> {
   using math::dot;
   const elements::RootPose<T> root = root_pose_of<T>(x.template segment<root_pose_values>(at_root));
@@ -180,11 +180,13 @@ auto RotorWake::point_terms(const PointBatch& point,
   const double radius = rotor().tip_radius;
   const T x1 = dot(arm, disk.e1) / T(radius);
   const T x2 = dot(arm, disk.e2) / T(radius);
-  const T thrust = dot(Vec3<T>(root.axes * Vec3<T>(x.template segment<3>(at_force))), disk.n);
   const double length = blades_[point.blade]->placed().beam->point_length(point.point);
-  // Half of tau; the load of a rotor at rest gives no wake.
-  const double factor =
-      0.5 * rotor().loading * length / (std::numbers::pi * rotor().density * radius * radius);
+  const Vec3<T> wind = rotor().wind.undisturbed_at<T>(hub.place, t, change) - hub.velocity;
+  const T share_of_disk = elements::disk_share<T>(rotor(), hub.speed, dot(wind, wind));
+  const T thrust =
+      share_of_disk * dot(Vec3<T>(root.axes * Vec3<T>(x.template segment<3>(at_force))), disk.n);
+  // Half of tau.
+  const double factor = 0.5 * length / (std::numbers::pi * rotor().density * radius * radius);
   Eigen::Matrix<T, point_values, 1> y = Eigen::Matrix<T, point_values, 1>::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(batch); ++i) {
     const std::size_t number = point.first_shape + i;
@@ -234,10 +236,9 @@ void RotorWake::state(System& system) const {
   }
   for (const PointBatch& point : points_) {
     const auto terms_of = [&]<class T>(const Eigen::Matrix<T, point_arguments, 1>& x) {
-      return point_terms<T>(point, x);
+      return point_terms<T>(point, x, t, wind_inputs<T>(system));
     };
-    system.template add<point_arguments, point_values>(point.connections, terms_of,
-                                                       Memory::of_arguments);
+    system.template add<point_arguments, point_values>(point.connections, terms_of, memory);
   }
 }
 
@@ -257,7 +258,7 @@ void RotorWake::settle(const Residual<double>& residual, std::vector<double>& va
     return x;
   };
   for (const PointBatch& point : points_) {
-    const auto y = point_terms<double>(point, arguments_of(point));
+    const auto y = point_terms<double>(point, arguments_of(point), residual.time(), nullptr);
     for (int i = 0; i < batch; ++i) {
       const std::size_t shape = point.first_shape + at(i);
       if (shape < shapes_.size() && shapes_[shape].harmonic == 0)
@@ -291,7 +292,7 @@ void RotorWake::settle(const Residual<double>& residual, std::vector<double>& va
     }
     const int row = blades_[point.blade]->placed().air[at(point.point)] + air::induced;
     if (point.first_shape == 0) values[at(row)] = 0.0;
-    values[at(row)] -= point_terms<double>(point, arguments)(2 * batch);
+    values[at(row)] -= point_terms<double>(point, arguments, residual.time(), nullptr)(2 * batch);
   }
 }
 

@@ -364,6 +364,24 @@ class Importer {
 
   // ---- bodies
 
+  /// The greatest tip speed may be reached below the greatest speed of the controller. A small
+  /// difference is the rounding of the diameter.
+  void limit_to_tip_speed(double& rpm) {
+    constexpr double rounding = 0.98;
+    if (choose({"control.supervisory.maxTS"}).empty() ||
+        choose({"assembly.rotor_diameter"}).empty())
+      return;
+    const std::string use = "limits shaft.speed_rpm to maxTS/(rotor_diameter/2)";
+    const double tip_speed = number({"control.supervisory.maxTS"}, Fate::derived, use);
+    const double diameter = number({"assembly.rotor_diameter"}, Fate::derived, use);
+    if (!(tip_speed > 0.0 && diameter > 0.0)) return;
+    const double limit = 60.0 * tip_speed / (std::numbers::pi * diameter);
+    if (!(limit < rounding * rpm)) return;
+    rpm = limit;
+    note("shaft.speed_rpm",
+         "from the greatest tip speed, control.supervisory.maxTS; VS_maxspd is beyond it");
+  }
+
   void read_rotor() {
     double rpm = 0.0;  // [rev/min]
     const std::string count = require({"assembly.number_of_blades"});
@@ -385,6 +403,7 @@ class Importer {
       rpm = is_first_ ? value * 30.0 / std::numbers::pi : value;
       note("shaft.speed_rpm",
            is_first_ ? "control.torque.VS_maxspd, from rad/s" : "control.torque.VS_maxspd");
+      limit_to_tip_speed(rpm);
     } else if (!choose({"control.supervisory.maxTS"}).empty() &&
                !choose({"assembly.rotor_diameter"}).empty()) {
       const double tip_speed = number({"control.supervisory.maxTS"}, Fate::derived,
@@ -882,7 +901,7 @@ class Importer {
     if (!errors_.empty()) return;
     for (const Curve& values : thickness) grids.push_back(&values.grid);
     say(path, Fate::derived, "tower.sections, exact rings");
-    for (const Station& station : merge_grids(grids)) {
+    for (const Station& station : divide_stations(merge_grids(grids), diameter, thickness)) {
       double outer = interpolate(diameter, station);
       model::SectionDefinition section;
       section.at = place_of(station);
@@ -910,6 +929,32 @@ class Importer {
       section.mass = build_mass_matrix(mass, Vector3(2.0 * inertia, inertia, inertia));
       turbine_.tower.sections.push_back(section);
     }
+  }
+
+  /// Adds stations between those of the deck: diameter and wall are linear there, but mass and
+  /// stiffness, which the case has linear between its sections, are not.
+  static std::vector<Station> divide_stations(const std::vector<Station>& stations,
+                                              const Curve& diameter,
+                                              const std::vector<Curve>& thickness) {
+    constexpr double largest_change = 0.03;  // of a logarithm: errors of EI below 0.1 %
+    constexpr double most_parts = 40.0;
+    std::vector<Station> all;
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      all.push_back(stations[i]);
+      if (i + 1 == stations.size() || stations[i + 1].behind) continue;
+      const auto change_of = [&](const Curve& curve) {
+        const double first = interpolate(curve, stations[i]);
+        const double last = interpolate(curve, stations[i + 1]);
+        return first > 0.0 && last > 0.0 ? std::abs(std::log(last / first)) : 0.0;
+      };
+      double change = change_of(diameter);
+      for (const Curve& layer : thickness) change = std::max(change, change_of(layer));
+      const double parts = std::min(most_parts, std::ceil(change / largest_change));
+      for (double part = 1.0; part < parts; part += 1.0)
+        all.push_back(
+            {stations[i].place + (stations[i + 1].place - stations[i].place) * part / parts});
+    }
+    return all;
   }
 
   static void add_ring(double outer, double inner, const Material& material, Vector6& stiffness,

@@ -246,10 +246,6 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
   constexpr double share = 0.01;
   constexpr double least = 0.01;  // [m/s]
   rotor.least_speed = std::max(share * wind.speed, least);
-  // A rotor at rest has no induced velocity; at tip-speed ratios from 2 it has the whole.
-  const double tip_speed = std::abs(turbine.speed) * rotor.tip_radius;
-  rotor.loading = wind.speed == 0.0 ? (tip_speed > 0.0 ? 1.0 : 0.0)
-                                    : math::smoothstep(tip_speed / wind.speed - 1.0);
   rotor.tau1 = definition.aero->tau1 ? *definition.aero->tau1 : find_tau1(air, turbine, wind.axial);
   return air;
 }

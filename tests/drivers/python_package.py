@@ -226,6 +226,16 @@ class Package(ProgramTest):
         self.assertEqual(self.plot("--help").returncode, 0)
         self.refuse("--set", "a=1", "plot", "x.h5", words="the command comes first")
 
+    def test_a_missing_module_is_named(self):
+        self.succeed("modes", SOURCE / "inputs/beam/rotating.yaml", "-o", "run.h5")
+        (self.folder / "lib").mkdir()
+        (self.folder / "lib/h5py.py").write_text(
+            "raise ModuleNotFoundError(\"No module named 'h5py'\", name='h5py')\n", encoding="utf-8")
+        os.environ["PYTHONPATH"] = str(self.folder / "lib")
+        self.addCleanup(os.environ.pop, "PYTHONPATH")
+        for command in ("plot", "report"):
+            self.refuse(command, "run.h5", words=["module h5py is not installed", "python3-h5py"])
+
     def test_it_can_be_installed(self):
         place = self.folder / "environment"
         subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", place], check=True)

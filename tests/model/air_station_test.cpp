@@ -653,6 +653,83 @@ BOOST_AUTO_TEST_CASE(balance_of_momentum_is_solved_from_the_same_start_at_all_st
   BOOST_TEST(failed[true] * 15 < tried[true]);  // a polynomial of the axial wind, at 85 degrees
 }
 
+/// Of rows along a path, the largest change of a slope between neighbours of `count` points.
+template <class Rows>
+double largest_change_of_slope(const Rows& rows_at, double from, double to, int count) {
+  using Dual = math::Dual<1>;
+  double largest = 0.0;
+  std::vector<double> last;
+  for (int i = 0; i <= count; ++i) {
+    const auto rows = rows_at(math::independent<1>(from + (to - from) * i / count, 0));
+    std::vector<double> slopes;
+    for (Eigen::Index k = 0; k < rows.size(); ++k) slopes.push_back(Dual(rows(k)).derivatives()(0));
+    for (std::size_t k = 0; k < last.size(); ++k)
+      largest = std::max(largest, std::abs(slopes[k] - last[k]));
+    last = slopes;
+  }
+  return largest;
+}
+
+/// Rows are C1 across all seams: with ten times as many points, slopes of neighbours differ by
+/// less. The seams are those of the laws of thrust, of the axial wind at zero, of the loss factor,
+/// of slow flow, of the share of the airfoil dynamics and of the tip-speed ratio.
+BOOST_AUTO_TEST_CASE(rows_have_no_seams) {
+  using Dual = math::Dual<1>;
+  const auto check = [](const auto& rows_at, double from, double to, const std::string& name) {
+    const double coarse = largest_change_of_slope(rows_at, from, to, 4000);
+    const double fine = largest_change_of_slope(rows_at, from, to, 40000);
+    BOOST_TEST(fine < 0.5 * coarse, name << ": " << coarse << ", " << fine);
+  };
+  const AirStation station = nrel_station(nrel_blade[11], 0.0);
+  for (const ThrustLaw thrust :
+       {ThrustLaw::buhl, ThrustLaw::glauert_skew, ThrustLaw::buhl_f, ThrustLaw::madsen})
+    for (const double across : {0.0, 6.0}) {
+      AirRotor rotor = nrel_rotor(10.0, thrust);
+      rotor.models.dynamics = AirfoilDynamics::static_polar;
+      const StationMotion<double> motion = turning(rotor, station, 1.0);
+      const auto rows_at = [&](const Dual& wind, const Dual& speed, const Dual& Q_n) {
+        StationMotion<Dual> present = constant_motion<Dual>(motion);
+        present.wind_axial = wind;
+        present.wind_across_square = Dual(across * across);
+        present.hub_speed = speed;
+        return momentum_rows<Dual>(rotor, station, present, Q_n, Dual(0.3),
+                                   Vec3<Dual>(Dual(0.0), Dual(30.0), Dual(400.0)),
+                                   Vec3<Dual>(Dual(0.0), Dual(-4.0), Dual(8.0)));
+      };
+      const std::string name = "law " + std::to_string(static_cast<int>(thrust)) + ", " +
+                               std::to_string(static_cast<int>(across)) + " m/s across, ";
+      for (const double Q_n : {-6.0, -0.05, 0.0, 0.03, 2.0})
+        check([&](const Dual& x) { return rows_at(x, Dual(1.0), Dual(Q_n)); }, -1.0, 1.1,
+              name + "axial wind, " + std::to_string(Q_n));
+      for (const double wind : {-5.0, 8.0})
+        check([&](const Dual& x) { return rows_at(Dual(wind), Dual(1.0), x); }, -30.0, 31.0,
+              name + "induced velocity");
+      check([&](const Dual& x) { return rows_at(Dual(8.0), x, Dual(-2.0)); }, -0.5, 0.6,
+            name + "speed of the rotor");
+    }
+  for (const AirfoilDynamics dynamics :
+       {AirfoilDynamics::hgm, AirfoilDynamics::oye, AirfoilDynamics::quasi_steady,
+        AirfoilDynamics::static_polar, AirfoilDynamics::peters}) {
+    AirRotor rotor = rotor_without_induction(dynamics);
+    rotor.models.cut_out = 45.0 * degree;
+    Eigen::Matrix<double, air::unknowns, 1> z = Eigen::Matrix<double, air::unknowns, 1>::Zero();
+    for (int i = 0; i < air::unknowns; ++i) z(i) = 0.05 * i;
+    const auto rows_at = [&](const Dual& edge, const Dual& normal) {
+      StationMotion<Dual> present = constant_motion<Dual>(section_in_wind(rotor, station));
+      present.relative = Vec3<Dual>(Dual(0.0), edge, normal);
+      return air_station_rows<Dual>(rotor, station, present,
+                                    Eigen::Matrix<Dual, air::unknowns, 1>(z.cast<Dual>()),
+                                    Eigen::Matrix<Dual, 10, 1>(Eigen::Matrix<Dual, 10, 1>::Zero()));
+    };
+    const std::string name = "dynamics " + std::to_string(static_cast<int>(dynamics));
+    check([&](const Dual& x) { return rows_at(Dual(cos(x) * -9.0), Dual(sin(x) * 9.0)); }, -3.3,
+          3.4, name + ", all angles");
+    for (const auto& [from, to] : {std::pair(-0.02, 0.021), std::pair(0.02, 2.0)})
+      check([&](const Dual& x) { return rows_at(Dual(x * -0.9), Dual(x * 0.3)); }, from, to,
+            name + ", slow flow");
+  }
+}
+
 /// Derivatives by automatic differentiation agree with a complex step at random states.
 BOOST_AUTO_TEST_CASE(derivatives_agree_with_a_complex_step) {
   constexpr int count = 12 + air::unknowns + 10 + 10 + 6;

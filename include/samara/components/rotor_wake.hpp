@@ -81,8 +81,10 @@ class RotorWake final : public Stated<RotorWake> {
   Vec3<T> wind_at(const Eigen::Matrix<T, flow_arguments, 1>& x, double t,
                   const elements::WindInputs<T>* change) const;
   template <class T>
-  Eigen::Matrix<T, point_values, 1> point_terms(
-      const PointBatch& batch, const Eigen::Matrix<T, point_arguments, 1>& x) const;
+  Eigen::Matrix<T, point_values, 1> point_terms(const PointBatch& batch,
+                                                const Eigen::Matrix<T, point_arguments, 1>& x,
+                                                double t,
+                                                const elements::WindInputs<T>* change) const;
 
   const model::Turbine& turbine_;
   std::vector<const Beam*> blades_;

@@ -62,7 +62,6 @@ struct AirRotor {
   double tau1 = 0.0;          ///< first time constant of the dynamic inflow [s]
   double least_speed = 0.01;  ///< eps of the balance of momentum [m/s]
   double acting = 1.0;        ///< factor of the load on the blades
-  double loading = 1.0;  ///< factor of the load in the balance of momentum, 0 for a rotor at rest
   /// With `inflow: frozen`: the present induced velocity is that of the steady state. It satisfies
   /// its rows, and no other unknown changes it.
   bool wake_is_held = false;
@@ -471,7 +470,9 @@ T annulus_thrust(const AirRotor& rotor, const StationMotion<T>& motion, const T&
   }
   const T into = -(q + (a_c - T(0.05)) * u) / sqrt(T(u * u * T(0.01) + T(eps_square)));
   const T out = -(q + u * T(1.5)) / sqrt(T(u * u + T(eps_square)));
-  const T s = math::smoothstep(into) * (T(1.0) - math::smoothstep(out)) * (T(1.0) - skewed);
+  // The last factor: no seam at U_n = 0.
+  const T s = math::smoothstep(into) * (T(1.0) - math::smoothstep(out)) * (T(1.0) - skewed) *
+              math::smoothstep(T(u / T(rotor.least_speed)));
   const T glauert = -(q * sqrt(T((u + q) * (u + q) + across_square + T(eps_square)))) * T(4.0);
   const T empirical = c0 * u * u - c1 * u * q + c2 * q * q;
   if (rotor.models.thrust == ThrustLaw::buhl_f)
@@ -480,8 +481,9 @@ T annulus_thrust(const AirRotor& rotor, const StationMotion<T>& motion, const T&
 }
 
 /// Axial row of the balance of momentum with the polynomial of Madsen et al. (2020) [m^2/s^2]:
-/// F^3 a = k1 F^2 c + k2 F c^2 + k3 c^3, times 4 u^2. a = -Q_n/U_n; c: thrust coefficient without
-/// the loss factor F. `thrust`: axial load divided by rho pi r [m^2/s^2].
+/// F^3 a = k1 F^2 c + k2 F c |c| + k3 c^3, times 4 u^2. a = -Q_n/U_n; c: thrust coefficient without
+/// the loss factor F. `thrust`: axial load divided by rho pi r [m^2/s^2]. The rows are odd in c and
+/// have no seam at U_n = 0; the polynomial is that of positive c.
 template <class T>
 T madsen_row(const AirRotor& rotor, const StationMotion<T>& motion, const T& Q_n, const T& F,
              const T& thrust) {
@@ -489,11 +491,23 @@ T madsen_row(const AirRotor& rotor, const StationMotion<T>& motion, const T& Q_n
   constexpr double k1 = 0.2460;
   constexpr double k2 = 0.0586;
   constexpr double k3 = 0.0883;
-  const double sign = math::plain_value(motion.wind_axial) < 0.0 ? -1.0 : 1.0;
   const T square = motion.wind_axial * motion.wind_axial + T(rotor.least_speed * rotor.least_speed);
-  const T c = thrust * T(sign) / square;
-  const T polynomial = ((c * T(k3) + F * T(k2)) * c + F * F * T(k1)) * c;
-  return (polynomial * square * T(sign) + F * F * F * sqrt(square) * Q_n) * T(4.0);
+  const T c = thrust / square;
+  const T size = math::plain_value(c) < 0.0 ? T(-c) : c;
+  const T polynomial = ((c * c * T(k3) + F * size * T(k2)) + F * F * T(k1)) * c;
+  return (polynomial * square + F * F * F * sqrt(square) * Q_n) * T(4.0);
+}
+
+/// Factor of the load in the balance of momentum: 0 up to the tip-speed ratio 1, where the rotor is
+/// no disk, and 1 from 2 on. `hub_speed` [rad/s]; `wind_square`: of the wind against the rotor
+/// [m^2/s^2].
+template <class T>
+T disk_share(const AirRotor& rotor, const T& hub_speed, const T& wind_square) {
+  using std::sqrt;
+  const T least(rotor.least_speed * rotor.least_speed);
+  const T tip_speed = hub_speed * T(rotor.tip_radius);
+  const T ratio = sqrt(T((tip_speed * tip_speed + least) / (wind_square + least)));
+  return math::smoothstep(T(ratio - T(1.0)));
 }
 
 /// The two rows of the balance of momentum, divided by rho pi r_0 [m^2/s^2]. `lift`, `drag`: force
@@ -505,16 +519,17 @@ Eigen::Matrix<T, 2, 1> momentum_rows(const AirRotor& rotor, const AirStation& st
   using math::dot;
   using std::sqrt;
   const AirModels& models = rotor.models;
-  const double per_ring =
-      rotor.loading * rotor.blades / (rotor.density * std::numbers::pi * station.radius);
+  const T wind_square = motion.wind_axial * motion.wind_axial + motion.wind_across_square;
+  const T per_ring = disk_share(rotor, motion.hub_speed, wind_square) *
+                     T(rotor.blades / (rotor.density * std::numbers::pi * station.radius));
   const T ring = motion.radius * motion.spread * T(1.0 / station.radius);
   const T F = loss_factor(rotor, station, motion, Q_n, Q_t);
   T axial = dot(lift, motion.axial);
   if (models.axial_drag) axial += dot(drag, motion.axial);
   Eigen::Matrix<T, 2, 1> rows;
   rows(0) = models.thrust == ThrustLaw::madsen
-                ? T(ring * madsen_row(rotor, motion, Q_n, F, T(axial * T(per_ring) / ring)))
-                : T(axial * T(per_ring) - ring * annulus_thrust(rotor, motion, Q_n, F));
+                ? T(ring * madsen_row(rotor, motion, Q_n, F, T(axial * per_ring / ring)))
+                : T(axial * per_ring - ring * annulus_thrust(rotor, motion, Q_n, F));
   rows(1) = Q_t;
   if (models.induction != Induction::full) return rows;
   T tangential = dot(lift, motion.tangential);
@@ -522,7 +537,7 @@ Eigen::Matrix<T, 2, 1> momentum_rows(const AirRotor& rotor, const AirStation& st
   const T through = motion.wind_axial + Q_n;
   const T mass_flow = sqrt(
       T(through * through + motion.wind_across_square + T(rotor.least_speed * rotor.least_speed)));
-  rows(1) = tangential * T(per_ring) + ring * F * mass_flow * Q_t * T(4.0);
+  rows(1) = tangential * per_ring + ring * F * mass_flow * Q_t * T(4.0);
   return rows;
 }
 

@@ -149,7 +149,8 @@ struct UnconstrainedCoordinate {
   std::string name;  ///< "yaw"
   PetscInt unknown = 0;
   PetscInt row = 0;
-  std::string unit;  ///< unit of the load: "N m"
+  std::string unit;   ///< unit of the load: "N m"
+  double mean = 0.0;  ///< at which it is held while others are found [as the unknown]
 };
 
 /// z~(t) = P z(t + T/Q): entry i of P z is sign[i] z[source[i]] (docs/theory.md, section 5).
