@@ -53,9 +53,6 @@ constexpr Accuracy of_residual{1e-8, 1e-6};
 /// medium.
 constexpr Accuracy of_change{3e-4, 1e-2};
 constexpr double increase_with_medium = 2.0;
-/// Where all of these changes became smaller by this factor at once, fewer harmonics are added.
-constexpr double fast_fall = 0.1;
-constexpr double small_increase_with_medium = 1.5;
 /// Wanted change of a growth, relative to itself or to this part of the exponent.
 constexpr double wanted_change = 1e-3;
 constexpr double least_growth = 0.01;
@@ -750,7 +747,6 @@ class Analysis {
       // All ranks follow the first one.
       all_ranks_.share(0, is_done);
       double largest = 0.0;
-      double slowest_fall = added > 0 ? 0.0 : 1.0;  // of the residuals, since the attempt before
       std::vector<HillGroup> left;
       std::vector<std::vector<Decay>> decays;  // of these
       for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -761,7 +757,6 @@ class Analysis {
                 .push_back(std::move(member));
         } else {
           largest = std::max(largest, residual);
-          if (added > 0) slowest_fall = std::max(slowest_fall, residual / groups[g].before);
           groups[g].before = residual;
           groups[g].before_exponents.clear();
           decays.emplace_back();
@@ -778,9 +773,8 @@ class Analysis {
       // The residual falls by the same factor with each harmonic.
       if (!groups.empty()) {
         const double factor =
-            has_medium_
-                ? (slowest_fall < fast_fall ? small_increase_with_medium : increase_with_medium)
-                : std::log(0.3 * accuracy().wanted) / std::log(std::min(largest, 0.9));
+            has_medium_ ? increase_with_medium
+                        : std::log(0.3 * accuracy().wanted) / std::log(std::min(largest, 0.9));
         int next = std::min(
             most_harmonics,
             static_cast<int>(

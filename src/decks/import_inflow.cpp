@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -18,6 +20,7 @@ using io::UniformWindRow;
 using model::WindDefinition;
 
 constexpr double whole_turn = 360.0;
+constexpr int turbsim = 3;
 
 /// An angle in degrees as it is between -180 and 180, without the round-off of sums.
 double wrap(double angle) {
@@ -39,7 +42,7 @@ class InflowImporter {
       read_steady();
     else if (type == 2)
       read_uniform();
-    else
+    else if (type != turbsim || !read_turbsim())
       leave_out(type);
     has_wind_ &= import_.errors.size() == errors_before;
     if (has_wind_) finish();
@@ -104,6 +107,65 @@ class InflowImporter {
     } catch (const InputError& error) {
       import_.errors.add_message(error.what());
     }
+  }
+
+  /// The mean wind of a file of TurbSim: speed in the middle of the box, and the power law that
+  /// fits the means of its rows. @returns false where there is no such file
+  bool read_turbsim() {
+    const std::string key = deck_->has("FileName_BTS") ? "FileName_BTS" : "Filename";
+    deck_->choose("Filename", 1);
+    if (!deck_->has(key)) return false;
+    const std::filesystem::path path =
+        std::filesystem::path(deck_->path()).parent_path() / deck_->text(key);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    try {
+      use(io::read_turbsim_box(path.string()), path.string(), key);
+    } catch (const InputError& fault) {
+      import_.errors.add_message(fault.what());
+    }
+    return true;
+  }
+
+  void use(const model::WindBox& box, const std::string& path, const std::string& key) {
+    std::vector<double> means;  // by row
+    for (int row = 0; row < box.rows; ++row) {
+      double sum = 0.0;
+      for (int i = 0; i < box.times; ++i)
+        for (int column = 0; column < box.columns; ++column)
+          sum += box.values[static_cast<std::size_t>(
+              3 * ((i * static_cast<std::ptrdiff_t>(box.rows) + row) * box.columns + column))];
+      means.push_back(sum / (static_cast<double>(box.times) * box.columns));
+    }
+    const double middle = 0.5 * (box.rows - 1);
+    const auto below = static_cast<std::size_t>(middle);
+    const double speed = 0.5 * (means[below] + means[static_cast<std::size_t>(std::ceil(middle))]);
+    const double height = box.bottom + middle * box.height;
+    if (!(speed > 0.0 && height > 0.0))
+      throw InputError(path + ": the mean wind in the middle of the box is not downwind");
+    double products = 0.0;
+    double squares = 0.0;
+    for (std::size_t row = 0; row < means.size(); ++row) {
+      const double place = box.bottom + static_cast<double>(row) * box.height;
+      if (!(place > 0.0 && means[row] > 0.0)) continue;
+      const double x = std::log(place / height);
+      products += x * std::log(means[row] / speed);
+      squares += x * x;
+    }
+    wind_.speed = speed;
+    wind_.height = height - source_.foot;
+    const std::string source = "the mean of the file in the middle of its box";
+    import_.note("wind.speed", source);
+    import_.note("wind.height", "the middle of the box");
+    constexpr double least_exponent = 1e-3;
+    const double exponent = squares > 0.0 ? products / squares : 0.0;
+    if (std::abs(exponent) > least_exponent) set_power(exponent, "the means of the rows");
+    import_.say(*deck_, "WindType", Fate::derived, "3: the mean wind of a file of TurbSim");
+    import_.say(*deck_, key, Fate::derived, "wind: " + source);
+    import_.warn(path,
+                 "note: the case has the mean wind of the file, " + rounded(speed) +
+                     " m/s; hint: transient.wind: {box: {file: ...}} of the case names this file");
+    has_wind_ = true;
   }
 
   static UniformWindRow at_start(const std::vector<UniformWindRow>& rows) {

@@ -337,6 +337,35 @@ BOOST_AUTO_TEST_CASE(without_a_steady_wind_the_case_has_models_without_air) {
   BOOST_TEST(holds(import.text, "density: 1.2}"));
 }
 
+BOOST_AUTO_TEST_CASE(a_file_of_turbsim_gives_its_mean_wind) {
+  // Two instants of three rows at 20, 40 and 60 m, with the means 20 (z/40)^0.5, and two columns.
+  std::string bytes;
+  const auto add = [&bytes]<class T>(T value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  add(std::int16_t{7});
+  for (const int number : {3, 2, 0, 2}) add(std::int32_t{number});
+  // Distances up and across, time step, speed, height of the hub, of the lowest row.
+  for (const float number : {20.0F, 30.0F, 0.5F, 20.0F, 40.0F, 20.0F}) add(number);
+  for (int c = 0; c < 3; ++c)
+    for (const float number : {1000.0F, 0.0F}) add(number);
+  add(std::int32_t{0});
+  for (const double gust : {-0.5, 0.5})
+    for (const double height : {20.0, 40.0, 60.0})
+      for (const double side : {-0.2, 0.2})
+        for (const double speed : {20.0 * std::sqrt(height / 40.0) + gust + side, 0.0, 0.0})
+          add(static_cast<std::int16_t>(std::lround(1000.0 * speed)));
+  const DeckFolder folder("three");
+  folder.replace("Inflow.dat", "1             WindType", "3             WindType");
+  folder.write("turbulence.bts", bytes);
+  const Import import = import_main(folder);
+  const model::WindDefinition wind = parse(import).turbine.wind.value();
+  BOOST_TEST(std::abs(wind.speed - 20.0) < 1e-3);
+  BOOST_TEST((wind.profile == model::WindDefinition::Profile::power));
+  BOOST_TEST(std::abs(wind.exponent - 0.5) < 1e-4);
+  BOOST_TEST(warns(import, "transient.wind: {box: {file: ...}}"));
+}
+
 BOOST_AUTO_TEST_CASE(decks_without_air_stay_structures) {
   const DeckFolder folder("three");
   const std::string expected = import_main(folder, "Main.fst").text;

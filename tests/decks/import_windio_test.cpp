@@ -108,12 +108,29 @@ BOOST_AUTO_TEST_CASE(the_tower_is_made_of_exact_rings) {
   const model::BeamDefinition tower = read_second().tower;
   BOOST_TEST(tower.length == 40.0);
   // The wall jumps at half height.
-  BOOST_REQUIRE(tower.sections.size() == 4u);
   const std::vector<double> mass = {
       ring_area(3.0, 0.02) * 7800.0 * 1.07, ring_area(2.5, 0.02) * 7800.0 * 1.07,
       ring_area(2.5, 0.012) * 7800.0 * 1.07, ring_area(2.0, 0.012) * 7800.0 * 1.07};
-  for (std::size_t i = 0; i < 4; ++i) BOOST_TEST(is_near(tower.sections[i].mass(0, 0), mass[i]));
+  const auto behind = std::find_if(tower.sections.begin(), tower.sections.end(),
+                                   [](const auto& section) { return section.at >= 0.5; }) +
+                      1;
+  const auto half = static_cast<std::size_t>(behind - tower.sections.begin());
+  BOOST_REQUIRE(std::abs(behind->at - 0.5) < 1e-9);
+  BOOST_TEST(is_near(tower.sections[0].mass(0, 0), mass[0]));
+  BOOST_TEST(is_near(tower.sections[half - 1].mass(0, 0), mass[1]));
+  BOOST_TEST(is_near(tower.sections[half].mass(0, 0), mass[2]));
+  BOOST_TEST(is_near(tower.sections.back().mass(0, 0), mass[3]));
   require_same(integrate(tower, 0, 0), integrate({0.0, 0.5, 0.5, 1.0}, mass, 40.0));
+  // The stiffness, which is not linear between the stations of the deck, is that of the ring.
+  for (std::size_t i = 1; i < tower.sections.size(); ++i) {
+    const model::SectionDefinition& a = tower.sections[i - 1];
+    const model::SectionDefinition& b = tower.sections[i];
+    const double outer = 3.0 - 0.5 * (a.at + b.at);
+    const double inner = outer - 2.0 * (i < half ? 0.02 : 0.012);
+    const double ring = 2e11 * std::numbers::pi / 64.0 * (std::pow(outer, 4) - std::pow(inner, 4));
+    if (i != half)
+      BOOST_TEST(std::abs(0.5 * (a.stiffness(4, 4) + b.stiffness(4, 4)) / ring - 1.0) < 1e-3);
+  }
   const model::SectionDefinition& foot = tower.sections[0];
   const double second = std::numbers::pi / 64.0 * (std::pow(3.0, 4) - std::pow(2.96, 4));
   BOOST_TEST(is_near(foot.stiffness(4, 4), 2e11 * second));
@@ -125,6 +142,26 @@ BOOST_AUTO_TEST_CASE(the_tower_is_made_of_exact_rings) {
   // A thin ring carries half of its area in shear, a little more for a positive Poisson ratio.
   const double share = foot.stiffness(1, 1) / (79.3e9 * ring_area(3.0, 0.02));
   BOOST_TEST((share > 0.5 && share < 0.56));
+}
+
+BOOST_AUTO_TEST_CASE(the_greatest_tip_speed_limits_the_rotor_speed) {
+  const DeckFolder folder("windio");
+  const auto speed = [&] {
+    return parse(import_windio(folder / "first.yaml", tower_only)).turbine.shaft.speed;
+  };
+  const double before = speed();
+  folder.replace("first.yaml", "  torque:\n    VS_maxspd: 1.9373154697137058",
+                 "  supervisory: {maxTS: 20}\n  torque:\n    VS_maxspd: 1.9373154697137058");
+  const std::string text = folder.text("first.yaml");
+  const std::size_t assembly = text.find("assembly:");
+  BOOST_REQUIRE(assembly != std::string::npos);
+  const std::size_t line = text.find('\n', assembly) + 1;
+  std::string other = text;
+  folder.write("first.yaml", other.insert(line, "  rotor_diameter: 40\n"));
+  BOOST_TEST(before > 1.0);
+  BOOST_TEST(is_near(speed(), 1.0));
+  folder.replace("first.yaml", "maxTS: 20", "maxTS: 200");
+  BOOST_TEST(is_near(speed(), before));
 }
 
 BOOST_AUTO_TEST_CASE(both_versions_give_the_same_turbine) {

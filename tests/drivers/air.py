@@ -197,7 +197,8 @@ class Commands(ProgramTest):
         self.assertLess(abs(speeds[0] / speeds[1] - 1), 0.02)
 
     def test_wind_decides_the_angle_of_free_yaw(self):
-        """The equilibrium turns with the wind; a weak spring hardly moves it."""
+        """The equilibrium turns with the wind, but for a tower that is not equally stiff in all
+        directions; a weak spring hardly moves it."""
         def yaw(*keys):
             self.succeed("trim", LAND, *QUICK, *WIND, *(part for key in keys for part in ("--set", key)),
                          "-o", "run.h5", "--csv", "run.csv")
@@ -209,7 +210,7 @@ class Commands(ProgramTest):
         aligned = yaw(free)
         self.assertGreater(abs(aligned), 0.5)
         for direction in (20, 60, 170):
-            self.assertLess(abs(yaw(free, f"wind.direction_deg={direction}") - direction - aligned), 0.02)
+            self.assertLess(abs(yaw(free, f"wind.direction_deg={direction}") - direction - aligned), 0.06)
         spring = "nacelle.yaw={joint: free, stiffness: 1e3}"
         self.assertLess(abs(yaw(spring) - aligned), 0.02 * abs(aligned))
         text = self.succeed("floquet", LAND, *QUICK, *WIND, "--set", free).stdout

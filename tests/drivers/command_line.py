@@ -220,7 +220,7 @@ class Tables(ProgramTest):
             run = self.samara("floquet", "case.yaml", "--set", f"floquet.steps={steps}", "-o", "a.h5")
             self.assertEqual(run.returncode, 3, run.stdout)
             self.assertRegex(run.stdout, r"(?m)^no verdict: modes from \S+ Hz on are not resolved; "
-                             r"hint: more floquet\.steps$")
+                             r"hint: more floquet\.steps, or floquet\.modes$")
             self.assertIn("no verdict", run.stderr)
             self.assertIn("result: a.h5", run.stdout)
 

@@ -59,6 +59,32 @@ WindBox linear_box(bool is_periodic) {
 
 BOOST_AUTO_TEST_SUITE(changing_wind)
 
+/// Laws of the mean wind by hand, at a place 30 m above the reference height and 10 m to the left.
+BOOST_AUTO_TEST_CASE(profiles_of_the_mean_wind) {
+  const Vector3 place(-10.0, 0.0, 120.0);  // left of one who looks along n2
+  const auto speed_of = [&](const elements::MeanWind& wind) { return wind.at<double>(place)(1); };
+  elements::MeanWind wind = mean_wind();
+  wind.profile = elements::WindProfile::power;
+  wind.exponent = 0.2;
+  BOOST_TEST(std::abs(speed_of(wind) - 12.0 * std::pow(120.0 / 90.0, 0.2)) < round_off * 12.0);
+  wind.profile = elements::WindProfile::logarithmic;
+  wind.roughness = 0.03;
+  BOOST_TEST(std::abs(speed_of(wind) - 12.0 * std::log(4000.0) / std::log(3000.0)) < 1e-11);
+  wind = mean_wind();
+  wind.shear_up = 0.01;
+  wind.shear_left = 0.02;
+  BOOST_TEST(std::abs(speed_of(wind) - 12.5) < 1e-11);
+  // Veer turns the wind with the height: 0.001 rad/m counter-clockwise seen from above.
+  wind = mean_wind();
+  wind.direction = 0.1;
+  wind.veer = 0.001;
+  wind.upflow = 0.05;
+  const Vector3 velocity = wind.at<double>(place);
+  BOOST_TEST(std::abs(velocity(0) + 12.0 * std::cos(0.05) * std::sin(0.13)) < 1e-11);
+  BOOST_TEST(std::abs(velocity(1) - 12.0 * std::cos(0.05) * std::cos(0.13)) < 1e-11);
+  BOOST_TEST(std::abs(velocity(2) - 12.0 * std::sin(0.05)) < 1e-11);
+}
+
 /// Class I A at 12 m/s: sigma_1 = 0.16 (9 + 5.6) = 2.336 m/s, D/Lambda_1 = 3, V_e1 = 56 m/s:
 /// V_gust = min(59.4, 3.3 x 2.336/1.3) = 5.929846 m/s.
 BOOST_AUTO_TEST_CASE(the_operating_gust_has_the_values_of_the_standard) {

@@ -126,15 +126,15 @@ BOOST_AUTO_TEST_CASE(searches_in_wind_agree_with_integration) {
 }
 
 BOOST_AUTO_TEST_CASE(a_mode_of_the_inflow_is_none_of_the_turbine) {
-  // With a free yaw, half of the motion of a mode of the inflow is that of the turbine: the search
-  // finds it, and the participation factors of its states tell what it is.
+  // With a free yaw on a soft spring, part of the motion of a mode of the inflow is that of the
+  // turbine: the search finds it, and the participation factors of its states tell what it is.
   Steady turbine(
       io::read_case(input_path("two_bladed/teetering"),
                     {"blades.elements=2", "blades.order=2", "tower.elements=1", "wind.speed=11",
-                     "blades.pitch_deg=0", "nacelle.yaw={joint: free}"}));
+                     "blades.pitch_deg=0", "nacelle.yaw={joint: free, stiffness: 4e6}"}));
   const analysis::ModeSet all = turbine.floquet({120, analysis::FloquetPeriod::automatic, 6});
   BOOST_TEST(std::ranges::any_of(all.modes, [](const analysis::Mode& mode) {
-    return is_of_medium(mode) && mode.name == "inflow symmetric" && mode.exponent.imag() > 0.0;
+    return is_of_medium(mode) && mode.name == "inflow symmetric";
   }));
   require_agreement(turbine.floquet(some_modes(6)), all);
   const analysis::ModeSet slowest = turbine.floquet(slowest_decays(6));
