@@ -10,6 +10,7 @@ import math
 import os
 import pathlib
 import re
+import shlex
 import sys
 import unittest
 
@@ -52,6 +53,22 @@ class PublicDecks(ProgramTest):
         run = self.run_import(deck, *([] if outcome == "imports" else [outcome]))
         self.assertEqual(run.returncode, 0, run.stderr)
         return True
+
+    def test_the_campbell_diagram_of_the_readme(self):
+        """The three commands of README.md, at two of their wind speeds on one rank."""
+        text = (SOURCE / "README.md").read_text(encoding="utf-8").replace("\\\n", " ")
+        imported, campbell, plot = (
+            next(shlex.split(line) for line in text.splitlines() if words in line)
+            for words in ("samara import openfast 5MW", "samara campbell 5mw.yaml", "samara plot campbell.h5"))
+        name = imported[imported.index("openfast") + 1]
+        decks = list(pathlib.Path(FOLDER).rglob(name))
+        if not decks:
+            self.skipTest("no " + name)
+        self.succeed("import", "openfast", decks[0], *imported[imported.index(name) + 1:])
+        options = [re.sub(r"wind_speeds=.*", "wind_speeds=[8, 15]", word) for word in campbell]
+        self.succeed("campbell", *options[options.index("campbell") + 1:])
+        self.succeed("plot", *plot[plot.index("plot") + 1:])
+        self.assertIn("campbell.svg", self.files())
 
     def test_every_deck_of_the_folder_is_in_the_table(self):
         known = {row["deck"] for row in read_table()}
