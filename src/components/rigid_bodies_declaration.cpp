@@ -68,8 +68,8 @@ void RigidBodies::describe(Registry& registry) {
     registry.add(system::UnconstrainedCoordinate{name, joint(number), joint(number) + 1, "N m"});
   };
   if (chain.yaw.free && chain.yaw.stiffness == 0.0) {
-    // Wind restores it, or turns it away. The shaft starts along the wind.
-    if (turbine_.air && turbine_.air->hub_wind > 0.0)
+    // Wind on a rotor that turns restores it, or turns it away. The shaft starts along the wind.
+    if (turbine_.air && turbine_.air->hub_wind > 0.0 && turbine_.speed != 0.0)
       registry.add_free(
           {"yaw", joint(yaw), joint(yaw) + 1, "N m", turbine_.air->rotor.wind.mean.direction});
     else
