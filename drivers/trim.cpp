@@ -37,7 +37,7 @@ struct Output {
 };
 
 /// Equal blades that turn differ only in azimuth.
-bool is_alike(const turbine::TurbineSystem& system) {
+bool has_one_blade_for_all(const turbine::TurbineSystem& system) {
   return system.symmetry().sectors > 1 && system.period() > 0.0;
 }
 
@@ -55,7 +55,7 @@ std::vector<Output> outputs_of(const turbine::TurbineSystem& system, double load
   const auto add_angle = [&outputs](const std::string& name, int unknown) {
     outputs.push_back({name, "deg", unknown, 180.0 / std::numbers::pi, round_off});
   };
-  const int shown = is_alike(system) ? 1 : static_cast<int>(turbine.blades.size());
+  const int shown = has_one_blade_for_all(system) ? 1 : static_cast<int>(turbine.blades.size());
   for (int k = 0; k < shown; ++k) {
     const std::string blade = turbine.blades[static_cast<std::size_t>(k)].name;
     const int root = layout.blade_root(k);
@@ -130,7 +130,7 @@ std::string output_table(const turbine::TurbineSystem& system, const Trim& trim)
   std::string notes;
   if (shown > 0) notes += "kP: amplitude at k times the rotor speed";
   if (shown < solution.harmonics()) notes += "; higher ones are in the result";
-  if (is_alike(system))
+  if (has_one_blade_for_all(system))
     notes +=
         std::string(notes.empty() ? "" : "; ") + "the other blades are equal, each at its azimuth";
   return table.text() + (notes.empty() ? "" : notes + "\n");

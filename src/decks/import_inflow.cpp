@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -52,8 +51,9 @@ class InflowImporter {
 
  private:
   void leave_out(int type) {
-    const std::string words =
-        std::to_string(type) + ": a file of turbulence is not read, the case has no wind";
+    const std::string words = std::to_string(type) + ": a file of turbulence is not read" +
+                              (type == turbsim ? ", because it is missing" : "") +
+                              "; the case has no wind";
     import_.say(*deck_, "WindType", Fate::ignored, words);
     import_.warn(deck_->place_of("WindType"),
                  "WindType: note: " + words + "; hint: wind.speed of the case states a steady one");
@@ -114,13 +114,10 @@ class InflowImporter {
   bool read_turbsim() {
     const std::string key = deck_->has("FileName_BTS") ? "FileName_BTS" : "Filename";
     deck_->choose("Filename", 1);
-    if (!deck_->has(key)) return false;
-    const std::filesystem::path path =
-        std::filesystem::path(deck_->path()).parent_path() / deck_->text(key);
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return false;
+    const std::string path = deck_->file_if_there(key);
+    if (path.empty()) return false;
     try {
-      use(io::read_turbsim_box(path.string()), path.string(), key);
+      use(io::read_turbsim_box(path), path, key);
     } catch (const InputError& fault) {
       import_.errors.add_message(fault.what());
     }

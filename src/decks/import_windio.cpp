@@ -364,20 +364,26 @@ class Importer {
 
   // ---- bodies
 
+  /// The speed of the rotor at the greatest tip speed [rev/min]; empty where the deck has none.
+  std::optional<double> speed_of_tip(const std::string& use) {
+    if (choose({"control.supervisory.maxTS"}).empty() ||
+        choose({"assembly.rotor_diameter"}).empty())
+      return {};
+    const double tip_speed = number({"control.supervisory.maxTS"}, Fate::derived, use);
+    const double diameter = number({"assembly.rotor_diameter"}, Fate::derived, use);
+    if (diameter > 0.0) return 60.0 * tip_speed / (std::numbers::pi * diameter);
+    refuse("assembly.rotor_diameter", "expected a number > 0");
+    return 0.0;
+  }
+
   /// The greatest tip speed may be reached below the greatest speed of the controller. A small
   /// difference is the rounding of the diameter.
   void limit_to_tip_speed(double& rpm) {
     constexpr double rounding = 0.98;
-    if (choose({"control.supervisory.maxTS"}).empty() ||
-        choose({"assembly.rotor_diameter"}).empty())
-      return;
-    const std::string use = "limits shaft.speed_rpm to maxTS/(rotor_diameter/2)";
-    const double tip_speed = number({"control.supervisory.maxTS"}, Fate::derived, use);
-    const double diameter = number({"assembly.rotor_diameter"}, Fate::derived, use);
-    if (!(tip_speed > 0.0 && diameter > 0.0)) return;
-    const double limit = 60.0 * tip_speed / (std::numbers::pi * diameter);
-    if (!(limit < rounding * rpm)) return;
-    rpm = limit;
+    const std::optional<double> limit =
+        speed_of_tip("limits shaft.speed_rpm to maxTS/(rotor_diameter/2)");
+    if (!limit || !(*limit > 0.0 && *limit < rounding * rpm)) return;
+    rpm = *limit;
     note("shaft.speed_rpm",
          "from the greatest tip speed, control.supervisory.maxTS; VS_maxspd is beyond it");
   }
@@ -404,16 +410,9 @@ class Importer {
       note("shaft.speed_rpm",
            is_first_ ? "control.torque.VS_maxspd, from rad/s" : "control.torque.VS_maxspd");
       limit_to_tip_speed(rpm);
-    } else if (!choose({"control.supervisory.maxTS"}).empty() &&
-               !choose({"assembly.rotor_diameter"}).empty()) {
-      const double tip_speed = number({"control.supervisory.maxTS"}, Fate::derived,
-                                      "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
-      const double diameter = number({"assembly.rotor_diameter"}, Fate::derived,
-                                     "shaft.speed_rpm = maxTS/(rotor_diameter/2)");
-      if (diameter > 0.0)
-        rpm = 60.0 * tip_speed / (std::numbers::pi * diameter);
-      else
-        refuse("assembly.rotor_diameter", "expected a number > 0");
+    } else if (const std::optional<double> limit =
+                   speed_of_tip("shaft.speed_rpm = maxTS/(rotor_diameter/2)")) {
+      rpm = *limit;
       note("shaft.speed_rpm", "from the greatest tip speed, control.supervisory.maxTS");
     } else if (!is_stated("shaft.speed_rpm")) {
       missing("the rated rotor speed", "shaft.speed_rpm");
