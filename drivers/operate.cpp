@@ -62,7 +62,7 @@ std::string point_table(const std::vector<OperatingPoint>& points) {
                                  fixed(point.tip_in_plane, 3),
                                  fixed(point.tip_twist * to_degrees, 3)};
     if (has_lags) row.push_back(fixed(point.time_constant, 2));
-    table.add_row(row);
+    table.add_row(std::move(row));
   }
   return table.text() +
          "Means over a revolution. Torque: of the generator, behind the gear. Power and thrust: of "
