@@ -31,30 +31,6 @@ constexpr std::array<double, 17> radii{2.8667, 5.6,   8.3333,  11.75, 15.85,  19
                                        24.05,  28.15, 32.25,   36.35, 40.45,  44.55,
                                        48.65,  52.75, 56.1667, 58.9,  61.6333};
 
-/// The section of each station over its whole element, whose mean would otherwise count: the loads
-/// to compare with are those at the stations.
-void keep_sections_of_stations(model::BladesDefinition& blades) {
-  const std::vector<model::AeroSectionDefinition> table = blades.aero_sections;
-  double sum = 0.0;
-  for (const double length : blades.beam.element_lengths) sum += length;
-  blades.aero_sections.clear();
-  double start = 0.0;
-  for (const double length : blades.beam.element_lengths) {
-    const double end = start + length / sum;
-    const double middle = 0.5 * (start + end);
-    model::AeroSectionDefinition section = *std::ranges::min_element(
-        table, {}, [middle](const auto& one) { return std::abs(one.at - middle); });
-    BOOST_TEST(std::abs(section.at - middle) < 1e-4);
-    section.center = {};
-    constexpr double gap = 1e-9;
-    for (const double at : {start + gap, end - gap}) {
-      section.at = at;
-      blades.aero_sections.push_back(section);
-    }
-    start = end;
-  }
-}
-
 Steady rotor_at(double ratio, const std::string& thrust) {
   io::Case input = io::read_case(
       input_path("nrel5mw/land"),
@@ -67,7 +43,8 @@ Steady rotor_at(double ratio, const std::string& thrust) {
        "aero.inflow=equilibrium", "aero.skew=none", "aero.thrust=" + thrust, "trim.harmonics=8"});
   make_rigid(input.turbine.blades.beam);
   make_rigid(input.turbine.tower);
-  keep_sections_of_stations(input.turbine.blades);
+  for (model::AeroSectionDefinition& section : input.turbine.blades.aero_sections)
+    section.center = {};
   return Steady(input);
 }
 
