@@ -104,7 +104,7 @@ void compare_with_differences(const io::Case& input, const std::vector<std::stri
   int compared = 0;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const double value = parameters[p].value;
-    const double step = relative_step * (value == 0.0 ? 10.0 : std::abs(value));
+    const double step = value == 0.0 ? 0.02 : relative_step * std::abs(value);
     std::vector<analysis::ModeSet> sets;
     for (const double offset : {-2.0, -1.0, 1.0, 2.0})
       sets.push_back(Solved(with_value(input, parameters[p], value + offset * step)).set);
