@@ -294,27 +294,18 @@ AirPointReport<T> BladeAir::report_at(int p, const Eigen::Matrix<T, arguments, 1
 }
 
 template <class T>
-std::vector<AirPointReport<T>> BladeAir::report(const Residual<T>& residual,
-                                                const std::vector<AirPointReport<T>>* known) const {
-  const elements::WindInputs<T>& change = residual.inputs().wind;
-  const bool is_wind_real = std::ranges::all_of(
-      std::array{change.speed, change.direction, change.upflow, change.shear_up, change.shear_left},
-      [](const T& value) { return std::imag(value) == 0.0; });
+std::vector<AirPointReport<T>> BladeAir::report(const Residual<T>& residual) const {
   std::vector<AirPointReport<T>> reports;
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    const Eigen::Matrix<T, arguments, 1> x = residual.template gather<arguments>(points_[p]);
-    const bool is_known = known != nullptr && is_wind_real && x.imag().isZero(0.0);
-    reports.push_back(is_known ? (*known)[p]
-                               : report_at<T>(static_cast<int>(p), x, residual.time(), change));
-  }
+  for (std::size_t p = 0; p < points_.size(); ++p)
+    reports.push_back(report_at<T>(static_cast<int>(p),
+                                   residual.template gather<arguments>(points_[p]), residual.time(),
+                                   residual.inputs().wind));
   return reports;
 }
 
-template std::vector<AirPointReport<double>> BladeAir::report(
-    const Residual<double>&, const std::vector<AirPointReport<double>>*) const;
+template std::vector<AirPointReport<double>> BladeAir::report(const Residual<double>&) const;
 template std::vector<AirPointReport<std::complex<double>>> BladeAir::report(
-    const Residual<std::complex<double>>&,
-    const std::vector<AirPointReport<std::complex<double>>>*) const;
+    const Residual<std::complex<double>>&) const;
 
 void BladeAir::settle(const Residual<double>& residual, std::vector<double>& values) const {
   for (int p = 0; p < blade_.placed().beam->point_count(); ++p) {

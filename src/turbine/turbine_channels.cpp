@@ -217,7 +217,9 @@ class Quantities {
     put(first + section_turn, along_beam<T>(turn));
   }
 
-  void add_rotor_air(double t, const AirReports<T>& air) {
+  using AirReport = std::vector<std::vector<components::AirPointReport<T>>>;
+
+  void add_rotor_air(double t, const AirReport& air) {
     Vec6<T> load = Vec6<T>::Zero();
     T wind(0.0);
     T area(0.0);
@@ -337,8 +339,7 @@ class Quantities {
 
 template <class T>
 void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                               std::span<T> values, const TurbineInputs<T>& inputs,
-                               const AirReports<T>* known) const {
+                               std::span<T> values, const TurbineInputs<T>& inputs) const {
   const model::Turbine& turbine = system_.turbine();
   const int blades = static_cast<int>(turbine.blades.size());
   Quantities<T> quantities(system_, inputs, size_);
@@ -350,7 +351,7 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
     quantities.add_section(section.slot, *placed.beam, placed.points, section.place, z, z_dot);
   }
   if (has_air_) {
-    const auto air = system_.equations().air_report<T>(t, z, z_dot, inputs, known);
+    const auto air = system_.equations().air_report<T>(t, z, z_dot, inputs);
     quantities.add_rotor_air(t, air);
     for (const Section& section : sections_) {
       const auto k = static_cast<std::size_t>(section.beam);
@@ -366,20 +367,11 @@ void TurbineChannels::evaluate(double t, const std::vector<T>& z, const std::vec
 
 template void TurbineChannels::evaluate(double, const std::vector<double>&,
                                         const std::vector<double>&, std::span<double>,
-                                        const TurbineInputs<double>&,
-                                        const AirReports<double>*) const;
+                                        const TurbineInputs<double>&) const;
 template void TurbineChannels::evaluate(double, const std::vector<std::complex<double>>&,
                                         const std::vector<std::complex<double>>&,
                                         std::span<std::complex<double>>,
-                                        const TurbineInputs<std::complex<double>>&,
-                                        const AirReports<std::complex<double>>*) const;
-
-AirReports<std::complex<double>> TurbineChannels::air_reports(
-    double t, const std::vector<std::complex<double>>& z,
-    const std::vector<std::complex<double>>& z_dot) const {
-  if (!has_air_) return {};
-  return system_.equations().air_report<std::complex<double>>(t, z, z_dot, {});
-}
+                                        const TurbineInputs<std::complex<double>>&) const;
 
 void TurbineChannels::evaluate(double t, Vec z, Vec z_dot, std::span<double> values) const {
   const auto plain = [this](Vec vector) {

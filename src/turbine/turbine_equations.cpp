@@ -296,17 +296,15 @@ components::BodiesReport<T> TurbineEquations::report(double t, const std::vector
 }
 
 template <class T>
-AirReports<T> TurbineEquations::air_report(double t, const std::vector<T>& z,
-                                           const std::vector<T>& z_dot,
-                                           const TurbineInputs<T>& inputs,
-                                           const AirReports<T>* known) const {
-  AirReports<T> reports;
+std::vector<std::vector<components::AirPointReport<T>>> TurbineEquations::air_report(
+    double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+    const TurbineInputs<T>& inputs) const {
+  std::vector<std::vector<components::AirPointReport<T>>> reports;
   if (airs_.empty()) return reports;
   std::vector<T> unused(z.size());  // only the ports count
   Residual<T> residual(t, z, z_dot, inputs, declarations_.port_sizes, unused);
   provide_poses(residual);
-  for (std::size_t k = 0; k < airs_.size(); ++k)
-    reports.push_back(airs_[k]->report(residual, known != nullptr ? &(*known)[k] : nullptr));
+  for (const auto& air : airs_) reports.push_back(air->report(residual));
   return reports;
 }
 
@@ -320,14 +318,12 @@ template void TurbineEquations::evaluate(double, const std::vector<Complex>&,
 template components::BodiesReport<double> TurbineEquations::report(
     double, const std::vector<double>&, const std::vector<double>&,
     const TurbineInputs<double>&) const;
-template AirReports<double> TurbineEquations::air_report(double, const std::vector<double>&,
-                                                         const std::vector<double>&,
-                                                         const TurbineInputs<double>&,
-                                                         const AirReports<double>*) const;
-template AirReports<Complex> TurbineEquations::air_report(double, const std::vector<Complex>&,
-                                                          const std::vector<Complex>&,
-                                                          const TurbineInputs<Complex>&,
-                                                          const AirReports<Complex>*) const;
+template std::vector<std::vector<components::AirPointReport<double>>> TurbineEquations::air_report(
+    double, const std::vector<double>&, const std::vector<double>&,
+    const TurbineInputs<double>&) const;
+template std::vector<std::vector<components::AirPointReport<Complex>>> TurbineEquations::air_report(
+    double, const std::vector<Complex>&, const std::vector<Complex>&,
+    const TurbineInputs<Complex>&) const;
 template components::BodiesReport<Complex> TurbineEquations::report(
     double, const std::vector<Complex>&, const std::vector<Complex>&,
     const TurbineInputs<Complex>&) const;

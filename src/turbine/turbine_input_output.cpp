@@ -214,12 +214,11 @@ system::OutputTangents TurbineInputOutput::output_tangents(double t, Vec z, Vec 
   ComplexVector y(outputs);
   const std::span<Complex> values(y.data(), outputs_.size());
   system::OutputTangents tangents;
-  const AirReports<Complex> known = channels_.air_reports(t, state, rate);
   const auto differentiate = [&](std::vector<Complex>& vector) {
     Eigen::MatrixXd slopes(outputs, system_.size());
     for (std::size_t j = 0; j < vector.size(); ++j) {
       vector[j] += Complex(0.0, tiny);
-      channels_.evaluate<Complex>(t, state, rate, values, {}, &known);
+      channels_.evaluate<Complex>(t, state, rate, values);
       vector[j] = vector[j].real();
       slopes.col(static_cast<Eigen::Index>(j)) = y.imag() / tiny;
     }

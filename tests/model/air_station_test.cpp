@@ -624,33 +624,6 @@ BOOST_AUTO_TEST_CASE(a_held_wake_does_not_change) {
   BOOST_TEST(derivative(air::induced, air::quasi_steady) == 0.0);
 }
 
-/// Skewed wake: 1 + 15 pi/32 (r/R) tan(chi/2) cos(psi) of Pitt and Peters, psi from the side that
-/// is farthest downwind, chi = (0.6 a + 1) times the angle of the wind (Burton et al., Wind Energy
-/// Handbook, 3.10). tan(chi/2) is (1 + 0.6 a) times the tangent of half of the angle of the wind
-/// here.
-BOOST_AUTO_TEST_CASE(skewed_wake_has_the_factor_of_pitt_and_peters) {
-  constexpr double a = 0.3;
-  AirRotor rotor = nrel_rotor(10.0, ThrustLaw::glauert_skew);
-  rotor.models.skew = pitt_peters_skew;
-  rotor.least_speed = 1e-6;
-  for (const double degrees : {0.0, 15.0, 30.0, 45.0}) {
-    const double angle = degrees * pi / 180.0;
-    for (const double psi : {0.0, 0.7, 2.0, pi}) {
-      StationMotion<double> motion{};
-      motion.wind_axial = 10.0 * std::cos(angle);
-      motion.wind_across_square = std::pow(10.0 * std::sin(angle), 2);
-      motion.wind_outward = 10.0 * std::sin(angle) * std::cos(psi);
-      motion.radius = 0.8 * rotor.tip_radius;
-      const double chi = (0.6 * a + 1.0) * angle;
-      const double expected = 15.0 * pi / 32.0 * 0.8 * std::tan(0.5 * chi) * std::cos(psi);
-      const double sigma = elements::skew_factor(rotor, motion, -a * motion.wind_axial) - 1.0;
-      BOOST_TEST(std::abs(sigma - expected) <= 0.023 * std::abs(expected) + 1e-12);
-      BOOST_TEST(std::abs(sigma - 15.0 * pi / 32.0 * 0.8 * (1.0 + 0.6 * a) * std::tan(0.5 * angle) *
-                                      std::cos(psi)) < 1e-12);
-    }
-  }
-}
-
 /// The balance of momentum has a solution at all operating points, in skewed wind and in stall.
 BOOST_AUTO_TEST_CASE(balance_of_momentum_is_solved_from_the_same_start_at_all_states) {
   std::map<bool, int> tried;  // by the law of Madsen et al., or another

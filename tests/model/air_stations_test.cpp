@@ -3,13 +3,11 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <boost/test/unit_test.hpp>
 
-#include "samara/base/error.hpp"
 #include "samara/math/quadrature.hpp"
 
 namespace samara::model {
@@ -118,19 +116,6 @@ BOOST_AUTO_TEST_CASE(no_station_has_a_negative_drag_by_its_mean) {
   definition.blades.airfoils["thin"].polars = {constant_drag(0.0)};
   for (const elements::AirStation& station : stations_of(definition))
     BOOST_TEST(drag_of(station) == 0.0);
-}
-
-/// Blades nearly along the shaft have points inboard of 0.3 hub radii.
-BOOST_AUTO_TEST_CASE(stations_inboard_of_the_hub_have_no_balance_of_momentum) {
-  TurbineDefinition definition = blade(2, {{0.0, 1.0, 0.0, "thin", {}}});
-  definition.hub.radius = 1.0;
-  definition.blades.precone = 1.5;
-  BOOST_TEST(stations_of(definition).size() == 2U);
-  definition.aero->induction = elements::Induction::full;
-  BOOST_CHECK_EXCEPTION(build_turbine(definition), InputError, [](const InputError& error) {
-    return std::string(error.what()).find("blade 1 point 1 is inboard of the hub") !=
-           std::string::npos;
-  });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -56,11 +56,9 @@ class BladeAir final : public Stated<BladeAir> {
   template <class System>
   void state(System& system) const;
 
-  /// The air at each point. `residual`: where the ports have been provided. `known`: reports of the
-  /// same real state without imaginary parts; the points whose arguments have none take them.
+  /// The air at each point. `residual`: where the ports have been provided.
   template <class T>
-  std::vector<AirPointReport<T>> report(
-      const Residual<T>& residual, const std::vector<AirPointReport<T>>* known = nullptr) const;
+  std::vector<AirPointReport<T>> report(const Residual<T>& residual) const;
 
   /// Sets the unknowns of the air in `values` to those of steady air around the blade in its
   /// present motion. `residual`: where the ports have been provided.

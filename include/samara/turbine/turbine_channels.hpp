@@ -54,15 +54,9 @@ class TurbineChannels {
   void evaluate(double t, Vec z, Vec z_dot, std::span<double> values) const;
 
   /// The same for plain arrays, under inputs. T: double, or std::complex<double> to differentiate.
-  /// `known`: as of TurbineEquations::air_report.
   template <class T>
   void evaluate(double t, const std::vector<T>& z, const std::vector<T>& z_dot, std::span<T> values,
-                const TurbineInputs<T>& inputs = {}, const AirReports<T>* known = nullptr) const;
-
-  /// Reports of the air that `evaluate` takes; empty where no channel needs them.
-  AirReports<std::complex<double>> air_reports(
-      double t, const std::vector<std::complex<double>>& z,
-      const std::vector<std::complex<double>>& z_dot) const;
+                const TurbineInputs<T>& inputs = {}) const;
 
  private:
   /// A requested station.

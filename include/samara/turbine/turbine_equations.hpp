@@ -26,10 +26,6 @@ namespace samara::turbine {
 template <class T>
 using TurbineInputs = components::TurbineInputs<T>;
 
-/// The air at each point of each blade.
-template <class T>
-using AirReports = std::vector<std::vector<components::AirPointReport<T>>>;
-
 class TurbineEquations {
  public:
   /// `at_least`: the plan includes its blocks; null: no further blocks.
@@ -88,13 +84,11 @@ class TurbineEquations {
   components::BodiesReport<T> report(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
                                      const TurbineInputs<T>& inputs) const;
 
-  /// The air at each point of each blade; empty without air. `known`: reports of the same real
-  /// state without imaginary parts, which save the work at points that a complex step does not
-  /// change.
+  /// The air at each point of each blade; empty without air.
   template <class T>
-  AirReports<T> air_report(double t, const std::vector<T>& z, const std::vector<T>& z_dot,
-                           const TurbineInputs<T>& inputs,
-                           const AirReports<T>* known = nullptr) const;
+  std::vector<std::vector<components::AirPointReport<T>>> air_report(
+      double t, const std::vector<T>& z, const std::vector<T>& z_dot,
+      const TurbineInputs<T>& inputs) const;
 
  private:
   template <class T>
