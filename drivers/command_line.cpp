@@ -158,8 +158,6 @@ class Parser {
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
       if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number))
         throw InputError(name + " needs " + expected + ", got " + quote(words));
-      if (number < 0.0 && !quantity.is_offset)
-        throw InputError(name + " must not be negative, got " + quote(words));
       numbers.push_back(number);
     }
     if (numbers.size() != quantity.count || words.ends_with(','))

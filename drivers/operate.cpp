@@ -1,12 +1,7 @@
 // samara operate: operating points over the wind speed.
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <numbers>
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "samara/analysis/ranks.hpp"
 #include "samara/base/error.hpp"
@@ -45,25 +40,15 @@ std::string point_table(const std::vector<OperatingPoint>& points) {
   table.add_column("tip out", "m");
   table.add_column("tip in", "m");
   table.add_column("tip twist", "deg");
-  const bool has_lags = std::ranges::any_of(
-      points, [](const OperatingPoint& point) { return std::isfinite(point.time_constant); });
-  if (has_lags) table.add_column("tau_1", "s");
-  for (const OperatingPoint& point : points) {
-    std::vector<std::string> row{general(point.wind, 5),
-                                 simulation::region_name(point.region),
-                                 fixed(point.speed * to_rpm, 3),
-                                 fixed(point.pitch * to_degrees, 3),
-                                 general(point.torque * to_kilo, 5),
-                                 general(point.power * to_kilo, 5),
-                                 general(point.thrust * to_kilo, 5),
-                                 fixed(point.power_coefficient, 4),
-                                 fixed(point.thrust_coefficient, 4),
-                                 fixed(point.tip_out_of_plane, 3),
-                                 fixed(point.tip_in_plane, 3),
-                                 fixed(point.tip_twist * to_degrees, 3)};
-    if (has_lags) row.push_back(fixed(point.time_constant, 2));
-    table.add_row(std::move(row));
-  }
+  table.add_column("tau_1", "s");
+  for (const OperatingPoint& point : points)
+    table.add_row({general(point.wind, 5), simulation::region_name(point.region),
+                   fixed(point.speed * to_rpm, 3), fixed(point.pitch * to_degrees, 3),
+                   general(point.torque * to_kilo, 5), general(point.power * to_kilo, 5),
+                   general(point.thrust * to_kilo, 5), fixed(point.power_coefficient, 4),
+                   fixed(point.thrust_coefficient, 4), fixed(point.tip_out_of_plane, 3),
+                   fixed(point.tip_in_plane, 3), fixed(point.tip_twist * to_degrees, 3),
+                   fixed(point.time_constant, 2)});
   return table.text() +
          "Means over a revolution. Torque: of the generator, behind the gear. Power and thrust: of "
          "the air on\nthe rotor. Tip: of blade 1, out of plane, in plane, and toward feather\n";

@@ -767,7 +767,6 @@ class Integration {
       petsc::check(TSGetTime(ts, &t));
       petsc::check(VecCopy(self.x_.get(), self.before_.get()));
       self.time_before_ = t;
-      self.has_blocking_rows_ = false;
       self.note_angles();
       self.step_before_ = self.step_;
       const double rest = self.target() - t;
@@ -935,41 +934,12 @@ class Integration {
       *reason = self.goes_on() ? SNES_CONVERGED_SNORM_RELATIVE : SNES_DIVERGED_DTOL;
       return 0;
     }
-    if (iteration == most_newton_steps && !self.has_blocking_rows_)
-      if (const PetscErrorCode code = self.keep_blocking_rows(); code != 0) return code;
     self.is_new_tangent_ = false;
     if (contraction <= slow_contraction) return 0;
     return SNESSetLagJacobian(snes, -2);
   }
 
   // ---- failure ---------------------------------------------------------------------------------
-
-  /// The rows at the end of the first solve of a step without convergence. The last correction made
-  /// them zero but for their curvature: the largest hinders Newton's method. In later, shorter
-  /// steps rates have much round-off.
-  PetscErrorCode keep_blocking_rows() noexcept {
-    Vec rows = nullptr;
-    PetscErrorCode code = SNESGetFunction(snes_, &rows, nullptr, nullptr);
-    if (code == 0 && !blocking_rows_) code = VecDuplicate(rows, blocking_rows_.fill());
-    if (code == 0) code = VecCopy(rows, blocking_rows_.get());
-    has_blocking_rows_ = code == 0;
-    return code;
-  }
-
-  /// The unknown with the largest value of a vector, or with the largest row; none if a value is no
-  /// number.
-  const system::Unknown* find_largest(Vec vector) const {
-    Eigen::MatrixXd values(1, partition_.size());
-    {
-      const petsc::ReadView view(vector);
-      partition_.spread(view.data(), values);
-    }
-    const Eigen::RowVectorXd all = partition_.whole(values).row(0);
-    if (!all.allFinite()) return nullptr;
-    Eigen::Index largest = 0;
-    all.cwiseAbs().maxCoeff(&largest);
-    return &system_.unknowns()[static_cast<std::size_t>(largest)];
-  }
 
   [[noreturn]] void fail(const std::string& reason) {
     std::ostringstream text;
@@ -978,14 +948,17 @@ class Integration {
     text << "transient: no step from t = " << t << " s (" << reason << ")";
     Vec change = nullptr;
     petsc::check(SNESGetSolutionUpdate(snes_, &change));
-    const system::Unknown* worst = nullptr;
-    if (has_blocking_rows_ && !error_) worst = find_largest(blocking_rows_.get());
-    if (worst != nullptr)
-      text << "; the equation farthest from zero: that of " << worst->name();
-    else if (change != nullptr && (worst = find_largest(change)) != nullptr)
-      text << "; the unknown that changes most: " << worst->name();
-    const bool is_inflow =
-        worst != nullptr && worst->is_of_medium() && worst->role == system::UnknownRole::auxiliary;
+    if (change != nullptr) {
+      Eigen::MatrixXd values(1, partition_.size());
+      {
+        const petsc::ReadView view(change);
+        partition_.spread(view.data(), values);
+      }
+      Eigen::Index worst = 0;
+      partition_.whole(values).row(0).cwiseAbs().maxCoeff(&worst);
+      text << "; the unknown that changes most: "
+           << system_.unknowns()[static_cast<std::size_t>(worst)].name();
+    }
     if (factor_failure_.reason != PC_NOERROR) text << "; " << factor_failure_.words;
     if (error_) {
       try {
@@ -994,9 +967,7 @@ class Integration {
         text << "; " << error.what();
       }
     }
-    text << "; hint: a smaller transient.step";
-    if (is_inflow) text << ", or aero.closure=load";
-    text << "; -transient_snes_monitor shows the corrections";
+    text << "; hint: a smaller transient.step; -transient_snes_monitor shows the corrections";
     throw ConvergenceError(text.str());
   }
 
@@ -1027,9 +998,7 @@ class Integration {
   petsc::Handle<TS> ts_;
   SNES snes_ = nullptr;
   bool is_tangent_refused_ = false;  ///< in the present solve
-  petsc::Handle<Vec> blocking_rows_;
-  bool has_blocking_rows_ = false;  ///< of the present step
-  double t_ = 0.0;                  ///< of the last residual
+  double t_ = 0.0;                   ///< of the last residual
   bool is_midpoint_ = false;
   std::vector<PetscInt> constraints_;
   petsc::Handle<Vec> z_end_;

@@ -30,15 +30,15 @@ constexpr std::array<Eigen::Index, 3> source_axis = {2, 1, 0};
 constexpr std::array<double, 3> source_sign = {1.0, -1.0, 1.0};
 
 constexpr std::array<StatedQuantity, 9> quantities{
-    {{"rotor-speed-rpm", "shaft.speed_rpm", 1, false},
-     {"nacelle-mass", "nacelle.mass", 1, false},
-     {"nacelle-center", "nacelle.center_of_mass", 3, true},
-     {"nacelle-inertia", "nacelle.inertia", 3, false},
-     {"yaw-mass", "tower.tip_mass", 1, false},
-     {"generator-inertia", "shaft.generator.own_inertia", 1, false},
-     {"hub-mass", "hub.mass", 1, false},
-     {"hub-center", "hub.center_of_mass", 1, true},
-     {"hub-inertia", "hub.inertia", 3, false}}};
+    {{"rotor-speed-rpm", "shaft.speed_rpm", 1},
+     {"nacelle-mass", "nacelle.mass", 1},
+     {"nacelle-center", "nacelle.center_of_mass", 3},
+     {"nacelle-inertia", "nacelle.inertia", 3},
+     {"yaw-mass", "tower.tip_mass", 1},
+     {"generator-inertia", "shaft.generator.own_inertia", 1},
+     {"hub-mass", "hub.mass", 1},
+     {"hub-center", "hub.center_of_mass", 1},
+     {"hub-inertia", "hub.inertia", 3}}};
 
 }  // namespace
 

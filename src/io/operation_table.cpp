@@ -57,7 +57,7 @@ constexpr std::array<Quantity, 15> quantities{
       &OperatingPoint::root_flap_moment},
      {"tower_moment", "N m", "fore-aft moment at the base of the tower",
       &OperatingPoint::tower_moment},
-     {"inflow_time_constant", "s", "first time constant of the inflow of Oye; NaN: another inflow",
+     {"inflow_time_constant", "s", "first time constant of the dynamic inflow",
       &OperatingPoint::time_constant},
      {"imbalance", "1", "residual of the steady state relative to the largest load",
       &OperatingPoint::imbalance}}};

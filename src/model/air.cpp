@@ -2,14 +2,97 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
+#include <tuple>
 
+#include "samara/base/error.hpp"
 #include "samara/math/rotation.hpp"
-#include "samara/model/air_stations.hpp"
+#include "samara/model/airfoil.hpp"
 #include "samara/model/radius.hpp"
 
 namespace samara::model {
 namespace {
+
+constexpr double kinematic_viscosity = 1.46e-5;  // of air at 15 degrees [m^2/s]
+
+/// Place of a fraction of the length between two sections, and the weight of the second one.
+struct Between {
+  const AeroSectionDefinition* before = nullptr;
+  const AeroSectionDefinition* behind = nullptr;
+  double weight = 0.0;
+
+  /// A property of the sections, linear between them.
+  double of(auto member) const {
+    return (1.0 - weight) * member(*before) + weight * member(*behind);
+  }
+};
+
+Between find_sections(const std::vector<AeroSectionDefinition>& sections, double at) {
+  const auto behind = std::ranges::lower_bound(sections, at, {},
+                                               [](const AeroSectionDefinition& s) { return s.at; });
+  if (behind == sections.begin()) return {&*behind, &*behind, 0.0};
+  if (behind == sections.end()) return {&sections.back(), &sections.back(), 0.0};
+  const AeroSectionDefinition& before = *(behind - 1);
+  return {&before, &*behind, (at - before.at) / (behind->at - before.at)};
+}
+
+/// The curves of the airfoils between sections, each made once.
+class AirfoilShelf {
+ public:
+  explicit AirfoilShelf(const std::map<std::string, AirfoilDefinition>& airfoils)
+      : airfoils_(airfoils), by_thickness_(sort_by_thickness(airfoils)) {}
+
+  std::shared_ptr<const elements::AirfoilCurves> at(const Between& place, double reynolds) {
+    if (place.before->thickness) return at_thickness(place, reynolds);
+    return between(place.before->airfoil, place.behind->airfoil, place.weight, reynolds);
+  }
+
+ private:
+  std::shared_ptr<const elements::AirfoilCurves> between(const std::string& a, const std::string& b,
+                                                         double weight, double reynolds) {
+    if (a == b) weight = 0.0;
+    const bool has_many = airfoil(a).polars.size() > 1 || airfoil(b).polars.size() > 1;
+    auto& curves = made_[{a, b, weight, has_many ? reynolds : 0.0}];
+    if (!curves)
+      curves = std::make_shared<const elements::AirfoilCurves>(
+          make_curves(airfoil(a), airfoil(b), weight, reynolds));
+    return curves;
+  }
+
+  std::shared_ptr<const elements::AirfoilCurves> at_thickness(const Between& place,
+                                                              double reynolds) {
+    const double thickness = place.of([](const AeroSectionDefinition& s) {
+      if (!s.thickness)
+        throw InputError("blades.aero_sections: expected a thickness at all sections or at none");
+      return *s.thickness;
+    });
+    if (by_thickness_.empty())
+      throw InputError("blades.aero_sections: there is no airfoil with a thickness");
+    const auto thicker = std::ranges::lower_bound(by_thickness_, thickness, {},
+                                                  &std::pair<double, std::string>::first);
+    if (thicker == by_thickness_.begin())
+      return between(thicker->second, thicker->second, 0.0, reynolds);
+    const auto& [least, thinner] = *(thicker - 1);
+    if (thicker == by_thickness_.end()) return between(thinner, thinner, 0.0, reynolds);
+    return between(thinner, thicker->second, (thickness - least) / (thicker->first - least),
+                   reynolds);
+  }
+
+  const AirfoilDefinition& airfoil(const std::string& name) const {
+    const auto found = airfoils_.find(name);
+    if (found == airfoils_.end())
+      throw InputError("blades.aero_sections: there is no airfoil \"" + name + "\"");
+    return found->second;
+  }
+
+  const std::map<std::string, AirfoilDefinition>& airfoils_;
+  std::vector<std::pair<double, std::string>> by_thickness_;
+  std::map<std::tuple<std::string, std::string, double, double>,
+           std::shared_ptr<const elements::AirfoilCurves>>
+      made_;
+};
 
 elements::MeanWind wind_of(const WindDefinition& definition) {
   elements::MeanWind wind;
@@ -105,6 +188,40 @@ double find_tau1(const Air& air, const Turbine& turbine, double wind_axial) {
   return std::min(1.1 / (1.0 - 1.3 * a) * air.rotor.tip_radius / U, longest);
 }
 
+void place_stations(const TurbineDefinition& definition, const Turbine& turbine, Air& air) {
+  AirfoilShelf shelf(definition.blades.airfoils);
+  for (std::size_t k = 0; k < turbine.blades.size(); ++k) {
+    const Beam& beam = turbine.blades[k];
+    const BladeRoot& root = turbine.roots[k];
+    std::vector<elements::AirStation>& stations = air.stations.emplace_back();
+    for (int p = 0; p < beam.point_count(); ++p) {
+      const auto at = static_cast<std::size_t>(p);
+      const double fraction = beam.fractions[at];
+      const Between place = find_sections(definition.blades.aero_sections, fraction);
+      elements::AirStation station;
+      station.x = beam.points[at].x;
+      station.turned = beam.points[at].reference * beam.points[at].C_ab;
+      station.chord = place.of([](const AeroSectionDefinition& s) { return s.chord; });
+      station.twist = place.of([](const AeroSectionDefinition& s) { return s.twist; }) -
+                      interpolate_section(definition.blades.beam, fraction).twist;
+      station.center =
+          Vector3(0.0, place.of([](const AeroSectionDefinition& s) { return s.center[0]; }),
+                  place.of([](const AeroSectionDefinition& s) { return s.center[1]; }));
+      station.arc_to_tip = (1.0 - fraction) * beam.length;
+      station.arc_to_hub = fraction * beam.length;
+      station.radius = undeformed_radius(root, station.x);
+      const double speed = std::hypot(turbine.speed * station.radius, definition.wind->speed);
+      station.airfoil = shelf.at(place, speed * station.chord / kinematic_viscosity);
+      if (air.rotor.models.induction != elements::Induction::none &&
+          !(station.radius > 0.3 * definition.hub.radius && station.radius > 0.0))
+        throw InputError("blades.aero_sections: " + beam.name + " point " + std::to_string(p + 1) +
+                         " is inboard of the hub, where there is no balance of momentum (use "
+                         "aero.induction: none)");
+      stations.push_back(station);
+    }
+  }
+}
+
 }  // namespace
 
 Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
@@ -121,7 +238,7 @@ Air build_air(const TurbineDefinition& definition, const Turbine& turbine) {
   rotor.blades = static_cast<int>(turbine.blades.size());
   rotor.hub_radius = definition.hub.radius;
   rotor.tip_radius = rotor_radius(turbine);
-  place_air_stations(definition, turbine, air);
+  place_stations(definition, turbine, air);
   const HubWind wind = find_hub_wind(rotor.wind.mean, turbine);
   air.hub_height = wind.height;
   air.hub_wind = wind.speed;

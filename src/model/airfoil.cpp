@@ -261,20 +261,6 @@ PolarDefinition blend(const PolarDefinition& a, const PolarDefinition& b, double
   return sum;
 }
 
-PolarDefinition blend(const std::vector<AirfoilShare>& shares, double reynolds) {
-  if (shares.size() == 1) return polar_at(*shares.front().airfoil, reynolds);
-  PolarDefinition sum;
-  sum.angles = polar_grid();
-  for (const Coefficient& c : coefficients) (sum.*c.values).assign(sum.angles.size(), 0.0);
-  for (const AirfoilShare& share : shares) {
-    const PolarDefinition polar = polar_at(*share.airfoil, reynolds);
-    for (const Coefficient& c : coefficients)
-      for (std::size_t i = 0; i < sum.angles.size(); ++i)
-        (sum.*c.values)[i] += share.weight * (polar.*c.values)[i];
-  }
-  return sum;
-}
-
 PolarDefinition polar_at(const AirfoilDefinition& airfoil, double reynolds) {
   std::vector<const PolarDefinition*> polars;
   for (const PolarDefinition& polar : airfoil.polars)
@@ -324,19 +310,17 @@ elements::AirfoilCurves make_curves(const PolarDefinition& polar,
   return curves;
 }
 
-elements::AirfoilCurves make_curves(const std::vector<AirfoilShare>& shares, double reynolds) {
+elements::AirfoilCurves make_curves(const AirfoilDefinition& a, const AirfoilDefinition& b,
+                                    double weight, double reynolds) {
+  if (weight == 0.0) return make_curves(polar_at(a, reynolds), a.lift_slope);
+  if (weight == 1.0) return make_curves(polar_at(b, reynolds), b.lift_slope);
+  const PolarDefinition polar_a = polar_at(a, reynolds);
+  const PolarDefinition polar_b = polar_at(b, reynolds);
   std::optional<double> slope;
-  const auto states_slope = [](const AirfoilShare& share) {
-    return share.airfoil->lift_slope.has_value();
-  };
-  if (std::ranges::any_of(shares, states_slope)) {
-    slope = 0.0;
-    for (const AirfoilShare& share : shares)
-      *slope += share.weight * (share.airfoil->lift_slope
-                                    ? *share.airfoil->lift_slope
-                                    : find_lift_slope(polar_at(*share.airfoil, reynolds)));
-  }
-  return make_curves(blend(shares, reynolds), slope);
+  if (a.lift_slope || b.lift_slope)
+    slope = (1.0 - weight) * (a.lift_slope ? *a.lift_slope : find_lift_slope(polar_a)) +
+            weight * (b.lift_slope ? *b.lift_slope : find_lift_slope(polar_b));
+  return make_curves(blend(polar_a, polar_b, weight), slope);
 }
 
 }  // namespace samara::model

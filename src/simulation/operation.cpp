@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -196,9 +195,7 @@ class OperatingPointFinder::Search {
     point.power_coefficient = point.power / (pressure * wind);
     point.thrust_coefficient = point.thrust / pressure;
     point.tip_speed_ratio = speed * rotor.tip_radius / wind;
-    point.time_constant = rotor.models.inflow == elements::Inflow::oye
-                              ? rotor.tau1
-                              : std::numeric_limits<double>::quiet_NaN();
+    point.time_constant = rotor.tau1;
     point.imbalance = last_->imbalance();
     memory_.tip_radius = rotor.tip_radius;
     memory_.density = rotor.density;

@@ -50,15 +50,6 @@ class Operate(ProgramTest):
         text, errors = run.communicate(timeout=LONGEST_RUN)
         return run.returncode, text, errors
 
-    def test_the_time_constant_is_that_of_a_model_with_lags(self):
-        one = [str(word).replace(str(WINDS), "[8]") for word in ARGUMENTS]
-        text = self.succeed(*one).stdout
-        self.assertIn("tau_1", text)
-        self.assertTrue(numpy.isfinite(self.points()[1]["inflow_time_constant"]).all())
-        text = self.succeed(*one, "--set", "aero.inflow=equilibrium").stdout
-        self.assertNotIn("tau_1", text)
-        self.assertTrue(numpy.isnan(self.points()[1]["inflow_time_constant"]).all())
-
     def test_an_ended_run_goes_on(self):
         began = time.monotonic()
         self.succeed(*ARGUMENTS)

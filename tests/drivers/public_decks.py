@@ -207,18 +207,6 @@ class PublicDecks(ProgramTest):
                      "--set", "aero=none")
         self.assertTrue(any("yaw" in mode for mode in self.multipliers()))
 
-    def test_a_station_without_a_next_induced_velocity_is_named(self):
-        """Wind obliquely from behind: with AeroDyn's thrust law the balance of momentum of a stalled
-        station loses its solution, with `closure: load` it does not."""
-        self.find("UAE_Dnwind_YRamp_WSt.fst")
-        run = ("transient", "case.yaml", "-o", "run.h5", "--set", "wind.direction_deg=120", "--set",
-               "transient={duration: 0.5, step: 0.01}")
-        failed = self.samara(*run)
-        self.assertEqual(failed.returncode, NOT_FOUND, failed.stderr)
-        self.assertRegex(failed.stderr, "the equation farthest from zero: that of inflow . point ")
-        self.assertIn("aero.closure=load", failed.stderr)
-        self.succeed(*run, "--set", "aero.closure=load")
-
     def rotor_loads(self, case):
         """Power by the twist of the shaft [W], and thrust at the tower's foot [N]."""
         speed = 9.155 * math.pi / 30.0

@@ -42,7 +42,7 @@ model::AirfoilDefinition flat_plate() {
 }
 
 std::shared_ptr<const AirfoilCurves> curves_of(const model::AirfoilDefinition& airfoil) {
-  return std::make_shared<const AirfoilCurves>(model::make_curves({{&airfoil, 1.0}}, 1e6));
+  return std::make_shared<const AirfoilCurves>(model::make_curves(airfoil, airfoil, 0.0, 1e6));
 }
 
 /// An airfoil of inputs/nrel5mw/airfoils.

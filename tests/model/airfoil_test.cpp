@@ -353,18 +353,17 @@ BOOST_AUTO_TEST_CASE(airfoils_are_blended_linearly_and_slopes_with_them) {
   a.polars = {kirchhoff_polar()};
   AirfoilDefinition b;
   b.polars = {constant_polar(0.0, 0.0)};
-  const AirfoilCurves half = model::make_curves({{&a, 0.5}, {&b, 0.5}}, 1e6);
+  const AirfoilCurves half = model::make_curves(a, b, 0.5, 1e6);
   for (const double angle : {-3.0, -0.2, 0.0, 0.1, 2.0}) {
     BOOST_TEST(std::abs(half.lift_at(angle) - 0.5 * kirchhoff_lift(angle)) < 1e-3);
     BOOST_TEST(std::abs(half.drag_at(angle) - 0.055 - 0.5 * std::pow(std::sin(angle), 2)) < 1e-5);
   }
   BOOST_TEST(std::abs(half.lift_slope - 0.5 * lift_slope) < 1e-6);
   a.lift_slope = 7.0;
-  BOOST_TEST(model::make_curves({{&a, 1}, {&b, 0}}, 1e6).lift_slope == 7.0);
-  BOOST_TEST(std::abs(model::make_curves({{&a, 0.75}, {&b, 0.25}}, 1e6).lift_slope - 5.25) <
-             round_off);
-  BOOST_TEST(!model::make_curves({{&a, 0.1}, {&b, 0.9}}, 1e6).has_dynamics);
-  BOOST_TEST(!model::make_curves({{&a, 0}, {&b, 1}}, 1e6).has_dynamics);
+  BOOST_TEST(model::make_curves(a, b, 0.0, 1e6).lift_slope == 7.0);
+  BOOST_TEST(std::abs(model::make_curves(a, b, 0.25, 1e6).lift_slope - 5.25) < round_off);
+  BOOST_TEST(!model::make_curves(a, b, 0.9, 1e6).has_dynamics);
+  BOOST_TEST(!model::make_curves(a, b, 1.0, 1e6).has_dynamics);
 }
 
 BOOST_AUTO_TEST_CASE(polars_are_interpolated_in_the_logarithm_of_the_reynolds_number) {

@@ -27,7 +27,6 @@ struct StatedQuantity {
   const char* option;  ///< without the dashes
   const char* key;     ///< of the case, in whose units and axes it counts
   std::size_t count;   ///< of numbers
-  bool is_offset;      ///< numbers may be negative
 };
 std::span<const StatedQuantity> stated_quantities();
 

@@ -40,16 +40,6 @@ PolarDefinition blend(const PolarDefinition& a, const PolarDefinition& b, double
 /// first counts.
 PolarDefinition polar_at(const AirfoilDefinition& airfoil, double reynolds);
 
-/// An airfoil, and its part in the coefficients of a section.
-struct AirfoilShare {
-  const AirfoilDefinition* airfoil = nullptr;
-  double weight = 1.0;
-};
-
-/// Sum of the polars of airfoils at a Reynolds number, on the common grid. The weights have the
-/// sum 1.
-PolarDefinition blend(const std::vector<AirfoilShare>& shares, double reynolds);
-
 /// Thickness and name of all airfoils that have a thickness, the thinnest first.
 std::vector<std::pair<double, std::string>> sort_by_thickness(
     const std::map<std::string, AirfoilDefinition>& airfoils);
@@ -58,8 +48,9 @@ std::vector<std::pair<double, std::string>> sort_by_thickness(
 elements::AirfoilCurves make_curves(const PolarDefinition& polar,
                                     std::optional<double> lift_slope = std::nullopt);
 
-/// The curves of a sum of airfoils, at a Reynolds number. A lift slope that one of them states is
-/// summed with those of the others.
-elements::AirfoilCurves make_curves(const std::vector<AirfoilShare>& shares, double reynolds);
+/// The curves between two airfoils: (1 - weight) a + weight b, at a Reynolds number. A lift slope
+/// that one of them states is blended with that of the other one.
+elements::AirfoilCurves make_curves(const AirfoilDefinition& a, const AirfoilDefinition& b,
+                                    double weight, double reynolds);
 
 }  // namespace samara::model

@@ -53,7 +53,7 @@ struct OperatingPoint {
   double tip_twist = 0.0;           ///< rotation of the tip of blade 1 toward feather [rad]
   double root_flap_moment = 0.0;    ///< of blade 1, out of plane [N m]
   double tower_moment = 0.0;        ///< fore-aft moment at the tower base [N m]; 0 without a tower
-  double time_constant = 0.0;       ///< first one of Oye's inflow [s]; NaN: other inflow
+  double time_constant = 0.0;       ///< first one of the dynamic inflow [s]
   double imbalance = 0.0;           ///< analysis::Trim::imbalance
 };
 
