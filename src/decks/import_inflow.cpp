@@ -114,7 +114,7 @@ class InflowImporter {
   bool read_turbsim() {
     const std::string key = deck_->has("FileName_BTS") ? "FileName_BTS" : "Filename";
     deck_->choose("Filename", 1);
-    const std::string path = deck_->file_if_there(key);
+    const std::string path = deck_->find_file(key);
     if (path.empty()) return false;
     try {
       use(io::read_turbsim_box(path), path, key);

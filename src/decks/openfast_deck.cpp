@@ -326,13 +326,6 @@ std::string Deck::file(const std::string& key) {
   return entry == nullptr ? "" : file_named(entry->values[0].text, entry->line, key);
 }
 
-std::string Deck::file_if_there(const std::string& key) {
-  const DeckEntry* entry = find(key, false);
-  const std::string full = entry == nullptr ? "" : full_path(entry->values[0].text);
-  std::error_code error;
-  return fs::is_regular_file(full, error) ? full : "";
-}
-
 std::string Deck::file_named(const std::string& name, int line, const std::string& key) {
   const std::string full = full_path(name);
   if (full.empty()) return full;

@@ -82,8 +82,6 @@ class Deck {
   bool flag_or(const std::string& key, bool value);
   /// The path of a file, relative to this one; an error where there is none.
   std::string file(const std::string& key);
-  /// The same; empty where there is none.
-  std::string file_if_there(const std::string& key);
   /// The same, empty where there is none.
   std::string find_file(const std::string& key);
   /// The same of a name in a line without a key of its own; `key` is its name in errors.
