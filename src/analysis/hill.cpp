@@ -52,6 +52,9 @@ constexpr Accuracy of_residual{1e-8, 1e-6};
 /// The same for the change of an exponent from one number of harmonics to twice as many, with a
 /// medium.
 constexpr Accuracy of_change{3e-4, 1e-2};
+/// The part of it that is wanted of the first change, which is that from the search: this one can
+/// be small by chance, because the search has only the harmonics of constant tangents.
+constexpr double first_change = 0.1;
 constexpr double increase_with_medium = 2.0;
 /// Wanted change of a growth, relative to itself or to this part of the exponent.
 constexpr double wanted_change = 1e-3;
@@ -874,7 +877,8 @@ class Analysis {
         std::ranges::any_of(members, [this](const Candidate& one) { return lacks_partner(one); }))
       return false;
     const double residual = group.residual();
-    if ((residual <= accuracy().wanted && (!is_by_change() || know_growth(members))) ||
+    const double wanted = accuracy().wanted * (is_by_change() && added == 0 ? first_change : 1.0);
+    if ((residual <= wanted && (!is_by_change() || know_growth(members))) ||
         harmonics_ == most_harmonics || is_constant_)
       return true;
     const bool is_own = std::any_of(members.begin(), members.end(), [this](const Candidate& one) {

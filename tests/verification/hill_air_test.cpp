@@ -43,6 +43,9 @@ std::vector<Example> examples() {
       {"nrel5mw/land", with_coarse({})},
       {"nrel5mw/land", with_coarse({"wind.shear.power=0.2", "wind.direction_deg=20"})},
       {"nrel5mw/land", with_coarse({"aero.airfoil_dynamics=static", "aero.inflow=equilibrium"})},
+      // The change from the search to the first number of harmonics is small by chance.
+      {"nrel5mw/land",
+       with_coarse({"aero.airfoil_dynamics=static", "aero.inflow=equilibrium", "wind.speed=12.5"})},
       {"nrel5mw/land", with_coarse({"aero.inflow=peters_he"})},
       {"iea15mw/land",
        with_coarse({"wind.speed=15", "shaft.speed_rpm=7.5", "blades.pitch_deg=10"})},
